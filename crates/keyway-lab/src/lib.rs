@@ -4,12 +4,12 @@
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
 //! | [`bench`] | planners on the queries of MovingAI scenario files |
-//! | [`batch`] | many runs, and what those of a stack say together |
-//! | [`claims`] | what papers claim, measured again |
+//! | [`batch`] | many runs, and summaries by stack |
+//! | [`claims`] | claims of papers, measured again |
 //! | [`results`] | folders of results, and journals |
 //! | [`table`] | rows as text, LaTeX and CSV |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
-//! | [`parallel`], [`progress`] | work on several threads; how far it has come |
+//! | [`parallel`], [`progress`] | work on several threads; its progress |
 
 pub mod batch;
 pub mod bench;

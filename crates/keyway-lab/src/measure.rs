@@ -1,4 +1,4 @@
-//! How long work takes, and what many numbers say together.
+//! Times of work, and summaries of many values.
 
 use cpu_time::ThreadTime;
 use keyway::route::{Stage, StageObserver};
@@ -15,7 +15,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// The fastest time of repeated work counts.
+    /// Keeps the faster of two times.
     pub fn keep_faster(&mut self, other: Self) {
         self.wall = self.wall.min(other.wall);
         self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));
@@ -36,7 +36,7 @@ fn micros(time: Duration) -> f64 {
     time.as_secs_f64() * 1e6
 }
 
-/// The beginning of a piece of work in this thread.
+/// Start of a piece of work in this thread.
 struct Begin {
     wall: Instant,
     cpu: Option<ThreadTime>,
@@ -53,20 +53,20 @@ impl Begin {
     }
 }
 
-/// Does a piece of work in this thread.
+/// Runs a piece of work in this thread, and returns its times.
 pub fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
     let begin = Begin::now();
     let result = work();
     (result, begin.elapsed())
 }
 
-/// Seconds since this call.
+/// Returns a clock that counts the seconds since this call.
 pub fn wall_clock() -> impl Fn() -> f64 {
     let begin = Instant::now();
     move || begin.elapsed().as_secs_f64()
 }
 
-/// Times of the stages of a route that ended last in this thread.
+/// Times of the stages of the last route that ended in this thread.
 #[derive(Default)]
 pub struct StageTimer {
     begin: Option<Begin>,
@@ -96,12 +96,12 @@ pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Their [`Sample::quantile`]; `None` without values.
+/// [`Sample::quantile`] of the values; `None` without values.
 pub fn quantile(values: Vec<f64>, share: f64) -> Option<f64> {
     Sample::new(values).ok().map(|sample| sample.quantile(share))
 }
 
-/// Mean of values, and between what most of them lie.
+/// Mean of values, and the range of most of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Mean.
@@ -113,13 +113,13 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Those of a sample.
+    /// Returns the spread of a sample.
     pub fn of(sample: &Sample) -> Self {
         let [p5, p95] = [0.05, 0.95].map(|share| Some(sample.quantile(share)));
         Self { mean: Some(sample.mean()), p5, p95 }
     }
 
-    /// All `None` without values.
+    /// Returns the spread of the values; all `None` without values.
     pub fn of_values(values: Vec<f64>) -> Self {
         Sample::new(values).map(|sample| Self::of(&sample)).unwrap_or_default()
     }
@@ -144,8 +144,8 @@ mod tests {
         assert_eq!(quantile(vec![4.0, 2.0, 1.0, 3.0], 0.5), Some(2.5));
         assert_eq!(quantile(vec![1.0, 5.0, 3.0], 0.5), Some(3.0));
         assert_eq!((quantile(vec![], 0.5), quantile(vec![7.0], 0.99)), (None, Some(7.0)));
-        // Of the 21 numbers 0 to 20 the quantile of 0.05 is the second; of 1 to 4 that of 0.95 lies at the
-        // place 2.85, between 3 and 4.
+        // Of the 21 numbers 0 to 20, the quantile of 0.05 is the second one; of 1 to 4, that of
+        // 0.95 is at position 2.85, between 3 and 4.
         let spread = Spread::of_values((0..=20).rev().map(f64::from).collect());
         let expected = Spread { mean: Some(10.0), p5: Some(1.0), p95: Some(19.0) };
         assert_eq!((spread, Spread::of_values(Vec::new())), (expected, Spread::default()));

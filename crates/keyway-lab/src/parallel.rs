@@ -1,14 +1,14 @@
-//! Several pieces of work at once.
+//! Parallel work.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Number of threads that work at the same time here.
+/// Number of threads that this computer runs at the same time.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Maps every item with this many threads; results come in the order of the items.
+/// Maps every item with this many threads, and returns the results in the order of the items.
 pub fn in_parallel<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,
@@ -24,7 +24,7 @@ pub fn in_parallel<T: Sync, R: Send>(
                     items.get(i).map(|item| (i, item))
                 } {
                     let result = work(item);
-                    // A poisoned lock holds results all the same.
+                    // A poisoned lock still holds results.
                     results
                         .lock()
                         .unwrap_or_else(std::sync::PoisonError::into_inner)

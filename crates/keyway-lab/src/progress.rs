@@ -1,13 +1,13 @@
-//! How far long work has come.
+//! Progress of long work.
 
 use std::ops::ControlFlow;
 
-/// Watcher of work that gives many answers. `()` looks away.
+/// Observer of work that yields many answers. `()` ignores them.
 pub trait Progress: Sync {
-    /// So many more answers are expected.
+    /// Announces this many more answers.
     fn expect(&self, answers: usize);
 
-    /// One more answer was given; `Break` stops the work as soon as that is possible.
+    /// Reports one more answer; `Break` stops the work as soon as possible.
     fn answered(&self) -> ControlFlow<()>;
 }
 

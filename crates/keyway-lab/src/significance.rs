@@ -1,19 +1,19 @@
-//! Differences between two methods on the same tasks: how large they are, and whether they are more than chance.
+//! Differences between two methods on the same tasks: their size and their significance.
 
 use crate::table::number;
 use keyway_sim::metrics::statistics::{Confidence, Sample, SignedRankTest, holm};
 
-/// Paired differences, and Wilcoxon's test of them.
+/// Paired differences with Wilcoxon's test.
 pub struct Differences {
     /// Number of pairs.
     pub pairs: usize,
-    /// `None` without pairs.
+    /// Wilcoxon's test; `None` without pairs.
     pub test: Option<SignedRankTest>,
 }
 
 impl Differences {
-    /// Those of tasks on which both methods gave a value. Equal values, and equal differences, differ by rounding: what is nearer
-    /// than `same` counts as equal.
+    /// Compares the tasks on which both methods gave a value. Equal values, and equal differences,
+    /// differ by rounding: values closer than `same` count as equal.
     pub fn of(differences: impl Iterator<Item = f64>, same: f64) -> Self {
         let per_unit = 1.0 / same;
         let rounded: Vec<f64> =
@@ -24,23 +24,23 @@ impl Differences {
         Self { pairs, test }
     }
 
-    /// The ends of the interval of their median.
+    /// Ends of the interval of the median.
     pub fn median_ends(&self) -> [Option<f64>; 2] {
         let ends = self.test.as_ref().and_then(|test| test.median_difference_interval);
         [ends.map(|ends| ends.low), ends.map(|ends| ends.high)]
     }
 }
 
-/// Holm's correction of those that are there.
+/// Holm's correction of the p-values that are present.
 pub fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
     let p_values: Vec<Option<f64>> = p_values.collect();
     let there: Vec<f64> = p_values.iter().copied().flatten().collect();
-    // Each is the probability that a test gave.
+    // Each one is a probability from a test.
     let mut corrected = holm(&there).unwrap_or_default().into_iter();
     p_values.into_iter().map(|p| p.and_then(|_| corrected.next())).collect()
 }
 
-/// For people.
+/// Formats a p-value for people.
 pub fn p_value(p: Option<f64>) -> String {
     if p.is_some_and(|p| p < 0.001) { "< 0.001".to_owned() } else { number(p, 3) }
 }

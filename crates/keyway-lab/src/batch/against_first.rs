@@ -1,4 +1,4 @@
-//! Each stack against the first one: is the difference more than chance?
+//! Comparison of each stack with the first one: is the difference more than chance?
 
 use super::record::Record;
 use super::row::Row;
@@ -10,7 +10,7 @@ use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// A stack and the first one, run by run: the same scene with the same seed.
+/// A stack against the first one, run by run: the same scene with the same seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstFirst {
     first: String,
@@ -19,7 +19,7 @@ pub struct AgainstFirst {
     only_reached_by_first: u64,
     reached_p: f64,
     reached_p_holm: Option<f64>,
-    /// Both reached the goal.
+    /// Runs in which both reached the goal.
     pairs: usize,
     median_time_difference_s: Option<f64>,
     ci_low_time_difference_s: Option<f64>,
@@ -29,10 +29,10 @@ pub struct AgainstFirst {
     time_p_holm: Option<f64>,
 }
 
-/// Times are sums of cycles: they differ by rounding where they are equal.
+/// Times closer than this are equal \[s\]: they are sums of cycles, with rounding errors.
 const SAME_S: f64 = 1e-6;
 
-/// All stacks but the first.
+/// Compares all other stacks with the first one.
 pub fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst> {
     let Some((first, others)) = stacks.split_first() else { return Vec::new() };
     let mut all: Vec<AgainstFirst> =
@@ -81,11 +81,11 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
 
 const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
 
-/// The same where the text below the table is a comment, which nobody sees in print.
+/// Column names with units, where the text below the table is a comment, which is not printed.
 const WITH_UNITS: [&str; 6] =
     ["stack", "reached alone", "p (reached)", "pairs", "time against the first s", "p (time)"];
 
-/// The columns for people.
+/// Cells of a comparison.
 fn cells(one: &AgainstFirst) -> Vec<String> {
     let ends = [one.ci_low_time_difference_s, one.ci_high_time_difference_s];
     vec![
@@ -98,21 +98,21 @@ fn cells(one: &AgainstFirst) -> Vec<String> {
     ]
 }
 
-/// For the terminal; `None` for a single stack.
+/// Table for the terminal; `None` for a single stack.
 pub fn against_first_table(all: &[AgainstFirst]) -> Option<String> {
     let first = &all.first()?.first;
     let table = rows(&HEADER, all.iter().map(cells).collect(), 1);
     Some(format!("Against {first}:\n\n{table}\n\n{ABOUT}"))
 }
 
-/// The same as Markdown.
+/// Table as Markdown.
 pub fn against_first_markdown(all: &[AgainstFirst]) -> String {
     let Some(one) = all.first() else { return String::new() };
     let table = super::summary::markdown_table(&HEADER, all.iter().map(cells));
     format!("\nAgainst {}:\n\n{table}\n{ABOUT}\n", one.first)
 }
 
-/// The same as LaTeX; `None` for a single stack.
+/// Table as LaTeX; `None` for a single stack.
 pub fn against_first_latex(all: &[AgainstFirst]) -> Option<String> {
     let first = &all.first()?.first;
     let lines: Vec<Vec<String>> = all.iter().map(cells).collect();

@@ -1,12 +1,13 @@
-//! How full of obstacles the world of a run is.
+//! Obstacle density of the world of a run.
 
 use keyway::geometry::Point;
 use keyway_sim::episode::Team;
 use std::f64::consts::PI;
 
-/// Share of the map, its unknown cells left out, that obstacles cover at the beginning: occupied cells, and the obstacles that no map
-/// shows, standing and moving. Where these lie upon each other, or beyond the map, they count all the same, so it is cut off at 1.
-/// The same for all stacks, and `None` for a map without a known cell.
+/// Share of the known map area that obstacles cover at the beginning: occupied cells, and the
+/// obstacles outside the map, static and moving. Overlaps, and parts beyond the map, count in full,
+/// so the share is capped at 1. It is the same for all stacks, and `None` for a map without a known
+/// cell.
 pub(super) fn occupied_share(team: &Team) -> Option<f64> {
     let (map, frame) = (&team.known, team.known.frame());
     let cell_m2 = frame.resolution_m().powi(2);
@@ -20,7 +21,7 @@ pub(super) fn occupied_share(team: &Team) -> Option<f64> {
     (cells > 0).then(|| (occupied_m2 / (cells as f64 * cell_m2)).min(1.0))
 }
 
-/// Of a polygon, by the sum over its sides.
+/// Area of a polygon, as a sum over its sides \[m²\].
 fn area_m2(vertices: &[Point]) -> f64 {
     let next = vertices.iter().cycle().skip(1);
     let twice_m2: f64 = vertices.iter().zip(next).map(|(a, b)| a.x * b.y - b.x * a.y).sum();

@@ -1,4 +1,4 @@
-//! Many runs: what each came to, and what those of a stack say together.
+//! Batches of runs: the result of each run, and summaries by stack.
 
 mod against_first;
 mod clutter;

@@ -1,4 +1,4 @@
-//! The results of a run.
+//! Results of a run.
 
 use super::clutter::occupied_share;
 use super::row::{Row, RunId, World};
@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 pub struct Record {
     /// The run as a whole.
     pub run: Row,
-    /// Each robot by itself, where there are several.
+    /// The individual robots, where there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<Row>,
-    /// Times.
+    /// Times of the run.
     pub measured: Measured,
 }
 
-/// Times of a run: they are never the same twice.
+/// Times of a run; they differ from run to run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measured {
@@ -40,8 +40,8 @@ impl Measured {
 }
 
 impl Record {
-    /// The results of a run with its report. `reference_time_s` is the time of the fastest way at top
-    /// speed, by which runs are scored; `wall_s` that of the wall clock.
+    /// Collects the results of a run with its report. `reference_time_s` is the time of the fastest
+    /// route at top speed, by which runs are scored; `wall_s` is the wall clock.
     pub fn of(
         id: RunId<'_>,
         (team, report): (&Team, &TeamReport),

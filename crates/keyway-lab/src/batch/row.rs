@@ -1,10 +1,10 @@
-//! A line of the results of a batch.
+//! Row of the results of a batch.
 
 use keyway_sim::episode::{EpisodeOutcome, EpisodeReport};
 use keyway_sim::report::RunPart;
 use serde::{Deserialize, Serialize};
 
-/// Name of a run.
+/// Identifier of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunId<'a> {
     /// Name of the scene.
@@ -13,11 +13,12 @@ pub struct RunId<'a> {
     pub stack: &'a str,
     /// Seed of the run.
     pub seed: u64,
-    /// Digest of all that the run depends on.
+    /// Digest of all inputs of the run.
     pub digest: &'a str,
 }
 
-/// A line of `runs.jsonl` and `runs.csv`: the same whenever and wherever it is made. Or one of `robots.jsonl` and `robots.csv`.
+/// A line of `runs.jsonl` and `runs.csv`, or one of `robots.jsonl` and `robots.csv`; identical
+/// wherever and whenever it is computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
@@ -27,10 +28,10 @@ pub struct Row {
     pub stack: String,
     /// Seed of the run.
     pub seed: u64,
-    /// Number of the robot among several; `None`: the run as a whole.
+    /// Number of the robot among several; `None` for the run as a whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<u32>,
-    /// Share of the map that is occupied.
+    /// Occupied share of the map.
     pub occupied_share: Option<f64>,
     /// End of the run.
     pub outcome: EpisodeOutcome,
@@ -38,23 +39,23 @@ pub struct Row {
     pub robots: u32,
     /// Robots that reached their goals.
     pub robots_reached: u32,
-    /// Robot at the contact that ended the run.
+    /// State of the robot at the contact that ended the run.
     pub contact: Option<ContactWhile>,
     /// Speed of the moving obstacle that was touched \[m/s\].
     pub mover_speed_mps: Option<f64>,
-    /// The obstacle had just jumped there.
+    /// True if the obstacle had just jumped there.
     pub jumped_onto: Option<bool>,
     /// Simulated time \[s\].
     pub time_s: Option<f64>,
-    /// Way driven \[m\].
+    /// Length of the driven path \[m\].
     pub length_m: Option<f64>,
     /// Mean speed \[m/s\].
     pub mean_speed_mps: Option<f64>,
-    /// Least clearance from anything \[m\].
+    /// Least clearance from any obstacle \[m\].
     pub min_clearance_m: Option<f64>,
-    /// Least clearance from what stands \[m\].
+    /// Least clearance from static obstacles \[m\].
     pub min_standing_clearance_m: Option<f64>,
-    /// Least clearance from what moves \[m\].
+    /// Least clearance from moving obstacles \[m\].
     pub min_mover_clearance_m: Option<f64>,
     /// Least clearance between two robots \[m\]; `None` where there is only one.
     pub min_robot_clearance_m: Option<f64>,
@@ -62,44 +63,45 @@ pub struct Row {
     pub routes_planned: Option<u32>,
     /// Recoveries of all kinds.
     pub recoveries: Option<u32>,
-    /// Commands that the stop rule did not let pass.
+    /// Commands that the stop rule refused.
     pub unsafe_commands: Option<u32>,
-    /// Sum of the changes of speed \[m/s\].
+    /// Total variation of the speed \[m/s\].
     pub v_variation_mps: Option<f64>,
-    /// Sum of the changes of the turn rate \[rad/s\].
+    /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: Option<f64>,
-    /// Least distance from an obstacle \[m\]; this and the three that follow are measures of MRPB.
+    /// Least distance from an obstacle \[m\]; this and the next three are measures of MRPB.
     pub min_distance_m: Option<f64>,
-    /// Share of the time nearer than the safe distance.
+    /// Share of the time spent nearer than the safe distance.
     pub share_near: Option<f64>,
     /// Smoothness of the path \[m²\].
     pub path_smoothness_m2: Option<f64>,
     /// Smoothness of the velocity \[m/s²\].
     pub velocity_smoothness_mps2: Option<f64>,
-    /// Time of the fastest way at top speed \[s\].
+    /// Time of the fastest route at top speed \[s\].
     pub reference_time_s: Option<f64>,
-    /// Success times reference over time, the latter between twice and eight times the reference: at most 0.5.
+    /// Success times reference time over time, the time limited to two to eight times the
+    /// reference: at most 0.5.
     pub score: Option<f64>,
-    /// Why the goal was not reached.
+    /// Reason why the goal was not reached.
     pub reason: Option<String>,
-    /// Random obstacles that found no place.
+    /// Random obstacles that could not be placed.
     pub left_out: Option<u32>,
-    /// Digest of all that the run depends on.
+    /// Digest of all inputs of the run.
     pub digest: String,
 }
 
-/// A robot when it was touched.
+/// State of a robot at a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactWhile {
-    /// It drove.
+    /// The robot was driving.
     Driving,
-    /// It stood.
+    /// The robot was standing.
     Standing,
 }
 
 impl Row {
-    /// Name of its run.
+    /// Identifier of the run.
     pub fn id(&self) -> RunId<'_> {
         let Self { scene, stack, seed, digest, .. } = self;
         RunId { scene, stack, seed: *seed, digest }
@@ -108,14 +110,14 @@ impl Row {
 
 /// Figures that all robots of a run have in common.
 pub(super) struct World {
-    /// Share of the map that is occupied.
+    /// Occupied share of the map.
     pub occupied_share: Option<f64>,
-    /// Time of the fastest way at top speed \[s\].
+    /// Time of the fastest route at top speed \[s\].
     pub reference_time_s: Option<f64>,
 }
 
 impl Row {
-    /// Of one robot.
+    /// Returns the row of one robot.
     pub(super) fn of(id: RunId<'_>, report: &EpisodeReport, world: &World) -> Self {
         let outcome = report.outcome;
         let run = report.run.as_ref();
@@ -178,7 +180,7 @@ pub(super) fn score(outcome: EpisodeOutcome, time_s: Option<f64>, best_s: f64) -
 pub(super) mod tests {
     use super::*;
 
-    /// Of a robot that reached its goal after 10 s and 4 m.
+    /// Row of a robot that reached its goal after 10 s and 4 m.
     pub(in crate::batch) fn reached(robot: u32) -> Row {
         let text = r#"{"scene":"a","stack":"b","seed":1,"occupied_share":0.1,"outcome":"reached","robots":1,"robots_reached":1,
             "time_s":10.0,"length_m":4.0,"mean_speed_mps":0.4,"min_clearance_m":0.3,"routes_planned":2,"recoveries":1,

@@ -1,4 +1,4 @@
-//! The runs of a stack together.
+//! Summary of the runs of each stack.
 
 use super::record::Record;
 use super::row::{ContactWhile, Row};
@@ -8,17 +8,18 @@ use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Interval, Rate, Sample};
 use serde::Serialize;
 
-/// The runs of a stack. Means are those of the runs that reached the goal, which all robots of a run have to; the score is that of all runs.
+/// Summary of the runs of a stack. Means are over the runs in which all robots reached their goals;
+/// the score is over all runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StackSummary {
     /// Name of the stack.
     pub stack: String,
     pub(super) runs: usize,
     pub(super) reached: usize,
-    /// Wilson's 95 % interval of the share that reached the goal.
+    /// Wilson's 95 % interval of the share of runs that reached the goal.
     pub(super) ci_low_reached: Option<f64>,
     pub(super) ci_high_reached: Option<f64>,
-    /// Robots of all runs, and how many of them reached their goals.
+    /// Number of robots in all runs, and of those that reached their goals.
     pub(super) robots: u32,
     pub(super) robots_reached: u32,
     pub(super) contacts_driving: usize,
@@ -107,7 +108,7 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
     }
 }
 
-/// Always with the same seed: the same runs give the same bytes.
+/// Interval with a fixed seed: the same runs give the same bytes.
 fn mean_interval(sample: &Sample) -> Option<Interval> {
     sample.mean_interval(Confidence::USUAL, 0)
 }
@@ -116,7 +117,7 @@ fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The names of the columns: below the table, and with their units.
+/// Column names: as in the text below the table, and with units.
 const COLUMNS: [[&str; 2]; 11] = [
     ["stack", "stack"],
     ["runs", "runs"],
@@ -131,10 +132,10 @@ const COLUMNS: [[&str; 2]; 11] = [
     ["score", "score"],
 ];
 
-/// The column that only says something where several robots drive.
+/// Column that is useful only for several robots.
 const ROBOTS: usize = 3;
 
-/// A table for people.
+/// A table for the terminal and for papers.
 struct Shown {
     header: Vec<&'static str>,
     lines: Vec<Vec<String>>,
@@ -156,7 +157,8 @@ impl Shown {
     }
 }
 
-/// The columns for people: contacts while driving and while standing, and the rest that did not end at the goal.
+/// Cells of a stack: contacts while driving and while standing, and the other runs that did not
+/// reach the goal.
 fn cells(summary: &StackSummary) -> Vec<String> {
     let share = summary.reached as f64 / summary.runs as f64;
     let robots_share = f64::from(summary.robots_reached) / f64::from(summary.robots);
@@ -185,19 +187,19 @@ pub fn summary_table(stacks: &[StackSummary]) -> String {
     format!("{}\n\n{about}", rows(&header, lines, 1))
 }
 
-/// The same as Markdown.
+/// Table as Markdown.
 pub fn summary_markdown(stacks: &[StackSummary]) -> String {
     let Shown { header, lines, about } = Shown::of(stacks, false);
     format!("{}\n{about}\n", markdown_table(&header, lines.into_iter()))
 }
 
-/// The same as LaTeX.
+/// Table as LaTeX.
 pub fn summary_latex(stacks: &[StackSummary]) -> String {
     let Shown { header, lines, about } = Shown::of(stacks, true);
     comment(&about) + &latex_table(&header, &lines, 1)
 }
 
-/// The first column holds words, the others numbers.
+/// Markdown table whose first column is text and whose others are numbers.
 pub(super) fn markdown_table(header: &[&str], lines: impl Iterator<Item = Vec<String>>) -> String {
     let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let head = row(header.iter().map(|&name| name.to_owned()).collect());

@@ -1,10 +1,11 @@
-//! The row of a run with several robots, from the rows of its robots.
+//! Row of a run with several robots, from the rows of its robots.
 
 use super::row::{ContactWhile, Row, score};
 use keyway_sim::episode::EpisodeOutcome;
 
-/// What the robots of a run came to together, under the stack of the first one: the gravest outcome, the first contact, the time until the last of them had ended, and sums and
-/// minima of the rest. There is none of the measures that are means over time.
+/// Combines the rows of all robots, under the stack of the first one: the gravest outcome, the
+/// first contact, the time until the last robot ended, and sums and minima of the rest. Measures
+/// that are means over time are left out.
 pub(super) fn of_all(robots: &[Row], min_robot_clearance_m: Option<f64>) -> Row {
     let first = &robots[0];
     let touched = first_touched(robots);
@@ -44,7 +45,7 @@ pub(super) fn of_all(robots: &[Row], min_robot_clearance_m: Option<f64>) -> Row 
     }
 }
 
-/// The one that was touched first; of several at that time, one that drove.
+/// The robot that was touched first; of several at that time, one that was driving.
 fn first_touched(robots: &[Row]) -> Option<&Row> {
     let touched = robots.iter().filter(|row| row.contact.is_some());
     let when =
@@ -55,7 +56,7 @@ fn first_touched(robots: &[Row]) -> Option<&Row> {
     })
 }
 
-/// All have to reach their goals; a contact is worse than anything else.
+/// Rank of an outcome: all robots have to reach their goals; a contact is the worst outcome.
 const fn gravity(outcome: EpisodeOutcome) -> u8 {
     match outcome {
         EpisodeOutcome::Reached => 0,
@@ -105,7 +106,7 @@ mod tests {
             (Some(4), Some(2), None)
         );
         assert_eq!((all.v_variation_mps, all.omega_variation_radps), (Some(2.0), Some(4.0)));
-        // 30 s are within eight times 4 s, and more than twice as long.
+        // 30 s is within eight times 4 s, and more than twice 4 s.
         assert_eq!(all.score, Some(4.0 / 30.0));
         let fails = |robot: u32, outcome, why: &str| Row {
             outcome,

@@ -1,91 +1,92 @@
-//! What a paper claims, as data.
+//! Claims of a paper, as data.
 
 use super::experiment::Experiment;
 use super::measure::{Measure, Scale};
 use serde::Serialize;
 
-/// A claim of a paper, what it published, and how it is measured again.
+/// A claim of a paper, with its published figures and its experiment.
 #[derive(Debug)]
 pub struct Claim {
-    /// Such as `S0-1`; see [`Self::all`].
+    /// Name such as `S0-1`; see [`Self::all`].
     pub id: &'static str,
     /// Key of the paper in docs/PAPERS.md.
     pub paper: &'static str,
     /// The claim in a sentence.
     pub statement: &'static str,
-    /// What it says in detail; it holds when all of it does.
+    /// Figures of the claim; it holds when all of them do.
     pub figures: &'static [Figure],
-    /// How it is measured.
+    /// Experiment that measures the claim.
     pub experiment: &'static Experiment,
 }
 
-/// One part of a claim: what one measure does.
+/// One part of a claim: the statement about one measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
-    /// What is measured ...
+    /// The measure ...
     pub measure: Measure,
     /// ... of this method of the experiment (of a driving claim, of this stack).
     pub of: &'static str,
-    /// What the paper says of it.
+    /// Statement of the paper about it.
     pub expected: Expected,
 }
 
-/// What a paper says of a measure.
+/// Statement of a paper about a measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
-    /// It differs from that of another method.
+    /// The measure differs from that of another method.
     Change {
         /// The other method.
         than: &'static str,
-        /// How it differs.
+        /// Direction of the difference.
         direction: Direction,
-        /// Published values of the other method and of this one; `None` where the paper has no comparable figures.
+        /// Published values of the other method and of this one; `None` if the paper has no
+        /// comparable figures.
         published: Option<[f64; 2]>,
     },
-    /// It is within a bound on every map.
+    /// The measure is within a bound on every map.
     Always(Bound),
 }
 
-/// How a measure differs from that of another method.
+/// Direction of a difference from another method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Direction {
-    /// It is smaller.
+    /// The measure is smaller.
     Lower,
-    /// It is larger.
+    /// The measure is larger.
     Higher,
-    /// It is the same, up to this change.
+    /// The measure is the same, up to this change.
     Same {
-        /// As [`Measure::scale`] has it.
+        /// Tolerance, on the scale of [`Measure::scale`].
         within: f64,
     },
-    /// It is not larger, up to this change.
+    /// The measure is not larger, up to this change.
     NotHigher {
-        /// As [`Measure::scale`] has it.
+        /// Tolerance, on the scale of [`Measure::scale`].
         beyond: f64,
     },
 }
 
-/// A bound, itself included.
+/// An inclusive bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// At least this.
+    /// At least this value.
     AtLeast(f64),
-    /// At most this.
+    /// At most this value.
     AtMost(f64),
 }
 
-/// How a claim is judged.
+/// Rule by which a claim is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
-    /// Against published figures.
+    /// Comparison with published figures.
     Figures,
-    /// By the sign alone: nothing comparable was published.
+    /// Sign alone: nothing comparable was published.
     Sign,
 }
 
 impl Claim {
-    /// Whether anything comparable was published.
+    /// Returns the rule, which depends on whether anything comparable was published.
     pub fn rule(&self) -> Rule {
         let is_published = self.figures.iter().any(|figure| figure.published().is_some());
         if is_published { Rule::Figures } else { Rule::Sign }
@@ -103,7 +104,7 @@ impl Figure {
         Self::change(measure, [of, than], Direction::Lower, published)
     }
 
-    /// It is larger.
+    /// The measure of a method is larger than that of another one.
     pub(super) const fn higher(
         measure: Measure,
         of: &'static str,
@@ -113,7 +114,7 @@ impl Figure {
         Self::change(measure, [of, than], Direction::Higher, published)
     }
 
-    /// It is the same.
+    /// The measure of a method is the same as that of another one.
     pub(super) const fn same(
         measure: Measure,
         of: &'static str,
@@ -124,7 +125,8 @@ impl Figure {
         Self::change(measure, [of, than], Direction::Same { within }, published)
     }
 
-    /// It is hardly larger, if at all. Nothing was published of such a figure.
+    /// The measure of a method is at most slightly larger than that of another one. No values of
+    /// such a figure were published.
     pub(super) const fn not_higher(
         measure: Measure,
         of: &'static str,
@@ -143,12 +145,12 @@ impl Figure {
         Self { measure, of, expected: Expected::Change { than, direction, published } }
     }
 
-    /// It is within a bound on every map.
+    /// The measure of a method is within a bound on every map.
     pub(super) const fn always(measure: Measure, of: &'static str, bound: Bound) -> Self {
         Self { measure, of, expected: Expected::Always(bound) }
     }
 
-    /// Published values of the other method and of this one.
+    /// Returns the published values of the other method and of this one.
     pub const fn published(&self) -> Option<[f64; 2]> {
         match self.expected {
             Expected::Change { published, .. } => published,
@@ -156,8 +158,9 @@ impl Figure {
         }
     }
 
-    /// How values are compared: as [`Measure::scale`] has it, but heading jumps, of which a smooth path has none, by their difference where no
-    /// change of them was published.
+    /// Returns the scale on which values are compared: [`Measure::scale`], except for heading jumps
+    /// without a published change. These are compared by their difference, since a smooth path has
+    /// none.
     pub fn scale(&self) -> Scale {
         match self.measure {
             Measure::NonSmoothTurns if self.published().is_none() => Scale::Absolute,
@@ -165,12 +168,12 @@ impl Figure {
         }
     }
 
-    /// The published change, as [`Self::scale`] has it.
+    /// Returns the published change, on the scale of [`Self::scale`].
     pub fn published_effect(&self) -> Option<f64> {
         self.published().and_then(|[old, new]| self.scale().change(old, new))
     }
 
-    /// The other method.
+    /// Returns the other method.
     pub const fn than(&self) -> Option<&'static str> {
         match self.expected {
             Expected::Change { than, .. } => Some(than),
@@ -180,7 +183,7 @@ impl Figure {
 }
 
 impl Bound {
-    /// Whether a value is within it.
+    /// True if a value is within the bound.
     pub fn holds(self, value: f64) -> bool {
         match self {
             Self::AtLeast(least) => value >= least,
@@ -190,7 +193,8 @@ impl Bound {
 }
 
 impl Scale {
-    /// The change from one value to another; `None` for a relative one from 0 to something else.
+    /// Returns the change from one value to another; `None` for a relative change from 0 to another
+    /// value.
     pub fn change(self, old: f64, new: f64) -> Option<f64> {
         match self {
             Self::Absolute => Some(new - old),
@@ -234,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Percentages that the papers print, from the values that they print.
+    /// Percentages printed in the papers, from the printed values.
     #[test]
     fn published_percentages() {
         let per_cent = |id: &str, figure: usize| {
@@ -269,7 +273,7 @@ mod tests {
             (Some(-0.75), Some(0.0), None)
         );
         assert_eq!(Scale::Absolute.change(0.0, 0.75), Some(0.75));
-        // From no heading jump at all there is no relative change.
+        // From zero heading jumps there is no relative change.
         let jumps = |published| Figure::lower(Measure::NonSmoothTurns, "new", "old", published);
         assert_eq!(jumps(None).scale(), Scale::Absolute);
         assert_eq!(jumps(Some([18.0, 0.0])).published_effect(), Some(-1.0));

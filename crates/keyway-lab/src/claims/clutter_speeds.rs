@@ -1,4 +1,4 @@
-//! The parts of a run in which few obstacles are around the robot, and many, and how fast it drives there.
+//! Parts of a run with few and with many obstacles around the robot, and the speed in them.
 
 use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
@@ -9,23 +9,24 @@ use keyway_sim::sim::{Run, Sample};
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// All of it.
+    /// The whole run.
     Whole,
-    /// The half of it in which the least of the ground within 3 m is covered by obstacles of the map.
+    /// The half of the run with the least ground within 3 m covered by obstacles of the map.
     Sparse,
-    /// The half of it in which the most of it is.
+    /// The half of the run with the most ground covered.
     Dense,
 }
 
 impl Part {
-    /// As far as the regions of \[You2021\] reach whose obstacles change the weight of speed \[m\].
+    /// Range within which obstacles change the speed weight in \[You2021\] \[m\].
     const AROUND_M: f64 = 3.0;
 
-    /// Which samples of a run belong to it.
+    /// Returns, for each sample of a run, whether it belongs to this part.
     ///
-    /// The halves are those of the moments at which less, and at which more, of the ground within [`Self::AROUND_M`] of the robot
-    /// is covered by obstacles of the map than at the median moment. A robot speeds up at its start and brakes at its goal
-    /// whatever stands there, so moments within the way that this takes belong to neither.
+    /// The halves contain the moments at which obstacles of the map cover less, or more, of the
+    /// ground within [`Self::AROUND_M`] of the robot than at the median moment. A robot speeds up
+    /// at its start and brakes at its goal whatever the obstacles are, so moments within the
+    /// distance that this takes belong to neither half.
     pub(super) fn samples(self, run: &Run, episode: &Episode) -> Vec<bool> {
         let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
             return Vec::new();
@@ -46,7 +47,7 @@ impl Part {
         }
     }
 
-    /// `None` belongs to neither half.
+    /// Selects the samples by their shares; `None` belongs to neither half.
     fn of_shares(self, shares: &[Option<f64>]) -> Vec<bool> {
         let values = statistics::Sample::new(shares.iter().copied().flatten().collect());
         let middle = values.map_or(f64::NAN, |values| values.quantile(0.5));
@@ -58,7 +59,8 @@ impl Part {
         shares.iter().map(|share| share.is_some_and(is_in)).collect()
     }
 
-    /// The mean of the speeds of its samples \[m/s\]; `None` where it has none, because the surroundings are the same everywhere.
+    /// Returns the mean speed of its samples \[m/s\]; `None` without samples, because the
+    /// surroundings are the same everywhere.
     pub(super) fn mean_speed_mps(self, run: &Run, episode: &Episode) -> Option<f64> {
         let samples = run.samples.iter().zip(self.samples(run, episode));
         let own = samples.filter(|(_, is_in)| *is_in).map(|(sample, _)| sample.velocity.v);
@@ -66,7 +68,7 @@ impl Part {
     }
 }
 
-/// The share of the map's cells around a place that are occupied.
+/// Share of occupied map cells around a position.
 fn covered_share(map: &OccupancyGrid, at: Point) -> f64 {
     let frame = map.frame();
     let reach = (Part::AROUND_M / frame.resolution_m()).ceil() as i32 + 1;
@@ -98,7 +100,7 @@ mod tests {
         };
         let shares = [0.3, 0.0, 0.1, 0.5, 0.2].map(Some);
         assert_eq!(halves(&shares), [vec![1, 2], vec![0, 3]]);
-        // What belongs to neither does not shift the middle.
+        // Samples in neither half do not shift the median.
         let shares = [None, Some(0.3), None, Some(0.1), Some(0.2), None];
         assert_eq!(halves(&shares), [vec![3], vec![1]]);
         let none: [Vec<usize>; 2] = Default::default();
@@ -106,7 +108,7 @@ mod tests {
         assert_eq!(halves(&[]), none);
     }
 
-    /// Within 3 cells of a cell there are 29; of one in a corner 11 are on the map.
+    /// Within 3 cells of a cell there are 29 cells; for a corner cell, 11 of them are on the map.
     #[test]
     fn only_what_is_on_the_map_and_near_counts() {
         let mut rows = vec![".".repeat(20); 20];

@@ -1,4 +1,4 @@
-//! A stack on a robot -> a measured run.
+//! Runs of a stack on a robot, with their metrics.
 
 use super::clutter_speeds::Part;
 use keyway::ConfigError;
@@ -16,56 +16,58 @@ use keyway_sim::report::{Clock, RunPart};
 use keyway_sim::sim::Run;
 use serde::{Deserialize, Serialize};
 
-/// A way to drive.
+/// Setup of a run.
 #[derive(Debug)]
 pub struct Driving {
-    /// The name of the stack.
+    /// Name of the stack.
     pub stack: &'static str,
-    /// On which robot, and so with which parameters.
+    /// The robot, which also determines the parameters of the stack.
     pub vehicle: Vehicle,
-    /// A local planner in the place of the stack's own.
+    /// A local planner in place of the stack's own.
     pub local: Option<LocalConfig>,
-    /// What is real and not on the map.
+    /// Real obstacles that are not on the map.
     pub unknown: Option<RandomObstacles>,
-    /// The part of a run that its mean speed is of.
+    /// Part of a run over which its mean speed is taken.
     pub part: Part,
 }
 
-/// A robot and the parameters of the stack that drives it.
+/// A robot and the parameters of its stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vehicle {
-    /// The point of \[You2021\], table 2, with the stack as published, for maps with cells of 1 m.
+    /// The point robot of \[You2021\], table 2, with the stack as published, for maps with cells of
+    /// 1 m.
     Paper,
-    /// The bundled robot `small`, with parameters for it: for maps of real rooms.
+    /// The bundled robot `small`, with parameters for it; for maps of real rooms.
     Small,
 }
 
 /// A run on one map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: EpisodeOutcome,
     /// Simulated time \[s\].
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
-    /// Distance over time \[m/s\]; of a part of a run that of the part. `None` where no time passed.
+    /// Distance over time \[m/s\]; for a part of a run, the mean speed of that part. `None` where
+    /// no time passed.
     pub mean_speed_mps: Option<f64>,
-    /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single one.
+    /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single cycle.
     pub speed_deviation_mps: Option<f64>,
     /// Changes of the turning direction per metre \[1/m\]; `None` where nothing was driven.
     pub oscillation_per_m: Option<f64>,
     /// Smallest distance to any real obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
-    /// Places at which the heading jumps: changes of more than 5 degrees within 1 cm.
+    /// Points at which the heading jumps: changes of more than 5 degrees within 1 cm.
     pub non_smooth_turns: usize,
-    /// Mean wall clock of a control cycle \[s\]; `None` without a clock.
+    /// Mean wall clock time of a control cycle \[s\]; `None` without a clock.
     pub cycle_s: Option<f64>,
-    /// Wall clock of the first route and of all control cycles \[s\]; `None` without a clock.
+    /// Wall clock time of the first route and of all control cycles \[s\]; `None` without a clock.
     pub total_search_s: Option<f64>,
 }
 
-/// Keeps a run.
+/// Observer that keeps the run.
 #[derive(Default)]
 pub(super) struct Keeper(pub(super) Option<Run>);
 
@@ -92,10 +94,10 @@ impl Vehicle {
 }
 
 impl Driving {
-    /// Drives once; `None` without a route, or where the robot has no room at its start.
+    /// Drives once; `None` without a route, or if the robot has no room at its start.
     ///
     /// # Errors
-    /// When the stack does not exist, or what is random cannot be used.
+    /// When the stack does not exist, or a value of the random obstacles cannot be used.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
@@ -111,7 +113,7 @@ impl Driving {
             .map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
     }
 
-    /// The same, watched; `None` where the robot has no room at an end.
+    /// Drives once with an observer; `None` if the robot has no room at an end.
     pub(super) fn watch(
         &self,
         grid: &OccupancyGrid,
@@ -133,7 +135,7 @@ impl Driving {
         }
         match watch_episode(&episode, clock, watcher) {
             Ok(report) => Ok(Some((episode, report))),
-            // Without room at an end there is no run.
+            // Without room at an end, there is no run.
             Err(EpisodeError::Navigate(
                 NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. },
             )) => Ok(None),
@@ -175,7 +177,7 @@ impl Driven {
         Self { mean_speed_mps, ..self }
     }
 
-    /// Whether the robot arrived.
+    /// True if the robot reached its goal.
     pub fn reached(&self) -> bool {
         self.outcome == EpisodeOutcome::Reached
     }
@@ -209,7 +211,7 @@ mod tests {
         assert!((driven.mean_speed_mps.unwrap() - mean_mps).abs() < 1e-12, "{driven:?}");
         assert!(driven.speed_deviation_mps > Some(0.1), "it begins and ends at rest: {driven:?}");
         assert_eq!((driven.min_clearance_m, driven.oscillation_per_m), (None, Some(0.0)));
-        // Every decision takes a tick; so do the search, and the smoothing.
+        // Every decision takes one tick; so do the search and the smoothing.
         assert!(driven.cycle_s.is_some_and(|s| (s - 1.0).abs() < 1e-9), "{driven:?}");
         let cycles = (driven.time_s / 0.1).round();
         assert!((driven.total_search_s.unwrap() - cycles - 2.0).abs() < 1.5, "{driven:?}");

@@ -14,65 +14,70 @@ use keyway_sim::report::Clock;
 use keyway_sim::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 
-/// Methods that are compared, and where.
+/// Methods to compare, and their maps.
 #[derive(Debug)]
 pub struct Experiment {
-    /// Its name.
+    /// Name of the experiment.
     pub name: &'static str,
-    /// The maps of the family in a sentence, for people.
+    /// Description of the family's maps in one sentence, for people.
     pub about: &'static str,
-    /// The maps, one for each seed: of the kind of the paper's.
+    /// Family of maps similar to the paper's, one map for each seed.
     pub family: GeneratedMap,
-    /// Which of these maps are meant, where not all are: others are passed over, whatever a method would do on them.
+    /// Selects the maps of the right kind, if not all count: others are skipped, whatever a method
+    /// would do on them.
     pub kind: Option<fn(&OccupancyGrid, [Cell; 2]) -> bool>,
-    /// Start and goal on them.
+    /// Start and goal on these maps.
     pub ends: [Cell; 2],
-    /// What is compared; where it is paths, the yardstick is among them.
+    /// Methods to compare; for paths, the yardstick is one of them.
     pub methods: &'static [Method],
-    /// The scene file, where there is one of this experiment.
+    /// Scene file of this experiment, if there is one.
     pub scene: Option<Scene>,
-    /// What the paper's map is reconstructed from, or why nothing can be fitted.
+    /// Basis for reconstructing the paper's map, or the reason why nothing can be fitted.
     pub reconstruction: Result<&'static Reconstruction, &'static str>,
 }
 
-/// A scene of the project's repository: a map that was reconstructed by hand, or the first one that fits.
+/// A scene of the project's repository: a map that was reconstructed by hand, or the first map that
+/// fits.
 #[derive(Debug)]
 pub struct Scene {
     /// The scene file in the project's repository.
     pub file: &'static str,
     /// Start and goal.
     pub ends: [Cell; 2],
-    /// The map of the scene, as a `MovingAI` file.
+    /// Map of the scene, as a `MovingAI` file.
     pub(super) map: &'static str,
 }
 
-/// What all methods did on one map.
+/// Results of all methods on one map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MapRow {
-    /// The seed of the map; `None` for the scene.
+    /// Seed of the map; `None` for the scene.
     pub seed: Option<u64>,
-    /// In the order of the methods; `None` where one found no path, or no route to drive.
+    /// Outcomes in the order of the methods; `None` for a method without a path, or without a route
+    /// to drive.
     pub outcomes: Vec<Option<Outcome>>,
 }
 
-/// Timed plans of each method; the median counts.
+/// Number of timed plans of each method; the median counts.
 const ROUNDS: usize = 7;
-/// Maps of a seed that are tried until one is of the kind that is meant, and the name of their stream of random numbers.
+/// Maximum number of maps of a seed that are tried for the right kind, and the name of their random
+/// number stream.
 const KIND_TRIES: u64 = 1000;
 const KIND: u64 = 0x6b69_6e64;
-/// Of what is random in a run on the scene.
+/// Seed of the randomness in a run on the scene.
 pub(super) const SCENE_SEED: u64 = 1;
 
 impl Experiment {
-    /// The method that all paths are compared with: optimal jump point search.
+    /// Method with which all paths are compared: optimal jump point search.
     pub const YARDSTICK: &'static str = "jps";
 
-    /// A method by its name, and its place.
+    /// Returns a method by its name, with its index.
     pub fn method(&self, name: &str) -> Option<(usize, &'static Method)> {
         self.methods.iter().enumerate().find(|(_, method)| method.name == name)
     }
 
-    /// All methods on the map of a seed. With a clock they take turns, and the median of their times counts.
+    /// Runs all methods on the map of a seed. With a clock they take turns, and the median of their
+    /// times counts.
     ///
     /// # Errors
     /// When a parameter of the family or of a method cannot be used.
@@ -82,7 +87,7 @@ impl Experiment {
         Ok(MapRow { seed: Some(seed), outcomes })
     }
 
-    /// The map of a seed: the first of a row of maps that is of the right kind.
+    /// Returns the map of a seed: the first of a series of maps that is of the right kind.
     ///
     /// # Errors
     /// When a parameter of the family cannot be used, or no map is of the kind.
@@ -101,7 +106,7 @@ impl Experiment {
         Err(ConfigError::new("family", "has no map of the kind that is meant"))
     }
 
-    /// All methods on a reconstructed map, by its seed; `None` without a reconstruction.
+    /// Runs all methods on a reconstructed map, given by its seed; `None` without a reconstruction.
     ///
     /// # Errors
     /// As for [`Self::on_seed`].
@@ -115,7 +120,7 @@ impl Experiment {
         Ok(Some(MapRow { seed: Some(seed), outcomes }))
     }
 
-    /// All methods on the scene; `None` without one.
+    /// Runs all methods on the scene; `None` without a scene.
     ///
     /// # Errors
     /// As for [`Self::on_seed`].
@@ -139,11 +144,11 @@ impl Experiment {
             outcomes.push(method.run(grid, task, workspace, clock)?);
         }
         if clock.is_some() {
-            // What was done before has only warmed the memory up.
+            // Earlier work has only warmed up the memory.
             let mut times = vec![Vec::new(); contenders.len()];
             for _ in 0..ROUNDS {
                 for ((method, workspace), times) in contenders.iter_mut().zip(&mut times) {
-                    // A run has hundreds of cycles, and needs no repetition.
+                    // A run has hundreds of cycles, so it needs no repetition.
                     if let How::Plan(planning) = &method.how {
                         let planned = planning.run(grid, task, workspace, clock)?;
                         times.extend(planned.and_then(|planned| planned.times));
@@ -174,14 +179,14 @@ impl Experiment {
 }
 
 impl Scene {
-    /// The map; `None` cannot happen: a test reads all of them.
+    /// Returns the map; `None` cannot happen, since a test reads all maps.
     pub(super) fn grid(&self) -> Option<OccupancyGrid> {
         parse_movingai_map(self.map.as_bytes(), ImagePlacement::default()).ok()
     }
 }
 
 impl MapRow {
-    /// Whether every method has succeeded that must.
+    /// True if every method that must succeed did so.
     pub fn counts(&self, experiment: &Experiment) -> bool {
         let mut all = experiment.methods.iter().zip(&self.outcomes);
         all.all(|(method, outcome)| {
@@ -232,7 +237,7 @@ mod tests {
         }
     }
 
-    /// Claims of one name share their runs.
+    /// Claims with the same experiment share its runs.
     #[test]
     fn experiments_of_one_name_are_one() {
         for claim in Claim::all() {
@@ -242,11 +247,12 @@ mod tests {
         }
     }
 
-    /// The maps here are those of the scene files, and on them the baselines have the published lengths.
+    /// These maps equal those of the scene files, and the baselines have the published lengths on
+    /// them.
     #[test]
     fn scenes_are_those_of_the_files() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        // The crate on its own has none.
+        // The crate on its own has no scene files.
         if !root.join("scenes").is_dir() {
             return;
         }
@@ -277,7 +283,7 @@ mod tests {
         }
     }
 
-    /// A clock that goes on by one whenever it is read: each part takes 1 s.
+    /// A clock that advances by one at each reading: each part takes 1 s.
     #[test]
     fn times_are_those_of_the_clock() {
         let ticks = AtomicU32::new(0);

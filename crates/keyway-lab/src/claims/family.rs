@@ -1,28 +1,29 @@
-//! The maps of a family that count.
+//! Maps of a family that count.
 
 use super::experiment::{Experiment, MapRow};
 use super::method::Outcome;
 use super::reconstruction::Fitted;
 
-/// What was measured in an experiment.
+/// Results of an experiment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Family {
-    /// Maps on which every method succeeded that must, in the order of their seeds.
+    /// Maps on which every method that must succeed did so, in the order of their seeds.
     pub rows: Vec<MapRow>,
-    /// Maps before the last of them on which one did not: they are left out.
+    /// Maps before the last of these on which such a method failed: they are left out.
     pub left_out: usize,
-    /// On how many of both each method succeeded.
+    /// Number of all these maps on which each method succeeded.
     pub succeeded: Vec<usize>,
-    /// The same on the scene.
+    /// Results on the scene.
     pub scene: Option<MapRow>,
-    /// Maps that fit what is published of the baselines.
+    /// Maps that fit the published figures of the baselines.
     pub fitted: Fitted,
-    /// Those of them on which every method succeeded that must.
+    /// Rows of these maps on which every method that must succeed did so.
     pub reconstructed: Vec<MapRow>,
 }
 
 impl Family {
-    /// Takes the next map, in the order of the seeds, unless there are as many as wanted; whether more are wanted.
+    /// Adds the next map, in the order of the seeds, unless there are enough; returns true if more
+    /// are wanted.
     pub fn take(&mut self, experiment: &Experiment, row: MapRow, wanted: usize) -> bool {
         if self.rows.len() < wanted {
             self.succeeded.resize(experiment.methods.len(), 0);
@@ -54,7 +55,7 @@ mod tests {
         assert!(family.take(experiment, row(1), 2));
         assert!(family.take(experiment, lost.clone(), 2));
         assert!(!family.take(experiment, row(2), 2));
-        // What comes later is neither counted nor left out.
+        // Later maps are neither counted nor left out.
         assert!(!family.take(experiment, row(3), 2));
         assert!(!family.take(experiment, lost, 2));
         assert_eq!((family.rows, family.left_out), (vec![row(1), row(2)], 1));

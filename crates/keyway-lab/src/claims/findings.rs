@@ -1,30 +1,31 @@
-//! From the maps of a family to the evidence for a figure.
+//! Evidence for a figure, from the maps of a family.
 
 use super::claim::{Expected, Figure};
 use super::experiment::{Experiment, MapRow};
 use super::verdict::Evidence;
 use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 
-/// Of the resamples from which intervals follow.
+/// Seed of the resamples for the intervals.
 const SEED: u64 = 0;
 
-/// What the maps of a family say of a figure.
+/// Results for a figure over the maps of a family.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finding {
     /// Maps on which both values were measured, and their change is defined.
     pub pairs: usize,
-    /// Maps that count and have no such pair.
+    /// Counted maps without such a pair.
     pub undefined: usize,
     /// Mean of the other method over these maps; `None` for a bound, or without maps.
     pub old_mean: Option<f64>,
     /// Mean of this method.
     pub new_mean: Option<f64>,
-    /// What follows for the figure.
+    /// Evidence for the figure.
     pub evidence: Evidence,
 }
 
 impl Finding {
-    /// Compares on each map by itself, then takes the mean of the changes; `rows` are the maps that count.
+    /// Compares the methods on each map separately, then takes the mean of the changes; `rows` are
+    /// the maps that count.
     pub fn of(figure: &Figure, experiment: &Experiment, rows: &[MapRow]) -> Self {
         match figure.expected {
             Expected::Change { .. } => {
@@ -59,14 +60,14 @@ impl Finding {
     }
 }
 
-/// The values of the other method and of this one on a map, and the change.
+/// Returns the values of the other method and of this one on a map, and the change.
 pub fn change_on(figure: &Figure, experiment: &Experiment, row: &MapRow) -> Option<[f64; 3]> {
     let old = value(figure, figure.than()?, experiment, row)?;
     let new = value(figure, figure.of, experiment, row)?;
     Some([old, new, figure.scale().change(old, new)?])
 }
 
-/// What a method of a figure has on a map.
+/// Returns the value of a figure's method on a map.
 pub(super) fn value(
     figure: &Figure,
     method: &str,
@@ -120,7 +121,7 @@ mod tests {
         })
     }
 
-    /// A row on which the first method has the first outcome, and the second one the second.
+    /// A row with the first outcome for the first method, and the second one for the second.
     fn row(old: Option<Outcome>, new: Option<Outcome>) -> MapRow {
         MapRow { seed: Some(1), outcomes: vec![old, new] }
     }
@@ -148,7 +149,7 @@ mod tests {
         let found =
             Finding::of(&figure(Measure::Expanded), experiment(), &[with(0, 5), with(4, 2)]);
         assert_eq!((found.pairs, found.undefined, found.evidence), (1, 1, Evidence::Missing));
-        // 0 and 0 are the same; clearances are subtracted, and there may be none.
+        // 0 and 0 are equal; clearances are subtracted, and may be missing.
         let found =
             Finding::of(&figure(Measure::Expanded), experiment(), &[with(0, 0), with(8, 8)]);
         assert_eq!(found.evidence, Evidence::Change { mean: 0.0, low: 0.0, high: 0.0 });

@@ -1,12 +1,13 @@
-//! What a claim is about.
+//! Measures of claims.
 
 use super::driven::Driven;
 use super::method::Outcome;
 use super::planned::Planned;
 use serde::Serialize;
 
-/// Something that is measured of a method on one map. Planning is measured as everywhere in this crate
-/// ([`keyway_sim::metrics::PathMetrics`]); no path, no measure, but for [`Self::Missed`] and [`Self::Reached`].
+/// A measure of a method on one map. Planning is measured as everywhere in this crate
+/// ([`keyway_sim::metrics::PathMetrics`]). Without a path there is no value, except for
+/// [`Self::Missed`] and [`Self::Reached`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -15,29 +16,30 @@ pub enum Measure {
     Expanded,
     /// Length of the path \[m\].
     Length,
-    /// Share by which the path is longer than a shortest one of straight and diagonal steps that cuts no corner.
+    /// Relative excess of the path's length over a shortest path of straight and diagonal steps
+    /// that cuts no corner.
     Excess,
     /// Points of the path.
     Points,
-    /// Points of the path that change nothing.
+    /// Redundant points of the path.
     RedundantPoints,
     /// Turns of the path.
     Turns,
-    /// Heading jumps of the path, or of the way driven.
+    /// Heading jumps of the planned or driven path.
     NonSmoothTurns,
     /// Sum of the absolute heading changes \[deg\].
     TurningAngle,
     /// Smallest distance from the path to an obstacle \[m\].
     Clearance,
-    /// Cells of the planned path that it has been in before.
+    /// Cells of the planned path that were visited before.
     Revisited,
-    /// Smallest distance from the path to what stands there and is not on the map \[m\].
+    /// Smallest distance from the path to static obstacles that are not on the map \[m\].
     UnknownClearance,
-    /// 1 where there is a path that the planner does not find, otherwise 0.
+    /// 1 if a path exists that the planner does not find, otherwise 0.
     Missed,
-    /// Length of the path, or of the way driven \[m\]: where a paper compares a run with a path.
+    /// Length of the planned or driven path \[m\]: where a paper compares a run with a path.
     WayLength,
-    /// Smallest distance from the path, or of the robot, to any obstacle \[m\].
+    /// Smallest distance of the path or the robot to any obstacle \[m\].
     WayClearance,
     /// The search alone \[s\].
     SearchTime,
@@ -61,22 +63,22 @@ pub enum Measure {
     CycleTime,
     /// Planning, and all control cycles of a run \[s\].
     TotalSearchTime,
-    /// 1 where the robot reached its goal, otherwise 0.
+    /// 1 if the robot reached its goal, otherwise 0.
     Reached,
 }
 
-/// How two methods are compared on one map.
+/// Scale on which two methods are compared on one map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// (new - old) / old.
     Relative,
-    /// new - old: for what is usually 0 with one of the two.
+    /// new - old: for values that are usually 0 for one of the two.
     Absolute,
 }
 
 impl Measure {
-    /// How values are compared.
+    /// Returns the scale on which values are compared.
     pub const fn scale(self) -> Scale {
         match self {
             Self::Clearance
@@ -91,7 +93,7 @@ impl Measure {
         }
     }
 
-    /// The unit of its values; empty for a number.
+    /// Returns the unit of the values; empty for a number.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Length
@@ -114,7 +116,7 @@ impl Measure {
         }
     }
 
-    /// Whether it is measured by a clock, and so another one each time.
+    /// True if it is measured by a clock, and so differs from run to run.
     pub const fn is_timed(self) -> bool {
         matches!(
             self,
@@ -126,8 +128,8 @@ impl Measure {
         )
     }
 
-    /// Its value on one map; `None` where there is none: no path, no obstacle, no clock, or, but for [`Self::Reached`], a
-    /// goal that was not reached.
+    /// Returns its value on one map; `None` without a path, an obstacle or a clock, or, except for
+    /// [`Self::Reached`], if the goal was not reached.
     pub(super) fn of(self, outcome: Option<&Outcome>) -> Option<f64> {
         let share = |is: bool| Some(if is { 1.0 } else { 0.0 });
         match (self, outcome) {

@@ -1,4 +1,4 @@
-//! A method of a comparison, and what it does on a map.
+//! Methods of a comparison, and their outcomes on a map.
 
 use super::clutter_speeds::Part;
 use super::driven::{Driven, Driving, Vehicle};
@@ -12,27 +12,27 @@ use keyway_sim::episode::{EpisodeError, RandomMoving, RandomObstacles, RandomUnk
 use keyway_sim::report::Clock;
 use serde::{Deserialize, Serialize};
 
-/// What is compared, under the name that claims know it by.
+/// A compared method, under the name that claims use.
 #[derive(Debug)]
 pub struct Method {
-    /// Its name within the experiment.
+    /// Name within the experiment.
     pub name: &'static str,
-    /// What it does.
+    /// Setup of the method.
     pub how: How,
-    /// Whether a map counts only when this method finds a path on it, and drives it to its end.
+    /// True if a map counts only when this method finds a path on it, and drives it to its end.
     pub must_succeed: bool,
 }
 
-/// What a method does.
+/// Kind and setup of a method.
 #[derive(Debug)]
 pub enum How {
-    /// It plans.
+    /// A planning method.
     Plan(Planning),
-    /// It drives.
+    /// A driving method.
     Drive(Driving),
 }
 
-/// What a method did on one map.
+/// Result of a method on one map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -44,13 +44,13 @@ pub enum Outcome {
 
 /// Half of a cell of the papers' maps \[m\].
 const HALF_CELL_M: f64 = 0.5;
-/// How fast unknown obstacles walk \[m/s\]: the papers do not say it.
+/// Speeds of walking unknown obstacles \[m/s\]: the papers do not state them.
 const WALKING_MPS: [f64; 2] = [0.3, 0.5];
-/// No unknown obstacle comes nearer to the start or the goal than this \[m\].
+/// Minimum distance of unknown obstacles from the start and the goal \[m\].
 const FREE_ENDS_M: f64 = 2.0;
 
 impl Method {
-    /// A planner on the map as it is.
+    /// Creates a planning method on the map as it is.
     pub(super) const fn new(
         name: &'static str,
         planner: PlannerConfig,
@@ -59,14 +59,14 @@ impl Method {
         Self { name, how: How::Plan(Planning::new(planner, smoother)), must_succeed: true }
     }
 
-    /// A stack as published, without unknown obstacles.
+    /// Creates a driving method with a stack as published, without unknown obstacles.
     pub(super) const fn driving(name: &'static str, stack: &'static str) -> Self {
         let (vehicle, part) = (Vehicle::Paper, Part::Whole);
         let how = How::Drive(Driving { stack, vehicle, local: None, unknown: None, part });
         Self { name, how, must_succeed: true }
     }
 
-    /// The same on the robot of a laboratory.
+    /// Drives the robot of a laboratory instead.
     pub(super) const fn on_small(mut self) -> Self {
         if let How::Drive(driving) = &mut self.how {
             driving.vehicle = Vehicle::Small;
@@ -74,7 +74,7 @@ impl Method {
         self
     }
 
-    /// The same with another local planner.
+    /// Uses another local planner.
     pub(super) const fn with_local(mut self, local: LocalConfig) -> Self {
         if let How::Drive(driving) = &mut self.how {
             driving.local = Some(local);
@@ -82,8 +82,8 @@ impl Method {
         self
     }
 
-    /// The same among what the map does not show: discs as wide as a cell, so many that stand and so many that walk to and
-    /// fro. None of those that stand is farther from the way than this \[m\].
+    /// Adds unknown obstacles: discs as wide as a cell, of which the given numbers are static and
+    /// walk to and fro. The static ones are at most `near_way_m` from the path \[m\].
     pub(super) const fn among_unknown(
         mut self,
         [standing, walking]: [u32; 2],
@@ -104,7 +104,7 @@ impl Method {
         self
     }
 
-    /// The same with the mean speed of a part of the run.
+    /// Takes the mean speed over a part of the run.
     pub(super) const fn speed_of(mut self, part: Part) -> Self {
         if let How::Drive(driving) = &mut self.how {
             driving.part = part;
@@ -112,15 +112,15 @@ impl Method {
         self
     }
 
-    /// The same where maps count on which this one fails, too.
+    /// Lets maps count even if this method fails on them.
     #[must_use]
     pub(super) const fn may_fail(mut self) -> Self {
         self.must_succeed = false;
         self
     }
 
-    /// Plans or drives once from the first end of the task to the second; `None` without a path. Its seed is that of what is not
-    /// on the map.
+    /// Plans or drives once from the first end of the task to the second; `None` without a path.
+    /// The task's seed determines the unknown obstacles.
     ///
     /// # Errors
     /// When a parameter of the method cannot be used.
@@ -141,7 +141,7 @@ impl Method {
 }
 
 impl Outcome {
-    /// Whether there is a path, and the robot drove it to its end if it was to drive.
+    /// True if there is a path, and a driving robot drove it to its end.
     pub fn succeeded(&self) -> bool {
         match self {
             Self::Planned(_) => true,
@@ -149,7 +149,7 @@ impl Outcome {
         }
     }
 
-    /// The path; `None` for a run.
+    /// Returns the path; `None` for a run.
     pub const fn planned(&self) -> Option<&Planned> {
         match self {
             Self::Planned(planned) => Some(planned),
@@ -157,7 +157,7 @@ impl Outcome {
         }
     }
 
-    /// The run; `None` for a path.
+    /// Returns the run; `None` for a path.
     pub const fn driven(&self) -> Option<&Driven> {
         match self {
             Self::Planned(_) => None,

@@ -1,9 +1,11 @@
-//! What the papers claim, as data; experiments that measure it again; and the rule by which a claim holds.
+//! Claims of the papers as data, experiments that measure them again, and the rule for the
+//! verdicts.
 //!
-//! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on a family of maps, one for
-//! each seed, and on the paper's reconstructed scene. A [`Finding`] says what a figure comes to over the family: the change on
-//! each map, their mean and its 95 % interval. [`Verdict::of`] judges by a rule that was written before anything was measured.
-//! Nothing of what was measured stands here.
+//! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on
+//! a family of maps, one for each seed, and on the paper's reconstructed scene. A [`Finding`]
+//! summarises a figure over the family: the change on each map, their mean and its 95 % interval.
+//! [`Verdict::of`] judges by a rule that was written before anything was measured. No results are
+//! stored here.
 //!
 //! ```
 //! use keyway_lab::claims::{Claim, ClaimReport, Family, Verdict};
@@ -20,7 +22,8 @@
 //! ```
 //!
 //! # Errors / cost
-//! Methods that cannot be used are errors; a path that is not found, and a goal that is not reached, is an outcome. No clock is read: callers bring theirs.
+//! Methods that cannot be used are errors; a missing path and a missed goal are outcomes. No clock
+//! is read: callers bring theirs.
 
 mod ablations;
 mod catalogue;

@@ -1,4 +1,4 @@
-//! Map layers, a planner and a smoother -> a measured path.
+//! Paths of a planner and a smoother on map layers, with their metrics.
 
 use super::shown::Shown;
 use super::unknown;
@@ -16,21 +16,21 @@ use keyway_sim::report::{Clock, timed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// How far a line may be from its curve \[cells\].
+/// Maximum distance of a line from its curve \[cells\].
 const CHORD_CELLS: f64 = 0.05;
 
-/// A way to plan.
+/// Setup of a plan.
 #[derive(Debug)]
 pub struct Planning {
     /// The planner.
     pub planner: PlannerConfig,
     /// The smoother; `None` measures the path cell by cell.
     pub smoother: Option<SmootherConfig>,
-    /// Expansion of obstacles on its map \[cells\].
+    /// Expansion of obstacles on the planner's map \[cells\].
     pub expansion_cells: u32,
-    /// L1 constraint of its map \[reference cells\].
+    /// L1 constraint of the planner's map \[reference cells\].
     pub l1_constraint: f64,
-    /// What is real and not on the map; the planner knows nothing of it.
+    /// Real obstacles that are not on the map; the planner does not know them.
     pub unknown: Option<RandomObstacles>,
 }
 
@@ -41,17 +41,19 @@ pub struct Planned {
     pub expanded: u64,
     /// The path.
     pub path: PathMetrics,
-    /// Cells of the planned path that it has been in before.
+    /// Cells of the planned path that were visited before.
     pub revisited: usize,
-    /// Smallest distance from the path to what stands and is not on the map \[m\], 0 where it goes through it; `None` without that.
+    /// Smallest distance from the path to static unknown obstacles \[m\], 0 where it goes through
+    /// one; `None` without obstacles.
     pub unknown_clearance_m: Option<f64>,
-    /// Share by which the path is longer than that of [`Experiment::YARDSTICK`](super::Experiment::YARDSTICK); `None` without that.
+    /// Relative excess of the path's length over that of
+    /// [`Experiment::YARDSTICK`](super::Experiment::YARDSTICK); `None` without the yardstick.
     pub excess: Option<f64>,
     /// Medians of repeated runs; `None` without a clock.
     pub times: Option<PlanTimes>,
 }
 
-/// How long the parts of a plan took \[s\].
+/// Times of the parts of a plan \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlanTimes {
     /// Deriving the layers from the map, with its components.
@@ -63,17 +65,17 @@ pub struct PlanTimes {
 }
 
 impl PlanTimes {
-    /// Search and smoothing.
+    /// Time of search and smoothing.
     pub fn planning_s(self) -> f64 {
         self.search_s + self.smoothing_s
     }
 
-    /// All of it.
+    /// Total time.
     pub fn from_map_s(self) -> f64 {
         self.layers_s + self.planning_s()
     }
 
-    /// The median of each part; `None` without any.
+    /// Returns the median of each part; `None` without times.
     pub(super) fn medians(times: &[Self]) -> Option<Self> {
         let median = |of: fn(&Self) -> f64| {
             Some(Sample::new(times.iter().map(of).collect()).ok()?.quantile(0.5))
@@ -87,13 +89,13 @@ impl PlanTimes {
 }
 
 impl Planning {
-    /// On the map as it is.
+    /// Plans on the map as it is.
     pub(super) const fn new(planner: PlannerConfig, smoother: Option<SmootherConfig>) -> Self {
         Self { planner, smoother, expansion_cells: 0, l1_constraint: 0.0, unknown: None }
     }
 
-    /// Plans once; `None` without a path. With a clock the search that is timed is a second one, on a map that is in use.
-    /// `seed` is that of what is not on the map.
+    /// Plans once; `None` without a path. With a clock, a second search on a warmed-up map is
+    /// timed. `seed` determines the unknown obstacles.
     ///
     /// # Errors
     /// When a parameter cannot be used.
@@ -112,7 +114,7 @@ impl Planning {
         let query = RouteQuery::new(from, to);
         let mut plan = Plan::default();
         let mut search = || query.search(&map, &*planner, workspace, &mut plan, &mut ());
-        // What is not found is an outcome, not an error.
+        // A search without a path is an outcome, not an error.
         if search().is_err() {
             return Ok(None);
         }
@@ -148,7 +150,7 @@ impl Planning {
         }))
     }
 
-    /// What a picture shows of a plan; `None` without a path.
+    /// Returns the content of a picture of a plan; `None` without a path.
     ///
     /// # Errors
     /// As for [`Self::run`].
@@ -196,7 +198,7 @@ impl Planning {
     }
 }
 
-/// How far a line may be from its curve \[m\].
+/// Maximum distance of a line from its curve \[m\].
 fn chord_m(grid: &OccupancyGrid) -> f64 {
     CHORD_CELLS * grid.frame().resolution_m()
 }
@@ -208,7 +210,8 @@ mod tests {
     use keyway::plan::BidirectionalJpsConfig;
     use keyway_sim::episode::RandomUnknown;
 
-    /// The smallest known path of the paper's search that doubles back: (2, 0), (1, 0), (0, 0), (1, 0), (2, 0).
+    /// Smallest known path of the paper's search that doubles back: (2, 0), (1, 0), (0, 0), (1, 0),
+    /// (2, 0).
     #[test]
     fn cells_that_are_visited_again() {
         let rows = ["S....", "#....", ".....", ".....", "....#", ".#...", "....G"];
@@ -224,7 +227,7 @@ mod tests {
         assert_eq!((revisited(moving), revisited(JPS)), (2, 0));
     }
 
-    /// The disc of a seed stands on the straight way, which the path is.
+    /// The disc of the seed is on the path, a straight line.
     #[test]
     fn what_stands_on_the_path() {
         let grid = OccupancyGrid::from_ascii(&["...................."; 9]);

@@ -5,7 +5,7 @@ use keyway::plan::{
 };
 use keyway::search::CornerRule;
 
-/// Optimal, without corner cutting: the yardstick of every comparison, which no paper has.
+/// Optimal planner without corner cutting: the yardstick of every comparison; no paper has one.
 pub(super) const JPS: PlannerConfig = PlannerConfig::Jps(JpsConfig {});
 
 /// A*, with the octile distance: shortest paths.
@@ -21,7 +21,7 @@ pub(super) const EUCLIDEAN_ASTAR: PlannerConfig = PlannerConfig::AStar(AStarConf
     g: PathCost::Accumulated,
 });
 
-/// The same from both ends, until the two sides first meet.
+/// A* as above, searching from both ends until the two sides first meet.
 pub(super) const EUCLIDEAN_BIDIRECTIONAL_ASTAR: PlannerConfig =
     PlannerConfig::BidirectionalAStar(BidirectionalAStarConfig {
         corners: CornerRule::Allow,

@@ -1,8 +1,9 @@
-//! Maps on which the baselines do what is published of them.
+//! Maps on which the baselines have their published figures.
 //!
-//! The papers print lengths of paths, and how often they turn, but no maps. With cells of 1 m a length is a + b sqrt(2), so a and b are
-//! known exactly. A map is a reconstruction when every baseline has its published figure there; what the paper's own method
-//! does on it is not looked at. Many maps fit: the fitting ones are taken in the order of their seeds.
+//! The papers print path lengths and numbers of turns, but no maps. With cells of 1 m, a length is
+//! a + b sqrt(2), so a and b are known exactly. A map is a reconstruction if every baseline has its
+//! published figure there; the paper's own method is not considered. Many maps fit: the fitting
+//! ones are taken in the order of their seeds.
 
 use super::planned::{Planned, Planning};
 use keyway::ConfigError;
@@ -13,62 +14,62 @@ use keyway_sim::episode::EpisodeError;
 use keyway_sim::worlds::GeneratedMap;
 use std::f64::consts::SQRT_2;
 
-/// What a map is reconstructed from.
+/// Basis of a reconstruction: a family of maps and the published figures of the baselines.
 #[derive(Debug)]
 pub struct Reconstruction {
-    /// Such as `you2021`; also the name of the folder of its scenes.
+    /// Name such as `you2021`; also the name of the folder of its scenes.
     pub name: &'static str,
-    /// The maps that are tried.
+    /// Candidate maps.
     pub family: GeneratedMap,
     /// Start and goal of the experiment.
     pub ends: [Cell; 2],
-    /// What has to be right.
+    /// Baselines that must have their published figures.
     pub baselines: &'static [Baseline],
 }
 
-/// A baseline, and what is published of it.
+/// A baseline with its published figure.
 #[derive(Debug)]
 pub struct Baseline {
-    /// What it is, for people.
+    /// Name for people.
     pub name: &'static str,
-    /// How it plans.
+    /// Planning of the baseline.
     pub planning: Planning,
-    /// From where to where, if not as the experiment.
+    /// Start and goal, if different from those of the experiment.
     pub ends: Option<[Cell; 2]>,
-    /// What it has to come to.
+    /// Published figure of the baseline.
     pub published: Published,
 }
 
-/// What is published of a baseline.
+/// Published figure of a baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Published {
-    /// Its path has so many straight and so many diagonal steps.
+    /// Numbers of straight and of diagonal steps of its path.
     Steps(u32, u32),
-    /// Its path turns so often.
+    /// Number of turns of its path.
     Turns(usize),
-    /// It has a path, of any length.
+    /// Existence of a path, of any length.
     Found,
 }
 
-/// Maps that fit, and how many were tried.
+/// Maps that fit, and the number of maps tried.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Fitted {
-    /// Their seeds.
+    /// Seeds of the maps that fit.
     pub seeds: Vec<u64>,
-    /// How many maps were tried, from seed 1 on.
+    /// Number of maps tried, from seed 1 on.
     pub tried: u64,
 }
 
-/// Lengths that differ by less are the same \[m\].
+/// Lengths that differ by less are equal \[m\].
 const ROUNDING_M: f64 = 1e-6;
 
 impl Reconstruction {
-    /// How many fitting maps are reported.
+    /// Number of fitting maps that are reported.
     pub const KEPT: usize = 30;
-    /// No more maps are tried.
+    /// Maximum number of maps that are tried.
     pub const MOST_TRIED: u64 = 1_000_000;
 
-    /// The map of a seed, whether it fits or not.
+    /// Returns the map of a seed, whether it fits or not.
     ///
     /// # Errors
     /// When a parameter of the family cannot be used.
@@ -79,9 +80,9 @@ impl Reconstruction {
         self.family.generate(seed, &self.ends.map(centre))
     }
 
-    /// The first maps that fit, by their seeds from 1 on, until there are as many as wanted, or
-    /// [`Self::MOST_TRIED`] were tried. A try costs a map and the searches of the baselines up to the first that is not
-    /// right.
+    /// Returns the first maps that fit, by their seeds from 1 on, until the wanted number is found
+    /// or [`Self::MOST_TRIED`] were tried. Each try costs a map, and the searches of the baselines
+    /// up to the first mismatch.
     ///
     /// # Errors
     /// When a parameter cannot be used.
@@ -96,7 +97,7 @@ impl Reconstruction {
         Ok(fitted)
     }
 
-    /// Whether all baselines are right on a map.
+    /// True if all baselines have their published figures on a map.
     fn fits(&self, map: &OccupancyGrid, workspace: &mut Workspace) -> Result<bool, EpisodeError> {
         for baseline in self.baselines {
             let ends = baseline.ends.unwrap_or(self.ends);
@@ -157,7 +158,8 @@ mod tests {
         assert_eq!(Published::Steps(8, 15).to_string(), "29.213 m = 8 + 15 sqrt(2)");
     }
 
-    /// Found maps fit, no map before or between them does, and the paper's own method is none of the baselines.
+    /// Found maps fit, no map before or between them does, and the paper's own method is not a
+    /// baseline.
     #[test]
     fn maps_that_fit() {
         let of = Claim::named("S1-2")[0].experiment.reconstruction.unwrap();

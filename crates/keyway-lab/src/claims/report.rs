@@ -1,4 +1,4 @@
-//! What a report says of a claim and of an experiment: plain data.
+//! Reports of claims and experiments: plain data.
 
 use super::claim::{Bound, Claim, Direction, Expected, Figure, Rule};
 use super::experiment::{Experiment, MapRow};
@@ -9,179 +9,181 @@ use super::verdict::{Evidence, Judgement, Verdict};
 use keyway_sim::metrics::statistics::Confidence;
 use serde::Serialize;
 
-/// A claim: what was published, what was measured, and the verdict.
+/// A claim with its published figures, its measured figures, and the verdict.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClaimReport {
-    /// Such as `S0-1`.
+    /// Name such as `S0-1`.
     pub id: &'static str,
     /// Key of the paper in docs/PAPERS.md.
     pub paper: &'static str,
     /// The claim in a sentence.
     pub statement: &'static str,
-    /// The file in which it is written down ([`Claim::source`]).
+    /// File that defines the claim ([`Claim::source`]).
     pub source: &'static str,
-    /// Whether it is judged by published figures or by the sign alone.
+    /// Rule of judgement: by published figures or by the sign alone.
     pub rule: Rule,
-    /// `None` where nothing comparable was published.
+    /// Published figures; `None` if nothing comparable was published.
     pub published: Option<PublishedReport>,
-    /// `None` where there is no scene for it.
+    /// Results on the scene; `None` if the claim has none.
     pub scene: Option<SceneReport>,
-    /// `None` where too little is published of the paper's map.
+    /// Results on reconstructed maps; `None` if too little of the paper's map is published.
     pub reconstructed: Option<ReconstructedReport>,
-    /// Why it is; `None` where it is not.
+    /// Reason why there is no reconstruction; `None` if there is one.
     pub not_reconstructed: Option<&'static str>,
-    /// By this it is judged.
+    /// Results over the family of maps, which decide the verdict.
     pub family: FamilyReport,
-    /// By the rule of [`Verdict`].
+    /// Verdict by the rule of [`Verdict`].
     pub verdict: Verdict,
 }
 
-/// What was published of a claim.
+/// Published figures of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PublishedReport {
-    /// The figures of which something was published.
+    /// Figures with published values.
     pub figures: Vec<PublishedFigure>,
 }
 
-/// What was published of a figure.
+/// Published values of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PublishedFigure {
-    /// What.
+    /// Measure.
     pub measure: Measure,
-    /// Of which method.
+    /// Method.
     pub of: &'static str,
-    /// Compared with which other one.
+    /// Other method of the comparison.
     pub than: Option<&'static str>,
-    /// Of the other one.
+    /// Value of the other method.
     pub old: f64,
-    /// Of this one.
+    /// Value of this method.
     pub new: f64,
-    /// The change, as `scale` of the family's figure has it.
+    /// Change, on the `scale` of the family's figure.
     pub effect: Option<f64>,
 }
 
-/// What was measured on the reconstructed scene.
+/// Results on the reconstructed scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneReport {
     /// The scene file.
     pub file: &'static str,
-    /// The figures, all of them.
+    /// All figures.
     pub figures: Vec<SceneFigure>,
 }
 
-/// What was measured of a figure on one map.
+/// Result for a figure on one map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SceneFigure {
-    /// What.
+    /// Measure.
     pub measure: Measure,
-    /// Of which method.
+    /// Method.
     pub of: &'static str,
-    /// Compared with which other one; `None` for a bound.
+    /// Other method of the comparison; `None` for a bound.
     pub than: Option<&'static str>,
-    /// Of the other one; `None` for a bound, or without a path.
+    /// Value of the other method; `None` for a bound, or without a path.
     pub old: Option<f64>,
-    /// Of this one.
+    /// Value of this method.
     pub new: Option<f64>,
-    /// The change.
+    /// Change between the two.
     pub effect: Option<f64>,
 }
 
-/// What was measured on maps on which the baselines have their published figures.
+/// Results on maps on which the baselines have their published figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReconstructedReport {
     /// The reconstruction.
     pub name: &'static str,
-    /// How many maps were tried for them.
+    /// Number of maps tried.
     pub tried: u64,
-    /// The seeds of those that fit.
+    /// Seeds of the maps that fit.
     pub seeds: Vec<u64>,
-    /// Maps that count: on the others a method did not succeed that must.
+    /// Maps that count: on the others, a method that must succeed did not.
     pub maps: usize,
     /// All figures.
     pub figures: Vec<FamilyFigure>,
 }
 
-/// What was measured over the family of maps.
+/// Results over the family of maps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyReport {
     /// The experiment.
     pub experiment: &'static str,
     /// Maps that count.
     pub maps: usize,
-    /// Maps on which a method did not succeed that must.
+    /// Maps on which a method that must succeed did not.
     pub left_out: usize,
-    /// Those of the first figure.
+    /// Mean of the first figure.
     pub mean: Option<f64>,
-    /// The lower end of its interval.
+    /// Lower end of its interval.
     pub ci95_low: Option<f64>,
-    /// The upper end.
+    /// Upper end of its interval.
     pub ci95_high: Option<f64>,
     /// All figures.
     pub figures: Vec<FamilyFigure>,
 }
 
-/// What was measured of a figure over the family.
+/// Results for a figure over the family.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FamilyFigure {
-    /// What.
+    /// Measure.
     pub measure: Measure,
-    /// The unit of its values.
+    /// Unit of the values.
     pub unit: &'static str,
-    /// How values are compared.
+    /// Scale on which values are compared.
     pub scale: Scale,
-    /// Of which method.
+    /// Method.
     pub of: &'static str,
-    /// Compared with which other one; `None` for a bound.
+    /// Other method of the comparison; `None` for a bound.
     pub than: Option<&'static str>,
     /// `lower`, `higher`, `same`, `not_higher`, `at_least` or `at_most`.
     pub expected: &'static str,
     /// The bound, or the change that counts as none.
     pub limit: Option<f64>,
-    /// Maps on which it is defined.
+    /// Maps on which the figure is defined.
     pub pairs: usize,
-    /// Maps that count, and on which it is not.
+    /// Counted maps on which it is not defined.
     pub undefined: usize,
     /// Mean of the other method.
     pub old_mean: Option<f64>,
     /// Mean of this one.
     pub new_mean: Option<f64>,
-    /// The mean change; of a bound, the share of maps on which it is kept.
+    /// Mean change; for a bound, the share of maps on which it is kept.
     pub mean: Option<f64>,
-    /// Between what the true one lies with a confidence of 95 %: by a bootstrap, of a share after Wilson.
+    /// Lower end of the 95 % confidence interval of the true value: from a bootstrap, for a share
+    /// after Wilson.
     pub ci95_low: Option<f64>,
-    /// The upper end.
+    /// Upper end of the interval.
     pub ci95_high: Option<f64>,
-    /// See [`Judgement`]; `None` where it could not be measured.
+    /// See [`Judgement`]; `None` if it could not be measured.
     pub judgement: Option<Judgement>,
 }
 
-/// An experiment: its maps, and what each method did on them.
+/// An experiment with its maps and the results of each method.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExperimentReport {
-    /// Its name.
+    /// Name of the experiment.
     pub experiment: &'static str,
-    /// The maps in a sentence.
+    /// Description of the maps in one sentence.
     pub about: &'static str,
     /// Maps that count.
     pub maps: usize,
-    /// Maps on which a method did not succeed that must.
+    /// Maps on which a method that must succeed did not.
     pub left_out: usize,
-    /// All methods, the yardstick among them.
+    /// All methods, including the yardstick.
     pub methods: Vec<MethodReport>,
 }
 
 /// Means of a method over the maps that count and on which it succeeded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MethodReport {
-    /// Its name in the experiment.
+    /// Name in the experiment.
     pub method: &'static str,
-    /// Of all maps, those that are left out too, how many it found a path on, and drove it to its end if it drives.
+    /// Number of all maps, including those left out, on which it found a path and, if it drives,
+    /// drove it to its end.
     pub succeeded: usize,
     /// Nodes taken from the open lists.
     pub mean_expanded: Option<f64>,
     /// Length of the path \[m\].
     pub mean_length_m: Option<f64>,
-    /// Share by which it is longer than that of the yardstick.
+    /// Relative excess of the path's length over that of the yardstick.
     pub mean_excess: Option<f64>,
     /// Points.
     pub mean_points: Option<f64>,
@@ -193,9 +195,9 @@ pub struct MethodReport {
     pub mean_turning_angle_deg: Option<f64>,
     /// Smallest distance to an obstacle \[m\].
     pub mean_clearance_m: Option<f64>,
-    /// Search and smoothing \[s\]; `None` without a clock, and of runs.
+    /// Time of search and smoothing \[s\]; `None` without a clock, and for runs.
     pub mean_planning_s: Option<f64>,
-    /// Simulated time of the runs \[s\]; `None` of paths, here and below.
+    /// Simulated time of the runs \[s\]; `None` for paths, here and below.
     pub mean_run_time_s: Option<f64>,
     /// Distance driven \[m\].
     pub mean_driven_length_m: Option<f64>,
@@ -206,8 +208,8 @@ pub struct MethodReport {
 }
 
 impl ClaimReport {
-    /// Judges a claim by what was measured. Without `times` no figure that a clock measures is
-    /// reported, and a claim that has one has no verdict.
+    /// Judges a claim by its measured figures. Without `times`, no figure that a clock measures is
+    /// reported, and a claim with such a figure has no verdict.
     pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
@@ -240,7 +242,7 @@ impl ClaimReport {
             reconstructed,
             not_reconstructed: experiment.reconstruction.err(),
             family: FamilyReport::new(experiment, family, &findings),
-            // What is missing speaks for nobody.
+            // Missing data supports neither side.
             verdict: if evidence.len() < claim.figures.len() {
                 Verdict::NotMeasured
             } else {
@@ -337,7 +339,7 @@ pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure 
 }
 
 impl ExperimentReport {
-    /// What each method did over the family.
+    /// Reports the results of each method over the family.
     pub fn new(experiment: &Experiment, family: &Family) -> Self {
         let methods = experiment.methods.iter().enumerate().map(|(i, method)| {
             let outcomes = || family.rows.iter().map(move |row| row.outcomes[i].as_ref());

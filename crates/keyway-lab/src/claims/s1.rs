@@ -1,8 +1,8 @@
-//! The claims of \[S1\]. The traditional A* cuts corners, the improved one does not; table 1 compares weights alone, on paths
-//! of one length, so there both cut them.
+//! Claims of \[S1\]. The traditional A* cuts corners, the improved one does not; table 1 compares
+//! only weights, on paths of one length, so there both cut corners.
 //!
-//! References 9 and 14 of the paper cannot be identified from its text: their stand-ins are A* with collinear points
-//! removed, and the turning points of A* as the guide of a classic DWA.
+//! References 9 and 14 of the paper cannot be identified from its text. Their substitutes are A*
+//! with collinear points removed, and a classic DWA guided by the turning points of A*.
 
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::{Experiment, Scene};
@@ -27,7 +27,7 @@ const REF9: &str = "astar, collinear points removed";
 const SAFE_CHILDREN: &str = "density-astar";
 const WHOLE: &str = "density-astar, bidirectional";
 
-/// The maps of all experiments.
+/// Maps of all experiments.
 pub(super) const ABOUT: &str =
     "30 x 30 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
 pub(super) const FAMILY: GeneratedMap =
@@ -35,7 +35,7 @@ pub(super) const FAMILY: GeneratedMap =
 pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(29, 29)];
 const SCENE_MAP: &str = include_str!("maps/s1.map");
 
-/// Tables 1 and 3. A robot has to get through without cutting corners.
+/// Tables 1 and 3. A robot must be able to pass without cutting corners.
 const fn fitted(name: &'static str, ends: [Cell; 2]) -> Reconstruction {
     Reconstruction { name, family: FAMILY, ends, baselines: &BASELINES }
 }
@@ -106,7 +106,8 @@ static SMOOTHING: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// An experiment with runs; each compares only what its claim is about, so that no map is left out for another one.
+/// An experiment with runs; each compares only the methods of its claim, so that no map is left out
+/// because of another method.
 const fn runs(name: &'static str, methods: &'static [Method], scene: Scene) -> Experiment {
     let scene = Some(scene);
     let reconstruction = Ok(&FITTED);
@@ -116,8 +117,8 @@ const fn runs(name: &'static str, methods: &'static [Method], scene: Scene) -> E
 
 const RANDOM_00: Scene = Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
 
-/// Figure 6: one evaluation against the other, before there is a route to guide them. So both drive straight to the goal, and both measure
-/// the distance as the paper does.
+/// Figure 6: one evaluation function against the other, without a route as guidance. So both drive
+/// straight to the goal, and both measure the distance as the paper does.
 static AGAINST_CLASSIC: Experiment = runs(
     "s1-classic",
     &[
@@ -132,7 +133,7 @@ static AGAINST_CLASSIC: Experiment = runs(
     },
 );
 
-/// The evaluation of the paper without the factors of the distance.
+/// Evaluation function of the paper without the distance factors.
 pub(super) const FIXED_FACTORS: LocalConfig = LocalConfig::Dwa(DwaConfig {
     window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
     weights: AdaptiveDwaConfig::PAPER.weights,
@@ -163,7 +164,7 @@ static HALF_ENCLOSED: Experiment = Experiment {
 };
 const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
 
-/// Whether the straight way meets a single wall, and there is one to both sides before it.
+/// True if the straight line to the goal meets a single wall, with a wall on each side before it.
 fn encloses(map: &OccupancyGrid, [start, goal]: [Cell; 2]) -> bool {
     let is_wall = |x: i32, y: i32| map.occupied().get(Cell::new(x, y));
     let mut walls = (start.x..=goal.x).filter(|&x| is_wall(x, start.y));
@@ -186,20 +187,20 @@ static AMONG_MORE: Experiment = runs(
 static AGAINST_REF14: Experiment =
     runs("s1-ref14", &[Method::driving(REF14, REF14), Method::driving(FUSED, FUSED)], RANDOM_00);
 
-/// No place of the map is farther from a way \[m\].
+/// Distance from a path within which every point of the map lies \[m\].
 pub(super) const ANYWHERE_M: f64 = 60.0;
 /// Change of a length that counts as none.
 const SAME_LENGTH: f64 = 0.01;
-/// Change of a time that counts as hardly any.
+/// Change of a time that counts as small.
 const HARDLY_MORE: f64 = 0.1;
-/// What is farther away than this is not touched \[m\].
+/// Distance beyond which an obstacle is not touched \[m\].
 const TOUCHED_M: f64 = 1e-6;
 
 pub(super) const PAPER: &str = "S1";
 pub(super) const FUSED: &str = "s1-adaptive";
 const REF14: &str = "s1-ref14";
 const TO_GOAL: &str = "dwa-to-goal";
-/// Straight to the goal.
+/// Method that drives straight to the goal.
 const CLASSIC: &str = "classic dwa";
 const ADAPTIVE: &str = "adaptive dwa";
 const AMONG_UNKNOWN: &str = "s1-adaptive, 20 unknown obstacles";
@@ -303,7 +304,8 @@ mod tests {
             encloses(&OccupancyGrid::from_ascii(rows), [Cell::new(0, 2), Cell::new(6, 2)])
         };
         assert!(is_so(&["..###..", "....#..", "....#..", "....#..", "..###.."]));
-        // Open to the other side; beside the way; only half; around the goal, which the walls do not hide.
+        // Open to the other side; beside the straight line; only half; around the goal, which the
+        // walls do not hide.
         assert!(!is_so(&["..###..", "..#....", "..#....", "..#....", "..###.."]));
         assert!(!is_so(&["..###..", "....#..", ".......", "....#..", "..###.."]));
         assert!(!is_so(&["..###..", "....#..", "....#..", "....#..", "....#.."]));

@@ -1,4 +1,4 @@
-//! What pictures show of an experiment: paths, searches and runs on one map.
+//! Contents of the pictures of an experiment: paths, searches and runs on one map.
 
 use super::clutter_speeds::Part;
 use super::driven::Keeper;
@@ -10,36 +10,39 @@ use keyway::search::Recording;
 use keyway_sim::episode::{Episode, EpisodeError};
 use keyway_sim::sim::{Circle, Mover, Run};
 
-/// What a picture shows of a method.
+/// Content of a picture for a method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// The path, or the way driven, as far as it went.
+    /// The planned path, or the driven path, as far as it went.
     pub line: Polyline,
-    /// What the search did; `None` of a run.
+    /// Recording of the search; `None` for a run.
     pub search: Option<Recording>,
-    /// What was driven; `None` of a path.
+    /// The run; `None` for a path.
     pub run: Option<Run>,
-    /// Of each sample of a run whether it belongs to the part that its mean speed is of; `None` where that is all of it.
+    /// For each sample of a run, whether it belongs to the part of the mean speed; `None` if that
+    /// is the whole run.
     pub part: Option<Vec<bool>>,
-    /// What stood there and was not on the map.
+    /// Static obstacles that are not on the map.
     pub obstacles: Vec<Circle>,
-    /// What moved there.
+    /// Moving obstacles.
     pub movers: Vec<Mover>,
 }
 
-/// A map with its ends, and what every method does there.
+/// A map with its ends, and the results of every method there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The map.
     pub map: OccupancyGrid,
     /// Start and goal \[m\].
     pub ends: [Point; 2],
-    /// In the order of the methods; `None` where one found no path, or no route to drive.
+    /// Results in the order of the methods; `None` for a method without a path, or without a route
+    /// to drive.
     pub shown: Vec<Option<Shown>>,
 }
 
 impl Experiment {
-    /// What all methods do on the map of a seed, or, without one, on the scene; `None` without that.
+    /// Returns the results of all methods on the map of a seed or, without a seed, on the scene;
+    /// `None` without a scene.
     ///
     /// # Errors
     /// As for [`Self::on_seed`].
@@ -90,7 +93,7 @@ impl Shown {
 mod tests {
     use crate::claims::{Claim, Measure};
 
-    /// The lines are those that are measured.
+    /// The shown lines are the measured ones.
     #[test]
     fn what_is_shown_is_what_is_measured() {
         for id in ["S0-1", "S0-3"] {
@@ -105,7 +108,7 @@ mod tests {
                 assert_eq!(shown.search.is_some(), id == "S0-1");
             }
         }
-        // Each of two parts has samples of its own; that the one is slower is measured.
+        // Each of the two parts has its own samples; which one is slower is measured.
         let of_parts = Claim::named("S0-7")[0].experiment;
         let row = of_parts.on_seed(1, None).unwrap();
         let shown = of_parts.place(Some(1)).unwrap().unwrap().shown;

@@ -1,9 +1,9 @@
-//! The papers' simulated maps.
+//! Simulated maps of the papers.
 
 use keyway::geometry::Point;
 use keyway_sim::worlds::{GeneratedMap, Pattern};
 
-/// A square in cells of 1 m, as the papers have it; around its ends there is room.
+/// A square map with cells of 1 m, as in the papers, with room around its ends.
 pub(super) const fn square(side_m: f64, free_ends_m: f64, obstacles: Pattern) -> GeneratedMap {
     GeneratedMap {
         width_m: side_m,

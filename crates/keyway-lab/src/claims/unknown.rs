@@ -1,4 +1,4 @@
-//! What stands in the way of a path and is not on the map.
+//! Unknown obstacles on a path.
 
 use keyway::ConfigError;
 use keyway::geometry::{Point, Polyline};
@@ -7,7 +7,8 @@ use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, RandomObstacles};
 use keyway_sim::sim::Circle;
 
-/// The discs of a seed that stand: those that a run of [`Robot::paper`] from the one end to the other meets with the same seed.
+/// Returns the static discs of a seed: those that a run of [`Robot::paper`] between the two ends
+/// meets with the same seed.
 ///
 /// # Errors
 /// When a value cannot be used.

@@ -1,46 +1,49 @@
-//! The rule by which a claim holds, holds in part, or does not.
+//! Rule for the verdict on a claim: it holds, holds in part, or does not hold.
 //!
-//! It was written down before anything was measured:
+//! The rule was written before anything was measured:
 //!
-//! | verdict | when |
-//! |---|---|
-//! | holds | every figure goes the published way, the 95 % interval of its mean change over the family of maps excludes zero, and the mean is at least half of the published change |
-//! | holds in part | at least one figure goes the published way with an interval that excludes zero |
-//! | does not hold | otherwise |
+//! - *Holds*: every figure changes in the published direction, the 95 % interval of its mean change
+//!   over the family of maps excludes zero, and the mean is at least half of the published change.
+//! - *Holds in part*: at least one figure changes in the published direction, with an interval that
+//!   excludes zero.
+//! - *Does not hold*: otherwise.
 //!
-//! Where nothing comparable was published, the half is not asked for: the sign decides. What the papers say in other words
-//! is read like this:
+//! If nothing comparable was published, half of the change is not required: the sign decides. Other
+//! statements of the papers are read as follows:
 //!
-//! - *The same*: the whole interval lies within the tolerance of the figure; *not higher*: its upper end does. As there is no
-//!   zero to exclude, such a figure alone makes no claim hold in part.
-//! - *Always* (a bound that is kept, a path that is found): it goes the published way when it is true on every map; and when
-//!   it is true on more than half of the maps with 95 % certainty (\[Wilson1927\]), the claim holds in part.
-//! - A figure that could not be measured leaves the claim without a verdict: what is missing speaks for nobody.
+//! - *The same*: the whole interval lies within the tolerance of the figure; *not higher*: its
+//!   upper end does. As there is no zero to exclude, such a figure alone makes no claim hold in
+//!   part.
+//! - *Always* (a bound that is kept, a path that is found): the figure agrees with the paper if it
+//!   is true on every map; if it is true on more than half of the maps with 95 % certainty
+//!   (\[Wilson1927\]), the claim holds in part.
+//! - A figure that could not be measured leaves the claim without a verdict: missing data supports
+//!   neither side.
 
 use super::claim::{Direction, Expected, Figure};
 use keyway_sim::metrics::statistics::{Confidence, Rate};
 use serde::Serialize;
 
-/// What became of a claim.
+/// Verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// All of it is so.
+    /// All of the claim is confirmed.
     Holds,
-    /// Some of it is so.
+    /// Part of the claim is confirmed.
     HoldsInPart,
-    /// None of it is so.
+    /// No part of the claim is confirmed.
     DoesNotHold,
-    /// There is nothing to judge by.
+    /// There is no evidence to judge the claim.
     NotMeasured,
 }
 
-/// What was measured of a figure over a family of maps.
+/// Evidence for a figure over a family of maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evidence {
-    /// Too little: no interval.
+    /// Too little evidence for an interval.
     Missing,
-    /// The mean change, and between what the true one lies with a confidence of 95 %.
+    /// The mean change with its 95 % confidence interval.
     Change {
         /// The mean.
         mean: f64,
@@ -49,23 +52,25 @@ pub enum Evidence {
         /// The upper end.
         high: f64,
     },
-    /// On how many maps a bound is kept.
+    /// Share of maps on which a bound is kept.
     Kept(Rate),
 }
 
-/// A figure by the rule.
+/// Judgement of a figure by the rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Judgement {
-    /// The mean goes the published way; of a bound: on every map.
+    /// True if the mean changes in the published direction; for a bound: if it is kept on every
+    /// map.
     pub goes_that_way: bool,
-    /// It goes that way with an interval that excludes zero; of a bound: one half.
+    /// True if it changes in that direction with an interval that excludes zero; for a bound: one
+    /// half.
     pub is_certain: bool,
-    /// The mean change is at least half of the published one, if there is one.
+    /// True if the mean change is at least half of the published one, if there is one.
     pub is_half: bool,
 }
 
 impl Judgement {
-    /// Judges a figure; `None` where evidence is missing, or not of the kind of the figure.
+    /// Judges a figure; `None` if evidence is missing, or is of the wrong kind for the figure.
     pub fn of(figure: &Figure, evidence: Evidence) -> Option<Self> {
         match (figure.expected, evidence) {
             (Expected::Change { direction, .. }, Evidence::Change { mean, low, high }) => {
@@ -84,7 +89,7 @@ impl Judgement {
     }
 
     fn of_change(figure: &Figure, direction: Direction, [mean, low, high]: [f64; 3]) -> Self {
-        // Upwards the lower end decides, downwards the upper one.
+        // For an increase the lower end decides, for a decrease the upper one.
         let (upwards, nearest) = match direction {
             Direction::Higher => (1.0, low),
             Direction::Lower => (-1.0, high),
@@ -104,7 +109,7 @@ impl Judgement {
         }
     }
 
-    /// Whether it is all that the claim says.
+    /// True if the figure confirms the whole claim.
     fn is_whole(self, figure: &Figure) -> bool {
         let has_no_zero = matches!(
             figure.expected,
@@ -118,7 +123,7 @@ impl Judgement {
 }
 
 impl Verdict {
-    /// The verdict on a claim by its figures and what was measured of each.
+    /// Returns the verdict on a claim from its figures and their evidence.
     pub fn of(figures: &[(Figure, Evidence)]) -> Self {
         let judged: Option<Vec<_>> = figures
             .iter()
@@ -151,7 +156,7 @@ mod tests {
     use crate::claims::{Bound, Measure};
     use Verdict::{DoesNotHold, Holds, HoldsInPart, NotMeasured};
 
-    /// Half as much: a change of -0.5.
+    /// Half as many: a change of -0.5.
     const HALVED: Figure = Figure::lower(Measure::Expanded, "new", "old", Some([8.0, 4.0]));
     const LONGER: Figure = Figure::higher(Measure::Length, "new", "old", None);
     const SAME: Figure = Figure::same(Measure::Length, "new", "old", 0.25, Some([4.0, 4.0]));
@@ -225,7 +230,7 @@ mod tests {
         expect(&[(KEPT, kept(60, 40))], HoldsInPart);
         expect(&[(KEPT, kept(59, 41))], DoesNotHold);
         expect(&[(KEPT, kept(0, 100))], DoesNotHold);
-        // One map says nothing: its interval begins at 0.21.
+        // One map proves nothing: its interval begins at 0.21.
         expect(&[(KEPT, kept(1, 0))], DoesNotHold);
     }
 
@@ -236,7 +241,7 @@ mod tests {
         expect(&[(HALVED, Evidence::Missing)], NotMeasured);
         expect(&[good, (LONGER, Evidence::Missing)], NotMeasured);
         expect(&[(KEPT, kept(0, 0))], NotMeasured);
-        // Evidence of another kind is none.
+        // Evidence of another kind counts as none.
         expect(&[(HALVED, kept(100, 0))], NotMeasured);
         expect(&[(KEPT, change(0.1, 0.1, 0.1))], NotMeasured);
     }

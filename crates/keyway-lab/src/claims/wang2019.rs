@@ -1,11 +1,13 @@
-//! The claims of \[Wang2019\], S2. Corners are cut. Its tables of times are not in its text, so all is judged by sign.
+//! Claims of \[Wang2019\], S2. Corners are cut. The tables of times are not in its text, so all
+//! claims are judged by sign.
 //!
-//! Both maps have 100 x 100 cells, and their starts and goals are published; their obstacles are not. So nothing could be
-//! fitted, and there is no scene. The families are blocks that cover a fifth, and rooms with doors; the rectangles that
-//! the paper's rooms hold are missing there.
+//! Both maps have 100 x 100 cells, and their starts and goals are published; their obstacles are
+//! not. So nothing could be fitted, and there is no scene. The families are blocks that cover a
+//! fifth, and rooms with doors; the rectangles in the paper's rooms are missing there.
 //!
-//! The expansion adds to the time to find a path, says the paper. So where the complete method is compared, the time is that from the map to
-//! the path. Steps that both do without it are compared by search and smoothing.
+//! According to the paper, the expansion adds to the time to find a path. So the complete method is
+//! compared by the time from the map to the path. Steps that both methods do without the expansion
+//! are compared by search and smoothing.
 
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
@@ -38,7 +40,7 @@ const STRAIGHT_LINE: PlannerConfig = PlannerConfig::AStar(AStarConfig {
     g: PathCost::StraightLine,
 });
 
-/// Equations (13) to (15); with X = 1 only g is another one.
+/// Equations (13) to (15); with X = 1, only g differs.
 pub(super) const fn ratio(x: f64) -> PlannerConfig {
     PlannerConfig::RatioAStar(RatioAStarConfig {
         x,
@@ -48,7 +50,7 @@ pub(super) const fn ratio(x: f64) -> PlannerConfig {
     })
 }
 
-/// Two passes on a map whose obstacles are expanded by this many cells.
+/// Two passes on a map with obstacles expanded by this many cells.
 pub(super) const fn shortcut(expansion_cells: u32) -> SmootherConfig {
     SmootherConfig::Shortcut(ShortcutConfig { passes: 2, expansion_cells })
 }
@@ -65,7 +67,7 @@ pub(super) const COMPLETE_METHOD: Method = Method {
     must_succeed: true,
 };
 
-/// A map of 100 x 100 cells. Around its ends there is room for the expansion.
+/// A map of 100 x 100 cells, with room for the expansion around its ends.
 const fn map(obstacles: Pattern) -> GeneratedMap {
     square(100.0, 1.0, obstacles)
 }
@@ -96,7 +98,7 @@ static STEPS: Experiment = Experiment {
     reconstruction: Err(NOTHING_FITTED),
 };
 
-/// Map 2: against other methods.
+/// Map 2: comparison with other methods.
 static OTHERS: Experiment = Experiment {
     name: "wang2019-others",
     about: "100 x 100 cells, rooms of 20 cells with doors of 4, from (25, 85) to (70, 15)",
@@ -121,7 +123,7 @@ static OTHERS: Experiment = Experiment {
     reconstruction: Err(NOTHING_FITTED),
 };
 
-/// Why there are no maps that fit.
+/// Reason why no maps fit.
 const NOTHING_FITTED: &str =
     "size, start and goal are published, but no length, turn or node of a baseline";
 

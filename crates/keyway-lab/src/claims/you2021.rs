@@ -1,7 +1,7 @@
-//! The claims of \[You2021\], S0. Corners are cut nowhere.
+//! Claims of \[You2021\], S0. No corners are cut.
 //!
-//! Times of the paper include drawing, and its optimisation is not timed: the search alone is compared. Seconds of its runs
-//! are the simulated ones that follow from its lengths and mean speeds.
+//! The paper's times include drawing, and do not cover its optimisation: only the search is
+//! compared. The run times are simulated times, from the paper's lengths and mean speeds.
 
 use super::claim::{Bound, Claim, Figure};
 use super::clutter_speeds::Part;
@@ -27,7 +27,7 @@ const FIXED: &str = "bidirectional-jps-fixed";
 const MOVING: &str = "bidirectional-jps";
 const OPTIMISED: &str = "bidirectional-jps, key-points";
 
-/// The maps of both experiments.
+/// Maps of both experiments.
 pub(super) const ABOUT: &str =
     "20 x 20 cells, 20 % of them in blocks of 1 to 3 cells, from corner to corner";
 pub(super) const FAMILY: GeneratedMap =
@@ -120,15 +120,15 @@ static SPEEDS: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// D of the key-point optimisation \[m\], with the tolerance of the smoother.
+/// Distance D of the key-point optimisation \[m\], with the tolerance of the smoother.
 const SAFE_M: f64 = 0.5 - 1e-9;
-/// Lengths that differ by this share are the same.
+/// Relative difference up to which lengths are equal.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) const PAPER: &str = "You2021";
 pub(super) const FUSED: &str = "s0-key-point";
 const TO_GOAL: &str = "dwa-to-goal";
-/// A run has both parts; what is sparse and dense is relative to the run ([`Part`]).
+/// A run has both parts; sparse and dense are relative to the run ([`Part`]).
 const SPARSE: &str = "s0-key-point where obstacles are sparse";
 const DENSE: &str = "s0-key-point where obstacles are dense";
 

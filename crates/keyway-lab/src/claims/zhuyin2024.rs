@@ -1,9 +1,10 @@
-//! The claims of \[ZhuYin2024\], S4. A*, bidirectional A* and Dijkstra cut corners; HSTA* keeps L = 2.
+//! Claims of \[ZhuYin2024\], S4. A*, bidirectional A* and Dijkstra cut corners; HSTA* keeps L = 2.
 //!
-//! Of the static scene only its size is published, 42 x 42 cells, and how often the paths of the baselines turn. Single maps of
-//! strewn blocks fit these; but no share does on the mean: at 35 % and more, where paths turn that often, none keeps
-//! L = 2. So the family has the largest share, in steps of 5 %, at which the constraint leaves a path on half of the
-//! maps: 15 %. There A* turns 10 times.
+//! Of the static scene, only the size, 42 x 42 cells, and the numbers of turns of the baselines'
+//! paths are published. Single maps of scattered blocks fit these figures, but no share does on
+//! average: at 35 % and more, where paths have that many turns, no path keeps L = 2. So the family
+//! has the largest share, in steps of 5 %, at which the constraint leaves a path on half of the
+//! maps: 15 %. There A* has 10 turns.
 
 mod runs;
 
@@ -52,7 +53,7 @@ pub(super) const fn hsta(weight: Weight, correction: Correction, l: f64) -> Plan
 const L: f64 = 2.0;
 const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance, L);
 
-/// The maps of both experiments. Around their ends there is room for the constraint.
+/// Maps of both experiments. Around their ends there is room for the constraint.
 pub(super) const ABOUT: &str =
     "42 x 42 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
 pub(super) const FAMILY: GeneratedMap =
@@ -86,7 +87,8 @@ static FITTED: Reconstruction = Reconstruction {
     ],
 };
 
-/// HSTA* keeps L = 2 with its cells and cuts no corner of an obstacle: whatever it could find, this finds.
+/// HSTA* keeps L = 2 with its cells and cuts no corner of an obstacle: this planner finds every
+/// path that HSTA* could find.
 const WITH_L: Planning = Planning {
     planner: EUCLIDEAN_ASTAR,
     smoother: None,
@@ -118,7 +120,7 @@ static STATIC: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// Whether the two sides meet, on maps on which the constraint leaves a path.
+/// Maps on which the constraint leaves a path: do the two sides meet?
 static MEETING: Experiment = Experiment {
     name: "zhuyin2024-meeting",
     about: ABOUT,
@@ -160,8 +162,8 @@ pub(super) static CLAIMS: [Claim; 7] = [
         paper: PAPER,
         statement: "In roadways with unknown obstacles the way is shorter than those of RRT and 4-neighbour A*, and keeps its \
                     distance",
-        // Sums over the three roadways of table 2. The mean of its three percentages is -10.36 % against RRT, and -14.28 %, as
-        // printed, against 4-neighbour A*.
+        // Sums over the three roadways of table 2. The mean of its three percentages is -10.36 %
+        // against RRT, and, as printed, -14.28 % against 4-neighbour A*.
         figures: &[
             Figure::lower(
                 Measure::WayLength,
@@ -243,7 +245,8 @@ mod tests {
     use keyway::geometry::Point;
     use keyway::search::Workspace;
 
-    /// Mean turns of A* over 100 maps of this share, and on how many of them the constraint leaves a path.
+    /// Mean number of turns of A* over 100 maps of this share, and the number of maps on which the
+    /// constraint leaves a path.
     fn turns_and_paths(share: f64) -> (f64, usize) {
         let blocks = Blocks { share, side_m: [1.0, 3.0] };
         let family = GeneratedMap { obstacles: Pattern::Blocks(blocks), ..FAMILY };
@@ -267,7 +270,7 @@ mod tests {
         let Pattern::Blocks(chosen) = &FAMILY.obstacles else { panic!("no blocks") };
         let largest = found.iter().rfind(|(_, (_, paths))| *paths >= 50).unwrap();
         assert_eq!(largest.0, chosen.share, "{found:?}");
-        // Where A* turns as often as published, the constraint leaves no path.
+        // Where A* has as many turns as published, the constraint leaves no path.
         let fitting: Vec<_> = found.iter().filter(|(_, (turns, _))| *turns >= 18.0).collect();
         assert!(
             fitting.len() == 2 && fitting.iter().all(|(_, (_, paths))| *paths == 0),

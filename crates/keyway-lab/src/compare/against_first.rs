@@ -1,4 +1,4 @@
-//! Each row of a map against the first one: is the difference more than chance?
+//! Comparison of each row of a map with the first one: is the difference more than chance?
 
 use super::Compared;
 use super::contest::Entry;
@@ -8,7 +8,7 @@ use crate::table::{number, rows, with_range};
 use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 
-/// A row and the first one of its map, query by query.
+/// A row against the first one of its map, query by query.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstFirst {
     map: String,
@@ -30,7 +30,7 @@ pub struct AgainstFirst {
     length_p_holm: Option<f64>,
 }
 
-/// All rows of a map but the first.
+/// Compares all other rows of a map with the first one.
 pub(super) fn against_first(map: &Compared) -> Vec<AgainstFirst> {
     let Some((first, others)) = map.contest.entries.split_first() else { return Vec::new() };
     let mut all: Vec<AgainstFirst> =
@@ -84,7 +84,7 @@ fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
     }
 }
 
-/// Text below the table of a map; `None` for a single row. `all` are those of all maps.
+/// Text below the table of a map; `None` for a single row. `all` are the comparisons of all maps.
 pub fn against_first_note(map: &Compared, all: &[AgainstFirst]) -> Option<String> {
     let own = || all.iter().filter(|one| one.map == map.name);
     let AgainstFirst { first_planner, first_smoother, .. } = own().next()?;
@@ -96,7 +96,7 @@ pub fn against_first_note(map: &Compared, all: &[AgainstFirst]) -> Option<String
 }
 
 fn cells(one: &AgainstFirst) -> Vec<String> {
-    // Without the sign of a zero.
+    // Drops the sign of a zero.
     let metres: fn(Option<f64>) -> String =
         |value| number(value.map(|m| (m * 1e3).round() / 1e3 + 0.0), 3);
     let ends = [one.ci_low_length_difference_m, one.ci_high_length_difference_m];

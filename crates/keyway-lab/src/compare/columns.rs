@@ -1,4 +1,4 @@
-//! The table for people: in the terminal and in LaTeX.
+//! The printed table: in the terminal and in LaTeX.
 
 use super::Compared;
 use super::row::CompareRow;
@@ -10,26 +10,26 @@ use thiserror::Error;
 
 /// One column of the table.
 struct Column {
-    /// Its name in `--columns`.
+    /// Name of the column in `--columns`.
     id: &'static str,
-    /// Its header in LaTeX, which has all columns.
+    /// Header in LaTeX, which has all columns.
     name: &'static str,
-    /// Its header in the terminal, in two lines where it is longer than its numbers; `None` where it is
-    /// left out there unless it is asked for.
+    /// Header in the terminal, in two lines where it is longer than its numbers; `None` where the
+    /// terminal shows the column only on request.
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
-    /// Between what the values of most queries lie, where the cell is a mean.
+    /// Range of the values of most queries, where the cell is a mean.
     range: Option<fn(&CompareRow) -> String>,
     is_needed: fn(&[CompareRow]) -> bool,
 }
 
-/// The names of a row stand first in every table; the terminal has the map above its table.
+/// Names that come first in every row; the terminal has the map above its table.
 const MAP: Column = always("map", "map", None, |row| row.map.clone());
 const PLANNER: Column = always("planner", "planner", None, |row| row.planner.to_owned());
 const SMOOTHER: Column = always("smoother", "smoother", None, |row| row.smoother.to_owned());
 
-/// Means with the range of most queries, except for the worst excess, the least clearance and the medians of
-/// the times.
+/// Columns of means with the range of most queries, except the worst excess, the least clearance
+/// and the median times.
 const COLUMNS: [Column; 14] = [
     always(CORNERS, "corners", None, |row| corners(row).to_owned()),
     always("solved", "solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
@@ -60,14 +60,14 @@ const COLUMNS: [Column; 14] = [
         heading: Some("short-\nfalls"),
         cell: shortfalls,
         range: None,
-        // Only where a path falls short of what was asked for.
+        // Shown only where a path falls short of the requested clearance.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
     always(TIMES[0], "plan us", Some("plan\nus"), |row| number(row.median_plan_us, 1)),
     always(TIMES[1], "smooth us", Some("smooth\nus"), |row| number(row.median_smooth_us, 1)),
 ];
 
-/// A column of words, like the names.
+/// A text column, like the names.
 const CORNERS: &str = "corners";
 /// Columns that `--no-times` leaves out.
 const TIMES: [&str; 2] = ["plan", "smooth"];
@@ -92,7 +92,7 @@ const fn mean(
 }
 
 impl Column {
-    /// The cell, and its range behind it, or below it.
+    /// Returns the cell with its range behind or below it.
     fn with_range(&self, row: &CompareRow, [before, after]: [&str; 2]) -> String {
         let range = self.range.map(|range| range(row)).filter(|range| !range.is_empty());
         let range = range.map(|range| format!("{before}{range}{after}")).unwrap_or_default();
@@ -100,41 +100,41 @@ impl Column {
     }
 }
 
-/// Why a column cannot be shown.
+/// Reason why a column cannot be shown.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ColumnError {
-    /// There is none of this name.
+    /// No column has this name.
     #[error(
         "`{name}` is no column; there are {}{}",
         COLUMNS.map(|column| column.id).join(", "),
         did_you_mean(name, COLUMNS.map(|column| column.id))
     )]
     Unknown {
-        /// The name.
+        /// The unknown name.
         name: String,
     },
-    /// It shows times, which were not measured.
+    /// The column shows times, which were not measured.
     #[error("{name} is a time, and times are left out")]
     Time {
-        /// The name.
+        /// Name of the column.
         name: String,
     },
 }
 
 /// Columns of the tables of a comparison.
 pub struct ChosenColumns {
-    /// Those that were asked for; `None` for the usual ones.
+    /// Requested columns; `None` for the usual ones.
     asked: Option<Vec<&'static Column>>,
     has_times: bool,
 }
 
 impl ChosenColumns {
-    /// The columns of these names behind the names of planner and smoother, or the usual ones where
-    /// there are none; `has_times` says whether times were measured.
+    /// Selects the columns of these names, after the names of planner and smoother, or the usual
+    /// columns if there are no names; `has_times` says whether times were measured.
     ///
     /// # Errors
-    /// Says which name is wrong.
+    /// Names the column that cannot be shown.
     pub fn new(names: &[String], has_times: bool) -> Result<Self, ColumnError> {
         let column = |id: &String| {
             if !has_times && TIMES.contains(&id.as_str()) {
@@ -147,7 +147,7 @@ impl ChosenColumns {
         Ok(Self { asked: Some(asked).filter(|all| !all.is_empty()), has_times })
     }
 
-    /// Those behind the names, for all rows.
+    /// Columns after the names, for all rows.
     fn of(&self, rows: &[CompareRow], is_usual: fn(&Column) -> bool) -> Vec<&'static Column> {
         let is_shown = |column: &&Column| {
             is_usual(column)
@@ -157,7 +157,7 @@ impl ChosenColumns {
         self.asked.clone().unwrap_or_else(|| COLUMNS.iter().filter(is_shown).collect())
     }
 
-    /// Header and rows for LaTeX, and how many columns of words come first.
+    /// Header and rows for LaTeX, and the number of text columns, which come first.
     pub fn table(&self, rows: &[CompareRow]) -> (Vec<&'static str>, Vec<Vec<String>>, usize) {
         let mut columns = vec![&MAP, &PLANNER, &SMOOTHER];
         columns.extend(self.of(rows, |_| true));
@@ -168,7 +168,7 @@ impl ChosenColumns {
         (columns.iter().map(|column| column.name).collect(), lines, words)
     }
 
-    /// The table of a map, as wide as a terminal where nothing else was asked for: not all columns.
+    /// The table of a map, as wide as a terminal unless columns were requested: not all columns.
     pub fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
         let mut columns = vec![&PLANNER, &SMOOTHER];
         columns.extend(self.of(all, |column| column.heading.is_some()));
@@ -183,7 +183,7 @@ impl ChosenColumns {
     }
 }
 
-/// What is the same for all rows of a map.
+/// Properties that all rows of a map share.
 fn title(map: &Compared, own: &[CompareRow]) -> String {
     let (queries, compared) = (map.counts.len(), map.counts.iter().filter(|&&is| is).count());
     let rules: BTreeSet<&str> = own.iter().map(corners).collect();

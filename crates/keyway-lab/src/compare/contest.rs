@@ -1,7 +1,7 @@
 //! All planners and smoothers on one map.
 //!
-//! Planners take turns round by round, and for each query the fastest of
-//! its rounds counts. Smoothers follow the planner whose lines they smooth.
+//! The planners take turns, round by round. For each query, the fastest round of each planner
+//! counts. Smoothers follow the planner whose lines they smooth.
 
 use super::ends::Ends;
 use super::left_out::LeftOut;
@@ -17,7 +17,7 @@ use keyway::smooth::{Smoothed, SmootherConfig};
 use keyway_sim::metrics::PathMetrics;
 use keyway_sim::report::PlanOutcome;
 
-/// One planner with one smoother: what they made of each query.
+/// One planner with one smoother, and their answers to each query.
 pub struct Entry {
     /// Name of the planner.
     pub planner: &'static str,
@@ -25,29 +25,29 @@ pub struct Entry {
     pub smoother: &'static str,
     /// Corner rule of the planner.
     pub corners: CornerRule,
-    /// Time of preparing the planner; `None` where times are left out.
+    /// Preparation time of the planner; `None` where times are left out.
     pub preparation: Option<Times>,
     /// Answers to all queries, in their order.
     pub answers: Vec<Answer>,
 }
 
-/// What came of one query.
+/// Answer to one query.
 pub struct Answer {
     /// Result of the search.
     pub outcome: PlanOutcome,
-    /// Why there is no path, in the words of the request.
+    /// Reason why there is no path, in the words of the request.
     pub reason: Option<String>,
-    /// Time of the search; `None` where times are left out.
+    /// Search time; `None` where times are left out.
     pub plan: Option<Times>,
-    /// The planner's constraint, where that was lowered to leave a path.
+    /// The planner's constraint, where it was lowered to leave a path.
     pub relaxed: Option<Relaxed>,
-    /// The path, where there is one.
+    /// The path, if there is one.
     pub found: Option<Found>,
 }
 
-/// A path, smoothed and measured.
+/// A smoothed and measured path.
 pub struct Found {
-    /// Time of smoothing; `None` where nothing is smoothed, or times are left out.
+    /// Smoothing time; `None` where nothing is smoothed, or times are left out.
     pub smooth: Option<Times>,
     /// The smoothed path.
     pub done: Smoothed,
@@ -58,16 +58,16 @@ pub struct Found {
 }
 
 impl Found {
-    /// The share by which the path is longer than the shortest line.
+    /// Relative excess of the path's length over the shortest line.
     pub fn excess(&self) -> Option<f64> {
         let shortest_m = self.shortest_m?;
-        // Without a distance there is nothing to exceed.
+        // Lines of length 0 have no excess.
         let is_same = self.metrics.length_m == shortest_m;
         Some(if is_same { 0.0 } else { self.metrics.length_m / shortest_m - 1.0 })
     }
 }
 
-/// The shortest lines of all queries under one corner rule; `None` where there is none.
+/// The shortest lines of all queries under one corner rule; `None` for a query without one.
 pub struct Oracle {
     /// The corner rule.
     pub corners: CornerRule,
@@ -75,9 +75,9 @@ pub struct Oracle {
     pub lines: Vec<Option<Polyline>>,
 }
 
-/// What was compared on one map.
+/// Results of a comparison on one map.
 pub struct Contest {
-    /// Every planner with every smoother.
+    /// All pairs of a planner and a smoother.
     pub entries: Vec<Entry>,
     /// Planners of `all` that cannot plan on this map.
     pub left_out: Vec<LeftOut>,
@@ -118,7 +118,7 @@ pub(super) fn compete(
 }
 
 impl Contest {
-    /// Leaves out what is measured anew in every run.
+    /// Removes the times, which differ from run to run.
     pub(super) fn without_times(mut self) -> Self {
         for entry in &mut self.entries {
             entry.preparation = None;
@@ -133,7 +133,7 @@ impl Contest {
     }
 }
 
-/// One for each corner rule that a planner has.
+/// Returns an oracle for each corner rule that a planner has.
 fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<Oracle> {
     let rules = [CornerRule::Forbid, CornerRule::Allow];
     let is_wanted = |rule: &CornerRule| contenders.iter().any(|one| one.corners() == *rule);
@@ -144,19 +144,19 @@ fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<O
     rules.into_iter().filter(is_wanted).map(oracle).collect()
 }
 
-/// A smoothed path, and how long that took where anything was smoothed.
+/// A smoothed path, and the smoothing time where anything was smoothed.
 type TimedSmoothed = (Smoothed, Option<Times>);
 
-/// A planner with its memory, and what it and each smoother have done so far.
+/// A planner with its memory, and its results and those of each smoother so far.
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     name: &'static str,
     preparation: Times,
     workspace: Workspace,
     plan: Plan,
-    /// For each query.
+    /// Plans, one for each query.
     planned: Vec<Planned>,
-    /// For each smoother, then for each query.
+    /// Smoothed paths, for each smoother and then for each query.
     smoothed: Vec<Vec<Option<TimedSmoothed>>>,
 }
 
@@ -197,7 +197,7 @@ impl Contender {
         }
     }
 
-    /// The first round keeps the answers, later ones their times where they are faster.
+    /// Plans all queries: the first round keeps the answers, later rounds keep faster times.
     fn plan_all(
         &mut self,
         map: &SearchMap,
@@ -237,7 +237,7 @@ impl Contender {
         let clearance_m = map.config().clearance_m;
         for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
             let smoother = config.build().map_err(CompareError::Smoother)?;
-            // The line as planned is measured and checked, too, but that is not smoothing.
+            // The planned line is measured and checked, too, but that is not smoothing.
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| {
@@ -301,7 +301,7 @@ impl Planned {
     }
 }
 
-/// Why there is no path, unless the planner cannot plan on such a map at all.
+/// Reason why there is no path; an error if the planner cannot plan on such a map at all.
 fn outcome(error: &PlanError) -> Result<PlanOutcome, CompareError> {
     if let PlanError::Constrained { .. } = error {
         return Ok(PlanOutcome::Missed);

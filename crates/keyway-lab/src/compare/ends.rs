@@ -3,7 +3,7 @@
 use keyway::geometry::Point;
 use keyway::map::{Cell, GridFrame};
 
-/// A start and a goal, and the cells in which they lie.
+/// A start and a goal, and their cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ends {
     /// Start \[m\].
@@ -14,12 +14,12 @@ pub struct Ends {
     pub start_cell: Cell,
     /// Cell of the goal.
     pub goal_cell: Cell,
-    /// Line of the file that asks for them, from 1.
+    /// Line of the file that contains the query, from 1.
     pub line: Option<usize>,
 }
 
 impl Ends {
-    /// For two cells.
+    /// Returns the ends for two cells.
     pub fn of_cells(
         frame: &GridFrame,
         [start_cell, goal_cell]: [Cell; 2],
@@ -29,7 +29,7 @@ impl Ends {
         Self { start, goal, start_cell, goal_cell, line }
     }
 
-    /// For two positions; `None` where one is outside the map.
+    /// Returns the ends for two positions; `None` if one is outside the map.
     pub fn of_points(
         frame: &GridFrame,
         (start, goal): (Point, Point),

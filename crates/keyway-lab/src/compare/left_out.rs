@@ -1,4 +1,4 @@
-//! Which planners were left out of a comparison of all of them, and why.
+//! Planners that were left out of a comparison of all planners, with the reasons.
 
 use super::Compared;
 use keyway::plan::PlanError;
@@ -12,14 +12,14 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// Whether the map is to blame, and not a parameter.
+    /// True if the map is to blame, and not a parameter.
     pub(super) const fn is_for(error: &PlanError) -> bool {
         matches!(error, PlanError::NeedsUniformCost { .. } | PlanError::Preparation(_))
     }
 
     pub(super) fn new(planner: &'static str, error: &PlanError) -> Self {
         let reason = match error {
-            // The same for all of them.
+            // The text is the same for every such planner.
             PlanError::NeedsUniformCost { .. } => {
                 "needs one cost for all cells, so unknown cells blocked or free".to_owned()
             }
@@ -36,7 +36,7 @@ pub fn left_out_note(maps: &[Compared]) -> Option<String> {
     (!lines.is_empty()).then(|| format!("\nLeft out:\n  {}", lines.join("\n  ")))
 }
 
-/// Planners with the same reason share a line.
+/// One line for all planners with the same reason.
 fn lines(map: &str, left_out: &[LeftOut]) -> Vec<String> {
     let mut reasons: Vec<&str> = Vec::new();
     for one in left_out {

@@ -1,4 +1,4 @@
-//! Which planners lowered a constraint, and how far.
+//! Planners that lowered a constraint, and the lowered values.
 
 use super::Compared;
 use super::contest::Entry;
@@ -15,7 +15,7 @@ fn of_map(map: &Compared) -> Vec<String> {
     let mut lines = Vec::new();
     let mut planners: Vec<&str> = Vec::new();
     for entry in &map.contest.entries {
-        // There is an entry for each smoother, too.
+        // Each smoother has an entry of its own, too.
         if !planners.contains(&entry.planner) {
             planners.push(entry.planner);
             lines.extend(line(&map.name, entry));

@@ -1,7 +1,7 @@
-//! Planners and smoothers on the same queries: how good their paths are, beside the shortest lines.
+//! Comparison of planners and smoothers on the same queries, and with the shortest lines.
 //!
-//! A [`CompareRequest`] says what is compared. On each map it gives a [`Compared`], and all of them
-//! together a [`CompareReport`].
+//! A [`CompareRequest`] describes the comparison. It gives a [`Compared`] for each map, and a
+//! [`CompareReport`] for all of them.
 
 mod against_first;
 mod columns;
@@ -33,26 +33,27 @@ use keyway::smooth::SmootherConfig;
 use row::{compared, most_different, row};
 use thiserror::Error;
 
-/// Planners and smoothers that are to be compared, each planner with every smoother.
+/// Planners and smoothers to compare, each planner with every smoother.
 #[derive(Clone, Debug)]
 pub struct CompareRequest {
     /// Layers of the maps.
     pub map: LayerConfig,
     /// The planners.
     pub planners: Vec<PlannerConfig>,
-    /// Planners that cannot plan on a map are left out there; otherwise they are an error.
+    /// True if planners that cannot plan on a map are left out there; otherwise they are an error.
     pub leaves_out_unfit: bool,
     /// The smoothers.
     pub smoothers: Vec<SmootherConfig>,
-    /// Every query is answered this many times, the planners in turns; the fastest time of each counts.
+    /// Rounds in which every query is answered, the planners in turns; the fastest time of each
+    /// counts.
     pub repeat: u64,
-    /// Times are measured: they are never the same twice.
+    /// True if times are measured; they differ from run to run.
     pub has_times: bool,
-    /// Words for why there is no path, with the advice that its reader can follow.
+    /// Text for a query without a path, with advice for the reader.
     pub why: fn(&PlanError) -> String,
 }
 
-/// A map with the queries on it.
+/// A map with its queries.
 pub struct Queried {
     name: String,
     loaded: LoadedMap,
@@ -60,11 +61,11 @@ pub struct Queried {
     queries: Vec<Ends>,
 }
 
-/// A map with everything that was found on it.
+/// A map with all its results.
 pub struct Compared {
-    /// A name that no other map has.
+    /// Unique name of the map.
     pub name: String,
-    /// The map as it was read.
+    /// The map as read.
     pub loaded: LoadedMap,
     /// Its layers.
     pub map: SearchMap,
@@ -72,36 +73,38 @@ pub struct Compared {
     pub queries: Vec<Ends>,
     /// The answers.
     pub contest: Contest,
-    /// For each query whether its answers count: all planners that solved any have solved it.
+    /// For each query, whether its answers count: all planners that solved any query have solved
+    /// it.
     pub counts: Vec<bool>,
 }
 
-/// Why planners and smoothers cannot be compared.
+/// Reason why planners and smoothers cannot be compared.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CompareError {
     /// A planner cannot be used on a map.
     #[error("{name}: {error}")]
     Planner {
-        /// Its name.
+        /// Name of the planner.
         name: &'static str,
-        /// What is wrong.
+        /// Error of the planner.
         error: PlanError,
     },
     /// A smoother cannot be used.
     #[error(transparent)]
     Smoother(ConfigError),
-    /// A query cannot be asked.
+    /// A query is not valid.
     #[error(transparent)]
     Query(PlanError),
-    /// The watcher stopped it.
+    /// The observer stopped the comparison.
     #[error("stopped before the end")]
     Stopped,
 }
 
 impl Queried {
-    /// A map of a name that no other one has, its layers and the queries on it. What keeps paths away
-    /// from obstacles is lifted around the ends of all queries alike, where the layers ask for that.
+    /// Combines a map of a unique name with its layers and its queries. Where the layers ask for
+    /// it, the constraints that keep paths away from obstacles are lifted around the ends of all
+    /// queries alike.
     pub fn new(name: String, loaded: LoadedMap, mut map: SearchMap, queries: Vec<Ends>) -> Self {
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
         map.free_ends(&ends);
@@ -113,8 +116,8 @@ impl CompareRequest {
     /// Answers all queries on a map.
     ///
     /// # Errors
-    /// When a planner or a smoother cannot be used, or the watcher stops it. Queries without a path are
-    /// results.
+    /// When a planner or a smoother cannot be used, or the observer stops the comparison. Queries
+    /// without a path are results.
     pub fn on(&self, map: Queried, progress: &dyn Progress) -> Result<Compared, CompareError> {
         let Queried { name, loaded, map, queries } = map;
         let contest = compete(&map, self, &queries, progress)?;
@@ -130,7 +133,7 @@ impl Compared {
         self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
     }
 
-    /// The query whose paths differ most in length; `None` where none counts.
+    /// Returns the query whose paths differ most in length; `None` where none counts.
     pub fn picture_query(&self) -> Option<usize> {
         most_different(&self.contest.entries, &self.counts)
     }

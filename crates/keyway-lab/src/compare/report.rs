@@ -22,7 +22,7 @@ pub struct CompareReport {
     version: &'static str,
     /// A row for each map, planner and smoother.
     pub rows: Vec<CompareRow>,
-    /// Each row but the first of its map against that one.
+    /// Comparison of each row with the first row of its map.
     pub against_first: Vec<AgainstFirst>,
     maps: Vec<MapPart>,
     #[serde(flatten)]
@@ -30,14 +30,14 @@ pub struct CompareReport {
     repeat: u64,
     placement: Option<PlacementInput>,
     config: serde_json::Value,
-    /// The files that were written.
+    /// Written files.
     pub files: Vec<String>,
 }
 
 /// Source of the queries.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct QuerySource {
-    /// File of pairs of positions.
+    /// File with pairs of positions.
     pub pairs: Option<String>,
     /// Scenario file of MovingAI.
     pub scen: Option<String>,
@@ -48,14 +48,14 @@ pub struct QuerySource {
 /// A map and the queries on it.
 #[derive(Serialize)]
 struct MapPart {
-    /// As in the rows.
+    /// Name, as in the rows.
     name: String,
-    /// Its path.
+    /// Path of the map file.
     map: String,
     map_digest: String,
     left_out: Vec<LeftOut>,
     queries: Vec<QueryPart>,
-    /// The query that the picture shows, from 1.
+    /// Query in the picture, from 1.
     picture_query: Option<usize>,
 }
 
@@ -64,7 +64,7 @@ struct QueryPart {
     start: Point,
     goal: Point,
     shortest_m: Shortest,
-    /// In the file of the queries, from 1.
+    /// Line in the file of the queries, from 1.
     line: Option<usize>,
     compared: bool,
     unsolved: Vec<Unsolved>,
@@ -78,7 +78,7 @@ struct Shortest {
 }
 
 impl CompareReport {
-    /// The report of what was found on some maps, whose files lie at `paths`.
+    /// Returns the report of the results on some maps, whose files are at `paths`.
     pub fn new(
         request: &CompareRequest,
         (paths, maps): (&[String], &[Compared]),
@@ -129,13 +129,13 @@ fn query_part(map: &Compared, query: usize) -> QueryPart {
     }
 }
 
-/// One answer, for the table of all of them.
+/// One answer, for the table of all answers.
 #[derive(Serialize)]
 pub struct QueryRow<'a> {
     map: &'a str,
     planner: &'static str,
     smoother: &'static str,
-    /// From 1.
+    /// Number of the query, from 1.
     query: usize,
     start_x_m: f64,
     start_y_m: f64,
@@ -155,7 +155,7 @@ pub struct QueryRow<'a> {
     plan_cpu_us: Option<f64>,
     smooth_us: Option<f64>,
     smooth_cpu_us: Option<f64>,
-    /// Why there is no path.
+    /// Reason why there is no path.
     reason: Option<&'a str>,
     line: Option<usize>,
 }

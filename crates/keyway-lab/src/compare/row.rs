@@ -1,4 +1,4 @@
-//! From the answers to a row of the table.
+//! Rows of the table, from the answers.
 
 use super::contest::{Answer, Entry, Found};
 use crate::measure::{Spread, mean, quantile};
@@ -8,9 +8,9 @@ use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 
-/// Lengths that differ by less are the same \[m\].
+/// Lengths that differ by less are equal \[m\].
 pub(super) const SAME_M: f64 = 1e-6;
-/// Of the resamples from which intervals follow.
+/// Seed of the resamples for the intervals.
 const SEED: u64 = 0;
 
 /// One row of `keyway.compare/1`, whose members docs/JSON.md explains.
@@ -73,13 +73,13 @@ pub struct CompareRow {
     pub(super) preparation_ms: Option<f64>,
 }
 
-/// What the values of a column say together.
+/// Summary of the values of a column.
 #[derive(Clone, Copy, Debug, Default)]
 struct Figures {
     mean: Option<f64>,
     /// Standard deviation.
     sd: Option<f64>,
-    /// Between what the true mean lies with a confidence of 95 %.
+    /// 95 % confidence interval of the true mean.
     ci_low: Option<f64>,
     ci_high: Option<f64>,
     p5: Option<f64>,
@@ -96,7 +96,7 @@ impl Figures {
     }
 }
 
-/// For each query whether it is compared: solved by every planner that solved any.
+/// For each query, whether it is compared: solved by every planner that solved any query.
 pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
     let queries = entries.first().map_or(0, |entry| entry.answers.len());
     let solved = |entry: &Entry, query: usize| entry.answers[query].found.is_some();
@@ -106,7 +106,7 @@ pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
     (0..queries).map(by_all).collect()
 }
 
-/// Of the queries that are compared, the one whose paths differ most in length (ties: the first).
+/// Returns the compared query whose paths differ most in length (ties: the first).
 pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usize> {
     let spread_m = |query: usize| {
         let found = entries.iter().filter_map(|entry| entry.answers[query].found.as_ref());
@@ -115,16 +115,16 @@ pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usi
             .fold((f64::INFINITY, 0.0), |(least_m, most_m), length_m| {
                 (length_m.min(least_m), length_m.max(most_m))
             });
-        // Smaller differences are only the rounding of equal lengths.
+        // Smaller differences are rounding errors of equal lengths.
         Some(most_m - least_m).filter(|&spread_m| spread_m > SAME_M).unwrap_or(0.0)
     };
     let counting = (0..compared.len()).filter(|&query| compared[query]);
     counting.rev().max_by(|&a, &b| spread_m(a).total_cmp(&spread_m(b)))
 }
 
-/// Counts of all queries, and means over those compared.
+/// Counts over all queries, and means over the compared ones.
 pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
-    // Where a planner solved nothing, others were compared without it.
+    // If a planner solved nothing, the others were compared without it.
     let is_found =
         |(answer, is_compared): &(&Answer, &bool)| **is_compared && answer.found.is_some();
     let compared = entry.answers.iter().zip(compared).filter(is_found);
@@ -278,7 +278,7 @@ mod tests {
         let near = |value: Option<f64>, expected: f64| (value.unwrap() - expected).abs() < 1e-12;
         assert!(near(row.p5_length_m, 10.05) && near(row.p95_length_m, 10.95), "{row:?}");
         assert!((row.sd_length_m.unwrap() - 0.5f64.sqrt()).abs() < 1e-12, "{row:?}");
-        // Of two values nothing else can be drawn; of equal ones nothing else at all.
+        // From two values nothing else can be drawn; from equal ones there is nothing else at all.
         assert_eq!((row.ci_low_length_m, row.ci_high_length_m), (Some(10.0), Some(11.0)));
         assert_eq!(
             (row.sd_turning_angle_deg, row.ci_high_turning_angle_deg),

@@ -1,4 +1,4 @@
-//! Which queries are not solved, and why.
+//! Unsolved queries, with the reasons.
 
 use super::Compared;
 use super::contest::Entry;
@@ -6,7 +6,7 @@ use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
 
-/// This many are listed below the table.
+/// Number of queries that are listed below the table.
 const LINES: usize = 5;
 
 /// Planners that found no path for a query, all for the same reason.
@@ -17,14 +17,14 @@ pub struct Unsolved {
     reason: String,
 }
 
-/// All planners without a path for a query, in the order of the table.
+/// Returns all planners without a path for a query, in the order of the table.
 pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
     let mut all: Vec<Unsolved> = Vec::new();
     for entry in entries {
         let answer = &entry.answers[query];
         let Some(reason) = &answer.reason else { continue };
         match all.iter_mut().find(|one| one.reason == *reason) {
-            // There is an entry for each smoother, too.
+            // Each smoother has an entry of its own, too.
             Some(one) if one.planners.contains(&entry.planner) => {}
             Some(one) => one.planners.push(entry.planner),
             None => all.push(Unsolved {
@@ -37,7 +37,7 @@ pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
     all
 }
 
-/// Text below the table; `None` when all queries are solved. `file` is that of the queries.
+/// Text below the table; `None` when all queries are solved. `file` is the file of the queries.
 pub fn unsolved_note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
     let of_map = |map: &Compared| -> Vec<String> {
         (0..map.queries.len()).flat_map(|query| lines(map, query, file)).collect()

@@ -3,12 +3,12 @@
 use serde::Serialize;
 use serde_json::Value;
 
-/// One line for each row under the names of its members; a missing value is empty.
+/// One line for each row, under a header of the member names; a missing value is empty.
 pub fn csv(rows: &[impl Serialize]) -> String {
     let line = |cells: Vec<String>| cells.join(",") + "\n";
     let mut text = String::new();
     for row in rows {
-        // Rows are plain data with string keys: this cannot fail.
+        // Rows are plain data with string keys, so this cannot fail.
         let Ok(Value::Object(members)) = serde_json::to_value(row) else { continue };
         if text.is_empty() {
             text.push_str(&line(members.keys().cloned().collect()));
@@ -18,7 +18,7 @@ pub fn csv(rows: &[impl Serialize]) -> String {
     text
 }
 
-/// Quoted where it must be (RFC 4180).
+/// A cell, quoted where necessary (RFC 4180).
 fn csv_cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

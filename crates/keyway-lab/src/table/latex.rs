@@ -1,15 +1,15 @@
-//! Tables for papers: the package `booktabs` is all that they need.
+//! Tables for papers; they need only the package `booktabs`.
 
 use std::fmt::Write as _;
 
-/// What the first lines of the file say to whoever includes it.
+/// First lines of the file, for the author who includes it.
 const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave out columns, turn the page
 % (landscape of \usepackage{pdflscape}), or scale the table (\usepackage{graphicx}):
 % \resizebox{\textwidth}{!}{\input{FILE}}
 ";
 
-/// A table; columns from the `first_number`-th on are aligned as numbers. Where the first cell
-/// changes, there is a line between two rows; where the second one does, some space.
+/// A table; the columns from the `first_number`-th on are aligned as numbers. A change of the first
+/// cell draws a line between two rows; a change of the second one adds some space.
 pub fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
@@ -33,15 +33,15 @@ pub fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -
     text
 }
 
-/// A text that LaTeX passes over.
+/// A text as a LaTeX comment.
 pub fn comment(text: &str) -> String {
-    // TeX ends a line at a carriage return, too.
+    // TeX also ends a line at a carriage return.
     let lines = text.split(['\n', '\r']).filter(|line| !line.trim().is_empty());
     lines.flat_map(|line| ["% ", line.trim(), "\n"]).collect()
 }
 
-/// A cell: characters that mean something to TeX stand for themselves, and a missing value is a
-/// dash. pdfLaTeX knows all that is written: other characters are given by their code points.
+/// A cell: characters that are special to TeX are escaped, and a missing value is a dash. pdfLaTeX
+/// can print all of it: other characters are written as code points.
 fn escaped(cell: &str) -> String {
     if cell == "-" {
         return "--".to_owned();
@@ -59,7 +59,8 @@ fn escaped(cell: &str) -> String {
         match command(letter) {
             _ if is_minus => text.push_str("$-$"),
             Some(command) => text.push_str(command),
-            // At the beginning of a row they would belong to the end of the row before.
+            // At the beginning of a row, TeX would take them as an argument of the previous line
+            // break.
             None if matches!(letter, '[' | '*') => text.extend(['{', letter, '}']),
             None if letter.is_control() => text.push(' '),
             None if letter.is_ascii() || COMPOSED.contains(letter) => text.push(letter),
@@ -72,13 +73,14 @@ fn escaped(cell: &str) -> String {
     text
 }
 
-/// Two of these one after another would be printed as something else, such as a dash.
+/// Pairs that TeX would print as another character, such as a dash.
 const LIGATURES: [&str; 6] = ["--", "''", "``", ",,", "?`", "!`"];
 
-/// Letters beyond ASCII that pdfLaTeX can set in every encoding of its fonts: those of Cork's that OT1 composes.
+/// Letters beyond ASCII that pdfLaTeX can set in every font encoding: the letters of the Cork
+/// encoding that OT1 composes.
 const COMPOSED: &str = "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝßàáâãäåæçèéêëìíîïñòóôõöøùúûüýÿĂăĆćČčĎďĚěĞğİıĹĺĽľŁłŃńŇňŐőŒœŔŕŘřŚśŞşŠšŢţŤťŮůŰűŸŹźŻżŽž";
 
-/// What TeX is told for a character that it does not print as it is.
+/// TeX command for a character that TeX does not print as it is.
 const fn command(letter: char) -> Option<&'static str> {
     Some(match letter {
         '\\' => r"\textbackslash{}",
@@ -87,7 +89,7 @@ const fn command(letter: char) -> Option<&'static str> {
         '<' => r"\textless{}",
         '>' => r"\textgreater{}",
         '|' => r"\textbar{}",
-        // In some languages it begins a command.
+        // In some languages this character begins a command.
         '"' => r"{\char34}",
         '&' => r"\&",
         '%' => r"\%",
@@ -111,7 +113,7 @@ const fn command(letter: char) -> Option<&'static str> {
         '°' => r"$^\circ$",
         '²' => "$^2$",
         '³' => "$^3$",
-        // The sign for micro, and the Greek letter.
+        // The micro sign, and the Greek letter.
         'µ' | 'μ' => r"$\mu$",
         '≤' => r"$\leq$",
         '≥' => r"$\geq$",
@@ -179,7 +181,8 @@ mod tests {
         assert_eq!(escaped("Gänge\t中"), "Gänge U+4E2D");
     }
 
-    /// Names of all characters of the first planes, and such that mean something only together, in each cell.
+    /// Names of all characters of the first planes, and sequences with a special meaning, in each
+    /// cell.
     #[test]
     fn hostile_names_make_a_sound_table() {
         let mut names: Vec<String> = [
@@ -228,7 +231,7 @@ mod tests {
         assert_eq!(cells[0], [r"name \&", r"50 \%", r"m/s\textasciicircum{}2"]);
     }
 
-    /// What would be wrong in a table is found.
+    /// The reader finds errors in a table.
     #[test]
     fn the_reader_is_strict() {
         let table = |row: &str| {

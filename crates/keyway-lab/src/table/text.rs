@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Tables for the terminal.
 
 use tabled::builder::Builder;
 use tabled::settings::formatting::AlignmentStrategy;
@@ -6,14 +6,14 @@ use tabled::settings::object::{Columns, Rows};
 use tabled::settings::style::HorizontalLine;
 use tabled::settings::{Alignment, Style};
 
-/// Tables are not wider where their texts can be wrapped \[characters\].
+/// Maximum width of a table whose texts can be wrapped \[characters\].
 const MAX_WIDTH: usize = 116;
-/// Texts are not wrapped to less \[characters\].
+/// Minimum width of a wrapped text \[characters\].
 const MIN_TEXT_WIDTH: usize = 14;
-/// Characters beside a cell.
+/// Padding of a cell \[characters\].
 const PADDING: usize = 2;
 
-/// Names and values, one pair per line; long values take several.
+/// Names and values, one pair per line; long values take several lines.
 pub fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let mut rows: Vec<Vec<String>> =
         rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
@@ -27,8 +27,8 @@ pub fn paragraph(text: &str) -> String {
     wrapped(text, MAX_WIDTH)
 }
 
-/// Rows under a header, whose names may have several lines; columns from the `first_number`-th on are
-/// aligned as numbers.
+/// Rows under a header, whose names may have several lines; the columns from the `first_number`-th
+/// on are aligned as numbers.
 pub fn rows(header: &[&str], rows: Vec<Vec<String>>, first_number: usize) -> String {
     let mut all = vec![header.iter().map(|name| (*name).to_owned()).collect()];
     all.extend(rows);
@@ -40,7 +40,8 @@ pub fn rows(header: &[&str], rows: Vec<Vec<String>>, first_number: usize) -> Str
     trimmed(&table.to_string())
 }
 
-/// Wraps the widest of the first `texts` columns, then the next one, until the table is narrow enough.
+/// Wraps the widest of the first `texts` columns, then the next one, until the table is narrow
+/// enough.
 fn wrap_texts(rows: &mut [Vec<String>], texts: usize) {
     let columns = rows.iter().map(Vec::len).max().unwrap_or_default();
     let cell_width =
@@ -59,8 +60,8 @@ fn wrap_texts(rows: &mut [Vec<String>], texts: usize) {
     }
 }
 
-/// The text in lines of at most this many characters: broken at spaces, and a longer word after
-/// hyphens.
+/// The text in lines of at most this many characters, broken at spaces; a longer word is broken
+/// after hyphens.
 fn wrapped(text: &str, width: usize) -> String {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -79,7 +80,7 @@ fn wrapped(text: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// Without the spaces that fill up lines: a terminal would wrap them.
+/// The table without trailing spaces, which a terminal would wrap.
 fn trimmed(table: &str) -> String {
     table.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
@@ -89,7 +90,7 @@ pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// The two ends between which most values lie; nothing where they are missing.
+/// The two ends of the range of most values; empty where they are missing.
 pub fn range(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> String) -> String {
     if low.is_none() || high.is_none() {
         return String::new();
@@ -97,7 +98,7 @@ pub fn range(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> Stri
     format!("{} to {}", shown(low), shown(high))
 }
 
-/// A value and, in brackets, the two ends; without them where they are missing.
+/// A value with the two ends in brackets; without them where they are missing.
 pub fn with_range(
     value: Option<f64>,
     [low, high]: [Option<f64>; 2],
@@ -107,7 +108,7 @@ pub fn with_range(
     if ends.is_empty() { shown(value) } else { format!("{} ({ends})", shown(value)) }
 }
 
-/// A share with this many decimals of a per cent, without a sign where it is 0 after rounding.
+/// A share as a percentage with this many decimals, without a sign where it rounds to 0.
 pub fn percent(share: Option<f64>, decimals: usize) -> String {
     let scale = 10f64.powi(decimals as i32);
     number(share.map(|share| (share * 100.0 * scale).round() / scale + 0.0), decimals)

@@ -1,4 +1,4 @@
-//! What is reported of one control cycle: `keyway.cycle/1`.
+//! Report of one control cycle: `keyway.cycle/1`.
 
 use super::Cycle;
 use keyway::geometry::{Point, Velocity};
@@ -7,7 +7,7 @@ use keyway::navigate::Step;
 use keyway::sense::Mover;
 use serde::Serialize;
 
-/// `keyway.cycle/1`: where the robot was, what it decided, and why.
+/// `keyway.cycle/1`: the robot's pose, its decision, and the reasons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CycleReport {
     /// Name and version of this form.
@@ -16,37 +16,39 @@ pub struct CycleReport {
     pub cycle: u64,
     /// Simulated time at its beginning \[s\].
     pub t_s: f64,
-    /// Where the robot is: `[x_m, y_m, yaw_rad]`.
+    /// Pose of the robot: `[x_m, y_m, yaw_rad]`.
     pub pose: [f64; 3],
-    /// How it moves.
+    /// Velocity of the robot.
     pub velocity: Speeds,
-    /// The point that it drives towards \[m\].
+    /// Point towards which the robot drives \[m\].
     pub guide_m: Point,
-    /// What is left of the way \[m\].
+    /// Remaining path length \[m\].
     pub remaining_m: f64,
-    /// What moves, as the robot estimates it.
+    /// Moving obstacles, as the robot estimates them.
     pub movers: Vec<Mover>,
-    /// Ground on which movers walk to and fro, and around which it goes: `[x, y, radius]` each \[m\].
+    /// Areas in which moving obstacles walk to and fro, and which the robot avoids: `[x, y,
+    /// radius]` each \[m\].
     pub walked: Vec<[f64; 3]>,
-    /// What it does.
+    /// Action of the robot.
     pub step: StepName,
-    /// Why it makes no progress, for people; `None` unless it is blocked.
+    /// Reason why the robot makes no progress, for people; `None` unless it is blocked.
     pub reason: Option<String>,
-    /// The velocity to drive with until the next cycle; `None` at the goal.
+    /// Velocity command until the next cycle; `None` at the goal.
     pub command: Option<Speeds>,
-    /// Why the stop rule changed the command; `None` when it did not.
+    /// Reason why the stop rule changed the command; `None` if it did not.
     pub refusal: Option<Refusal>,
-    /// Velocities that were tried; 0 when the local planner does not choose between candidates, or was not asked.
+    /// Number of velocities tried; 0 if the local planner does not choose between candidates, or
+    /// was not asked.
     pub candidates: u32,
-    /// Those of them that let the robot drive on.
+    /// Number of candidates that let the robot drive on.
     pub driving: u32,
-    /// Why the others were refused.
+    /// Reasons why the others were rejected.
     pub rejected: Rejections,
     /// The best candidate; `None` when none was admissible.
     pub chosen: Option<Scored>,
-    /// The second best one.
+    /// The second best candidate.
     pub runner_up: Option<Scored>,
-    /// What would free the robot, as it was tried; empty while some candidate drives.
+    /// Remedies that were tried to free the robot; empty while some candidate drives.
     pub remedies: Vec<Remedy>,
 }
 
@@ -59,27 +61,27 @@ pub struct Speeds {
     pub omega_radps: f64,
 }
 
-/// What a robot does in a cycle.
+/// Action of a robot in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StepName {
-    /// It drives.
+    /// The robot drives.
     Drive,
-    /// It is at the goal.
+    /// The robot is at the goal.
     Arrived,
-    /// There is no good way on.
+    /// The robot has no good way on.
     Blocked,
 }
 
 /// A candidate and its score.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scored {
-    /// Its velocity.
+    /// Velocity of the candidate.
     #[serde(flatten)]
     pub velocity: Speeds,
-    /// The sum of the weighted shares.
+    /// Sum of the weighted shares.
     pub score: f64,
-    /// Each term's share.
+    /// Share of each term.
     pub shares: Shares,
 }
 
@@ -87,7 +89,8 @@ impl CycleReport {
     /// Name and version of this form.
     pub const SCHEMA: &'static str = "keyway.cycle/1";
 
-    /// The report of a cycle, given the explanation of its decision ([`keyway::navigate::Controller::explain`]).
+    /// Returns the report of a cycle, given the explanation of its decision
+    /// ([`keyway::navigate::Controller::explain`]).
     pub fn of(cycle: &Cycle<'_>, explanation: &Explanation) -> Self {
         let (step, command, reason) = match cycle.step {
             Step::Drive(command) => (StepName::Drive, Some(*command), None),

@@ -1,4 +1,4 @@
-//! Robots with their controllers, through the simulator, to their reports: one robot, or several in one world.
+//! Simulation of one robot or several in one world, with their controllers, up to their reports.
 
 use super::task::Task;
 use super::{Cycle, EpisodeObserver, EpisodeOutcome, EpisodeReport, TeamError};
@@ -17,21 +17,22 @@ use keyway::navigate::{Blocked, Controller, Misfit, Parts, Step};
 use keyway::route::Route;
 use keyway::sense::Scan;
 
-/// A robot that is to drive.
+/// A robot about to drive.
 pub(super) struct Entry<'a> {
     pub(super) task: Task<'a>,
     pub(super) parts: Parts,
     pub(super) observer: &'a mut dyn EpisodeObserver,
 }
 
-/// A robot that has driven, or had no route.
+/// A robot after its run, or without a route.
 pub(super) struct Ended {
     pub(super) report: EpisodeReport,
-    /// Its smallest distance from another robot \[m\].
+    /// Smallest distance from another robot \[m\].
     pub(super) min_robot_clearance_m: Option<f64>,
 }
 
-/// Drives robots in one world at the same time, and reports of each. All their tasks have the same world and rules.
+/// Drives robots in one world at the same time, and returns a report of each. All their tasks have
+/// the same world and rules.
 pub(super) fn run_all<'a>(
     entries: Vec<Entry<'a>>,
     clock: Clock<'a>,
@@ -51,8 +52,8 @@ pub(super) fn run_all<'a>(
     robots.into_iter().enumerate().filter_map(ended).collect()
 }
 
-/// The real obstacles: the known ones, what no map has, and what moves. Unknown cells are obstacles where all robots plan
-/// around them.
+/// Returns the real obstacles: those of the map, those that no map has, and the moving ones.
+/// Unknown cells are obstacles if all robots plan around them.
 pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
     let Task { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0];
     let frame = *known.frame();
@@ -74,14 +75,14 @@ pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
     Ok(world.with_polygons(polygons.to_vec()).with_movers(movers.to_vec()))
 }
 
-/// The runs of all robots; none where no robot has a route.
+/// Simulates the runs of all robots; returns none if no robot has a route.
 fn simulated(
     threads: usize,
     world: &World,
     tasks: &[Task<'_>],
     robots: &mut [Ready<'_>],
 ) -> Result<Vec<Run>, TeamError> {
-    // Who waits for another is not given up before the other is.
+    // A robot that waits for another one is not given up before the other one.
     let limits_s = robots.iter().filter_map(|robot| Some(robot.driver()?.rules.time_limit_s));
     let Some(time_limit_s) = limits_s.reduce(f64::max) else {
         return Ok(Vec::new());
@@ -106,14 +107,14 @@ fn simulated(
     simulate_on(threads, world, &mut participants).map_err(TeamError::of_all)
 }
 
-/// What decides for a robot.
+/// Controller of a robot.
 type Decide<'a> = dyn FnMut(Pose, Velocity, &Scan) -> Control + Send + 'a;
 
 /// A robot at its start.
 enum Ready<'a> {
-    /// It has a route.
+    /// A robot with a route.
     Drives(Box<Driver<'a>>),
-    /// It has none, and stands in the way of the others.
+    /// A robot without a route, which stands in the way of the others.
     Stands { at: Pose, report: Box<EpisodeReport> },
 }
 
@@ -166,7 +167,7 @@ impl<'a> Ready<'a> {
         if let Self::Drives(driver) = self { Some(driver) } else { None }
     }
 
-    /// Where the robot stands at the beginning, and when its run ends.
+    /// Start pose of the robot, and the rules that end its run.
     fn place(&self) -> (Pose, RunRules) {
         match self {
             Self::Drives(driver) => (driver.start, driver.rules.clone()),
@@ -187,7 +188,7 @@ impl<'a> Ready<'a> {
         }
     }
 
-    /// What came of it; `None` for a robot that was to drive and has no run, which does not happen.
+    /// Returns the result; `None` for a driving robot without a run, which does not happen.
     fn ended(self, run: Option<&Run>, world: &World) -> Option<Result<Ended, ConfigError>> {
         let (report, min_robot_clearance_m) = match self {
             Self::Stands { report, .. } => (Ok(*report), None),
@@ -204,17 +205,17 @@ struct Driver<'a> {
     clock: Clock<'a>,
     start: Pose,
     rules: RunRules,
-    /// The first one, the points that the guide hands out along it, and where the footprint does not fit.
+    /// The first route, followed by its key points and the place where the footprint does not fit.
     route: Route,
     key_points: Vec<Point>,
     misfit: Option<Misfit>,
     controller: Controller,
-    /// Decisions so far, and the wall clock of all of them \[s\].
+    /// Decisions so far, and their total wall clock time \[s\].
     cycles: u64,
     decisions_s: f64,
-    /// When each way-point was passed, up to the last one that was \[s\].
+    /// Time at which each way-point was passed, up to the last passed one \[s\].
     passed_s: Vec<f64>,
-    /// What was in the way last, if anything.
+    /// The last reason why the robot was blocked, if any.
     blocked: Option<Blocked>,
 }
 
@@ -235,7 +236,7 @@ impl Driver<'_> {
         let action = match step {
             _ if self.observer.gives_up() => Action::GiveUp,
             Step::Arrived => Action::Arrived,
-            // What it tries is not what is in the way.
+            // A recovery attempt is not the reason why the robot is blocked.
             Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
                 Action::Drive(command)
             }
@@ -247,7 +248,7 @@ impl Driver<'_> {
         Control { action, remaining_m, route: controller.ways_taken() }
     }
 
-    /// What is reported of the run.
+    /// Returns the report of the run.
     fn report(self, run: &Run, world: &World) -> Result<EpisodeReport, ConfigError> {
         let Self { task, clock, ref rules, ref route, ref controller, .. } = self;
         self.observer.ended(run, &self.controller);
@@ -283,7 +284,7 @@ impl Driver<'_> {
         self.task.via.iter().enumerate().map(part).collect()
     }
 
-    /// Why the goal was not reached.
+    /// Reason why the goal was not reached.
     fn reason(&self, run: &Run) -> Option<String> {
         let RunRules { time_limit_s, stuck_window_s, stuck_progress_m, .. } = self.rules;
         let what = match run.outcome {

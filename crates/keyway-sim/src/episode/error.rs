@@ -1,11 +1,12 @@
-//! Why runs cannot be made.
+//! Errors of runs.
 
 use crate::sim::{SimError, WorldError};
 use keyway::ConfigError;
 use keyway::navigate::NavigateError;
 use thiserror::Error;
 
-/// Why an episode cannot be run. A start without a route to the goal is not an error but a report.
+/// Reason why an episode cannot be run. A start without a route to the goal is not an error but a
+/// report.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
@@ -23,13 +24,13 @@ pub enum EpisodeError {
     Sim(#[from] SimError),
 }
 
-/// Why the robots of a [`Team`](super::Team) cannot be driven.
+/// Reason why the robots of a [`Team`](super::Team) cannot be driven.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}{why}", robot.map_or_else(String::new, |index| format!("robot {index}: ")))]
 pub struct TeamError {
     /// Index of the robot; `None` where no single one is to blame.
     pub robot: Option<usize>,
-    /// What is wrong.
+    /// Error of the robot or the team.
     #[source]
     pub why: EpisodeError,
 }

@@ -1,9 +1,11 @@
-//! A whole run: a world, a robot and a stack -> a drive and its figures.
+//! A whole run: from a world, a robot and a stack to a drive and its figures.
 //!
-//! [`run_episode`] plans, simulates and measures; nothing else is needed, and nothing is written. The same episode
-//! gives the same report: what is random in a run follows from a seed ([`Episode::disturbances`]), and times are only measured by a clock that the caller brings
-//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). A local planner or a guide of your own is driven
-//! by [`run_with_parts`]. Several robots in one world, each with its own stack, are a [`Team`], driven by [`run_team`].
+//! [`run_episode`] plans, simulates and measures; it needs nothing else and writes nothing. The
+//! same episode gives the same report: all randomness in a run follows from a seed
+//! ([`Episode::disturbances`]), and times are measured only by a clock of the caller's
+//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). [`run_with_parts`]
+//! drives with your own local planner or guide. Several robots in one world, each with its own
+//! stack, are a [`Team`], driven by [`run_team`].
 //!
 //! ```
 //! use keyway_sim::episode::{Episode, EpisodeOutcome, run_episode};
@@ -55,55 +57,58 @@ use keyway::map::{Cell, OccupancyGrid};
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
 
-/// A run to be made.
+/// Description of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
-    /// The map that the robot knows. Its occupied cells are real, and its unknown ones where
-    /// `stack.map.unknown` plans around them.
+    /// Map that the robot knows. Its occupied cells are real obstacles, and so are its unknown
+    /// cells if `stack.map.unknown` plans around them.
     pub known: OccupancyGrid,
-    /// What identifies the map in the report.
+    /// Identification of the map in the report.
     pub source: MapSource,
-    /// Obstacles that are real, stand, and are not on the map.
+    /// Real static obstacles that are not on the map.
     pub obstacles: Vec<Circle>,
-    /// Polygons of the same kind.
+    /// Real static polygons that are not on the map.
     pub polygons: Vec<StandingPolygon>,
-    /// Cells of the map that are in truth occupied, in ascending order.
+    /// Occupied cells that the map does not show, in ascending order.
     pub hidden_cells: Vec<Cell>,
-    /// Obstacles that move.
+    /// Moving obstacles.
     pub movers: Vec<Mover>,
-    /// How many of these are random, and how many found no place ([`RandomObstacles::put_into`]).
+    /// Number of random ones among these obstacles, and of those not placed
+    /// ([`RandomObstacles::put_into`]).
     pub random: Option<Placed>,
     /// The robot.
     pub robot: Robot,
-    /// What its sensor, its motors and its localisation get wrong.
+    /// Errors of its sensor, its motors and its localisation.
     pub disturbances: Disturbances,
-    /// How it plans and drives.
+    /// Stack that plans and drives.
     pub stack: Stack,
     /// Name of the stack in the report.
     pub stack_name: String,
-    /// Where the robot stands.
+    /// Start of the robot.
     pub start: Start,
-    /// By way of which points, in their order \[m\].
+    /// Way-points, in order \[m\].
     pub via: Vec<Point>,
-    /// Where it is to go.
+    /// Goal of the robot.
     pub goal: Goal,
-    /// When the run is given up.
+    /// Rules that end the run.
     pub rules: EpisodeRules,
 }
 
-/// When a run ends.
+/// Rules that end a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRules {
-    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    /// Goal tolerance \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
     pub goal_tolerance_m: Option<f64>,
-    /// Whether the robot has to stand there, facing where it is to; or whether it may pass.
+    /// Arrival rule: whether the robot has to stop at the goal, with the goal's heading, or may
+    /// pass.
     pub arrival: Arrival,
-    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
+    /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at top
+    /// speed.
     pub time_limit_s: Option<f64>,
     /// See [`RunRules::stuck_window_s`] \[s\].
     pub stuck_window_s: f64,
-    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: 0.1 m, or a twentieth of what a slow robot drives in
-    /// `stuck_window_s`.
+    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: 0.1 m, or a twentieth of the distance that
+    /// a slow robot drives in `stuck_window_s`.
     pub stuck_progress_m: Option<f64>,
 }
 
@@ -121,7 +126,8 @@ impl Default for EpisodeRules {
 }
 
 impl Episode {
-    /// An episode in which the map is right and the robot ideal, with the usual stack for the robot. It begins facing along the path.
+    /// Creates an episode with a correct map and an ideal robot, with the usual stack for the
+    /// robot. The robot starts facing along the path.
     pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             known,

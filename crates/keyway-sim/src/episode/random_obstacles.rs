@@ -1,20 +1,24 @@
-//! Obstacles near the way, other ones for each seed.
+//! Random obstacles near the path, different for each seed.
 //!
-//! The same map, robots, ends and seed give the same obstacles, whatever drives among them. The *way* of a robot is a short line for its
-//! inscribed radius, from the start by the way-points to the goal, around what the map shows (unknown cells are obstacles): that of
+//! The same map, robots, ends and seed give the same obstacles, whatever drives among them. The
+//! *path* of a robot is a short line for its inscribed radius, from the start via the way-points to
+//! the goal, around the obstacles of the map (unknown cells are obstacles): the line of
 //! [`LazyThetaStar`](keyway::plan::LazyThetaStar), pulled tight.
 //!
-//! A disc that stands has its centre on a free cell within [`RandomObstacles::near_way_m`] of a way. It is only placed where every robot still has a
-//! way from each end to the next, by its inscribed radius around all discs that stand, these larger by
-//! [`RandomObstacles::MARGIN_M`]; other robots are not in its way. One that moves walks to and fro across a way, at right angles to it, between what the map shows and the
-//! discs to both sides, at most [`RandomObstacles::FARTHEST_WALK_M`] to each; its walk is so long that the robot can pass
-//! behind it. Nothing comes nearer to the ends of any robot than [`RandomObstacles::free_ends_m`] from its footprint, however it is turned.
-//! Of several robots, those that have no way on the map keep their ends free, and nothing else.
+//! A static disc has its centre on a free cell within [`RandomObstacles::near_way_m`] of a path. It
+//! is placed only if every robot still has a path from each end to the next, for its inscribed
+//! radius, around all static discs enlarged by [`RandomObstacles::MARGIN_M`]; this check ignores
+//! other robots. A moving disc walks to and fro across a path, at right angles to it, between the
+//! obstacles of the map and the discs on both sides, at most [`RandomObstacles::FARTHEST_WALK_M`]
+//! to each side; its walk is long enough for the robot to pass behind it. No obstacle comes closer
+//! than [`RandomObstacles::free_ends_m`] to the footprint of any robot at its ends, in any
+//! orientation. Of several robots, those without a path on the map keep only their ends free.
 //!
-//! A place that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each obstacle; what finds none is left out, and [`Placed`] says so.
+//! A position that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each obstacle;
+//! an obstacle without a position is left out, and [`Placed`] counts it.
 //!
 //! # Cost
-//! For each robot, a search of the map in any direction, and one from cell to cell for each try of a disc.
+//! For each robot, an any-angle search of the map, and a grid search for each try of a disc.
 
 mod lane;
 
@@ -82,17 +86,18 @@ fn usual_free_ends_m() -> f64 {
 }
 
 impl RandomObstacles {
-    /// [`Self::near_way_m`] where a scene does not say it \[m\].
+    /// Value of [`Self::near_way_m`] if a scene does not give it \[m\].
     pub const USUAL_NEAR_WAY_M: f64 = 0.5;
-    /// [`Self::free_ends_m`] where a scene does not say it \[m\].
+    /// Value of [`Self::free_ends_m`] if a scene does not give it \[m\].
     pub const USUAL_FREE_ENDS_M: f64 = 0.5;
-    /// What the robot has beside it where it passes a disc that stands, at least \[m\]: more than a cell of most maps.
+    /// Minimum margin of the robot where it passes a static disc \[m\]: more than a cell of most
+    /// maps.
     pub const MARGIN_M: f64 = 0.1;
-    /// No obstacle walks farther from the way \[m\].
+    /// Maximum distance of a walking obstacle from the path \[m\].
     pub const FARTHEST_WALK_M: f64 = 5.0;
-    /// Places that are drawn for an obstacle until it is left out.
+    /// Number of positions that are drawn for an obstacle before it is left out.
     pub const TRIES: u32 = 100;
-    /// More obstacles of a kind are a mistake.
+    /// Maximum number of obstacles of a kind.
     pub const MOST: u32 = 1000;
 
     /// Checks every value.
@@ -117,7 +122,7 @@ impl RandomObstacles {
         ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)
     }
 
-    /// Puts the obstacles of a seed into an episode, and says in it how many there are.
+    /// Adds the obstacles of a seed to an episode, and records their number there.
     ///
     /// # Errors
     /// When a value cannot be used, or the robot is too large for any map.
@@ -131,7 +136,7 @@ impl RandomObstacles {
         Ok(())
     }
 
-    /// Puts the obstacles of a seed into the world of a team, and says in it how many there are.
+    /// Adds the obstacles of a seed to the world of a team, and records their number there.
     ///
     /// # Errors
     /// When a value cannot be used, or a robot is too large for any map.
@@ -176,7 +181,7 @@ impl RandomObstacles {
     }
 }
 
-/// What a seed gives.
+/// Obstacles of a seed.
 #[derive(Default)]
 struct Drawn {
     discs: Vec<Circle>,
@@ -184,7 +189,7 @@ struct Drawn {
     placed: Placed,
 }
 
-/// Where a robot drives.
+/// Stops of a robot.
 struct Way<'a> {
     robot: &'a Robot,
     start: Start,
@@ -205,26 +210,26 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Names of streams of random numbers: that of this file, and those of the kinds of obstacles.
+/// Names of random number streams: of this file, and of the kinds of obstacles.
 const NAME: u64 = 0x6f62_7374_6163_6c65;
 const STANDING: u64 = 0;
 const MOVING: u64 = 1;
 
-/// Where obstacles are placed.
+/// Ground on which obstacles are placed.
 struct Ground {
     frame: GridFrame,
-    /// What the map shows.
+    /// Obstacles of the map.
     known: BitGrid,
-    /// The same, and the cells of the discs, larger by the margin.
+    /// Obstacles of the map and the cells of the discs, enlarged by the margin.
     obstacles: BitGrid,
-    /// One for each robot.
+    /// Paths, one for each robot.
     lanes: Vec<Lane>,
     near_way_m: f64,
     discs: Vec<Circle>,
 }
 
 impl Ground {
-    /// `None` where no robot has a way on the map.
+    /// Returns the ground; `None` if no robot has a path on the map.
     fn of(known: &OccupancyGrid, lanes: Vec<Lane>, near_way_m: f64) -> Option<Self> {
         let mut obstacles = known.occupied().clone();
         obstacles.merge(known.unknown());
@@ -240,7 +245,8 @@ impl Ground {
         })
     }
 
-    /// Places the first disc of [`RandomObstacles::TRIES`] that leaves every robot its way, if any.
+    /// Places the first of [`RandomObstacles::TRIES`] discs that leaves every robot a path, if any
+    /// does.
     fn place(&mut self, mut draw: impl FnMut(&Self) -> Option<Circle>) {
         for _ in 0..RandomObstacles::TRIES {
             let Some(disc) = draw(self) else { continue };
@@ -258,7 +264,7 @@ impl Ground {
         }
     }
 
-    /// A disc near the way, if it is where it may be.
+    /// Draws a static disc near the path; `None` if it may not be there.
     fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Circle> {
         let radius_m = random.between(kind.radius_m);
         let (_, at, across) = self.on_way(random)?;
@@ -270,7 +276,7 @@ impl Ground {
         (is_on_ground && leaves_ends).then_some(disc)
     }
 
-    /// A disc that walks across the way, if it may.
+    /// Draws a disc that walks across the path; `None` if it may not be there.
     fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<Mover> {
         let radius_m = random.between(kind.radius_m);
         let speed_mps = random.between(kind.speed_mps);
@@ -278,7 +284,7 @@ impl Ground {
         let first = if random.is_chosen(0.5) { across } else { across * -1.0 };
         let to = self.walk(at, first, radius_m)?;
         let fro = self.walk(at, first * -1.0, radius_m)?;
-        // As much is free behind it when it is at one end.
+        // This much is free behind it when it is at one end.
         let least_m = 2.0 * (lane.inscribed_m + RandomObstacles::MARGIN_M);
         let middle = to.lerp(fro, 0.5);
         let length_m = to.distance(fro);
@@ -289,12 +295,13 @@ impl Ground {
         if !(leaves_ends && length_m >= least_m) {
             return None;
         }
-        // A closed course along a line: to one end, past where it began to the other, and back.
+        // A closed course along a line: to one end, past its start to the other end, and back.
         let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
         Mover::new(radius_m, Motion::WayPoints(motion)).ok()
     }
 
-    /// The farthest place from `at` in a direction to which a disc walks through nothing; `None` where it cannot be at `at`.
+    /// Farthest position from `at` in a direction that a disc reaches without contact; `None` if it
+    /// does not fit at `at`.
     fn walk(&self, at: Point, direction: Point, radius_m: f64) -> Option<Point> {
         let step_m = 0.5 * self.frame.resolution_m();
         let steps = (RandomObstacles::FARTHEST_WALK_M / step_m) as u32;
@@ -303,14 +310,15 @@ impl Ground {
         places.take_while(|&place| self.has_room(place, radius_m)).last()
     }
 
-    /// Whether a disc at a place touches neither what the map shows nor another disc.
+    /// True if a disc at a position touches neither the obstacles of the map nor another disc.
     fn has_room(&self, place: Point, radius_m: f64) -> bool {
         let is_beside = |disc: &Circle| disc.centre.distance(place) >= disc.radius_m + radius_m;
         Clearance::new(&self.frame, &self.known).is_clear_point(place, radius_m)
             && self.discs.iter().all(is_beside)
     }
 
-    /// A place on the way of a robot, all places of all ways equally likely, and the direction across the way there.
+    /// Draws a position on a robot's path, uniformly over all paths, with the direction across the
+    /// path there.
     fn on_way(&self, random: &mut Random) -> Option<(&Lane, Point, Point)> {
         let all_m: f64 = self.lanes.iter().map(|lane| lane.way.length_m()).sum();
         let mut s_m = random.unit() * all_m;
@@ -332,12 +340,13 @@ impl Ground {
         Some((lane, at, Point::new(-along.y, along.x)))
     }
 
-    /// Whether a disc leaves the ends of all robots free; `apart_m` is how far an end is from where its centre comes.
+    /// True if a disc leaves the ends of all robots free; `apart_m` is the smallest distance of an
+    /// end from the disc's centre.
     fn leave_ends(&self, radius_m: f64, apart_m: impl Fn(Point) -> f64) -> bool {
         self.lanes.iter().all(|lane| lane.leaves_ends(radius_m, &apart_m))
     }
 
-    /// Cells that a disc touches and that hold no obstacle yet.
+    /// Returns the cells that a disc touches and that contain no obstacle yet.
     fn free_cells_of(&self, disc: &Circle) -> Vec<Cell> {
         let frame = &self.frame;
         let centre = frame.grid_from_world(disc.centre);

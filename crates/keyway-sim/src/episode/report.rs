@@ -1,4 +1,4 @@
-//! What is reported of an episode: `keyway.navigate/4`.
+//! Report of an episode: `keyway.navigate/4`.
 
 use crate::report::{Inputs, PlanPart, RunPart, SmoothedPart};
 use keyway::geometry::Point;
@@ -10,28 +10,29 @@ use serde::{Deserialize, Serialize};
 pub struct EpisodeReport {
     /// Name and version of this form.
     pub schema: &'static str,
-    /// How the episode ended.
+    /// Outcome of the episode.
     pub outcome: EpisodeOutcome,
-    /// Why the goal was not reached, for people.
+    /// Reason why the goal was not reached, for people.
     pub reason: Option<String>,
-    /// The first route as planned, or why there is none.
+    /// The first route as planned, or the reason why there is none.
     pub plan: PlanPart,
-    /// The same smoothed; `None` without a route, here and below.
+    /// The first route, smoothed; `None` without a route, here and below.
     pub smoothed: Option<SmoothedPart>,
     /// The points that the guide hands out along the first route \[m\].
     pub key_points_m: Option<Vec<Point>>,
-    /// Where along the first route the footprint does not fit; `None` where it fits, or without a route.
+    /// Place on the first route where the footprint does not fit; `None` where it fits, or without
+    /// a route.
     pub misfit: Option<Misfit>,
-    /// What was measured of the run.
+    /// Metrics of the run.
     pub run: Option<RunPart>,
     /// The start, the end of every cycle, and the contact if there was one:
     /// `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]` each.
     pub trajectory: Option<Vec<[f64; 6]>>,
-    /// All that the result depends on.
+    /// All inputs of the result.
     pub inputs: Inputs,
 }
 
-/// How an episode ended.
+/// Outcome of an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -54,7 +55,7 @@ impl EpisodeReport {
 }
 
 impl EpisodeOutcome {
-    /// As it is written in reports.
+    /// Name in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Reached => "reached",

@@ -13,7 +13,7 @@ pub fn run_episode(episode: &Episode) -> Result<EpisodeReport, EpisodeError> {
     watch_episode(episode, None, &mut ())
 }
 
-/// Runs an episode while somebody watches it, and measures times by the caller's clock.
+/// Runs an episode with an observer, and measures times by the caller's clock.
 ///
 /// # Errors
 /// As for [`run_episode`].
@@ -27,8 +27,8 @@ pub fn watch_episode(
     run_with_parts(episode, checked.map_err(NavigateError::from)?, clock, observer)
 }
 
-/// Runs an episode with a local planner or a guide of one's own, in place of those of its stack. The report does not
-/// know them: its `inputs` hold the stack, and what [`Episode::stack_name`] says.
+/// Runs an episode with the caller's own local planner or guide, in place of those of its stack.
+/// The report does not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
 ///
 /// # Errors
 /// As for [`run_episode`].
@@ -45,7 +45,7 @@ pub fn run_with_parts(
 }
 
 impl Episode {
-    /// All that the result depends on; `time_limit_s` is the limit that is in force.
+    /// Returns all inputs of the result; `time_limit_s` is the limit of this run.
     pub fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
         self.task().inputs(time_limit_s)
     }

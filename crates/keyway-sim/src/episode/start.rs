@@ -1,4 +1,4 @@
-//! Where a robot stands at the beginning.
+//! Start of a robot.
 
 use keyway::geometry::{Point, Pose};
 use keyway::navigate::Goal;
@@ -19,11 +19,11 @@ pub struct Start {
 }
 
 impl Start {
-    /// Between two headings that are tried \[deg\].
+    /// Step between two headings that are tried \[deg\].
     const STEP_DEG: u32 = 5;
 
-    /// The pose at the beginning of a route. Without a heading the robot faces along its path, or
-    /// as nearly so as it has room.
+    /// Returns the pose at the beginning of a route. Without a heading the robot faces along its
+    /// path, or as nearly so as it has room.
     pub(super) fn pose(&self, route: &Route, has_room: impl Fn(Pose) -> bool) -> Pose {
         let Point { x, y } = self.position;
         if let Some(heading_rad) = self.heading_rad {

@@ -1,4 +1,4 @@
-//! The world of an episode, for whoever drives in it.
+//! The world of an episode, for an external controller.
 
 use super::driver::world_of;
 use super::{Episode, EpisodeError};
@@ -7,11 +7,12 @@ use keyway::geometry::Pose;
 use keyway::navigate::Controller;
 
 impl Episode {
-    /// The episode's robot at the start in its world, to be driven from outside: the stack plans the first route, by which the
-    /// robot's heading at the start and the time limit are chosen, and drives nothing.
+    /// Returns the episode's robot at the start in its world, to be driven from outside. The stack
+    /// plans the first route, which determines the start heading and the time limit, and drives
+    /// nothing.
     ///
     /// # Errors
-    /// When the episode cannot be run; where there is no route, too.
+    /// When the episode cannot be run, or has no route.
     pub fn stepper(&self) -> Result<Stepper, EpisodeError> {
         let task = self.task();
         let world = world_of(&[task])?;
@@ -42,7 +43,7 @@ mod tests {
     use keyway::navigate::Step;
     use keyway::robot::Robot;
 
-    /// Driving by hand with the episode's own controller makes the episode's own run.
+    /// Manual driving with the episode's own controller gives the episode's own run.
     #[test]
     fn it_is_the_world_of_the_episode() {
         let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);

@@ -1,4 +1,4 @@
-//! One robot's part of a run: what it is given, and what of it can be said before and after driving.
+//! One robot's part of a run: its inputs, and the results before and after driving.
 
 use super::{Episode, EpisodeOutcome, EpisodeReport, EpisodeRules, Start};
 use crate::report::{Clock, Inputs, MapSource, Parameters, Placed, PlanPart, timed};
@@ -12,8 +12,8 @@ use keyway::robot::Robot;
 use keyway::route::Route;
 use keyway::search::{Query, SearchStatistics, Workspace};
 
-/// A robot, its stack, its way, and the world in which it drives, alone or with others. The fields are those of
-/// [`Episode`].
+/// A robot with its stack, its route, and the world in which it drives, alone or with others. The
+/// fields are those of [`Episode`].
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub(super) known: &'a OccupancyGrid,
@@ -56,7 +56,7 @@ impl Episode {
 }
 
 impl Task<'_> {
-    /// The cells that the robot knows to be obstacles, under its policy for unknown cells.
+    /// Cells that the robot knows to be obstacles, under its policy for unknown cells.
     pub(super) fn known_squares(&self) -> BitGrid {
         let mut squares = self.known.occupied().clone();
         if self.stack.map.unknown == UnknownPolicy::Blocked {
@@ -65,10 +65,11 @@ impl Task<'_> {
         squares
     }
 
-    /// Where the robot stands at the beginning of a route.
+    /// Returns the robot's pose at the beginning of a route.
     ///
     /// # Errors
-    /// When it touches something there that it knows of. What it does not know of is met by driving, or by standing.
+    /// When the robot touches a known obstacle there. Unknown obstacles are met while driving or
+    /// standing.
     pub(super) fn start_pose(&self, world: &World, route: &Route) -> Result<Pose, NavigateError> {
         let footprint = &self.robot.footprint;
         let at_start = world.at(0.0);
@@ -91,7 +92,7 @@ impl Task<'_> {
         })
     }
 
-    /// For a way of this length \[m\].
+    /// Returns the rules for a path of this length \[m\].
     pub(super) fn run_rules(&self, length_m: f64) -> RunRules {
         let EpisodeRules {
             goal_tolerance_m,
@@ -112,13 +113,13 @@ impl Task<'_> {
         }
     }
 
-    /// The layers on which a route was planned.
+    /// Returns the layers on which a route was planned.
     pub(super) fn layer_of(&self, route: &Route) -> Result<SearchMap, ConfigError> {
         let config = LayerConfig { clearance_m: route.clearance_m, ..self.stack.map.clone() };
         SearchMap::new(self.known, config).map_err(|error| error.within("map"))
     }
 
-    /// The first route; its query is repeated for the time alone, on layers that are ready.
+    /// Reports the first route; its query is repeated on prepared layers, only to measure its time.
     pub(super) fn plan_part(&self, route: &Route, map: &SearchMap, clock: Clock<'_>) -> PlanPart {
         let planner = &self.stack.planner;
         let time_s = self.search_time_s(route, map, clock);
@@ -131,14 +132,14 @@ impl Task<'_> {
         let (&from, to) = (route.plan.cells.first()?, route.plan.reached()?);
         let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
         let query = Query::new(from, to);
-        // The route shows that there is a path.
+        // The route shows that a path exists.
         timed(clock, || planner.plan_into(map, &query, &mut workspace, None, &mut plan)).1
     }
 
-    /// What is reported of a start without a route; `None` of every other error, which is bad input.
+    /// Report of a start without a route; `None` for every other error, which is bad input.
     pub(super) fn without_route(&self, error: &NavigateError) -> Option<EpisodeReport> {
         let planner = self.stack.planner.name();
-        // Of a way-point that cannot be reached, why not.
+        // For a way-point that cannot be reached, the cause of that.
         let cause = match error {
             NavigateError::WayPoint { why, .. } => why,
             error => error,
@@ -166,7 +167,7 @@ impl Task<'_> {
         })
     }
 
-    /// All that the result depends on; `time_limit_s` is the limit that is in force.
+    /// Returns all inputs of the result; `time_limit_s` is the limit of this run.
     pub(super) fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
         let to_row = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius_m];
         Inputs {

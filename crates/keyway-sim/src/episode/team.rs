@@ -12,11 +12,12 @@ use keyway::map::{Cell, OccupancyGrid};
 use keyway::navigate::{Goal, NavigateError, Parts, Stack};
 use keyway::robot::Robot;
 
-/// Several robots that drive in one world at the same time, each with its own stack and to its own goal, as moving
-/// obstacles to each other. None knows the plans of another: it has to see it.
+/// Several robots that drive in one world at the same time, each with its own stack and to its own
+/// goal. To each other they are moving obstacles: no robot knows the plans of another, and has to
+/// sense it.
 ///
-/// A robot whose run has ended, in whatever way, stands from then on in the way of the others; so does one without a route,
-/// from the beginning. All have the same control cycle.
+/// A robot whose run has ended, with any outcome, stands in the way of the others from then on; a
+/// robot without a route does so from the beginning. All robots have the same control cycle.
 ///
 /// ```
 /// use keyway_sim::episode::{EpisodeOutcome, Team, TeamRobot, run_team};
@@ -36,25 +37,27 @@ use keyway::robot::Robot;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Team {
-    /// The map that all robots know. Its occupied cells are real, and its unknown ones where
-    /// `stack.map.unknown` of all robots plans around them.
+    /// Map that all robots know. Its occupied cells are real obstacles, and so are its unknown
+    /// cells if `stack.map.unknown` of all robots plans around them.
     pub known: OccupancyGrid,
-    /// What identifies the map in the report.
+    /// Identification of the map in the report.
     pub source: MapSource,
-    /// Obstacles that are real, stand, and are not on the map.
+    /// Real static obstacles that are not on the map.
     pub obstacles: Vec<Circle>,
-    /// Polygons of the same kind.
+    /// Real static polygons that are not on the map.
     pub polygons: Vec<StandingPolygon>,
-    /// Cells of the map that are in truth occupied, in ascending order.
+    /// Occupied cells that the map does not show, in ascending order.
     pub hidden_cells: Vec<Cell>,
-    /// Obstacles that move.
+    /// Moving obstacles.
     pub movers: Vec<Mover>,
-    /// How many of these are random, and how many found no place ([`RandomObstacles::put_into_team`](super::RandomObstacles::put_into_team)).
+    /// Number of random ones among these obstacles, and of those not placed
+    /// ([`RandomObstacles::put_into_team`](super::RandomObstacles::put_into_team)).
     pub random: Option<Placed>,
     /// The robots.
     pub robots: Vec<TeamRobot>,
-    /// When each robot's run is given up. Without a time limit all have the longest one that an
-    /// [`Episode`](super::Episode) of one of them would have: who lets another pass first needs the time.
+    /// Rules that end each robot's run. Without a time limit, all robots have the longest limit
+    /// that an [`Episode`](super::Episode) of one of them would have: a robot that lets another one
+    /// pass first needs the time.
     pub rules: EpisodeRules,
 }
 
@@ -63,22 +66,23 @@ pub struct Team {
 pub struct TeamRobot {
     /// The robot.
     pub robot: Robot,
-    /// What its sensor, its motors and its localisation get wrong. Robots of the same seed draw different numbers.
+    /// Errors of its sensor, its motors and its localisation. Robots with the same seed draw
+    /// different numbers.
     pub disturbances: Disturbances,
-    /// How it plans and drives.
+    /// Stack that plans and drives.
     pub stack: Stack,
     /// Name of the stack in the report.
     pub stack_name: String,
-    /// Where the robot stands.
+    /// Start of the robot.
     pub start: Start,
-    /// By way of which points, in their order \[m\].
+    /// Way-points, in order \[m\].
     pub via: Vec<Point>,
-    /// Where it is to go.
+    /// Goal of the robot.
     pub goal: Goal,
 }
 
 impl TeamRobot {
-    /// An ideal robot with the usual stack for it. It begins facing along its path.
+    /// Creates an ideal robot with the usual stack for it. It starts facing along its path.
     pub fn new(robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             stack: Stack::keyway(&robot),
@@ -93,7 +97,7 @@ impl TeamRobot {
 }
 
 impl Team {
-    /// A team on a map that is right.
+    /// Creates a team with a correct map.
     pub fn new(known: OccupancyGrid, robots: Vec<TeamRobot>) -> Self {
         Self {
             known,
@@ -108,7 +112,7 @@ impl Team {
         }
     }
 
-    /// Refuses a team of no robots, and robots with different cycles.
+    /// Checks that there are robots, and that all have the same cycle.
     fn check(&self) -> Result<(), TeamError> {
         let Some(first) = self.robots.first() else {
             let error = ConfigError::new("robots", "must be one or more, got none");
@@ -154,9 +158,10 @@ pub fn run_team(team: &Team) -> Result<TeamReport, TeamError> {
     watch_team(team, None, 1, |_| ()).map(|(report, _)| report)
 }
 
-/// Runs a team while somebody watches each robot, and measures times by the caller's clock. The decisions of a cycle
-/// are spread over this many threads; the reports are the same for any number. `observer` is called with the
-/// index of each robot for who watches it; all of them are given back, in the order of the robots.
+/// Runs a team with an observer for each robot, and measures times by the caller's clock. The
+/// decisions of a cycle are spread over this many threads; the reports are the same for any number.
+/// `observer` is called with the index of each robot and returns its observer; all observers are
+/// returned, in the order of the robots.
 ///
 /// # Errors
 /// As for [`run_team`].

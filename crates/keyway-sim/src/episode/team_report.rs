@@ -1,4 +1,4 @@
-//! What is reported of a team: `keyway.team/1`.
+//! Report of a team: `keyway.team/1`.
 
 use super::{EpisodeOutcome, EpisodeReport};
 use serde::Serialize;
@@ -8,14 +8,14 @@ use serde::Serialize;
 pub struct TeamReport {
     /// Name and version of this form.
     pub schema: &'static str,
-    /// How each robot's run ended, in the order of the robots.
+    /// Outcome of each robot's run, in the order of the robots.
     pub outcomes: Vec<EpisodeOutcome>,
-    /// When the last robot reached its goal \[s\]; `None` unless all did.
+    /// Time at which the last robot reached its goal \[s\]; `None` unless all did.
     pub makespan_s: Option<f64>,
-    /// Smallest distance between two footprints while at least one of the two was under way \[m\]; `None` where a robot was
-    /// alone, or none had a route.
+    /// Smallest distance between two footprints while at least one of the two robots was under way
+    /// \[m\]; `None` for a single robot, or without any route.
     pub min_robot_clearance_m: Option<f64>,
-    /// The report of each robot, as if it had driven alone.
+    /// Report of each robot, as if it had driven alone.
     pub robots: Vec<EpisodeReport>,
 }
 

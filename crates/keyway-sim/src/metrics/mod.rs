@@ -1,5 +1,5 @@
-//! All measures of a plan or a run, and what many of them say together ([`statistics`]); the only place
-//! where metrics are computed.
+//! All metrics of a plan or a run, and their statistics over many runs ([`statistics`]). Metrics
+//! are computed nowhere else.
 
 mod mrpb;
 mod path;

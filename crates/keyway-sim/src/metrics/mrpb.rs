@@ -1,7 +1,7 @@
-//! The measures of MRPB, a benchmark of local planners.
+//! Measures of MRPB, a benchmark of local planners.
 //!
 //! # Source
-//! \[Wen2021\], and the program that its authors publish.
+//! \[Wen2021\], and the program published by its authors.
 //!
 //! | paper | here | unit |
 //! |---|---|---|
@@ -10,11 +10,12 @@
 //! | `f_ps` | [`Mrpb::path_smoothness_m2`] | m² |
 //! | `f_vs` | [`Mrpb::velocity_smoothness_mps2`] | m/s² |
 //!
-//! Its times, T and C, are [`RunMetrics::time_s`](super::RunMetrics::time_s) and the mean time of a decision, which needs a
-//! clock.
+//! The times of MRPB, T and C, are [`RunMetrics::time_s`](super::RunMetrics::time_s) and the mean
+//! time of a decision, which needs a clock.
 //!
 //! # Where this differs
-//! The published program forgets a stretch near obstacles that lasts until the end of a run; here it counts.
+//! The published program ignores a stretch near obstacles that lasts until the end of a run; here
+//! it counts.
 //!
 //! # Cost
 //! One distance to the nearest obstacle for every sample of the run. Allocates nothing.
@@ -24,25 +25,27 @@ use keyway::geometry::Point;
 use keyway::robot::{Footprint, Robot};
 use serde::{Deserialize, Serialize};
 
-/// How safe and how smooth a run was.
+/// Safety and smoothness of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mrpb {
-    /// Obstacles nearer than this to the robot's centre of rotation are near \[m\].
+    /// Distance from the robot's centre of rotation below which an obstacle is near \[m\].
     pub safe_distance_m: f64,
-    /// Smallest distance from the robot's centre of rotation to an obstacle, at the ends of cycles \[m\]; `None` without
-    /// obstacles.
+    /// Smallest distance from the robot's centre of rotation to an obstacle at the ends of the
+    /// cycles \[m\]; `None` without obstacles.
     pub min_distance_m: Option<f64>,
-    /// The part of the time that the robot spent near obstacles; `None` for a run of no time.
+    /// Share of the time that the robot spent near obstacles; `None` for a run of zero duration.
     pub share_near: Option<f64>,
-    /// Sum over all cycles of the squared second difference of the position, |x(k + 1) - 2 x(k) + x(k - 1)|² \[m²\].
+    /// Sum over all cycles of the squared second difference of the position, |x(k + 1) - 2 x(k) +
+    /// x(k - 1)|² \[m²\].
     pub path_smoothness_m2: f64,
-    /// Mean over all cycles of the change of speed per time, without its sign \[m/s²\]; `None` for a run of no time.
+    /// Mean over all cycles of the absolute change of speed per time \[m/s²\]; `None` for a run of
+    /// zero duration.
     pub velocity_smoothness_mps2: Option<f64>,
 }
 
 impl Mrpb {
-    /// The safe distance of a robot, which the benchmark leaves to its user: 0.1 m beyond the circle that its footprint turns in
-    /// \[m\].
+    /// Returns the safe distance of a robot, which the benchmark leaves to its user: 0.1 m beyond
+    /// the circumscribed circle of its footprint \[m\].
     pub fn safe_distance_m(robot: &Robot) -> f64 {
         robot.footprint.circumscribed_radius_m() + 0.1
     }
@@ -72,7 +75,7 @@ impl Mrpb {
     }
 }
 
-/// From the robot's centre to the nearest obstacle \[m\]; `reach_m` where none is nearer.
+/// Distance from the robot's centre to the nearest obstacle \[m\]; `reach_m` where none is nearer.
 fn distance_m(world: &World, sample: &Sample, reach_m: f64) -> f64 {
     world.at(sample.t_s).distance(&Footprint::POINT, sample.pose, reach_m)
 }
@@ -100,7 +103,7 @@ mod tests {
     use keyway::geometry::{Pose, Velocity};
     use keyway::map::OccupancyGrid;
 
-    /// Cycles of 0.5 s; places on a line, and speeds.
+    /// A run with cycles of 0.5 s, given by positions on a line, and speeds.
     fn run(driven: &[(f64, f64)]) -> Run {
         let sample = |(i, &(x, v)): (usize, &(f64, f64))| Sample {
             t_s: i as f64 * 0.5,
@@ -129,12 +132,12 @@ mod tests {
 
     #[test]
     fn measures_by_hand() {
-        // Its edge is 0.5 m from the places 2.5 and 4.5.
+        // Its edge is 0.5 m from the positions 2.5 and 4.5.
         let post = Circle::standing(Point::new(3.5, 2.5), 0.5);
         let world = world(vec![post]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &world, 0.6);
         assert_eq!(mrpb.min_distance_m, Some(0.0));
-        // Near at 2.5, 3.5 and 4.0 twice: 1.5 of 2.5 s, the end of the run included.
+        // Near at 2.5, at 3.5 and twice at 4.0: 1.5 of 2.5 s, the end of the run included.
         assert!((mrpb.share_near.unwrap() - 0.6).abs() < 1e-12);
         // Second differences 0.5, 0, -0.5, -0.5.
         assert!((mrpb.path_smoothness_m2 - 0.75).abs() < 1e-12);
@@ -144,7 +147,7 @@ mod tests {
         assert_eq!((far.min_distance_m, far.share_near), (Some(1.5), Some(0.0)));
     }
 
-    /// A mover comes near when the robot stands, for one instant of the run only.
+    /// A moving obstacle comes near the standing robot at one instant of the run only.
     #[test]
     fn movers_are_where_they_are_then() {
         let frame = |t_s, x, y| KeyFrame { t_s, position: Point::new(x, y) };
@@ -153,9 +156,9 @@ mod tests {
         let among = |motion| world(vec![]).with_movers(vec![Mover::new(0.25, motion).unwrap()]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &among(motion), 0.6);
         assert!((mrpb.min_distance_m.unwrap() - 0.25).abs() < 1e-12);
-        // One sample is no stretch of time.
+        // One sample has no duration.
         assert_eq!(mrpb.share_near, Some(0.0));
-        // The same of one that gave way, which the run says.
+        // An obstacle that gave way, as the run records, gives the same.
         let course = WayPoints::around(vec![Point::new(9.0, 0.5), Point::new(9.0, 4.5)], 1.0);
         let movers = vec![MoverWay { index: 0, key_frames: frames }];
         let run = Run { movers, ..run(&DRIVEN) };

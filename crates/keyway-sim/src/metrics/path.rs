@@ -1,19 +1,19 @@
-//! Measures of a planned line.
+//! Metrics of a planned path.
 
 use keyway::geometry::{Path, PathPiece, PathSample, Polyline, wrap_angle};
 use keyway::map::Clearance;
 use serde::{Deserialize, Serialize};
 
-/// Samples of a curve are this far apart \[m\] ...
+/// Distance between two samples of a curve \[m\] ...
 pub(super) const SAMPLE_M: f64 = 0.01;
-/// ... and a heading that changes by more than this from one to the next jumps \[deg\].
+/// ... and the heading change between two samples above which the heading jumps \[deg\].
 pub(super) const JUMP_DEG: f64 = 5.0;
-/// How finely the distance of a curve to obstacles is measured \[m\]; that of lines is exact.
+/// Tolerance of a curve's distance to obstacles \[m\]; the distance of lines is exact.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
-/// Heading changes up to this \[rad\] are rounding.
+/// Heading changes up to this are rounding errors \[rad\].
 const STRAIGHT_RAD: f64 = 1e-9;
 
-/// Measures of a path: a chain of straight segments, or one with curves.
+/// Metrics of a path: a chain of straight segments, or a path with curves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathMetrics {
     /// Sum of the segments' lengths \[m\].
@@ -21,17 +21,19 @@ pub struct PathMetrics {
     /// Points of the path as planned, before collinear ones are merged; for a path of cells, its
     /// cells; for a path with curves, the ends of its pieces.
     pub points: usize,
-    /// Points among them that change nothing: repeated, or inside a straight stretch.
+    /// Redundant points among them: repeated points, and points inside a straight stretch.
     pub redundant_points: usize,
-    /// Interior points at which the heading changes; of a curve, each stretch that bends to one side.
+    /// Interior points at which the heading changes; on a curve, each stretch that bends to one
+    /// side counts once.
     pub turns: usize,
     /// Sum of the absolute heading changes \[deg\].
     pub turning_angle_deg: f64,
-    /// Points at which the heading jumps: on straight segments, every turn; on a path with curves,
-    /// changes of more than 5 degrees between samples 1 cm apart.
+    /// Points at which the heading jumps: every turn between straight segments; on a path with
+    /// curves, changes of more than 5 degrees between samples 1 cm apart.
     pub non_smooth_turns: usize,
-    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 where it touches one; of a
-    /// curve, what it certainly keeps, within 0.1 mm. `None` without obstacles or without points.
+    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 where it touches one;
+    /// for a curve, a certified lower bound within 0.1 mm. `None` without obstacles or without
+    /// points.
     pub min_clearance_m: Option<f64>,
 }
 
@@ -53,7 +55,8 @@ impl PathMetrics {
         }
     }
 
-    /// Measures a path on a map (world frame); one of straight segments like [`Self::of_polyline`].
+    /// Measures a path on a map (world frame); a path of straight segments like
+    /// [`Self::of_polyline`].
     ///
     /// A curve is sampled every centimetre for its turns, and measured by certified bounds for its
     /// clearance.
@@ -89,7 +92,7 @@ impl PathMetrics {
     }
 }
 
-/// Heading changes from each sample to the next one \[rad\].
+/// Heading changes from each sample to the next \[rad\].
 fn heading_changes(samples: &[PathSample]) -> Vec<f64> {
     samples.windows(2).map(heading_change).collect()
 }
@@ -98,8 +101,8 @@ fn heading_change(pair: &[PathSample]) -> f64 {
     wrap_angle(pair[1].heading_rad - pair[0].heading_rad)
 }
 
-/// Stretches of samples that turn to the same side. Nothing is driven between the two samples of a
-/// joint of pieces: where the heading does not jump there, the bend goes on.
+/// Number of stretches of samples that turn to the same side. The two samples at a joint of pieces
+/// have no distance between them: if the heading does not jump there, the bend continues.
 fn count_bends(samples: &[PathSample]) -> usize {
     let is_driven_or_jump = |pair: &&[PathSample]| {
         pair[1].s_m > pair[0].s_m || heading_change(pair).abs() > STRAIGHT_RAD
@@ -112,7 +115,7 @@ fn count_bends(samples: &[PathSample]) -> usize {
     (0..sides.len()).filter(begins).count()
 }
 
-/// Whether two segments make one.
+/// True if two segments form one straight segment.
 fn goes_straight_on(pair: &[PathPiece]) -> bool {
     match pair {
         [PathPiece::Segment(before), PathPiece::Segment(after)] => {
@@ -124,8 +127,8 @@ fn goes_straight_on(pair: &[PathPiece]) -> bool {
 
 /// Number of points at which a line's heading changes by more than `threshold_rad`.
 ///
-/// For straight segments every change is a jump (threshold 0). A curve is given by its samples, 1 cm
-/// apart, and a jump is a change of more than 5 degrees.
+/// For straight segments, every change is a jump (threshold 0). A curve is given by its samples, 1
+/// cm apart, and a jump is a change of more than 5 degrees.
 fn count_heading_jumps(line: &Polyline, threshold_rad: f64) -> usize {
     line.turns_rad().iter().filter(|turn| turn.abs() > threshold_rad).count()
 }
@@ -145,7 +148,8 @@ mod tests {
 
     #[test]
     fn a_path_of_cells_by_hand() {
-        // Right twice, diagonally twice, up once; the obstacle's corner (2, 1) is touched.
+        // Two steps to the right, two diagonal ones, one up; the line touches the obstacle's corner
+        // (2, 1).
         let cells = [[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 2.5], [4.5, 3.5]];
         let metrics = measure(&cells, &[".....", ".....", "..#..", "....."]);
         assert!((metrics.length_m - (3.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
@@ -175,12 +179,12 @@ mod tests {
         assert_eq!(measure(&[[0.5, 0.5], [1.5, 0.5]], &["..."]).min_clearance_m, None);
     }
 
-    /// One metre ahead, a left turn of 1 m radius, a right one of a third of that angle, and a corner
-    /// of 90 degrees to the left with 2 m behind it in two parts.
+    /// One metre ahead, a left turn of 1 m radius, a right turn of a third of that angle, and a
+    /// corner of 90 degrees to the left, followed by 2 m in two parts.
     #[test]
     fn a_path_with_curves_by_hand() {
         let (quarter, twelfth) = (FRAC_PI_2, FRAC_PI_2 / 3.0);
-        // In two pieces, which are one turn.
+        // Two pieces, which form one turn.
         let left = |from| Arc::new(Point::new(2.0, 2.0), 1.0, from, 0.5 * quarter);
         let right = Arc::new(Point::new(4.0, 2.0), 1.0, std::f64::consts::PI, -twelfth);
         let end = right.end();
@@ -195,8 +199,8 @@ mod tests {
             PathPiece::Segment(Segment::new(end + away, end + away * 2.0)),
         ])
         .unwrap();
-        // The corner (4, 1) of the obstacle is sqrt(5) from the left arc's centre (2, 2), and the arc
-        // crosses the line between them.
+        // The corner (4, 1) of the obstacle is sqrt(5) from the left arc's centre (2, 2), and the
+        // arc crosses the line between them.
         let rows = ["......", "......", "......", "......", "....#."];
         let grid = OccupancyGrid::from_ascii(&rows);
         let metrics = PathMetrics::of_path(&path, Clearance::new(grid.frame(), grid.occupied()));
@@ -208,7 +212,7 @@ mod tests {
         assert!((clearance_m - (5f64.sqrt() - 1.0)).abs() < 1e-4, "{clearance_m}");
     }
 
-    /// A path with a curve in an empty map.
+    /// Measures a path with a curve in an empty map.
     fn measure_path(pieces: Vec<PathPiece>) -> PathMetrics {
         let grid = OccupancyGrid::from_ascii(&["...."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
@@ -217,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_heading_beyond_half_a_turn_is_no_jump() {
-        // From up over left (pi, then -pi) to down.
+        // From up, over left (pi, then -pi), to down.
         let half = Arc::new(Point::new(2.0, 2.0), 1.0, 0.0, std::f64::consts::PI);
         let metrics = measure_path(vec![PathPiece::Arc(half)]);
         assert_eq!((metrics.turns, metrics.non_smooth_turns), (1, 0));
@@ -226,7 +230,7 @@ mod tests {
 
     #[test]
     fn rounded_headings_are_no_turns() {
-        // A cubic along (1, 3) whose legs differ by rounding.
+        // A cubic along (1, 3) whose control legs differ by rounding.
         let at = |k: f64| Point::new(k * 0.1, k * 0.3);
         let straight = Cubic::bezier([at(0.0), at(0.7), at(1.9), at(3.1)]);
         let metrics = measure_path(vec![PathPiece::Cubic(straight)]);
@@ -250,7 +254,7 @@ mod tests {
 
     #[test]
     fn two_small_jumps_within_a_centimetre_are_one() {
-        // Twice 3 degrees, 1 mm apart, between two samples.
+        // Two changes of 3 degrees, 1 mm apart, between two samples.
         let ahead = |degrees: f64, metres: f64| {
             let angle = degrees.to_radians();
             Point::new(libm::cos(angle), libm::sin(angle)) * metres
@@ -274,7 +278,7 @@ mod tests {
         let rows = ["....", "..#.", "....", "...."];
         let grid = OccupancyGrid::from_ascii(&rows);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
-        // A corner of 3 degrees is a turn of a line, and no jump of a curve.
+        // A corner of 3 degrees is a turn of a line, but no jump of a curve.
         let points = [[0.5, 0.5], [1.5, 0.5], [2.5, 0.55], [3.5, 2.5]];
         let line = Polyline::new(points.iter().map(|&p| p.into()).collect());
         let expected = PathMetrics::of_polyline(&line, clearance);

@@ -1,33 +1,33 @@
-//! Measures of a simulated run.
+//! Metrics of a simulated run.
 
 use super::path::{JUMP_DEG, SAMPLE_M};
 use crate::sim::{Outcome, Run};
 use keyway::geometry::wrap_angle;
 use serde::{Deserialize, Serialize};
 
-/// Turn rates up to this \[rad/s\] are rounding: they have no sign.
+/// Turn rates up to this are rounding errors, without a sign \[rad/s\].
 const STRAIGHT_RADPS: f64 = 1e-9;
 
-/// Measures of a run.
+/// Metrics of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunMetrics {
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// Simulated time from the start to the end \[s\]; for a run that reached its goal, until the
     /// tolerance was met.
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
-    /// Distance driven over time \[m/s\]; `None` for a run of no time.
+    /// Distance driven over time \[m/s\]; `None` for a run of zero duration.
     pub mean_speed_mps: Option<f64>,
     /// The footprint's smallest clearance from an obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
-    /// The same from obstacles that stand.
+    /// The footprint's smallest clearance from static obstacles \[m\].
     pub min_standing_clearance_m: Option<f64>,
-    /// The same from obstacles that move.
+    /// The footprint's smallest clearance from moving obstacles \[m\].
     pub min_mover_clearance_m: Option<f64>,
-    /// How often the turn rate changed its sign, per metre driven \[1/m\] (stretches with a turn
-    /// rate of 0 in between are skipped); `None` when nothing was driven.
+    /// Sign changes of the turn rate per metre driven \[1/m\] (stretches with a turn rate of 0 in
+    /// between are skipped); `None` when nothing was driven.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed: sum of its absolute changes from cycle to cycle \[m/s\].
     pub v_variation_mps: f64,
@@ -36,7 +36,7 @@ pub struct RunMetrics {
 }
 
 impl RunMetrics {
-    /// Measures a run from the velocities that were driven. Costs a few operations per cycle.
+    /// Measures a run from its driven velocities. Costs a few operations per cycle.
     pub fn of_run(run: &Run) -> Self {
         let time_s = run.samples.last().map_or(0.0, |sample| sample.t_s);
         let velocities = || run.samples.iter().map(|sample| sample.velocity);
@@ -67,9 +67,10 @@ fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
     changes
 }
 
-/// Number of places at which the heading of a run jumps, as on a curve: changes of more than 5 degrees between places of the
-/// way driven that are 1 cm apart, such as a turn on the spot. What is turned before the first and after the last of them is
-/// none of the way. Costs a few operations per sample and per centimetre.
+/// Number of points at which the heading of a run jumps, as on a curve: changes of more than 5
+/// degrees between points of the driven path 1 cm apart, such as a turn on the spot. Turns before
+/// the first and after the last of these points do not count. Costs a few operations per sample and
+/// per centimetre.
 pub fn count_run_heading_jumps(run: &Run) -> usize {
     let (mut s_m, mut jumps, mut before_rad) = (0.0, 0, None);
     let mut next_m = 0.0;
@@ -144,7 +145,8 @@ mod tests {
         assert_eq!(metrics.v_variation_mps, 0.0);
     }
 
-    /// The velocity within a cycle is that between its ends, and the heading that of the pose.
+    /// The velocity within a cycle is interpolated between its ends, and the heading is that of the
+    /// pose.
     #[test]
     fn a_turn_on_the_spot_is_a_jump_and_a_bend_is_none() {
         let count = |states: &[(f64, f64)]| {
@@ -162,7 +164,7 @@ mod tests {
         assert_eq!(count(&spot), 1);
         assert_eq!(count(&[(0.5, 0.0), (0.025, 0.0), (0.025, 10.0), (0.5, 10.0)]), 1);
         assert_eq!(count(&[(0.5, 178.0), (0.0, 178.0), (0.0, -179.0), (0.5, -179.0)]), 0);
-        // Before the way and after it.
+        // Before and after the path.
         assert_eq!(count(&[(0.0, 0.0), (0.0, 90.0), (0.5, 90.0), (0.0, 90.0), (0.0, 0.0)]), 0);
     }
 

@@ -1,4 +1,4 @@
-//! What is reported of a path with speeds along it: `keyway.curve/3`.
+//! Report of a path with speeds along it: `keyway.curve/3`.
 
 use super::Inputs;
 use keyway::geometry::Path;
@@ -14,20 +14,20 @@ pub struct CurveReport {
     pub length_m: f64,
     /// Time for the whole path \[s\].
     pub time_s: f64,
-    /// The part of it that is spent turning on the spot \[s\].
+    /// Part of this time that is spent turning on the spot \[s\].
     pub turning_s: f64,
     /// Distance between two samples \[m\].
     pub spacing_m: f64,
     /// The path, sampled by arc length.
     pub samples: Vec<CurveSample>,
-    /// All that the result depends on; `robot` is the one whose limits were kept.
+    /// All inputs of the result; `robot` is the robot whose limits apply.
     pub inputs: Inputs,
 }
 
-/// A sample of the path, and the turn rate there.
+/// A sample of the path with its turn rate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurveSample {
-    /// Place, time and speed.
+    /// Position, time and speed.
     #[serde(flatten)]
     pub sample: SpeedSample,
     /// Turn rate along the curve, positive to the left \[rad/s\].
@@ -38,7 +38,7 @@ impl CurveReport {
     /// Name and version of this form.
     pub const SCHEMA: &'static str = "keyway.curve/3";
 
-    /// The report of a profile that was made of `path` with `config`.
+    /// Returns the report of a speed profile along `path`, computed with `config`.
     pub fn new(
         path: &Path,
         profile: &SpeedProfile,

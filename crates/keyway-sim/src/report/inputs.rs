@@ -1,4 +1,4 @@
-//! Everything that a result depends on.
+//! Inputs of a result.
 
 use crate::sim::{Arrival, Disturbances, Mover, StandingPolygon};
 use keyway::geometry::Point;
@@ -9,7 +9,7 @@ use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
 use serde::Serialize;
 
-/// Everything that a route or a run depends on.
+/// Inputs of a route or a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Inputs {
     /// Version of Keyway.
@@ -18,7 +18,7 @@ pub struct Inputs {
     pub map: String,
     /// [`keyway::map::formats::digest`] of the map.
     pub map_digest: String,
-    /// Where the map lies, where its file does not say so and a caller did.
+    /// Placement of the map, if the caller gave one because the file has none.
     pub placement: Option<PlacementInput>,
     /// The robot; `None` for a route without one.
     pub robot: Option<Robot>,
@@ -28,54 +28,55 @@ pub struct Inputs {
     pub config: Parameters,
     /// `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\].
     pub start: Vec<f64>,
-    /// Where to go, `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\]; of several goals the first.
+    /// Goal, `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\]; of several goals,
+    /// the first.
     pub goal: Vec<f64>,
     /// All goals, where there are several \[m\].
     pub goals: Option<Vec<Point>>,
     /// Way-points, where there are any \[m\].
     pub via: Option<Vec<Point>>,
-    /// Whether the nearest cell that can be reached takes the place of a goal; `None` for a run.
+    /// True if the nearest reachable cell replaces an unreachable goal; `None` for a run.
     pub nearest_reachable: Option<bool>,
-    /// Unknown obstacles that stand, `[x, y, radius]` each \[m\].
+    /// Static unknown obstacles, `[x, y, radius]` each \[m\].
     pub obstacles: Vec<[f64; 3]>,
-    /// Unknown obstacles that stand and are polygons.
+    /// Static unknown obstacles that are polygons.
     pub polygons: Vec<StandingPolygon>,
-    /// Cells of the map that are occupied, which it does not show.
+    /// Occupied cells that the map does not show.
     pub hidden_cells: Vec<Cell>,
-    /// Obstacles that move.
+    /// Moving obstacles.
     pub moving: Vec<Mover>,
-    /// How many of these obstacles are random; `None` where none was asked for.
+    /// Number of random obstacles; `None` where none was requested.
     pub random: Option<Placed>,
-    /// What disturbs the robot; `None` where nothing does, and for a route.
+    /// Disturbances of the robot; `None` without any, and for a route.
     pub disturbances: Option<Disturbances>,
-    /// How near to the goal was near enough \[m\], where it was not `controller.goal_tolerance_m`.
+    /// Goal tolerance \[m\], where it was not `controller.goal_tolerance_m`.
     pub goal_tolerance_m: Option<f64>,
-    /// Whether the robot had to stand at its goal; `None` for a route.
+    /// Arrival rule: whether the robot had to stop at its goal; `None` for a route.
     pub arrival: Option<Arrival>,
-    /// Limit of the simulated time that was in force \[s\].
+    /// Limit of the simulated time in this run \[s\].
     pub time_limit_s: Option<f64>,
-    /// Time without progress on the remaining way after which the robot was stuck \[s\]; `None` for
-    /// a route.
+    /// Time without progress along the remaining path after which the robot was stuck \[s\]; `None`
+    /// for a route.
     pub stuck_window_s: Option<f64>,
-    /// Limit of expanded nodes.
+    /// Limit of the number of expanded nodes.
     pub budget: Option<u64>,
 }
 
-/// How many random obstacles were asked for, and how many found a place.
+/// Numbers of random obstacles, requested and placed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Placed {
-    /// Discs that stand, asked for.
+    /// Requested static discs.
     pub unknown_asked: u32,
-    /// Discs that stand, placed: the last ones of the episode's obstacles.
+    /// Placed static discs: the last ones of the episode's obstacles.
     pub unknown_placed: u32,
-    /// Discs that move, asked for.
+    /// Requested moving discs.
     pub moving_asked: u32,
-    /// Discs that move, placed: the last ones of the episode's movers.
+    /// Placed moving discs: the last ones of the episode's movers.
     pub moving_placed: u32,
 }
 
 impl Placed {
-    /// How many found no place.
+    /// Returns the number of obstacles that could not be placed.
     pub const fn left_out(&self) -> u32 {
         self.unknown_asked - self.unknown_placed + self.moving_asked - self.moving_placed
     }
@@ -86,16 +87,16 @@ impl Inputs {
     pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
 }
 
-/// The parameters that play a part in a result.
+/// Parameters that affect a result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum Parameters {
-    /// Of a run: all of them.
+    /// All parameters, for a run.
     Run(Box<Stack>),
-    /// Of a route: the rest of a stack plays no part.
+    /// Parameters of a route, which does not depend on the rest of a stack.
     Route {
-        /// How the layers follow from the map.
+        /// Layers of the map.
         map: LayerConfig,
         /// The planner.
         planner: PlannerConfig,
@@ -104,18 +105,18 @@ pub enum Parameters {
     },
 }
 
-/// What identifies a map in reports.
+/// Identification of a map in reports.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapSource {
     /// Its name, such as the path of its file.
     pub name: String,
     /// [`keyway::map::formats::digest`] of the map.
     pub digest: String,
-    /// Where it lies, where its file does not say so and a caller did.
+    /// Placement of the map, if the caller gave one because the file has none.
     pub placement: Option<PlacementInput>,
 }
 
-/// Where a map lies, when its file does not say so.
+/// Placement of a map whose file does not contain it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlacementInput {
     /// Side of a cell \[m\].
@@ -126,7 +127,7 @@ pub struct PlacementInput {
 
 #[cfg(feature = "formats")]
 impl From<&keyway::map::formats::LoadedMap> for MapSource {
-    /// The map's file, and no placement.
+    /// Identifies the map's file, without a placement.
     fn from(loaded: &keyway::map::formats::LoadedMap) -> Self {
         let name = loaded.sources.first().map(|path| path.display().to_string());
         let digest = loaded.digest.clone();

@@ -1,4 +1,4 @@
-//! What is reported of a planned path.
+//! Report of a planned path.
 
 use crate::metrics::PathMetrics;
 use keyway::geometry::{PlannedLine, Polyline};
@@ -8,29 +8,30 @@ use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::smooth::{Smoother, Unsmoothed};
 use serde::{Deserialize, Serialize};
 
-/// How a search ended.
+/// Outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum PlanOutcome {
-    /// There is a path.
+    /// A path was found.
     Found,
-    /// There is none.
+    /// No path exists.
     NoPath,
     /// The budget of expanded nodes is used up.
     BudgetExhausted,
-    /// There is a path, and the planner did not find it.
+    /// A path exists, but the planner did not find it.
     Missed,
-    /// A goal in an obstacle: only of one of several; otherwise it is an error.
+    /// The goal is in an obstacle: only for one of several goals; otherwise it is an error.
     Blocked,
-    /// A goal outside the map, as above.
+    /// The goal is outside the map, as above.
     OutsideMap,
-    /// The planner cannot plan on such a map, which is an error.
+    /// The planner cannot plan on such a map; this is an error.
     Refused,
 }
 
 impl PlanOutcome {
-    /// Why there is no path, and what was searched; without a search, nothing.
+    /// Returns the outcome for an error, with the statistics of the search; they are empty without
+    /// a search.
     pub fn of(error: &PlanError) -> (Self, SearchStatistics) {
         let none = SearchStatistics::default();
         match error {
@@ -43,7 +44,7 @@ impl PlanOutcome {
         }
     }
 
-    /// For people.
+    /// Text for people.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Found => "found",
@@ -57,10 +58,10 @@ impl PlanOutcome {
     }
 }
 
-/// A planned path, or why there is none.
+/// A planned path, or the reason why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlanPart {
-    /// How the search ended.
+    /// Outcome of the search.
     pub outcome: PlanOutcome,
     /// Name of the planner.
     pub planner: &'static str,
@@ -70,28 +71,28 @@ pub struct PlanPart {
     pub cost_cells: Option<f64>,
     /// Nodes taken from the open list.
     pub expanded: u64,
-    /// Nodes put into the open list, or improved there.
+    /// Nodes added to the open list, or improved there.
     pub generated: u64,
-    /// The two sides separately.
+    /// Statistics of the two sides separately.
     pub search: SearchStatistics,
-    /// Why the search stopped.
+    /// Reason why the search stopped.
     pub stopped: Option<Stop>,
-    /// Where the two sides met.
+    /// Cell where the two sides met.
     pub meeting: Option<Cell>,
-    /// Why there is no path, for people.
+    /// Reason why there is no path, for people.
     pub why: Option<String>,
-    /// The largest clearance with which there is one \[m\].
+    /// The largest clearance with which a path exists \[m\].
     pub largest_clearance_m: Option<f64>,
-    /// If that is all the room, the first and the last cell of the narrowest place, whose centres
-    /// have it.
+    /// If a narrow place limits this clearance: its first and last cell, whose centres have the
+    /// clearance.
     pub narrowest_cells: Option<[Cell; 2]>,
-    /// The planner's constraint, where that was lowered to leave a path.
+    /// The planner's constraint, where it was lowered to leave a path.
     pub relaxed: Option<Relaxed>,
-    /// What the cheapest path of straight and diagonal steps costs \[cells\].
+    /// Cost of the cheapest path of straight and diagonal steps \[cells\].
     pub optimum_cells: Option<f64>,
-    /// The share by which the path costs more; negative where it goes in other directions.
+    /// Relative excess cost of the path; negative where it uses other directions.
     pub excess: Option<f64>,
-    /// Wall clock of the query on layers that are ready \[s\].
+    /// Wall clock time of the query on prepared layers \[s\].
     pub time_s: Option<f64>,
     /// Interior waypoints at which the heading changes.
     pub turns: Option<usize>,
@@ -99,7 +100,7 @@ pub struct PlanPart {
     pub turning_angle_deg: Option<f64>,
     /// Smallest distance from the line to an obstacle's square \[m\].
     pub min_clearance_m: Option<f64>,
-    /// What the line certainly keeps, where that is less than the clearance asked for \[m\].
+    /// Certified clearance of the line, where it is less than the requested clearance \[m\].
     pub shortfall_m: Option<f64>,
     /// The line: begins and ends at the given positions, collinear points merged \[m\].
     pub waypoints_m: Option<Polyline>,
@@ -108,7 +109,7 @@ pub struct PlanPart {
 }
 
 impl PlanPart {
-    /// A path that was found; `line` begins and ends at the given positions.
+    /// Describes a found path; `line` begins and ends at the given positions.
     pub fn found(
         planner: &'static str,
         plan: &Plan,
@@ -117,7 +118,7 @@ impl PlanPart {
         time_s: Option<f64>,
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
-        // A cell's centre may keep the clearance where a position in it does not.
+        // A cell's centre may keep the clearance where a position in the cell does not.
         let clearance_m = map.config().clearance_m;
         let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
@@ -139,16 +140,16 @@ impl PlanPart {
         }
     }
 
-    /// The same beside what the cheapest path of straight and diagonal steps costs.
+    /// Adds the cost of the cheapest path of straight and diagonal steps.
     pub(super) fn beside_optimum(self, optimum_cells: f64) -> Self {
-        // Without a distance there is nothing to exceed. Costs of steps are exact: no rounding shows.
+        // Paths of length 0 have no excess. Step costs are exact, so no rounding shows.
         let excess =
             |cost: f64| if cost == optimum_cells { 0.0 } else { cost / optimum_cells - 1.0 };
         let excess = self.cost_cells.map(excess);
         Self { optimum_cells: Some(optimum_cells), excess, ..self }
     }
 
-    /// A search without a path; `None` when it was not a search that failed.
+    /// Describes a search without a path; `None` if the error is not a failed search.
     pub fn failed(planner: &'static str, error: &PlanError, time_s: Option<f64>) -> Option<Self> {
         let (outcome, statistics) = PlanOutcome::of(error);
         let has_searched = [PlanOutcome::NoPath, PlanOutcome::BudgetExhausted, PlanOutcome::Missed];
@@ -161,7 +162,7 @@ impl PlanPart {
         })
     }
 
-    /// The same for ends that no path joins: what separates them.
+    /// Adds the separation of two ends that no path connects.
     pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
         let (largest_clearance_m, narrowest_cells) = match *separation {
             Separation::TooNarrow { widest_m, narrowest, .. } => (Some(widest_m), Some(narrowest)),
@@ -170,7 +171,7 @@ impl PlanPart {
         Self { why: Some(why), largest_clearance_m, narrowest_cells, ..self }
     }
 
-    /// Nothing was found, and nothing searched.
+    /// Describes a goal without a search.
     pub(super) const fn without_path(
         planner: &'static str,
         outcome: PlanOutcome,

@@ -1,4 +1,4 @@
-//! What is reported of a query to one goal or to several: `keyway.plan/3`.
+//! Report of a query to one goal or to several: `keyway.plan/3`.
 
 use super::{Clock, Inputs, MapSource, Parameters, PlanOutcome, PlanPart, SmoothedPart};
 use keyway::geometry::Point;
@@ -13,49 +13,50 @@ use keyway::search::{CornerRule, IfUnreachable, Query, SearchStatistics, Workspa
 use keyway::smooth::{Smoother, Unsmoothed};
 use serde::Serialize;
 
-/// Routes that are wanted from one start, and on what they are planned.
+/// Request for routes from one start, with the map and the planner.
 #[derive(Clone, Copy)]
 pub struct RouteRequest<'a> {
     /// The map.
     pub grid: &'a OccupancyGrid,
-    /// The layers that follow from it.
+    /// Layers of the map.
     pub map: &'a SearchMap,
     /// The planner.
     pub planner: &'a dyn GlobalPlanner,
-    /// The smoother; `None` leaves the line as it is planned, and nothing is reported of smoothing.
+    /// The smoother; `None` keeps the planned line, and the report has no smoothing part.
     pub smoother: Option<&'a dyn Smoother>,
-    /// Where the routes begin \[m\].
+    /// Start of the routes \[m\].
     pub start: Point,
-    /// Where they end \[m\]: one goal, or several of which the nearest by path cost is wanted.
+    /// Goals \[m\]: one, or several of which the nearest by path cost is wanted.
     pub goals: &'a [Point],
-    /// Give up each search after this many expanded nodes.
+    /// Limit of expanded nodes for each search.
     pub budget: Option<u64>,
-    /// What to do when no path leads to the goal; of several goals none is replaced by another cell.
+    /// Behaviour when no path leads to the goal; none of several goals is replaced by another cell.
     pub if_unreachable: IfUnreachable,
-    /// Whether the path is compared with the cheapest one of straight and diagonal steps.
+    /// True if the path is compared with the cheapest path of straight and diagonal steps.
     pub with_optimum: bool,
 }
 
-/// The report of a route without what it depends on, and the route itself.
+/// Report of a route without its inputs, and the route itself.
 #[derive(Clone, Debug)]
 pub struct RouteAnswer {
-    /// The goal of the route, by its place in the list; without a route the one that [`Self::plan`] is about.
+    /// Goal of the route, as an index into the list; without a route, the goal that [`Self::plan`]
+    /// describes.
     pub goal: usize,
-    /// The route to it.
+    /// Route to this goal.
     pub route: Option<Route>,
-    /// Why there is none, where a search showed that.
+    /// Reason why there is no route, where a search showed it.
     pub failure: Option<RouteFailure>,
-    /// What is reported of the plan.
+    /// Report of the plan.
     pub plan: PlanPart,
-    /// Which goal the route leads to.
+    /// Goal that the route reaches.
     pub reached: Option<ReachedGoal>,
-    /// All goals, nearest first, where there are several.
+    /// All goals, nearest first, if there are several.
     pub goals: Option<Vec<GoalPart>>,
-    /// The smoothed path, where it was smoothed.
+    /// The smoothed path, if it was smoothed.
     pub smoothed: Option<SmoothedPart>,
 }
 
-/// Why there is no route.
+/// Reason why there is no route.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RouteFailure {
@@ -65,43 +66,43 @@ pub enum RouteFailure {
     Separated(NoPath),
 }
 
-/// `keyway.plan/3`: the answer to a request, and all that it depends on.
+/// `keyway.plan/3`: the answer to a request, and all its inputs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RouteReport {
     /// Name and version of this form.
     pub schema: &'static str,
-    /// The path, or why there is none.
+    /// The path, or the reason why there is none.
     #[serde(flatten)]
     pub plan: PlanPart,
-    /// Where the path leads; `None` without one.
+    /// Goal that the path reaches; `None` without a path.
     pub goal: Option<ReachedGoal>,
-    /// All goals, nearest first, where there are several.
+    /// All goals, nearest first, if there are several.
     pub goals: Option<Vec<GoalPart>>,
-    /// The smoothed path, where it was smoothed.
+    /// The smoothed path, if it was smoothed.
     pub smoothed: Option<SmoothedPart>,
-    /// All that the result depends on.
+    /// All inputs of the result.
     pub inputs: Inputs,
 }
 
-/// Which goal a path leads to.
+/// Goal that a path reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReachedGoal {
-    /// Its place in the list, from 0.
+    /// Index in the list, from 0.
     pub index: usize,
     /// The last cell of the path.
     pub cell: Cell,
-    /// From the position asked for to the end of the path; 0 when it was reached \[m\].
+    /// Distance from the requested position to the end of the path \[m\]; 0 when it was reached.
     pub gap_m: f64,
 }
 
 /// One of several goals.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GoalPart {
-    /// Its place in the list, from 0.
+    /// Index in the list, from 0.
     pub index: usize,
-    /// Where it is \[m\].
+    /// Position of the goal \[m\].
     pub goal: Point,
-    /// How the search for it ended.
+    /// Outcome of the search.
     pub outcome: PlanOutcome,
     /// Length of the line \[m\].
     pub length_m: Option<f64>,
@@ -109,9 +110,10 @@ pub struct GoalPart {
     pub cost_cells: Option<f64>,
     /// Nodes taken from the open list.
     pub expanded: u64,
-    /// Nodes put into the open list, or improved there.
+    /// Nodes added to the open list, or improved there.
     pub generated: u64,
-    /// Wall clock until this goal's place in the order was known, the searches for other goals included \[s\].
+    /// Wall clock time until this goal's place in the order was known, including the searches for
+    /// other goals \[s\].
     pub time_s: Option<f64>,
 }
 
@@ -146,14 +148,15 @@ impl RouteRequest<'_> {
     /// ```
     ///
     /// # Errors
-    /// When no search could begin: an end in an obstacle or outside the map (of several goals only the start), a planner
-    /// that cannot plan on such a map, no goal at all. A search without a path is an answer.
+    /// When no search could begin: a start or a goal in an obstacle or outside the map (of several
+    /// goals, only the start counts), a planner that cannot plan on such a map, or no goal at all.
+    /// A search without a path is an answer.
     pub fn answer(
         &self,
         clock: Clock<'_>,
         workspace: &mut Workspace,
     ) -> Result<RouteAnswer, PlanError> {
-        // They are a layer of the map.
+        // The components are a layer of the map.
         self.map.components(self.planner.connectivity());
         let answer = match self.goals {
             [] => return Err(PlanError::NoPath { statistics: SearchStatistics::default() }),
@@ -168,8 +171,8 @@ impl RouteRequest<'_> {
         })
     }
 
-    /// All that the answer depends on, for its report. `stack` is where the parameters come from: of the layers, the
-    /// planner and the smoother.
+    /// Returns all inputs of the answer, for its report. `stack` holds the parameters of the
+    /// layers, the planner and the smoother.
     pub fn inputs(&self, source: MapSource, robot: Option<Robot>, stack: &Stack) -> Inputs {
         let is_nearest = self.if_unreachable == IfUnreachable::NearestReachable;
         Inputs {
@@ -203,7 +206,7 @@ impl RouteRequest<'_> {
         }
     }
 
-    /// The query to one of the goals.
+    /// Returns the query to one of the goals.
     pub fn query(&self, goal: Point) -> RouteQuery {
         let &Self { budget, if_unreachable, .. } = self;
         RouteQuery { budget, if_unreachable, ..RouteQuery::new(self.start, goal) }
@@ -230,7 +233,7 @@ impl RouteRequest<'_> {
         }
     }
 
-    /// Paths to all goals, nearest first; the route is that to the first of them.
+    /// Plans paths to all goals, nearest first; the route leads to the first of them.
     fn for_nearest(
         &self,
         clock: Clock<'_>,
@@ -255,7 +258,7 @@ impl RouteRequest<'_> {
             Err(error) if concerns_all_goals(error) => return Err(error.clone()),
             Err(error) => {
                 let name = self.planner.name();
-                // A goal without room is a goal without a path.
+                // A goal without room for the robot is a goal without a path.
                 let without = || PlanPart::without_path(name, PlanOutcome::NoPath, *time_s);
                 let failed = PlanPart::failed(name, error, *time_s);
                 let failure = failed.as_ref().map(|_| error.clone());
@@ -306,7 +309,7 @@ impl RouteRequest<'_> {
         }
     }
 
-    /// Says what separates a start and a goal that no path joins.
+    /// Adds the reason why no path connects start and goal.
     fn explained(&self, answer: RouteAnswer) -> RouteAnswer {
         if answer.plan.outcome != PlanOutcome::NoPath {
             return answer;
@@ -318,8 +321,8 @@ impl RouteRequest<'_> {
         RouteAnswer { plan, failure: Some(RouteFailure::Separated(why)), ..answer }
     }
 
-    /// The cost \[cells\] of the cheapest path of straight and diagonal steps between the ends of a path
-    /// that was found, by A* under the corner rule of the planner that found it.
+    /// Cost of the cheapest path of straight and diagonal steps between the ends of a found path
+    /// \[cells\], by A* under the corner rule of the planner.
     fn optimum_cells(&self, path: &[Cell]) -> Option<f64> {
         let corners = match self.planner.connectivity() {
             Connectivity::Four => CornerRule::Forbid,
@@ -333,7 +336,7 @@ impl RouteRequest<'_> {
     }
 }
 
-/// Whether an error is not about one of several goals alone.
+/// True if an error is not about a single one of several goals.
 fn concerns_all_goals(error: &PlanError) -> bool {
     match *error {
         PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. } => end == PathEnd::Start,
@@ -347,7 +350,7 @@ impl RouteAnswer {
         Self { goal, route: None, failure, plan, reached: None, goals: None, smoothed: None }
     }
 
-    /// The report of the answer.
+    /// Returns the report of the answer.
     pub fn report(&self, inputs: Inputs) -> RouteReport {
         let Self { plan, reached, goals, smoothed, .. } = self;
         RouteReport {
@@ -366,7 +369,7 @@ impl RouteReport {
     pub const SCHEMA: &'static str = "keyway.plan/3";
 }
 
-/// How long the stages of a route took by a caller's clock.
+/// Times of the stages of a route, by the caller's clock.
 struct StageTimes<'a> {
     clock: Clock<'a>,
     begin_s: Option<f64>,

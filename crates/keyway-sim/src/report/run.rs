@@ -1,4 +1,4 @@
-//! What is reported of a simulated run.
+//! Report of a simulated run.
 
 use crate::metrics::{Mrpb, RunMetrics};
 use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample};
@@ -7,7 +7,7 @@ use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
 use serde::Serialize;
 
-/// What was measured of a run.
+/// Metrics of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunPart {
     /// Simulated time until the run ended \[s\].
@@ -18,28 +18,28 @@ pub struct RunPart {
     pub mean_speed_mps: Option<f64>,
     /// Smallest distance from the footprint to any real obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
-    /// The same from obstacles that stand; `None` without any.
+    /// Smallest distance from the footprint to static obstacles \[m\]; `None` without any.
     pub min_standing_clearance_m: Option<f64>,
-    /// The same from obstacles that move; `None` without any.
+    /// Smallest distance from the footprint to moving obstacles \[m\]; `None` without any.
     pub min_mover_clearance_m: Option<f64>,
     /// The contact that ended the run; `None` without one.
     pub contact: Option<ContactPart>,
     /// Control cycles driven.
     pub cycles: u64,
-    /// Mean wall clock of a decision \[us\]; `None` without a clock, or without a decision.
+    /// Mean wall clock time of a decision \[us\]; `None` without a clock, or without a decision.
     pub mean_cycle_us: Option<f64>,
-    /// Searches for a route, those that found none or the same way again included: the first one;
-    /// one each time a scan shows something on the route, or no place of it is in sight; one at
-    /// each way-point, and one after each wait where there was no route; and those of the
+    /// Searches for a route, including searches that found none or the same route again: the first
+    /// one; one each time a scan shows something on the route, or no point of the route is in
+    /// sight; one at each way-point; one after each wait without a route; and the searches of the
     /// recoveries.
     pub routes_planned: u32,
-    /// What was tried because the robot got no farther.
+    /// Recoveries that were tried when the robot made no progress.
     pub recoveries: RecoveryCounts,
     /// Commands that the stop rule changed; `None` without one.
     pub unsafe_commands: Option<RefusalCounts>,
-    /// Each way-point, and when it was passed; `None` without way-points.
+    /// Each way-point with the time at which it was passed; `None` without way-points.
     pub way_points: Option<Vec<WayPointPart>>,
-    /// Where obstacles that give way were; not written where none does.
+    /// Positions of the obstacles that give way; not written where none does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gave_way: Vec<MoverWay>,
     /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
@@ -48,51 +48,52 @@ pub struct RunPart {
     pub v_variation_mps: f64,
     /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: f64,
-    /// The measures of MRPB.
+    /// Measures of MRPB.
     pub mrpb: Mrpb,
 }
 
 /// A way-point of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WayPointPart {
-    /// Where it is \[m\].
+    /// Position \[m\].
     pub position: Point,
-    /// When the robot passed it \[s\]; `None`: never.
+    /// Time at which the robot passed it \[s\]; `None` if it never did.
     pub passed_s: Option<f64>,
 }
 
-/// What a controller did in a run.
+/// Figures of a controller in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controlled {
-    /// Searches for a route, those that found none or the same way again included: the first one;
-    /// one each time a scan shows something on the route, or no place of it is in sight; one at
-    /// each way-point, and one after each wait where there was no route; and those of the
+    /// Searches for a route, including searches that found none or the same route again: the first
+    /// one; one each time a scan shows something on the route, or no point of the route is in
+    /// sight; one at each way-point; one after each wait without a route; and the searches of the
     /// recoveries.
     pub routes_planned: u32,
-    /// What was tried because the robot got no farther.
+    /// Recoveries that were tried when the robot made no progress.
     pub recoveries: RecoveryCounts,
     /// Commands that the stop rule changed; `None` without one.
     pub unsafe_commands: Option<RefusalCounts>,
     /// The way-points.
     pub way_points: Vec<WayPointPart>,
-    /// Mean wall clock of a decision \[us\].
+    /// Mean wall clock time of a decision \[us\].
     pub mean_cycle_us: Option<f64>,
 }
 
 /// A contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactPart {
-    /// When \[s\].
+    /// Time of the contact \[s\].
     pub t_s: f64,
-    /// Where the robot was \[m\].
+    /// Position of the robot \[m\].
     pub at: Point,
-    /// What it touched.
+    /// Obstacle that was touched.
     pub with: Obstacle,
-    /// Whether the robot stood or, as a disc, turned on the spot: it was run into, or began in contact.
+    /// True if the robot stood still or, as a disc, turned on the spot: it was run into, or began
+    /// in contact.
     pub robot_stood: bool,
-    /// Whether what it touched had jumped there within the last cycle, unforeseeably.
+    /// True if the obstacle had jumped there within the last cycle, unforeseeably.
     pub jumped_onto: bool,
-    /// How fast it moved then \[m/s\]; `None` where it was nothing that moves.
+    /// Speed of the obstacle at the contact \[m/s\]; `None` if it was not a moving obstacle.
     pub mover_speed_mps: Option<f64>,
 }
 
@@ -138,7 +139,8 @@ impl RunPart {
 }
 
 impl RunPart {
-    /// The obstacles that move, as they did in this run: those that give way go where they went.
+    /// Moving obstacles as they moved in this run: those that give way follow their recorded
+    /// positions.
     pub fn movers(&self, given: &[Mover]) -> Vec<Mover> {
         let mut movers = given.to_vec();
         for way in &self.gave_way {
@@ -150,7 +152,7 @@ impl RunPart {
     }
 }
 
-/// One sample as `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]`.
+/// Returns one sample as `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]`.
 pub fn trajectory_row(sample: &Sample) -> [f64; 6] {
     let Sample { t_s, pose, velocity } = *sample;
     [t_s, pose.x, pose.y, pose.theta, velocity.v, velocity.omega]

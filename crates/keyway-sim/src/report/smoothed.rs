@@ -1,4 +1,4 @@
-//! What is reported of a smoothed path.
+//! Report of a smoothed path.
 
 use crate::metrics::PathMetrics;
 use keyway::geometry::Polyline;
@@ -12,30 +12,32 @@ use serde::Serialize;
 pub struct SmoothedPart {
     /// Length \[m\].
     pub length_m: f64,
-    /// Interior points at which the heading changes; of a curve, each stretch that bends to one side.
+    /// Interior points at which the heading changes; on a curve, each stretch that bends to one
+    /// side counts once.
     pub turns: usize,
     /// Sum of the absolute heading changes \[deg\].
     pub turning_angle_deg: f64,
     /// Points at which the heading jumps (see [`PathMetrics::non_smooth_turns`]).
     pub non_smooth_turns: usize,
-    /// Smallest distance to an obstacle's square \[m\]; of curves what is certainly kept.
+    /// Smallest distance to an obstacle's square \[m\]; for curves, a certified lower bound.
     pub min_clearance_m: Option<f64>,
-    /// What the path certainly keeps, where that is less than what was asked for \[m\].
+    /// Certified clearance, where it is less than the requested one \[m\].
     pub shortfall_m: Option<f64>,
-    /// Points of the planned line over which the path does not lead.
+    /// Points of the planned line that the path skips.
     pub removed_points: usize,
     /// Corners and control points of the path that are not points of the line.
     pub inserted_points: usize,
-    /// Corners that were to be rounded and were not.
+    /// Corners that should have been rounded but were not.
     pub sharp_corners: Vec<SharpCorner>,
-    /// Corners, and points along curves \[m\].
+    /// Corners, and points along the curves \[m\].
     pub waypoints_m: Polyline,
-    /// Wall clock of the smoothing, where it was measured \[s\].
+    /// Wall clock time of smoothing, if measured \[s\].
     pub time_s: Option<f64>,
 }
 
 impl SmoothedPart {
-    /// The smoothed path of a route on a map; `time_s` is how long the smoothing took, where that was measured.
+    /// Describes the smoothed path of a route on a map; `time_s` is the smoothing time, if
+    /// measured.
     pub fn of(route: &Route, map: &SearchMap, time_s: Option<f64>) -> Self {
         let done = &route.smoothing;
         let metrics = PathMetrics::of_path(&done.path, map.clearance());

@@ -1,4 +1,4 @@
-//! Files of scenes and of disturbances, from a path or from memory.
+//! Files of scenes and disturbances, from a path or from memory.
 
 use super::{SceneError, SceneFile};
 use crate::sim::Disturbances;
@@ -8,33 +8,34 @@ use keyway::files::{ConfigFileError, MAX_TOML_BYTES, config_text, from_toml};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Why a scene file, or one that it names, cannot be used: the file, and what is wrong with it.
+/// Reason why a scene file, or a file that it names, cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
-    /// A file that cannot be read or is no TOML; one of a robot or a stack that is wrong.
+    /// A file cannot be read or is not TOML, or a robot or stack file is wrong.
     #[error(transparent)]
     Config(#[from] ConfigFileError),
-    /// Not a scene.
+    /// A file is not a scene.
     #[error("{}: {reason}", path.display())]
     Scene {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Error of the scene.
         reason: SceneError,
     },
-    /// Disturbances that cannot be.
+    /// Disturbances cannot be used.
     #[error("{}: {reason}", path.display())]
     Disturbances {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Error of the disturbances.
         reason: ConfigError,
     },
 }
 
 impl SceneFileError {
-    /// Path of the field that is to blame; empty where it is the file, its name, or the whole scene.
+    /// Path of the field that is to blame; empty if the error concerns the file, its name, or the
+    /// whole scene.
     pub fn field(&self) -> &str {
         match self {
             Self::Config(error) => error.field(),
@@ -52,7 +53,7 @@ pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
     scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
 }
 
-/// The same from memory; errors call the file `name`.
+/// Reads and checks a scene from memory; errors call the file `name`.
 ///
 /// # Errors
 /// When the content is not a scene.
@@ -61,19 +62,19 @@ pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFil
         .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
 }
 
-/// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random numbers are those of the seed 0
-/// until the caller gives another one.
+/// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random
+/// numbers are those of seed 0 until the caller gives another seed.
 ///
 /// # Errors
-/// When the file cannot be read, or does not hold disturbances; when it names a seed.
+/// When the file cannot be read, does not contain disturbances, or names a seed.
 pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
     disturbances_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
 }
 
-/// The same from memory; errors call the file `name`.
+/// Reads and checks disturbances from memory; errors call the file `name`.
 ///
 /// # Errors
-/// When the content does not hold disturbances; when it names a seed.
+/// When the content does not contain disturbances, or names a seed.
 pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
     let path = || name.to_owned();
     let disturbances: Disturbances = from_toml(config_text(name, bytes)?)

@@ -108,12 +108,12 @@ pub struct SceneFile {
     pub random: Option<RandomObstacles>,
 }
 
-/// The map that a scene's run is made on.
+/// Map of a scene's run.
 #[derive(Clone, Debug)]
 pub struct SceneMap {
     /// The map.
     pub grid: OccupancyGrid,
-    /// What identifies it in reports.
+    /// Identification of the map in reports.
     pub source: MapSource,
 }
 
@@ -140,10 +140,10 @@ fn default_stack() -> String {
 }
 
 impl SceneFile {
-    /// The version that is written.
+    /// Version of the format that is written.
     pub const VERSION: u32 = VERSION;
 
-    /// A scene with these ends and nothing else: it needs a map or a world.
+    /// Creates a scene with only these ends; it still needs a map or a world.
     pub fn new(start: Start, goal: Goal) -> Self {
         Self {
             version: Self::VERSION,
@@ -192,12 +192,12 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// The run that the scene describes, on its map, with its robot and its stack: the caller reads them, as they may be
-    /// files (see [`super::find_robot`], [`super::find_stack`]).
+    /// Returns the run that the scene describes, on its map, with its robot and its stack. The
+    /// caller reads them, as they may be files (see [`super::find_robot`], [`super::find_stack`]).
     ///
     /// # Errors
-    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no start or goal; when an obstacle
-    /// is not on the map, or a random one cannot be drawn.
+    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no
+    /// start or goal; when an obstacle is not on the map, or a random one cannot be drawn.
     pub fn episode(
         &self,
         map: impl Into<SceneMap>,
@@ -227,13 +227,13 @@ impl SceneFile {
         Ok(episode)
     }
 
-    /// What moves, with the seed of the scene where it needs one.
+    /// Moving obstacles, with the seed of the scene where they need one.
     fn seeded_movers(&self) -> Vec<Mover> {
         (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
     }
 
-    /// The runs of all robots of the scene, on its map: of several, or of one. `find` is called with the names of each robot and its
-    /// stack, for the two: they may be files.
+    /// Returns the runs of all robots of the scene, one or several, on its map. `find` reads a
+    /// robot and its stack by their names, which may be files.
     ///
     /// # Errors
     /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
@@ -262,7 +262,8 @@ impl SceneFile {
         Ok(team)
     }
 
-    /// The names of each robot and its stack, in the order of the robots: its own, or those of the scene.
+    /// Names of each robot and its stack, in the order of the robots: the robot's own names, or
+    /// those of the scene.
     pub fn robots_and_stacks(&self) -> Vec<(&str, &str)> {
         if self.robots.is_empty() {
             return vec![(&self.robot, &self.stack)];
@@ -274,7 +275,7 @@ impl SceneFile {
         names.collect()
     }
 
-    /// The ways of all robots: of several, or of one.
+    /// Starts, way-points and goals of all robots, one or several.
     fn ways(&self) -> Vec<SceneRobot> {
         let one = self.start.zip(self.goal).map(|(start, goal)| {
             let (robot, stack) = (None, None);
@@ -283,7 +284,7 @@ impl SceneFile {
         self.robots.iter().cloned().chain(one).collect()
     }
 
-    /// Whether the scene says where either one robot or several drive.
+    /// Checks that the scene has either one robot or several.
     fn check_robots(&self) -> Result<(), SceneError> {
         let given = [
             ("`start`", self.start.is_some()),
@@ -304,14 +305,15 @@ impl SceneFile {
         }
     }
 
-    /// Whether another seed gives another run.
+    /// True if another seed gives another run.
     pub fn is_random(&self) -> bool {
         let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
         let takes_seed = self.moving.iter().any(Mover::needs_seed);
         is_generated || takes_seed || self.random.is_some() || !self.disturbances.is_none()
     }
 
-    /// The map that is made from the seed, with room around start, way-points and goal; `None` where the map is a file.
+    /// Returns the map that is generated from the seed, with room around start, way-points and
+    /// goal; `None` if the map is a file.
     ///
     /// # Errors
     /// When the scene was not read from a file, and a value of its `world` cannot be used.

@@ -1,4 +1,4 @@
-//! Where the robots of a scene drive.
+//! Robots of a scene.
 
 use crate::episode::Start;
 use keyway::geometry::Point;
@@ -26,7 +26,7 @@ pub struct SceneRobot {
 }
 
 impl SceneRobot {
-    /// The first number of its way that is not finite: its field, and the number.
+    /// Returns the first number of the robot's positions that is not finite, with its field.
     pub(super) fn not_finite(&self) -> Option<(String, f64)> {
         let Self { start, via, goal, .. } = self;
         let pose = |name: &str, Point { x, y }: Point, heading_rad: Option<f64>| {
@@ -42,7 +42,7 @@ impl SceneRobot {
         ends.chain(via).find(|(_, value)| !value.is_finite())
     }
 
-    /// All places that it has to be at.
+    /// Returns all positions that the robot has to visit.
     pub(super) fn places(&self) -> impl Iterator<Item = Point> + '_ {
         [self.start.position, self.goal.position].into_iter().chain(self.via.iter().copied())
     }
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(shown.obstacles, [Circle::standing(Point::new(2.0, 3.0), 0.5)]);
         assert_eq!(shown.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
         assert_eq!(shown.polygons[0].vertices().len(), 3);
-        // As for one robot: the walk follows from the seed of the scene.
+        // As for one robot, the walk follows from the seed of the scene.
         let other = TWO.replace("seed = 7", "seed = 8");
         assert_ne!(team(&format!("{other}{walk}")).unwrap().movers, shown.movers);
         let one = "version = 2\nmap = \"a.map\"\nseed = 7\nstart = [1, 2]\ngoal = [3.5, 4]\n";
@@ -152,7 +152,7 @@ mod tests {
         let drawn = team(&format!("{TWO}{random}")).unwrap();
         assert_eq!(drawn.random.map(|placed| placed.unknown_placed), Some(1));
         assert_ne!(drawn.obstacles, team(&format!("{other}{random}")).unwrap().obstacles);
-        // A team of one has the obstacles of one robot.
+        // A team of one robot has the obstacles of this robot.
         let robot = Robot::small();
         let stack = Stack::key_point_fusion(&robot);
         let alone = SceneFile::from_toml(&format!("{one}{random}")).unwrap();

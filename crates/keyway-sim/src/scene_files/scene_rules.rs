@@ -1,4 +1,4 @@
-//! When the run of a scene ends.
+//! Rules that end the run of a scene.
 
 use crate::episode::EpisodeRules;
 use crate::sim::Arrival;
@@ -33,7 +33,7 @@ impl SceneRules {
         *self == Self::default()
     }
 
-    /// Those of the run that the scene describes.
+    /// Returns the rules of the run that the scene describes.
     pub(super) fn of_episode(&self) -> EpisodeRules {
         let usual = EpisodeRules::default();
         EpisodeRules {

@@ -2,10 +2,11 @@
 
 use serde::Deserialize;
 
-/// The version that is written.
+/// Version of the format that is written.
 pub(super) const VERSION: u32 = 2;
 
-/// The version, and what files of version 1 do not have: the rest of a later format may be anything.
+/// The version, and the fields that files of version 1 do not have; the rest of a later format may
+/// be anything.
 #[derive(Deserialize)]
 pub(super) struct Versioned {
     pub(super) version: Option<toml::Value>,
@@ -22,13 +23,13 @@ pub(super) struct Versioned {
 }
 
 impl Versioned {
-    /// Whether it has a field that every scene has, and no other file.
+    /// True if the file has a field that every scene and no other file has.
     pub(super) fn looks_like_a_scene(&self) -> bool {
         let names_a_map = self.map.as_ref().is_some_and(toml::Value::is_str);
         names_a_map || [&self.start, &self.goal, &self.robots].into_iter().any(Option::is_some)
     }
 
-    /// The first field that is not one of version 1.
+    /// Returns the first field that version 1 does not have.
     pub(super) fn newer(&self) -> Option<&'static str> {
         let Self { world, seed, safe, rules, disturbances, robots, random, .. } = self;
         let fields = [

@@ -1,4 +1,4 @@
-//! Obstacles of a scene that stand and are not on its map.
+//! Static obstacles of a scene that are not on its map.
 
 use crate::sim::{Circle, StandingPolygon};
 use keyway::ConfigError;
@@ -56,7 +56,7 @@ struct UnknownTable {
 }
 
 impl UnknownObstacle {
-    /// The field by which its kind is told, where scenes of version 1 do not have it.
+    /// Field that determines the kind, if scenes of version 1 do not have it.
     pub(super) const fn newer(&self) -> Option<&'static str> {
         match self {
             Self::Circle(_) => None,
@@ -65,14 +65,14 @@ impl UnknownObstacle {
         }
     }
 
-    /// Checks every value of all of them.
+    /// Checks every value of all obstacles.
     pub(super) fn validate_all(unknown: &[Self]) -> Result<(), ConfigError> {
         let mut unknown = unknown.iter().enumerate();
         unknown.try_for_each(|(i, obstacle)| obstacle.validate().map_err(|error| within(i, error)))
     }
 
     fn validate(&self) -> Result<(), ConfigError> {
-        // Polygons are checked where they are made, and cells where there is a map.
+        // Polygons are checked at construction, and cells when there is a map.
         let Self::Circle(UnknownCircle { position, radius_m }) = self else { return Ok(()) };
         for (field, value) in [("position[0]", position.x), ("position[1]", position.y)] {
             if !value.is_finite() {
@@ -85,7 +85,7 @@ impl UnknownObstacle {
         Err(ConfigError::must_be("radius_m", "a length of at least 0", *radius_m))
     }
 
-    /// Adds it to the others, on a map.
+    /// Adds the obstacle to the others, on a map.
     fn put_into(&self, standing: &mut Standing, frame: &GridFrame) -> Result<(), ConfigError> {
         match self {
             Self::Circle(circle) => standing.obstacles.push((*circle).into()),
@@ -105,12 +105,13 @@ impl UnknownObstacle {
     }
 }
 
-/// Of the unknown obstacle of this index.
+/// Adds the index of the unknown obstacle to an error.
 fn within(index: usize, error: ConfigError) -> ConfigError {
     error.within(&format!("unknown[{index}]"))
 }
 
-/// All of them, by their kinds, as [`Episode`](crate::episode::Episode) and [`Team`](crate::episode::Team) have them.
+/// All unknown obstacles, by kind, as in [`Episode`](crate::episode::Episode) and
+/// [`Team`](crate::episode::Team).
 #[derive(Default)]
 pub(super) struct Standing {
     pub(super) obstacles: Vec<Circle>,
@@ -119,7 +120,7 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// On a map; refuses cells that are not on it.
+    /// Collects the obstacles on a map; refuses cells that are not on it.
     pub(super) fn of(unknown: &[UnknownObstacle], frame: &GridFrame) -> Result<Self, ConfigError> {
         let mut standing = Self::default();
         for (i, obstacle) in unknown.iter().enumerate() {
@@ -165,7 +166,7 @@ impl TryFrom<UnknownTable> for UnknownObstacle {
 }
 
 impl UnknownTable {
-    /// The fields are too many or too few for one kind.
+    /// Error for too many or too few fields for one kind.
     fn not_one_kind(&self) -> ConfigError {
         let Self { position, radius_m, vertices_m, cells } = self;
         let given = [
@@ -262,7 +263,7 @@ mod tests {
         assert_eq!(movers(1), movers(1));
         assert_ne!(movers(1)[0], movers(2)[0]);
         assert_eq!(movers(1)[1], movers(2)[1]);
-        // Two walks without a seed are not the same one.
+        // Two walks without a seed are different.
         let twice = episode(&scene(1, &format!("{walk}{walk}"))).unwrap().movers;
         assert_ne!(twice[0], twice[1]);
         let alone = |text: &str| read(&format!("{SCENE}{text}")).is_random();

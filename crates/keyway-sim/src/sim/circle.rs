@@ -1,9 +1,9 @@
-//! Round obstacles that stand.
+//! Round stationary obstacles.
 
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// A round obstacle that stands.
+/// A round stationary obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Circle {
@@ -14,7 +14,7 @@ pub struct Circle {
 }
 
 impl Circle {
-    /// A circle.
+    /// A stationary circle.
     pub const fn standing(centre: Point, radius_m: f64) -> Self {
         Self { centre, radius_m }
     }

@@ -3,12 +3,12 @@
 use keyway::geometry::{Pose, Velocity};
 use keyway::robot::Footprint;
 
-/// Pieces of a cycle's motion, each an exact arc.
+/// Number of exact arcs in the motion of a cycle.
 const ARCS: usize = Pose::RAMP_ARCS as usize;
 
-/// The motion of one cycle, in which the velocity changes linearly, or linearly before and after one instant: the
-/// arcs of [`Pose::after_ramp`]. Places on it are given in arcs, from 0 to [`Self::END`], so a place is the same
-/// instant on the motions of all robots.
+/// Motion of one cycle as the arcs of [`Pose::after_ramp`]. The velocity changes linearly, or
+/// linearly before and after one instant. Places on the motion are given in arcs, from 0 to
+/// [`Self::END`], so a place is the same instant for all robots.
 #[derive(Clone, Debug)]
 pub(super) struct CycleMotion {
     from: Velocity,
@@ -19,10 +19,10 @@ pub(super) struct CycleMotion {
     stop: f64,
 }
 
-/// Where the change of the velocity changes.
+/// Instant at which the acceleration changes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knee {
-    /// After the beginning of the cycle and before its end.
+    /// Place after the beginning of the cycle and before its end.
     pub(super) place: f64,
     /// The velocity there.
     pub(super) velocity: Velocity,
@@ -35,7 +35,7 @@ struct Arc {
     velocity: Velocity,
     /// Length driven before it \[m\].
     driven_m: f64,
-    /// What was turned before it, to either side \[rad\].
+    /// Angle turned before it, summed over both directions \[rad\].
     turned_rad: f64,
 }
 
@@ -47,7 +47,7 @@ impl CycleMotion {
         Self::with_arcs(start, from, None, to, duration_s)
     }
 
-    /// The velocity changes linearly up to the knee, and linearly from there on.
+    /// A motion whose velocity changes linearly up to the knee and linearly after it.
     pub(super) fn with_knee(
         start: Pose,
         from: Velocity,
@@ -81,12 +81,12 @@ impl CycleMotion {
         Self { from, knee, to, duration_s, arcs, stop: Self::END }
     }
 
-    /// Standing there for the whole cycle.
+    /// A robot that stands at a pose for the whole cycle.
     pub(super) fn standing(pose: Pose, duration_s: f64) -> Self {
         Self::new(pose, Velocity::ZERO, Velocity::ZERO, duration_s)
     }
 
-    /// From a place on, the robot stands there.
+    /// Stops the robot at a place for the rest of the cycle.
     pub(super) fn stop_at(&mut self, place: f64) {
         self.stop = place;
     }
@@ -101,7 +101,7 @@ impl CycleMotion {
         arc.start.after_arc(arc.velocity, since_s)
     }
 
-    /// The velocity up to the place at which the robot was stopped, if it was.
+    /// Velocity at a place that is not after [`Self::stop`].
     pub(super) fn velocity(&self, place: f64) -> Velocity {
         match self.knee {
             None => self.from.lerp(self.to, place / Self::END),
@@ -109,15 +109,16 @@ impl CycleMotion {
         }
     }
 
-    /// Whether no part of the ground that the footprint covers changes on the arc of a place: the robot stands,
-    /// or turns on the spot as a disc.
+    /// True if the covered ground does not change on the arc of a place: the robot stands, or turns
+    /// on the spot as a disc.
     pub(super) fn keeps_ground_at(&self, place: f64, footprint: &Footprint) -> bool {
         let (Arc { velocity: Velocity { v, omega }, .. }, _) = self.arc(place);
         let is_zero = |rate: &f64| rate.abs() <= Self::ROUNDING;
         is_zero(v) && (is_zero(omega) || matches!(footprint, Footprint::Circle(_)))
     }
 
-    /// What braking to nothing leaves of a velocity \[m/s, rad/s\]: at most a tenth of a micrometre in a second.
+    /// Largest velocity that rounding leaves after braking to a stop \[m/s, rad/s\]: at most a
+    /// tenth of a micrometre in a second.
     const ROUNDING: f64 = 1e-7;
 
     /// Length driven up to a place \[m\].
@@ -126,7 +127,7 @@ impl CycleMotion {
         arc.driven_m + arc.velocity.v.abs() * since_s
     }
 
-    /// What was turned up to a place, to either side \[rad\].
+    /// Angle turned up to a place, summed over both directions \[rad\].
     pub(super) fn turned_rad(&self, place: f64) -> f64 {
         let (arc, since_s) = self.arc(place);
         arc.turned_rad + arc.velocity.omega.abs() * since_s
@@ -137,12 +138,12 @@ impl CycleMotion {
         place * (self.duration_s / Self::END)
     }
 
-    /// The place at a time since the beginning \[s\].
+    /// The place at a time after the beginning \[s\].
     pub(super) fn place(&self, elapsed_s: f64) -> f64 {
         (elapsed_s / self.duration_s * Self::END).clamp(0.0, Self::END)
     }
 
-    /// How long the cycle lasts \[s\].
+    /// Duration of the cycle \[s\].
     pub(super) const fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -217,18 +218,18 @@ mod tests {
         let motion = |from, to| CycleMotion::new(Pose::default(), from, to, 0.1);
         let turn = motion(Velocity::new(0.0, 0.5), Velocity::new(0.0, 0.7));
         assert!(turn.keeps_ground_at(1.5, &disc) && !turn.keeps_ground_at(1.5, &rectangle));
-        // What is left after braking by 0.05 m/s in each of ten cycles.
+        // The speed left after braking by 0.05 m/s in each of ten cycles.
         let braked_mps = (0..10).fold(0.5 + 2.5e-8, |v, _| v - 0.05);
         assert!(braked_mps > 2e-8);
         let braked = motion(v(braked_mps), Velocity::new(braked_mps, 0.1));
         assert!(braked.keeps_ground_at(1.5, &disc) && !braked.keeps_ground_at(1.5, &rectangle));
-        // Starts to drive, or to turn; comes to stand; drives back from half of the cycle on.
+        // Starts to drive; comes to a stop; reverses half-way through the cycle.
         for (from, to) in [(v(0.0), v(0.1)), (v(0.1), v(0.0)), (v(0.1), v(-0.1))] {
             for place in [0.0, 2.0, CycleMotion::END] {
                 assert!(!motion(from, to).keeps_ground_at(place, &disc), "{from:?} {to:?} {place}");
             }
         }
-        // Stands from half of the cycle on.
+        // Stands for the second half of the cycle.
         let knee = Knee { place: 2.0, velocity: Velocity::ZERO };
         let brakes = CycleMotion::with_knee(Pose::default(), v(0.1), knee, v(0.0), 0.1);
         let keeps =
@@ -236,7 +237,8 @@ mod tests {
         assert_eq!(keeps, [false, false, true, true]);
     }
 
-    /// Speeds up to the knee and brakes after it, turning: by sums over many short arcs.
+    /// Compares a turning motion that speeds up to the knee and brakes after it with sums over many
+    /// short arcs.
     #[test]
     fn a_knee_is_followed() {
         let start = Pose::new(1.0, 2.0, 0.7);
@@ -253,7 +255,7 @@ mod tests {
             assert!((after.omega - expected.omega).abs() < 1e-12);
             let end = velocity(CycleMotion::END);
             assert!((end.v - to.v).abs() < 1e-15 && (end.omega - to.omega).abs() < 1e-15);
-            // The length of a speed that changes linearly twice.
+            // Distance driven while the speed changes linearly before and after the knee.
             let (before_s, after_s) = (0.025 * place, 0.1 - 0.025 * place);
             let length_m = 0.5 * ((0.2 + 0.6) * before_s + (0.6 + 0.1) * after_s);
             assert!((motion.driven_m(CycleMotion::END) - length_m).abs() < 1e-12);
@@ -264,7 +266,7 @@ mod tests {
             }
             let end = motion.pose(CycleMotion::END);
             assert!((end.theta - pose.theta).abs() < 1e-6, "{place}");
-            // Turning faster by 15 rad/s² and more, which no robot does.
+            // The angular acceleration is 15 rad/s² and more, which no robot has.
             assert!(end.point().distance(pose.point()) < 1e-4, "{place}: {end:?} {pose:?}");
         }
     }

@@ -9,12 +9,13 @@ use keyway::given::Given;
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// Why a run could not be simulated.
+/// Reason that a run could not be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// A value of a robot, its rules, its start or its goal cannot be used; the path begins with which. Among
-    /// several participants it begins with whose: `participants[1].start.x`.
+    /// A value of a robot, its rules, its start or its goal cannot be used; the path begins with
+    /// the name of this argument. With several participants it begins with the participant:
+    /// `participants[1].start.x`.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// A controller asked for a velocity that is not a number.
@@ -28,7 +29,7 @@ pub enum SimError {
         /// The command.
         command: Velocity,
     },
-    /// A controller gave the simulation up ([`Action::GiveUp`]).
+    /// A controller gave up the simulation ([`Action::GiveUp`]).
     #[error("the simulation was given up in cycle {cycle}")]
     GivenUp {
         /// The cycle, from 0.
@@ -36,28 +37,30 @@ pub enum SimError {
     },
 }
 
-/// Drives robots in the same world at the same time, each from rest at its start towards its goal, until
-/// each has an outcome; the runs in the order of the participants. A single robot is a slice of one.
+/// Drives robots in the same world at the same time, each from rest at its start towards its goal,
+/// until each has an outcome. Returns the runs in the order of the participants. A single robot is
+/// a slice of one.
 ///
-/// All robots have the same cycle. At the start and at the end of every cycle, for each robot: the
-/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit; then its controller is given the pose,
-/// the velocity and a scan, as its [`Disturbances`](super::Disturbances) leave them, and answers; then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are
-/// tested. The controllers are called in the order of the participants,
-/// but all decide on the state at the beginning of the cycle. During the cycle the velocities change
-/// linearly towards the commands as far as the robots' limits allow, and contact is tested along the
-/// whole swept motions.
+/// All robots have the same cycle. At the start and at the end of every cycle, for each robot, the
+/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit. Then its controller
+/// gets the pose, the velocity and a scan, as changed by its [`Disturbances`](super::Disturbances),
+/// and answers. Then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are tested.
+/// The controllers are called in the order of the participants, but all decide on the state at the
+/// beginning of the cycle. During the cycle the velocities change linearly towards the commands
+/// within the robots' limits, and contact is tested along the whole swept motions.
 ///
-/// Robots see each other, keep clear of each other ([`Run::min_clearance_m`]) and may touch. A contact
-/// between two ends both runs ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended, in
-/// whatever way, stands from that instant on and is an obstacle for the others; what touches it later
-/// does not change its run. Contacts at one instant are taken in this order: with what stands, with what
-/// moves, then those of the robots with the lowest indices.
+/// Robots see each other, have a clearance from each other ([`Run::min_clearance_m`]) and may
+/// touch. A contact between two robots ends both runs
+/// ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended for any reason stands
+/// from that instant on and is an obstacle for the others; later contacts do not change its run.
+/// Contacts at the same instant are handled in this order: with stationary obstacles, with moving
+/// obstacles, then between the robots with the lowest indices.
 ///
 /// Deterministic: equal arguments give equal bytes.
 ///
 /// # Cost
-/// Beside what each robot costs alone, a few operations per pair of robots and cycle where the two cannot
-/// meet in that cycle, and a few more per pair of their edges where they can.
+/// In addition to the cost of each robot alone: a few operations per pair of robots and cycle if
+/// the two cannot meet in that cycle, and a few more per pair of their edges if they can.
 ///
 /// # Errors
 /// When an argument cannot be used, the robots have different cycles, or a controller commands NaN.
@@ -65,8 +68,8 @@ pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<V
     simulate_on(1, world, participants)
 }
 
-/// The same runs, with the decisions of a cycle spread over this many threads: controllers of
-/// different robots are then called in any order, and at the same time.
+/// Returns the runs of [`simulate`], with the decisions of a cycle spread over this many threads.
+/// Controllers of different robots are then called in any order and at the same time.
 ///
 /// # Errors
 /// As for [`simulate`].
@@ -115,7 +118,7 @@ impl Asked<'_, '_> {
     }
 }
 
-/// All decide on the same state, so it does not matter who does so first.
+/// Calls the controllers. All decide on the same state, so their order does not matter.
 fn decide_all(asked: &mut [Asked<'_, '_>], fleet: &Fleet<'_>, threads: usize) {
     if threads <= 1 || asked.len() <= 1 {
         asked.iter_mut().for_each(|asked| asked.decide(fleet));
@@ -129,7 +132,7 @@ fn decide_all(asked: &mut [Asked<'_, '_>], fleet: &Fleet<'_>, threads: usize) {
     });
 }
 
-/// Checks all arguments. Where there are several participants, a path begins with whose field it is.
+/// Checks all arguments. With several participants, a path begins with the participant.
 pub(super) fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError> {
     let is_alone = participants.len() == 1;
     let named = |index: usize, error: ConfigError| {

@@ -1,12 +1,13 @@
-//! How much is free around each cell.
+//! Largest squares of free cells around each cell.
 
 use keyway::map::{BitGrid, Cell};
 
-/// For every cell the largest square of free cells around it: what a ray may skip.
+/// Largest square of free cells around every cell, which a ray may skip.
 ///
-/// Held is the distance to the nearest obstacle cell in steps to any of the 8 neighbours (the chessboard
-/// distance): all cells that are fewer steps away are free. Cells outside the grid do not count. One byte per
-/// cell; two passes over the grid, each with the four neighbours that it has passed already.
+/// Stores the distance to the nearest obstacle cell in steps to any of the 8 neighbours (the
+/// chessboard distance): all cells fewer steps away are free. Cells outside the grid do not count.
+/// Takes one byte per cell, and two passes over the grid, each with the four neighbours that it has
+/// already passed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FreeSquares {
     width: usize,
@@ -14,7 +15,7 @@ pub(super) struct FreeSquares {
 }
 
 impl FreeSquares {
-    /// Around each cell of a grid of obstacles.
+    /// Free squares of a grid of obstacles.
     pub(super) fn around(obstacles: &BitGrid) -> Self {
         let (width, height) = (obstacles.width() as usize, obstacles.height() as usize);
         let mut steps = vec![u8::MAX; width * height];
@@ -42,8 +43,8 @@ impl FreeSquares {
     }
 }
 
-/// Lowers a row to one more than the cells beside it: those of the row before it, and in the row itself, passed in an order, the
-/// one before.
+/// Lowers each cell of a row to at most one more than its neighbours in the row before and the
+/// previous cell of the row in the given order.
 fn lower_row(row: &mut [u8], before: Option<&[u8]>, order: impl Fn(usize) -> usize) {
     let last = row.len() - 1;
     let mut beside = u8::MAX;

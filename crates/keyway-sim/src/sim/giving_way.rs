@@ -1,27 +1,28 @@
-//! Obstacles that give way, while a simulation runs.
+//! Obstacles that give way during a simulation.
 
 use super::social_force::{Body, add_forces};
 use super::{Circle, KeyFrame, KeyFrames, Motion, Mover, MoverWay, WayPoints, World};
 use keyway::geometry::Point;
 use std::borrow::Cow;
 
-/// An obstacle that gives way, between two cycles. Its mover in the world of the simulation goes from place to place at
-/// given times, so scans and contacts need not know that it decides.
+/// An obstacle that gives way, between two cycles. In the simulated world its mover follows key
+/// frames, so scans and contacts need not know that it decides.
 pub(super) struct GivingWay {
-    /// Its place among the obstacles that move.
+    /// Index among the moving obstacles.
     index: usize,
     course: WayPoints,
-    /// Number of the way-point that it goes to, and which way it goes on from there.
+    /// Index of the current target way-point, and the direction in which it continues from there.
     towards: usize,
     is_going_back: bool,
     body: Body,
 }
 
 impl GivingWay {
-    /// At this distance from a way-point it turns to the next \[m\]; an obstacle that is larger does when it covers it.
+    /// Distance from a way-point at which an obstacle turns to the next \[m\]; a larger obstacle
+    /// turns when it covers the way-point.
     const NEAR_M: f64 = 0.2;
 
-    /// Those of a world, at rest where they begin.
+    /// All obstacles of a world that give way, at rest at their first places.
     pub(super) fn begin(world: &mut Cow<'_, World>) -> Vec<Self> {
         let giving_way = |(index, mover): (usize, &Mover)| {
             let Motion::GivesWay(course) = mover.motion() else { return None };
@@ -39,7 +40,8 @@ impl GivingWay {
         all
     }
 
-    /// Takes all of them to the end of a cycle at `end_s`, each on a straight line. All decide on the state at its beginning.
+    /// Moves all of them along straight lines to the end of a cycle at `end_s`. All decide on the
+    /// state at the beginning of the cycle.
     pub(super) fn advance_all(
         all: &mut [Self],
         world: &mut Cow<'_, World>,
@@ -67,7 +69,7 @@ impl GivingWay {
         }
     }
 
-    /// Where all of them were.
+    /// Places of all of them so far.
     pub(super) fn ways(all: &[Self], world: &World) -> Vec<MoverWay> {
         let way = |one: &Self| match world.movers()[one.index].motion() {
             Motion::KeyFrames(frames) => {
@@ -78,17 +80,17 @@ impl GivingWay {
         all.iter().filter_map(way).collect()
     }
 
-    /// The place that it goes to now.
+    /// Current target \[m\].
     fn goal(&self) -> Point {
         self.course.points()[self.towards]
     }
 
-    /// The force that draws it there \[m/s²\].
+    /// Force towards the target \[m/s²\].
     fn drive(&self) -> Point {
         self.body.drive(self.goal(), self.course.speed_mps())
     }
 
-    /// Goes straight on for a cycle, under the force at its beginning \[m/s²\].
+    /// Moves straight on for a cycle, under the force at its beginning \[m/s²\].
     fn advance(&mut self, force: Point, cycle_s: f64) {
         let velocity_mps = self.body.next_velocity(force, self.course.speed_mps(), cycle_s);
         self.body.velocity_mps = velocity_mps;
@@ -114,7 +116,8 @@ impl GivingWay {
     }
 }
 
-/// An obstacle at a time, with the velocity at which it came there; at rest where it has just jumped.
+/// An obstacle at a time, with its mean velocity over the cycle before; at rest if it has just
+/// jumped.
 fn body_of(mover: &Mover, t_s: f64, cycle_s: f64) -> Body {
     let Circle { centre, radius_m } = mover.at(t_s);
     let before_s = t_s - cycle_s;

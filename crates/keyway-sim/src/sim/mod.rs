@@ -1,15 +1,17 @@
-//! A simulated world, robots and their lidars. Controllers come in as closures; nothing here knows how
-//! they decide.
+//! A simulated world with robots and their lidars. Controllers are closures; nothing here depends
+//! on how they decide.
 //!
-//! [`simulate`] drives one robot or several in the same world at the same time: they see each other, and
-//! may touch. What a controller makes of a robot that it sees is its own matter: a scan does not say what moves, and
-//! [`keyway::navigate::Controller`] decides as if everything that it sees stood still. It does not run into another robot
-//! that stands, but two that drive towards each other may meet.
+//! [`simulate`] drives one or several robots in the same world at the same time. They see each
+//! other and may touch. A scan does not say what moves, so each controller interprets the robots
+//! that it sees. A [`keyway::navigate::Controller`] tracks what moves if its stack has
+//! `controller.movers`. Without it, the controller decides as if everything stood still: it does
+//! not run into a standing robot, but two robots that drive towards each other may collide.
 //!
-//! Obstacles that move follow a course of their own, or give way to robots and to each other ([`Motion::GivesWay`]).
+//! Moving obstacles follow their own course, or give way to robots and to each other
+//! ([`Motion::GivesWay`]).
 //!
-//! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors, errors of its
-//! localisation. What is recorded is what truly happens.
+//! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors,
+//! errors of its localisation. The record shows the true motion.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};

@@ -1,12 +1,11 @@
-//! Which of many discs overlap.
+//! Overlaps between many discs.
 
 use super::Circle;
 
-/// For each disc the later ones in the list that it overlaps or touches, in their order.
+/// For each disc, the later discs in the list that it overlaps or touches, in their order.
 ///
-/// The discs are sorted by where they begin along the x axis: each is compared only with those that
-/// begin before it ends. So the cost grows with the discs that share a strip, and with the
-/// overlaps.
+/// The discs are sorted by where they begin along the x axis. Each is compared only with discs that
+/// begin before it ends. So the cost grows with the discs that share a strip and with the overlaps.
 pub(super) fn overlapping(discs: &[Circle]) -> Vec<Vec<usize>> {
     let mut along: Vec<(f64, usize)> =
         discs.iter().map(|disc| disc.centre.x - disc.radius_m).zip(0..).collect();

@@ -1,33 +1,33 @@
-//! Who takes part in a simulation, and what a controller answers.
+//! Participants of a simulation, and the answers of their controllers.
 
 use super::{Disturbances, RunRules};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 
-/// What a controller wants in the next cycle.
+/// Action that a controller asks for in the next cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Drive at this velocity, as far as the robot's limits allow.
     Drive(Velocity),
-    /// It considers itself to be at the goal. The robot brakes; whether it has arrived is the
-    /// simulator's judgement ([`RunRules::goal_tolerance_m`](super::RunRules::goal_tolerance_m)).
+    /// The controller considers the robot to be at the goal. The robot brakes; the simulator judges
+    /// whether it has arrived ([`RunRules::goal_tolerance_m`](super::RunRules::goal_tolerance_m)).
     Arrived,
     /// Brake: there is no way on for now.
     Stop,
-    /// End the whole simulation at once, without a result: nobody waits for it any more.
+    /// End the whole simulation at once, without a result: it is no longer needed.
     GiveUp,
 }
 
 /// A controller's answer to one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    /// What to do.
+    /// Requested action.
     pub action: Action,
-    /// Length of the remaining path \[m\], by which progress is judged. NaN or infinity: unknown,
-    /// and no progress.
+    /// Length of the remaining path \[m\], which measures progress. NaN or infinity: unknown, and
+    /// no progress.
     pub remaining_m: f64,
-    /// Number of the route that is followed: a new one may be longer than the last.
+    /// Number of the current route; a new one may be longer than the last.
     pub route: u32,
 }
 
@@ -35,14 +35,14 @@ pub struct Control {
 pub struct Participant<'a> {
     /// The robot.
     pub robot: &'a Robot,
-    /// Where it stands at the beginning, at rest.
+    /// Start pose, at rest.
     pub start: Pose,
-    /// Where it is to go, in the world frame \[m\].
+    /// Goal in the world frame \[m\].
     pub goal: Point,
-    /// What its sensor, its motors and its localisation get wrong; nothing by default.
+    /// Errors of its sensor, motors and localisation; none by default.
     pub disturbances: Disturbances,
-    /// When its run ends without contact.
+    /// Rules that end its run without contact.
     pub rules: RunRules,
-    /// What decides for it, from its pose, its velocity and a scan.
+    /// Controller, called with the robot's pose, its velocity and a scan.
     pub controller: &'a mut (dyn FnMut(Pose, Velocity, &Scan) -> Control + Send),
 }

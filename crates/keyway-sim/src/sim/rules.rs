@@ -1,26 +1,26 @@
-//! When a run ends without contact.
+//! Rules that end a run without contact.
 
 use keyway::ConfigError;
 use serde::{Deserialize, Serialize};
 
-/// When a run ends.
+/// Rules that end a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RunRules {
-    /// The goal is reached when the robot's centre is this near to it \[m\].
+    /// Distance of the robot's centre from the goal within which the goal is reached \[m\].
     pub goal_tolerance_m: f64,
-    /// What else it takes.
+    /// Further condition of reaching the goal.
     pub arrival: Arrival,
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
-    /// The robot is stuck when the remaining path has not become [`Self::stuck_progress_m`] shorter
-    /// for this long \[s\]; after a longer new route, shorter than that one.
+    /// Time \[s\] after which the robot is stuck if the remaining path has not become
+    /// [`Self::stuck_progress_m`] shorter; after a longer new route, shorter than that route.
     pub stuck_window_s: f64,
-    /// What counts as progress of the remaining path \[m\].
+    /// Decrease of the remaining path that counts as progress \[m\].
     pub stuck_progress_m: f64,
 }
 
-/// When a robot near its goal has reached it.
+/// Condition for a robot near its goal to have reached it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -28,7 +28,7 @@ pub enum Arrival {
     /// At once, however fast it drives.
     #[default]
     Passing,
-    /// When it stands and its controller says that it has arrived.
+    /// Once it stands and its controller says that it has arrived.
     Standing,
 }
 
@@ -57,17 +57,17 @@ impl RunRules {
     }
 }
 
-/// Cycles until at least `duration_s` have passed: counted, so that times never drift. 0.14 s is
-/// seven cycles of 0.02 s although their quotient is rounded to more than 7.
+/// Number of cycles until at least `duration_s` has passed. Cycles are counted, so times never
+/// drift. 0.14 s is seven cycles of 0.02 s, although the quotient is rounded to more than 7.
 pub(super) fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
     (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64
 }
 
-/// The best remaining path so far, and its time.
+/// Shortest remaining path so far, and its time.
 pub(super) struct Progress {
     step_m: f64,
     window_cycles: u64,
-    /// The remaining length that has to be undercut. A new route may be longer than the last: then
+    /// Remaining length that must be undercut. A new route may be longer than the last: then
     /// progress is measured on the new one.
     reference_m: f64,
     since_cycle: u64,
@@ -85,7 +85,7 @@ impl Progress {
         }
     }
 
-    /// Whether the robot is stuck that has `remaining_m` to go on the route of this number.
+    /// True if a robot with `remaining_m` to go on the route of this number is stuck.
     pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
         if remaining_m.is_finite() {
             if self.route != Some(route) {

@@ -1,30 +1,30 @@
-//! What is recorded of a run.
+//! Record of a run.
 
 use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle, World};
 use keyway::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The centre came within the goal tolerance, and what else the rules ask for.
+    /// The centre came within the goal tolerance, and the further conditions of the rules hold.
     Reached,
     /// The footprint touched something.
     Collided {
         /// Pose of the robot at the contact.
         pose: Pose,
-        /// What it touched.
+        /// Object that it touched.
         with: Obstacle,
-        /// Whether the footprint covered no other ground at the contact, because the robot stood or, as a disc,
-        /// turned on the spot: something that moves ran into it, or it began in contact.
+        /// True if the covered ground did not change at the contact, because the robot stood or, as
+        /// a disc, turned on the spot: a moving object ran into it, or the run began in contact.
         robot_stood: bool,
-        /// Whether what the robot touched had jumped within the last cycle: the robot could not have known
-        /// ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
+        /// True if the touched obstacle had jumped within the last cycle: the robot could not have
+        /// known ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
         jumped_onto: bool,
-        /// How fast it moved then, where it was an obstacle that moves \[m/s\]: faster than
+        /// Speed of a touched moving obstacle at the contact \[m/s\]; a speed above
         /// [`Mover::DART_MPS`](super::Mover::DART_MPS) is a dart.
         mover_speed_mps: Option<f64>,
     },
@@ -46,7 +46,7 @@ pub struct Sample {
 }
 
 impl Run {
-    /// The world in which the run was made, with the obstacles that give way where they were.
+    /// The world of the run, with the obstacles that give way on their recorded ways.
     pub fn world<'a>(&self, given: &'a World) -> Cow<'a, World> {
         let mut world = Cow::Borrowed(given);
         for way in &self.movers {
@@ -58,22 +58,24 @@ impl Run {
     }
 }
 
-/// Where an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay)) was during a run.
+/// Recorded way of an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay))
+/// during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MoverWay {
     /// Its index in [`World::movers`](super::World::movers).
     pub index: usize,
-    /// Its places at the beginning and at the end of every cycle. In between it went straight on.
+    /// Its places at the beginning and at the end of every cycle. In between it moved in a straight
+    /// line.
     pub key_frames: Vec<KeyFrame>,
 }
 
 impl MoverWay {
-    /// The obstacle, as one that goes this way whatever it meets.
+    /// The obstacle on this way, without giving way.
     pub fn mover(&self, of: &Mover) -> Mover {
         of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
     }
 
-    /// The part of it up to the end of a cycle.
+    /// The part of the way up to the end of a cycle.
     pub(super) fn until(&self, cycles: u64) -> Self {
         let Self { index, key_frames } = self;
         let count = key_frames.len().min(cycles as usize + 1);
@@ -81,26 +83,28 @@ impl MoverWay {
     }
 }
 
-/// What happened in a run.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// How it ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// The start, the end of every cycle, and the contact if there was one.
     pub samples: Vec<Sample>,
     /// Arc length driven \[m\].
     pub length_m: f64,
-    /// The footprint's smallest clearance from an obstacle or another robot over the whole motion, to
-    /// 0.1 mm \[m\]; 0 after a contact with one, `None` alone in a world without obstacles.
+    /// Smallest clearance of the footprint from an obstacle or another robot over the whole motion,
+    /// to 0.1 mm \[m\]; 0 after a contact with one, `None` for a robot alone in a world without
+    /// obstacles.
     pub min_clearance_m: Option<f64>,
-    /// The same from obstacles that stand; `None` without any.
+    /// Smallest clearance from stationary obstacles \[m\]; `None` without any.
     pub min_standing_clearance_m: Option<f64>,
-    /// The same from obstacles that move ([`World::movers`](super::World::movers)); `None` without any.
+    /// Smallest clearance from moving obstacles ([`World::movers`](super::World::movers)) \[m\];
+    /// `None` without any.
     pub min_mover_clearance_m: Option<f64>,
-    /// The same from other robots; `None` without any.
+    /// Smallest clearance from other robots \[m\]; `None` without any.
     pub min_robot_clearance_m: Option<f64>,
-    /// Where the obstacles that give way were; those of other motions are not listed.
+    /// Recorded ways of the obstacles that give way; obstacles with other motions are not listed.
     pub movers: Vec<MoverWay>,
-    /// Cycles begun.
+    /// Number of cycles begun.
     pub cycles: u64,
 }

@@ -1,7 +1,7 @@
-//! How somebody on the way to a place gives way to others: the social force model.
+//! Social force model: how a body on the way to a place gives way to others.
 //!
 //! Source: [Helbing1995] (the drive towards a goal, and the highest speed), with the interaction of
-//! [Moussaid2009], which was measured between pairs of people, who turn aside as well as brake:
+//! [Moussaid2009]. It was measured between pairs of people, who turn aside as well as brake:
 //!
 //! ```text
 //! dv/dt = (v0 e - v) / tau + sum over others of f
@@ -15,32 +15,33 @@
 //! | tau | [`RELAXATION_S`] |
 //! | `e_other`, d | the direction to the other, and the gap to it |
 //! | lambda, gamma, n, n', A | [`LAMBDA`], [`GAMMA`], [`N`], [`N_PRIME`], [`STRENGTH_MPS2`] |
-//! | theta | the angle from t to `e_other`, and `BIAS` B |
+//! | theta | the angle from t to `e_other`, plus [`BIAS_RADPM`] B |
 //! | K | its sign |
 //! | n | t turned to the left |
 //!
-//! It differs from the sources in four points. d is the gap between two outlines, not the distance
-//! of two centres: robots and obstacles have all sizes. Who is straight ahead counts as slightly to
-//! the left, so that both who meet turn to their right ([Moussaid2009] has this bias, too, without
-//! a side). Walls exert no force: nobody here sees any. Who is farther away than [`FARTHEST`] B
-//! exerts none either: it would be 2 mm/s² at most.
+//! The model differs from the sources in four points. d is the gap between two outlines, not the
+//! distance between two centres: robots and obstacles have all sizes. A body straight ahead counts
+//! as slightly to the left, so that two bodies that meet both turn to their right ([Moussaid2009]
+//! has this bias, too, without a side). Walls exert no force: the bodies do not see any. A body
+//! farther away than [`FARTHEST`] B exerts no force either: it would be 2 mm/s² at most.
 //!
-//! Nothing in it forbids contact. It costs a few operations for each two who are near each other.
+//! The model does not forbid contact. It costs a few operations for each two bodies near each
+//! other.
 
 use super::Circle;
 use super::overlapping::overlapping;
 use keyway::geometry::Point;
 
-/// Time in which the wanted velocity is taken up \[s\].
+/// Relaxation time towards the desired velocity \[s\].
 const RELAXATION_S: f64 = 0.54;
-/// Nobody is faster than the wanted speed times this ([Helbing1995]).
+/// Highest speed as a multiple of the desired speed ([Helbing1995]).
 pub(super) const FASTEST: f64 = 1.3;
-/// Strength of the force between two at contact \[m/s²\].
+/// Strength of the force between two bodies in contact \[m/s²\].
 const STRENGTH_MPS2: f64 = 4.5;
 /// Range of the force per length of D \[m\].
 const GAMMA: f64 = 0.35;
-/// Across a gap of more ranges than this nobody exerts a force: there, it is A exp(-8) at most
-/// along each axis.
+/// Largest gap across which a body exerts a force, in ranges of the force: there, the force is A
+/// exp(-8) at most along each axis.
 const FARTHEST: f64 = 8.0;
 /// Weight of the relative velocity in D \[s/m\].
 const LAMBDA: f64 = 2.0;
@@ -48,10 +49,10 @@ const LAMBDA: f64 = 2.0;
 const N: f64 = 2.0;
 /// Sharpness of braking.
 const N_PRIME: f64 = 3.0;
-/// What is added to the angle, per metre of B \[rad/m\].
+/// Bias added to the angle, per metre of B \[rad/m\].
 const BIAS_RADPM: f64 = 0.005;
 
-/// Something round that moves.
+/// A round moving body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Body {
     pub(super) centre: Point,
@@ -59,8 +60,8 @@ pub(super) struct Body {
     pub(super) velocity_mps: Point,
 }
 
-/// Adds what all exert on each other to the forces on them \[m/s²\], for each in the order of the
-/// others. Those without a force, who do not give way, feel none.
+/// Adds the forces that all bodies exert on each other \[m/s²\], for each body in the order of the
+/// others. A body without a force does not give way and feels none.
 pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
     let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
     for (one, others) in overlapping(&reaches).into_iter().enumerate() {
@@ -70,14 +71,14 @@ pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
             }
             let force = bodies[one].force_of(&bodies[other]);
             forces[one] = forces[one].map(|sum| sum + force);
-            // The other one feels the opposite, to the last bit.
+            // The other body feels the opposite, to the last bit.
             forces[other] = forces[other].map(|sum| sum - force);
         }
     }
 }
 
 impl Body {
-    /// The force that draws it to a goal at a wanted speed \[m/s²\].
+    /// Force that draws it to a goal at a desired speed \[m/s²\].
     pub(super) fn drive(&self, goal: Point, speed_mps: f64) -> Point {
         let wanted_mps = unit(goal - self.centre) * speed_mps;
         (wanted_mps - self.velocity_mps) * RELAXATION_S.recip()
@@ -91,8 +92,8 @@ impl Body {
         velocity_mps * (fastest_mps / velocity_mps.norm().max(fastest_mps))
     }
 
-    /// Two exert forces on each other only where these discs overlap: |D| is at most the sum of
-    /// what each of the two adds to it.
+    /// Disc of influence: two bodies exert forces on each other only if their discs overlap. |D| is
+    /// at most the sum of what the two bodies add to it.
     fn reach(&self) -> Circle {
         let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
         // Rounding must not make it smaller.
@@ -100,11 +101,11 @@ impl Body {
         Circle { centre: self.centre, radius_m }
     }
 
-    /// What another one exerts on this one \[m/s²\].
+    /// Force that another body exerts on this one \[m/s²\].
     fn force_of(&self, other: &Self) -> Point {
         let apart = other.centre - self.centre;
         let ahead = unit(apart);
-        // In the same way seen from both.
+        // Computed in the same way from both sides.
         let gap_m = (apart.norm() - (self.radius_m + other.radius_m)).max(0.0);
         let interaction = (self.velocity_mps - other.velocity_mps) * LAMBDA + ahead;
         let towards = unit(interaction);
@@ -123,7 +124,7 @@ impl Body {
     }
 }
 
-/// The direction of a vector; none of no length.
+/// Unit vector in the direction of a vector; zero for a vector without length.
 fn unit(vector: Point) -> Point {
     let length = vector.norm();
     if length > 0.0 { vector * length.recip() } else { Point::default() }
@@ -155,13 +156,15 @@ mod tests {
 
     #[test]
     fn the_force_by_hand() {
-        // Two who meet at 1 m/s each with a gap of 1 m: D = 2 * 2 + 1 = 5, B = 1.75, theta = 0.00875.
+        // Two bodies meet at 1 m/s each with a gap of 1 m: D = 2 * 2 + 1 = 5, B = 1.75, theta =
+        // 0.00875.
         let force = body(0.0, 0.0, 1.0).force_of(&body(1.5, 0.0, -1.0));
         let range = libm::exp(-1.0 / 1.75);
         let brake = 4.5 * range * libm::exp(-(3.0_f64 * 1.75 * 0.00875).powi(2));
         let aside = 4.5 * range * libm::exp(-(2.0_f64 * 1.75 * 0.00875).powi(2));
         assert!((force.x + brake).abs() < 1e-12 && (force.y + aside).abs() < 1e-12, "{force:?}");
-        // Somebody to the right is passed on the left, and one who goes ahead at the same speed is far.
+        // A body to the right is passed on the left. A body ahead at the same speed has little
+        // effect.
         assert!(body(0.0, 0.0, 1.0).force_of(&body(1.5, -0.3, 0.0)).y > 0.0);
         assert!(body(0.0, 0.0, 1.0).force_of(&body(2.5, 0.0, 1.0)).norm() < 0.03);
     }
@@ -190,7 +193,8 @@ mod tests {
     }
 
     proptest! {
-        /// For each every other one in its order, near or far: to the last bit.
+        /// Compares the forces with the sum over all other bodies in their order, near or far, to
+        /// the last bit.
         #[test]
         fn forces_are_those_of_all_others(
             bodies in prop::collection::vec(((-20.0..20.0f64, -20.0..20.0f64), 0.0..1.0f64, (-3.0..3.0f64, -3.0..3.0f64), any::<bool>()), 0..40),

@@ -1,12 +1,12 @@
-//! Polygons that stand.
+//! Stationary polygons.
 
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use keyway::robot::{Footprint, FootprintError};
 use serde::{Deserialize, Serialize};
 
-/// A polygon of any shape that stands, with 3 to 100 vertices; the last one is joined to the first. In files and reports it is the list of
-/// its vertices, `[x, y]` each \[m\].
+/// A stationary polygon of any shape with 3 to 100 vertices; the last one is joined to the first.
+/// In files and reports it is the list of its vertices, `[x, y]` each \[m\].
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -21,7 +21,8 @@ use serde::{Deserialize, Serialize};
 #[serde(try_from = "Vec<Point>", into = "Vec<Point>")]
 pub struct StandingPolygon {
     vertices: Vec<Point>,
-    /// The same around its middle, where it stands like a robot that faces along the x axis.
+    /// The polygon relative to its middle, like the footprint of a robot that faces along the x
+    /// axis.
     footprint: Footprint,
     middle: Pose,
 }
@@ -30,8 +31,9 @@ impl StandingPolygon {
     /// The polygon with these vertices in the world's frame \[m\].
     ///
     /// # Errors
-    /// When there are fewer than 3 or more than 100, one is not finite or farther than a kilometre from the middle, two that follow
-    /// each other coincide, edges meet, or no ground is covered. Paths begin with `vertices_m`.
+    /// When there are fewer than 3 or more than 100 vertices, one is not finite or is farther than
+    /// a kilometre from the middle, two consecutive vertices coincide, edges meet, or no ground is
+    /// covered. Paths begin with `vertices_m`.
     pub fn new(vertices: Vec<Point>) -> Result<Self, ConfigError> {
         for (i, vertex) in vertices.iter().enumerate() {
             for (axis, value) in [vertex.x, vertex.y].into_iter().enumerate() {
@@ -55,7 +57,7 @@ impl StandingPolygon {
         &self.vertices
     }
 
-    /// As if it were a robot: its footprint, and where it stands.
+    /// The polygon as the footprint and pose of a robot.
     pub(super) const fn placed(&self) -> (&Footprint, Pose) {
         (&self.footprint, self.middle)
     }
@@ -79,7 +81,7 @@ fn in_words_of_polygons(error: &FootprintError) -> ConfigError {
         FootprintError::SelfIntersecting(one, other) => {
             all(format!("must not meet itself, the edges from [{one}] and [{other}] do"))
         }
-        // Of discs and rectangles.
+        // Errors of discs and rectangles.
         error => all(error.to_string()),
     }
 }
@@ -112,7 +114,8 @@ mod tests {
     }
 
     proptest! {
-        /// Boxes around cells are the same to a robot and to its sensor as these cells, whether they are polygons or hidden cells of the map.
+        /// Checks that a robot and its sensor cannot tell boxes around cells from the cells
+        /// themselves, whether the boxes are polygons or hidden cells of the map.
         #[test]
         fn boxes_are_like_the_cells_that_they_cover(
             boxes in prop::collection::vec((0..28i32, 0..18i32, 1..5i32, 1..5i32), 1..4), yaw in -3.1..3.1f64,

@@ -1,4 +1,4 @@
-//! A run that is driven from outside, cycle by cycle.
+//! A run that the caller drives, cycle by cycle.
 
 use super::drive::{check, command};
 use super::fleet::{Entrant, Fleet};
@@ -8,8 +8,9 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use std::borrow::Cow;
 
-/// One robot in a world, for whoever cannot be called back, such as a learning agent that asks for one step at a time.
-/// The same answers make the same run as with [`simulate`](super::simulate), to the last digit.
+/// One robot in a world, for a caller that cannot provide a closure, such as a learning agent that
+/// asks for one step at a time. The same answers make the same run as with
+/// [`simulate`](super::simulate), to the last digit.
 ///
 /// ```
 /// use keyway::geometry::{Point, Pose, Velocity};
@@ -34,7 +35,8 @@ pub struct Stepper {
 }
 
 impl Stepper {
-    /// A robot at rest at its start, which has looked around; in contact, or at its goal, its run has ended.
+    /// A robot at rest at its start with its first scan. In contact or at its goal, its run has
+    /// already ended.
     ///
     /// # Errors
     /// When an argument cannot be used.
@@ -62,32 +64,32 @@ impl Stepper {
         Ok(Self { fleet })
     }
 
-    /// How the run has ended; `None` while it goes on.
+    /// Outcome of the run; `None` while it goes on.
     pub fn outcome(&self) -> Option<Outcome> {
         self.fleet.outcome(0)
     }
 
-    /// The last scan; of a run that has ended, that of its last decision.
+    /// The last scan; once the run has ended, the scan of its last decision.
     pub fn scan(&self) -> &Scan {
         self.fleet.scan(0)
     }
 
-    /// Where the robot takes itself to be, and how it takes itself to move; once the run has ended, where it truly is, as nobody
-    /// tells it any more.
+    /// Pose and velocity that the robot was told; once the run has ended, the true ones, as it is
+    /// not told any more.
     pub fn told(&self) -> (Pose, Velocity) {
         let (pose, velocity, _) = self.fleet.told(0);
         if self.outcome().is_some() { self.state() } else { (pose, velocity) }
     }
 
-    /// Where the robot truly is, and how it moves.
+    /// The robot's true pose and velocity.
     pub fn state(&self) -> (Pose, Velocity) {
         self.fleet.state(0)
     }
 
-    /// One cycle. Does nothing once the run has ended.
+    /// Drives one cycle. Does nothing once the run has ended.
     ///
     /// # Errors
-    /// When a velocity is not a number, or the run is given up; nothing has changed then.
+    /// When a velocity is not a number, or the run is given up; nothing changes then.
     pub fn step(&mut self, control: &Control) -> Result<Option<Outcome>, SimError> {
         if self.outcome().is_none() {
             let (_, _, cycle) = self.fleet.told(0);
@@ -101,7 +103,7 @@ impl Stepper {
         Ok(self.outcome())
     }
 
-    /// What happened; `None` while the run goes on.
+    /// The run; `None` while it goes on.
     pub fn into_run(self) -> Option<Run> {
         self.fleet.into_runs().pop()
     }
@@ -113,7 +115,7 @@ mod tests {
     use crate::sim::{Action, Circle, SensorNoise, simulate};
     use keyway::map::OccupancyGrid;
 
-    /// Drives towards what it sees farthest; its answers depend on all that it is told.
+    /// Drives in the direction of the longest range; its answers depend on all its inputs.
     fn wander(pose: Pose, velocity: Velocity, scan: &Scan) -> Control {
         let seen = |i: &usize| scan.ranges_m[*i].min(scan.range_max_m);
         let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();

@@ -3,7 +3,7 @@
 use keyway::geometry::Point;
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 
-/// The vertices of a star around a point: at each radius in turn, evenly spread.
+/// Vertices of a star around a point, at each radius in turn and at evenly spaced angles.
 pub(super) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
     let step_rad = std::f64::consts::TAU / radii.len() as f64;
     let vertex = |(i, &radius): (usize, &f64)| {
@@ -13,7 +13,7 @@ pub(super) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
     radii.iter().enumerate().map(vertex).collect()
 }
 
-/// A grid that is occupied where asked for, row by row from the bottom, and free elsewhere.
+/// A grid with the given occupied cells, row by row from the bottom; the others are free.
 pub(super) fn grid_of(frame: GridFrame, occupied: &[bool]) -> OccupancyGrid {
     let mut each = occupied.iter();
     OccupancyGrid::from_fn(frame, |_| match each.next() {

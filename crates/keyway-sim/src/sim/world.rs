@@ -1,4 +1,4 @@
-//! What really stands and moves in the world.
+//! True stationary and moving obstacles of a world.
 
 use super::free_squares::FreeSquares;
 use super::{Circle, Mover, StandingPolygon};
@@ -8,12 +8,13 @@ use keyway::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The true obstacles: squares of a grid, circles and polygons that no map has, which stand, and what moves.
+/// The true obstacles: squares of a grid, stationary circles and polygons that no map has, and
+/// moving obstacles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     frame: GridFrame,
     squares: BitGrid,
-    /// Of these, those that no map has, if any.
+    /// Squares that no map has, if any.
     hidden: Option<BitGrid>,
     free: FreeSquares,
     circles: Vec<Circle>,
@@ -21,7 +22,7 @@ pub struct World {
     movers: Vec<Mover>,
 }
 
-/// What a robot may touch.
+/// Object that a robot may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -38,7 +39,7 @@ pub enum Obstacle {
     Mover(usize),
     /// The border of the map, which no footprint may leave.
     Border,
-    /// The robot of this index among those that drive ([`super::simulate`]).
+    /// The robot of this index in the simulation ([`super::simulate`]).
     Robot(usize),
 }
 
@@ -49,7 +50,7 @@ pub struct WorldAt<'a> {
     t_s: f64,
 }
 
-/// Why a world cannot be made.
+/// Reason that a world cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -67,7 +68,7 @@ pub enum WorldError {
         /// Rows of the map.
         map_height: u32,
     },
-    /// A cell that is not one of the map.
+    /// A cell that is not on the map.
     #[error("cell {cell} of an unknown obstacle is not on the map of {width} x {height} cells")]
     Cell {
         /// The cell.
@@ -77,7 +78,7 @@ pub enum WorldError {
         /// Rows of the map.
         height: u32,
     },
-    /// A circle without a finite centre, or whose radius is negative or not finite.
+    /// A circle whose centre is not finite, or whose radius is negative or not finite.
     #[error(
         "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
         centre.x, centre.y
@@ -93,8 +94,9 @@ pub enum WorldError {
 }
 
 impl World {
-    /// The squares of the set cells of `squares` (a grid of `frame`'s size), and circles. Costs a few
-    /// operations per cell, and keeps a byte for each, by which a sensor's beams skip what is free.
+    /// A world with the squares of the set cells of `squares` (a grid of `frame`'s size) and
+    /// circles. Costs a few operations per cell, and keeps a byte for each, which lets a sensor's
+    /// beams skip free cells.
     ///
     /// # Errors
     /// When the grid has a different size, or a circle is not valid.
@@ -113,8 +115,8 @@ impl World {
         Ok(Self { frame, squares, hidden: None, free, circles, polygons, movers })
     }
 
-    /// A world in which a known map is right: its occupied cells (unknown ones hold nothing), and
-    /// circles that it does not have.
+    /// A world in which a known map is right: its occupied cells (unknown cells are free), and
+    /// circles that the map does not have.
     ///
     /// # Errors
     /// When a circle is not valid.
@@ -122,7 +124,7 @@ impl World {
         Self::new(*known.frame(), known.occupied().clone(), circles)
     }
 
-    /// The same world with the set cells of `hidden` as further obstacles.
+    /// Adds the set cells of `hidden` as further obstacles.
     ///
     /// # Errors
     /// When the grid does not have the size of the map.
@@ -140,14 +142,14 @@ impl World {
         Ok(self)
     }
 
-    /// The same world with these as further obstacles that stand.
+    /// Adds further stationary obstacles.
     #[must_use]
     pub fn with_polygons(mut self, polygons: Vec<StandingPolygon>) -> Self {
         self.polygons.extend(polygons);
         self
     }
 
-    /// The same world with these as further obstacles that move.
+    /// Adds further moving obstacles.
     #[must_use]
     pub fn with_movers(mut self, movers: Vec<Mover>) -> Self {
         self.movers.extend(movers);
@@ -158,7 +160,7 @@ impl World {
         &mut self.movers
     }
 
-    /// Where the grid of squares lies; its rectangle is the map that no footprint may leave.
+    /// Frame of the grid of squares; its rectangle is the map that no footprint may leave.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
@@ -172,17 +174,17 @@ impl World {
         &self.free
     }
 
-    /// Round obstacles that stand.
+    /// Round stationary obstacles.
     pub fn circles(&self) -> &[Circle] {
         &self.circles
     }
 
-    /// Polygons that stand.
+    /// Stationary polygons.
     pub fn polygons(&self) -> &[StandingPolygon] {
         &self.polygons
     }
 
-    /// Obstacles that move.
+    /// Moving obstacles.
     pub fn movers(&self) -> &[Mover] {
         &self.movers
     }
@@ -192,8 +194,8 @@ impl World {
         WorldAt { world: self, t_s }
     }
 
-    /// Exact distance from a footprint at a pose to the nearest obstacle that stands \[m\], 0 when it touches
-    /// one; `reach_m` when nothing is nearer than that.
+    /// Exact distance from a footprint at a pose to the nearest stationary obstacle \[m\]: 0 if it
+    /// touches one, `reach_m` if none is nearer than that.
     pub(super) fn distance_to_standing(
         &self,
         footprint: &Footprint,
@@ -205,28 +207,31 @@ impl World {
         let nearer = |known_m, polygon| to_polygon(footprint, pose, polygon, known_m);
         let nearest_m = self.polygons.iter().fold(nearest_m, nearer);
         let (core, radius_m) = footprint.core();
-        // No part of the footprint is farther from its centre of rotation.
+        // The swing and the radius bound how far the footprint reaches from its centre of rotation.
         if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
             return nearest_m;
         }
         footprint.distance_m(pose, &self.clearance(), nearest_m)
     }
 
-    /// No obstacle square is nearer to a point than this \[m\].
+    /// Lower bound of the distance from a point to any obstacle square \[m\].
     fn free_around_m(&self, point: Point) -> f64 {
         let cell = self.frame.cell_from_world(point);
-        // A cell further than the free ones begins beyond them. Rounding may put the point beside its cell.
+        // The nearest obstacle cell begins beyond the free ones. Rounding may put the point beside
+        // its cell.
         let free = cell.map_or(0.0, |cell| f64::from(self.free.steps(cell) - 1) - 1e-6);
         free * self.frame.resolution_m()
     }
 
-    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
+    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the
+    /// map.
     pub(super) fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
         footprint.to_border_m(pose, &self.clearance())
     }
 
-    /// What of all that stands is nearest to a footprint, the map's border included (ties: the border, then
-    /// squares that no map has, then others, then the circle and then the polygon of the lowest index).
+    /// Stationary obstacle nearest to a footprint, including the map's border. Ties go to the
+    /// border, then squares that no map has, then other squares, then the circle and then the
+    /// polygon of the lowest index.
     pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
         let mut nearest = (self.border_distance(footprint, pose), Obstacle::Border);
         let squares_m = footprint.distance_m(pose, &self.clearance(), f64::INFINITY);
@@ -258,32 +263,34 @@ impl World {
 }
 
 impl<'a> WorldAt<'a> {
-    /// What stands and moves there.
+    /// The world itself.
     pub const fn world(&self) -> &'a World {
         self.world
     }
 
-    /// The round obstacles, where they are: those that stand, then those that move.
+    /// Round obstacles at this time: first the stationary ones, then the moving ones.
     pub fn circles(&self) -> impl Iterator<Item = Circle> + 'a {
         let World { circles, movers, .. } = self.world;
         let t_s = self.t_s;
         circles.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
     }
 
-    /// Exact distance from a footprint at a pose to the nearest obstacle \[m\], 0 when it touches one;
-    /// `reach_m` when nothing is nearer than that. Costs the rows within reach and one step per circle.
+    /// Exact distance from a footprint at a pose to the nearest obstacle \[m\]: 0 if it touches
+    /// one, `reach_m` if none is nearer than that. Costs the rows within reach and one step per
+    /// circle.
     pub fn distance(&self, footprint: &Footprint, pose: Pose, reach_m: f64) -> f64 {
         let nearest_m = self.distance_to_movers(footprint, pose, reach_m).0;
         self.world.distance_to_standing(footprint, pose, nearest_m)
     }
 
-    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the map.
+    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the
+    /// map.
     pub fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
         self.world.border_distance(footprint, pose)
     }
 
-    /// Distance to the nearest obstacle that moves, and its index (ties: the lowest); `reach_m` when none is
-    /// nearer than that.
+    /// Distance to the nearest moving obstacle, and its index (ties: the lowest); `reach_m` if none
+    /// is nearer than that.
     pub(super) fn distance_to_movers(
         &self,
         footprint: &Footprint,
@@ -301,8 +308,8 @@ impl<'a> WorldAt<'a> {
     }
 }
 
-/// Distance from a footprint at a pose to a circle, 0 when they meet; `reach_m` when they are at least that
-/// far apart.
+/// Distance from a footprint at a pose to a circle: 0 if they meet, `reach_m` if they are at least
+/// that far apart.
 pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reach_m: f64) -> f64 {
     let (core, radius_m) = footprint.core();
     let radii_m = circle.radius_m + radius_m;
@@ -314,7 +321,7 @@ pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reac
     apart_m.max(0.0).min(reach_m)
 }
 
-/// The same to a polygon.
+/// Distance from a footprint at a pose to a polygon, as for [`to_circle`].
 fn to_polygon(footprint: &Footprint, pose: Pose, polygon: &StandingPolygon, reach_m: f64) -> f64 {
     let (other, other_pose) = polygon.placed();
     footprint.distance_to_footprint_m(pose, other, other_pose, reach_m)
@@ -377,7 +384,7 @@ mod tests {
         assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
         assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
         assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
-        // A box 1.2 m ahead of its centre is nearest to what stands there.
+        // A box that reaches 1.2 m ahead of its centre is nearest to the circle there.
         let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
         let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
         assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));

@@ -1,4 +1,4 @@
-//! Blocks of whole cells anywhere, as papers draw their maps.
+//! Randomly placed blocks of whole cells, as in the maps of papers.
 
 use super::canvas::Canvas;
 use super::clutter::unless_share;
@@ -7,14 +7,17 @@ use keyway::map::Cell;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Rectangles of whole cells at random places, strewn until they cover a share of the map. They may overlap and lie side by side.
+/// Rectangles of whole cells at random places, added until they cover a share of the map. They may
+/// overlap and lie side by side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Blocks {
-    /// How much of the map is covered, at least, from 0 to 1; what is then freed around the ends of ways is not made up for.
+    /// Share of the map that is covered at least, from 0 to 1; cells that are then freed around the
+    /// ends of ways are not replaced.
     pub share: f64,
-    /// Least and largest width and height \[m\], each rounded to a whole number of cells and at least one.
+    /// Smallest and largest width and height \[m\], each rounded to a whole number of cells and at
+    /// least one.
     pub side_m: [f64; 2],
 }
 

@@ -1,16 +1,16 @@
-//! What patterns are drawn on.
+//! Canvas for patterns.
 
 use keyway::geometry::Point;
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 
-/// The cells of a map, in metres from its lower left corner.
+/// Cells of a map, addressed in metres from its lower left corner.
 pub(super) struct Canvas {
     frame: GridFrame,
     occupied: BitGrid,
 }
 
 impl Canvas {
-    /// One on which nothing stands.
+    /// An empty canvas.
     pub(super) fn new(frame: GridFrame) -> Self {
         Self { occupied: BitGrid::new(frame.width(), frame.height(), false), frame }
     }
@@ -35,7 +35,8 @@ impl Canvas {
         self.set_cells(low, high, false, |_| true);
     }
 
-    /// Occupies a rectangle of cells, given by its lower left one; gives how many were free. What lies beside the map is left out.
+    /// Occupies a rectangle of cells, given by its lower left cell; returns how many were free.
+    /// Cells outside the map are ignored.
     pub(super) fn fill_cells(&mut self, low: Cell, width: i32, height: i32) -> u64 {
         let right = (low.x + width).min(self.frame.width() as i32);
         let top = (low.y + height).min(self.frame.height() as i32);
@@ -48,7 +49,7 @@ impl Canvas {
         filled
     }
 
-    /// How many cells there are to each side, and upwards.
+    /// Width and height \[cells\].
     pub(super) const fn size_cells(&self) -> [u32; 2] {
         [self.frame.width(), self.frame.height()]
     }
@@ -58,13 +59,13 @@ impl Canvas {
         self.set_disc(centre, radius_m, true);
     }
 
-    /// Frees the cells that come nearer than this to a place.
+    /// Frees the cells that come nearer than a radius to a place.
     pub(super) fn clear_disc(&mut self, centre: Point, radius_m: f64) {
         let half_diagonal_m = std::f64::consts::FRAC_1_SQRT_2 * self.cell_m();
         self.set_disc(centre, radius_m + half_diagonal_m, false);
     }
 
-    /// Occupies the cells that a rule names by their centres.
+    /// Occupies the cells whose centres satisfy a rule.
     pub(super) fn fill_where(&mut self, is_occupied: impl Fn(Point) -> bool) {
         let [width_m, height_m] = self.size_m();
         self.set_cells(Point::default(), Point::new(width_m, height_m), true, is_occupied);
@@ -84,7 +85,7 @@ impl Canvas {
 
     fn set_cells(&mut self, low: Point, high: Point, value: bool, is_in: impl Fn(Point) -> bool) {
         let cell_m = self.cell_m();
-        // Centres of cells: as many halves of a cell from the corner.
+        // The centre of a cell is half a cell from its lower left corner.
         let first = |at_m: f64| (at_m / cell_m - 0.5 - 1e-9).ceil().max(0.0) as i32;
         let last = |at_m: f64, count: u32| {
             (at_m / cell_m - 0.5 + 1e-9).floor().min(f64::from(count) - 1.0) as i32

@@ -1,4 +1,4 @@
-//! Discs anywhere.
+//! Randomly placed discs.
 
 use super::canvas::Canvas;
 use keyway::ConfigError;
@@ -12,14 +12,15 @@ use std::f64::consts::PI;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Clutter {
-    /// Ground of all discs in parts of the map's, from 0 to 1. They overlap: what they cover is less.
+    /// Total area of all discs as a share of the map's area, from 0 to 1. The discs overlap, so
+    /// they cover less.
     pub share: f64,
-    /// Least and largest radius \[m\].
+    /// Smallest and largest radius \[m\].
     pub radius_m: [f64; 2],
 }
 
 impl Clutter {
-    /// More discs than this are a mistake.
+    /// Largest sensible number of discs.
     const MOST: f64 = 1e7;
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
@@ -41,7 +42,7 @@ impl Clutter {
     }
 }
 
-/// Refuses what is no part of a whole.
+/// Returns an error for a value that is not from 0 to 1.
 pub(super) fn unless_share(field: &str, value: f64) -> Result<(), ConfigError> {
     if (0.0..=1.0).contains(&value) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Corridors with rooms to both sides.
+//! Corridors with rooms on both sides.
 
 use super::canvas::Canvas;
 use keyway::ConfigError;
@@ -6,9 +6,10 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Corridors from left to right, one above the other, as many as find room, with a row of rooms to both sides of each. Every room has a door to its
-/// corridor, somewhere in the wall. Between two corridors the rows of rooms lie back to back, and a passage through both, as
-/// wide as a corridor, joins the two.
+/// Corridors from left to right, one above the other, as many as fit, with a row of rooms on both
+/// sides of each. Every room has a door to its corridor, at a random place in the wall. Between two
+/// corridors the rows of rooms lie back to back. A passage through both rows, as wide as a
+/// corridor, joins the two corridors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -41,7 +42,7 @@ impl Corridors {
         Ok(())
     }
 
-    /// From one corridor to the next \[m\].
+    /// Distance from one corridor to the next \[m\].
     fn pitch_m(&self) -> f64 {
         self.corridor_m + 2.0 * self.room_m[1]
     }
@@ -49,7 +50,7 @@ impl Corridors {
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
         let [width_m, height_m] = canvas.size_m();
         let count = (height_m / self.pitch_m() + 1e-9).floor() as i32;
-        // What is left is too narrow for one more.
+        // The rest is too narrow for one more corridor.
         let rest = Point::new(0.0, f64::from(count) * self.pitch_m());
         canvas.fill_box(rest, Point::new(width_m, height_m));
         for corridor in 0..count {
@@ -67,7 +68,7 @@ impl Corridors {
         }
     }
 
-    /// The walls and doors of a row of rooms whose corridor is above or below it.
+    /// Draws the walls and doors of a row of rooms whose corridor is above or below it.
     fn row(&self, canvas: &mut Canvas, random: &mut Random, low_m: f64, is_corridor_above: bool) {
         let [width_m, _] = canvas.size_m();
         let [room_m, depth_m] = self.room_m;

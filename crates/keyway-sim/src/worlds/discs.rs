@@ -5,7 +5,8 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// Discs in the world's frame, `[x, y, radius]` each \[m\]; parts of them beside the map are left out.
+/// Discs in the world's frame, `[x, y, radius]` each \[m\]; parts of them outside the map are
+/// ignored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
@@ -25,7 +26,7 @@ impl Discs {
         Ok(())
     }
 
-    /// On a map whose lower left corner lies at `origin`.
+    /// Draws the discs on a map whose lower left corner lies at `origin`.
     pub(super) fn draw(&self, canvas: &mut Canvas, origin: Point) {
         for &[x, y, radius_m] in &self.0 {
             canvas.fill_disc(Point::new(x, y) - origin, radius_m);

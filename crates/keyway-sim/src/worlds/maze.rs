@@ -6,8 +6,8 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// A perfect maze: exactly one way from every place to every other one. It is dug by depth-first search, so the ways are long and
-/// have many dead ends.
+/// A perfect maze: exactly one way between any two places. It is dug by depth-first search, so the
+/// ways are long and have many dead ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -8,8 +8,8 @@ use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A mine worked by room and pillar: roadways that cross each other around pillars of rock. The sides of the pillars are rough,
-/// and some of the roadways between two crossings have fallen in.
+/// A room-and-pillar mine: roadways that cross each other around pillars of rock. The sides of the
+/// pillars are rough, and some of the roadways between two crossings have fallen in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -18,15 +18,15 @@ pub struct Mine {
     pub roadway_m: f64,
     /// Side of a pillar \[m\].
     pub pillar_m: f64,
-    /// How far the sides deviate from straight lines at most \[m\].
+    /// Largest deviation of the sides from straight lines \[m\].
     pub roughness_m: f64,
-    /// How many of the stretches between two crossings have fallen in, from 0 to 1. Those that are upright and on the left stay
-    /// open, and so do those that are level: every crossing can be reached.
+    /// Share of the stretches between two crossings that have fallen in, from 0 to 1. The leftmost
+    /// vertical stretches and all horizontal stretches stay open, so every crossing can be reached.
     #[serde(default)]
     pub fallen_in: f64,
 }
 
-/// Waves of the rough sides, and how long each is in parts of the one before.
+/// Number of waves of the rough sides, and length of each as a multiple of the one before.
 const WAVES: u32 = 8;
 const SHORTER: f64 = 0.75;
 
@@ -50,7 +50,7 @@ impl Mine {
             (0..WAVES).map(|_| [random.unit(), random.unit()].map(|unit| unit * TAU)).collect();
         canvas.fill_where(|at| {
             let [x, y] = [at.x, at.y].map(|along_m| along_m.rem_euclid(pitch_m) - self.roadway_m);
-            // Depth inside the pillar, negative outside of it.
+            // Depth inside the pillar, negative outside.
             let depth_m = [x, y].map(|from_m| from_m.min(self.pillar_m - from_m));
             depth_m[0].min(depth_m[1]) > self.rough_m(at, &waves)
         });
@@ -61,7 +61,7 @@ impl Mine {
                     let low = [column, row].map(|n| f64::from(n) * pitch_m);
                     let low = Point::new(low[0], low[1] + self.roadway_m + 0.25 * self.pillar_m);
                     let high = low + Point::new(self.roadway_m, 0.5 * self.pillar_m);
-                    // Into the rock to both sides, however rough they are.
+                    // The box extends into the rock on both sides, however rough they are.
                     let into = Point::new(self.roughness_m, 0.0);
                     canvas.fill_box(low - into, high + into);
                 }
@@ -69,8 +69,8 @@ impl Mine {
         }
     }
 
-    /// How far the side of a pillar deviates near a place \[m\], at most `roughness_m`: the sum of waves, each given by its direction
-    /// and its phase.
+    /// Deviation of a pillar's side near a place \[m\], at most `roughness_m`: the sum of waves,
+    /// each given by its direction and its phase.
     fn rough_m(&self, at: Point, waves: &[[f64; 2]]) -> f64 {
         let (mut sum, mut wave_m) = (0.0, self.pillar_m.max(self.roadway_m));
         for &[direction_rad, phase_rad] in waves {

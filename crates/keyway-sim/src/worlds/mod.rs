@@ -1,7 +1,8 @@
-//! Maps from a seed: as many worlds of one kind as wanted, the same for everybody.
+//! Maps generated from a seed: any number of worlds of one kind, the same for everybody.
 //!
-//! A [`GeneratedMap`] says how large a map is and what stands on it; with a seed it gives an [`OccupancyGrid`]. All lengths
-//! are metres from the map's lower left corner; what stands is drawn by the centres of cells.
+//! A [`GeneratedMap`] gives the size of a map and its obstacles; with a seed it generates an
+//! [`OccupancyGrid`]. Positions are metres from the map's lower left corner, except those of
+//! [`Discs`], which are in the world frame. Obstacles are drawn by the centres of cells.
 //!
 //! ```
 //! use keyway::geometry::Point;
@@ -19,8 +20,8 @@
 //! ```
 //!
 //! # Errors / cost
-//! [`ConfigError`] with the field. Linear in the cells, and for [`Clutter`] in the ground that its discs cover. [`Blocks`] that are to cover
-//! nearly all of a map are drawn many times over.
+//! [`ConfigError`] with the field. Linear in the cells, and for [`Clutter`] in the area of its
+//! discs. [`Blocks`] that are to cover nearly all of a map are drawn many times over.
 
 mod blocks;
 mod canvas;
@@ -48,7 +49,7 @@ use keyway::map::{GridFrame, OccupancyGrid};
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// A kind of map, from which a seed makes one.
+/// A kind of map; each seed generates one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -59,18 +60,18 @@ pub struct GeneratedMap {
     pub height_m: f64,
     /// Side of a cell \[m\].
     pub resolution_m: f64,
-    /// Where the lower left corner lies, `[x, y]` \[m\].
+    /// Lower left corner, `[x, y]` \[m\].
     #[serde(default)]
     pub origin: Point,
-    /// Within this distance of a start, a goal and a way-point nothing stands \[m\].
+    /// Distance from a start, a goal and a way-point within which nothing stands \[m\].
     #[serde(default = "usual_free_ends_m")]
     pub free_ends_m: f64,
-    /// What stands on it.
+    /// Obstacles on the map.
     #[serde(default, skip_serializing_if = "Pattern::is_none")]
     pub obstacles: Pattern,
 }
 
-/// What stands on a generated map.
+/// Obstacles on a generated map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -81,17 +82,17 @@ pub enum Pattern {
     None,
     /// Discs at given places.
     Discs(Discs),
-    /// Discs anywhere.
+    /// Randomly placed discs.
     Clutter(Clutter),
-    /// Blocks of whole cells anywhere.
+    /// Randomly placed blocks of whole cells.
     Blocks(Blocks),
     /// Rooms with doors between them.
     Rooms(Rooms),
     /// A maze.
     Maze(Maze),
-    /// Corridors with rooms to both sides.
+    /// Corridors with rooms on both sides.
     Corridors(Corridors),
-    /// Obstacles like a U, open to one side.
+    /// U-shaped obstacles, open to one side.
     UTraps(UTraps),
     /// Roadways of a mine around pillars of rock with rough sides.
     Mine(Mine),
@@ -102,7 +103,7 @@ impl Pattern {
         *self == Self::None
     }
 
-    /// Whether another seed gives another map.
+    /// True if another seed gives another map.
     pub const fn is_random(&self) -> bool {
         !matches!(self, Self::None | Self::Discs(_))
     }
@@ -113,13 +114,13 @@ fn usual_free_ends_m() -> f64 {
 }
 
 impl GeneratedMap {
-    /// [`Self::free_ends_m`] where a scene does not say it \[m\].
+    /// Default of [`Self::free_ends_m`] in a scene \[m\].
     pub const USUAL_FREE_ENDS_M: f64 = 0.5;
 
-    /// Larger maps are a mistake \[cells\].
+    /// Largest sensible map \[cells\].
     const MOST_CELLS: f64 = 1e9;
 
-    /// A map on which nothing stands, with its lower left corner at (0, 0).
+    /// An empty map with its lower left corner at (0, 0).
     pub fn empty(width_m: f64, height_m: f64, resolution_m: f64) -> Self {
         Self {
             width_m,
@@ -131,7 +132,8 @@ impl GeneratedMap {
         }
     }
 
-    /// The map of a seed, with room around the `ends` of ways (in the world's frame).
+    /// Generates the map of a seed, with free space around the `ends` of ways (in the world's
+    /// frame).
     ///
     /// # Errors
     /// When a value cannot be used; the error names the field.

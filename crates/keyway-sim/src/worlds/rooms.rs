@@ -7,19 +7,20 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Square rooms side by side. Each has a door to a neighbour on the way to the first one, so all are connected; of the other
-/// walls some have a door, too. A door is somewhere in its wall.
+/// Square rooms side by side. Each has a door to a neighbour on the way to the first one, so all
+/// are connected. Some of the other walls also have a door. A door is at a random place in its
+/// wall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rooms {
-    /// From the middle of one wall to the next \[m\].
+    /// Distance from the middle of one wall to the next \[m\].
     pub room_m: f64,
     /// Width of a door \[m\].
     pub door_m: f64,
     /// Thickness of a wall \[m\].
     pub wall_m: f64,
-    /// How many of the walls that need no door have one, from 0 to 1.
+    /// Share of the walls that need no door but have one, from 0 to 1.
     #[serde(default)]
     pub more_doors: f64,
 }
@@ -67,7 +68,7 @@ impl Rooms {
         }
     }
 
-    /// A door in the left or in the lower wall of a room.
+    /// Cuts a door into the left or the lower wall of a room.
     fn door(&self, canvas: &mut Canvas, random: &mut Random, room: [i32; 2], is_left: bool) {
         let half_m = 0.5 * self.wall_m;
         let [x, y] = room.map(|n| f64::from(n) * self.room_m);

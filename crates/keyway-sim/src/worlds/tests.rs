@@ -28,7 +28,7 @@ fn share(map: &OccupancyGrid) -> f64 {
     map.occupied().count_ones() as f64 / map.frame().cell_count() as f64
 }
 
-/// Free cells that can be reached from the first free one, and all free cells.
+/// Number of free cells that can be reached from the first one, and of all free cells.
 fn flooded(map: &OccupancyGrid) -> (usize, usize) {
     let is_free = |cell: Cell| map.frame().contains(cell) && !map.occupied().get(cell);
     let free: Vec<Cell> = map.frame().cells().filter(|&cell| is_free(cell)).collect();
@@ -77,7 +77,7 @@ fn where_there_are_ways_they_lead_everywhere() {
                 Pattern::None | Pattern::Rooms(_) | Pattern::Maze(_) | Pattern::Corridors(_) => {
                     assert_eq!(reached, free, "{:?} {seed}", map.obstacles);
                 }
-                // The pockets of a rough side are cut off at most.
+                // At most, the pockets of a rough side are cut off.
                 Pattern::Mine(_) => assert!(reached * 100 >= free * 99, "{reached} of {free}"),
                 Pattern::Discs(_)
                 | Pattern::Clutter(_)
@@ -94,11 +94,13 @@ fn sizes_are_those_that_were_asked_for() {
         let map = GeneratedMap { obstacles: obstacles.clone(), ..all()[0].clone() };
         map.generate(5, &[]).unwrap()
     };
-    // Of discs at random places of which all together would cover S, 1 - exp(-S) is covered, less what lies outside.
+    // Discs at random places with a total area of S cover 1 - exp(-S), less the part outside the
+    // map.
     let clutter = |share_m| of(&Pattern::Clutter(Clutter { share: share_m, radius_m: [0.1, 0.2] }));
     assert!((share(&clutter(0.3)) - (1.0 - (-0.3_f64).exp())).abs() < 0.02);
     assert_eq!(share(&clutter(0.0)), 0.0);
-    // Until at least that share is covered; the last block has at most 16 of the 48,000 cells.
+    // Blocks are added until at least that share is covered; the last block has at most 16 of the
+    // 48,000 cells.
     let blocks = share(&of(&Pattern::Blocks(Blocks { share: 0.3, side_m: [0.1, 0.2] })));
     assert!((0.3..0.3 + 16.0 / 48_000.0).contains(&blocks), "{blocks}");
     let full = Blocks { share: 1.0, side_m: [9.0, 90.0] };
@@ -109,7 +111,8 @@ fn sizes_are_those_that_were_asked_for() {
     assert!((share(&trap) * 120.0 - expected_m2).abs() < 0.15, "{}", share(&trap) * 120.0);
     let (reached, free) = flooded(&trap);
     assert_eq!(reached, free);
-    // Pillars of 2 m, smooth, on a pitch of 3.5 m: four across, three up, the last ones cut off at 12 and 10 m.
+    // Pillars of 2 m, smooth, on a pitch of 3.5 m: four across, three up, the last ones cut off at
+    // 12 and 10 m.
     let mine = Mine { roadway_m: 1.5, pillar_m: 2.0, roughness_m: 0.0, fallen_in: 0.0 };
     let mine = of(&Pattern::Mine(mine));
     assert!((share(&mine) * 120.0 - 6.0 * 5.5).abs() < 1.0, "{}", share(&mine) * 120.0);
@@ -159,7 +162,7 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::Mine(mine)), "obstacles.mine.roughness_m");
 }
 
-/// Cells of 1 m and blocks of one to three of them: a single block has such sides.
+/// A single block of one to three cells of 1 m has sides of such lengths.
 #[test]
 fn blocks_have_the_sides_that_were_asked_for() {
     let blocks = Blocks { share: 1e-9, side_m: [1.0, 3.0] };

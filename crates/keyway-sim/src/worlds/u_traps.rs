@@ -1,4 +1,4 @@
-//! Obstacles like a U.
+//! U-shaped obstacles.
 
 use super::canvas::Canvas;
 use keyway::ConfigError;
@@ -6,21 +6,21 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Squares of three walls, open to one of the four sides: local minima for whatever follows its nose.
+/// Squares of three walls, open to one of the four sides: local minima for a greedy planner.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct UTraps {
-    /// How many.
+    /// Number of obstacles.
     pub count: u32,
-    /// Least and largest side \[m\].
+    /// Smallest and largest side \[m\].
     pub size_m: [f64; 2],
     /// Thickness of the walls \[m\].
     pub wall_m: f64,
 }
 
 impl UTraps {
-    /// More than this are a mistake.
+    /// Largest sensible number of obstacles.
     const MOST: u32 = 1_000_000;
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {

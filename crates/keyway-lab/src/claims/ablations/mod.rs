@@ -1,4 +1,5 @@
-//! What each part of a method does: the method without it; and what a parameter does: the method with other values.
+//! Effect of each part of a method, from the method without it, and of a parameter, from the method
+//! with other values.
 //!
 //! Nothing is judged here. All variants run on the same maps as the claims of their paper.
 
@@ -23,50 +24,52 @@ use serde::Serialize;
 pub struct Ablation {
     /// Key of the paper in docs/PAPERS.md.
     pub paper: &'static str,
-    /// What is varied, in a sentence.
+    /// Subject of the variation, in one sentence.
     pub about: &'static str,
     /// The variants, on the maps of the family.
     pub experiment: &'static Experiment,
     /// The method as published.
     pub base: &'static str,
-    /// The parameter that is varied, with its unit, and its value in each of the first methods; `None` where parts are left out.
+    /// The varied parameter with its unit, and its value in each of the first methods; `None` where
+    /// parts are left out.
     pub parameter: Option<(&'static str, &'static [f64])>,
-    /// What is compared.
+    /// Measures to compare.
     pub measures: &'static [Measure],
 }
 
-/// What came of the variants.
+/// Results of the variants.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AblationReport {
     /// The experiment.
     pub experiment: &'static str,
     /// Key of the paper in docs/PAPERS.md.
     pub paper: &'static str,
-    /// What is varied, in a sentence.
+    /// Subject of the variation, in one sentence.
     pub about: &'static str,
-    /// The method that the others are compared with.
+    /// Method with which the others are compared.
     pub base: &'static str,
-    /// The parameter that is varied; `None` where parts are left out.
+    /// The varied parameter; `None` where parts are left out.
     pub parameter: Option<&'static str>,
-    /// Its values, in the order of the first methods.
+    /// Values of the parameter, in the order of the first methods.
     pub values: &'static [f64],
     /// Maps that count.
     pub maps: usize,
-    /// Maps on which a method did not succeed that must.
+    /// Maps on which a method that must succeed did not.
     pub left_out: usize,
-    /// Of each variant and each measure the change from the base.
+    /// Change from the base, for each variant and each measure.
     pub figures: Vec<FamilyFigure>,
 }
 
 impl Ablation {
-    /// All of them, in the order of the papers.
+    /// Returns all ablations, in the order of the papers.
     pub fn all() -> impl Iterator<Item = &'static Self> {
         let papers =
             [&you2021::ABLATIONS[..], &s1::ABLATIONS, &wang2019::ABLATIONS, &zhuyin2024::ABLATIONS];
         papers.into_iter().flatten()
     }
 
-    /// Compares every variant with the base; without `times` nothing that a clock measures.
+    /// Compares every variant with the base; without `times`, omits everything that a clock
+    /// measures.
     pub fn report(&self, family: &Family, times: bool) -> AblationReport {
         let (parameter, values) = self.parameter.unzip();
         let measures = || self.measures.iter().filter(|measure| times || !measure.is_timed());
@@ -75,7 +78,7 @@ impl Ablation {
             measures().map(|&measure| {
                 let figure = Figure::lower(measure, variant.name, self.base, None);
                 let finding = Finding::of(&figure, self.experiment, &family.rows);
-                // Whether more or less is better is not asked.
+                // Neither direction is expected.
                 let figure = family_figure(&figure, &finding);
                 FamilyFigure { expected: "none", judgement: None, ..figure }
             })
@@ -94,7 +97,7 @@ impl Ablation {
     }
 }
 
-/// The maps of another experiment with other methods.
+/// Maps of another experiment, with other methods.
 const fn on_maps_of(
     name: &'static str,
     about: &'static str,
@@ -107,7 +110,7 @@ const fn on_maps_of(
     Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
 }
 
-/// A parameter with other values.
+/// Variants of a parameter with other values.
 const fn sweep(
     paper: &'static str,
     about: &'static str,

@@ -1,5 +1,5 @@
-//! \[S1\]: weight, density, safe children, passes of the smoother, and distance factors; weights, a and R of the DWA, and how much
-//! stands in its way.
+//! \[S1\]: weight, density, safe children, passes of the smoother, and distance factors; weights, a
+//! and R of the DWA, and the number of obstacles in its way.
 
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;
@@ -25,7 +25,7 @@ const fn search(config: DensityAStarConfig) -> PlannerConfig {
     PlannerConfig::DensityAStar(config)
 }
 
-/// The maps of the paper with other methods.
+/// Maps of the paper, with other methods.
 const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
@@ -78,7 +78,7 @@ static FACTORS: Experiment = on_maps(
     ],
 );
 
-/// The DWA of the paper with other parameters.
+/// DWA of the paper with other parameters.
 const fn driven(name: &'static str, local: AdaptiveDwaConfig) -> Method {
     Method::driving(name, FUSED).with_local(LocalConfig::AdaptiveDwa(local)).may_fail()
 }

@@ -1,4 +1,4 @@
-//! \[Wang2019\]: the ratio X. Its four steps one after another are the experiment of its claims.
+//! \[Wang2019\]: the ratio X. The claims' experiment covers its four steps one after another.
 
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;

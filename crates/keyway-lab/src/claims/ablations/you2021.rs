@@ -25,7 +25,7 @@ const PUBLISHED: BidirectionalJpsConfig = BidirectionalJpsConfig::PAPER;
 const D_M: f64 = KeyPointSmoothingConfig::PAPER.safe_distance_m;
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-/// The maps of the paper with other methods.
+/// Maps of the paper, with other methods.
 const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
@@ -53,7 +53,7 @@ static PARTS: Experiment = on_maps(
     ],
 );
 
-/// The DWA of the paper with other weights.
+/// DWA of the paper with other weights.
 const fn dwa(weights: KeyPointWeights, speed_weight: SpeedWeight) -> LocalConfig {
     let config = KeyPointDwaConfig { weights, speed_weight, ..KeyPointDwaConfig::PAPER };
     LocalConfig::KeyPointDwa(config)
@@ -61,7 +61,7 @@ const fn dwa(weights: KeyPointWeights, speed_weight: SpeedWeight) -> LocalConfig
 
 const WEIGHTS: KeyPointWeights = KeyPointDwaConfig::PAPER.weights;
 const SPEED: SpeedWeight = SpeedWeight::PAPER;
-/// No obstacle changes it.
+/// Speed weight that no obstacle changes.
 const FIXED: SpeedWeight = SpeedWeight { high_risk: 0.0, low_risk: 0.0, ..SPEED };
 
 const fn driven(name: &'static str, local: LocalConfig) -> Method {

@@ -1,4 +1,5 @@
-//! \[ZhuYin2024\]: parts of HSTA*, layers of its smoother, and guidance; L, R and the weights of the DWA.
+//! \[ZhuYin2024\]: parts of HSTA*, layers of its smoother, and guidance; L, R and the weights of
+//! the DWA.
 
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;
@@ -43,12 +44,12 @@ const SMOOTHER: SmootherConfig = SmootherConfig::Hierarchical(PUBLISHED);
 const INNER_LAYER: SmootherConfig = SmootherConfig::LineOfSight(LineOfSightConfig {});
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-/// The maps of the static scene with other methods.
+/// Maps of the static scene, with other methods.
 const fn on_static(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
 
-/// The maps with unknown obstacles with other methods.
+/// Maps with unknown obstacles, with other methods.
 const fn on_unknown(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, UNKNOWN_ABOUT, UNKNOWN_FAMILY, UNKNOWN_ENDS, methods)
 }

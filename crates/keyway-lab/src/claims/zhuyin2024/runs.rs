@@ -1,10 +1,12 @@
-//! Experiments with runs among what is not on the map.
+//! Experiments with runs among unknown obstacles.
 //!
-//! Sizes of the roadways, of the mine and of the laboratory are not published. Each family is chosen by what is published
-//! of the baselines: the lengths of 4-neighbour A* in the roadways (77, 80 and 88 m), the length of A* in the mine (86.31 m), and how
-//! often the path of A* turns in the laboratory (10 times). RRT, A* and Dijkstra avoid nothing that is not on the map; their runs end where it
-//! stands. So a length, a search time or a contact of theirs is that of their path, as in the paper's tables: a robot that follows it
-//! touches mapped walls, too, whose corners it cuts.
+//! The sizes of the roadways, the mine and the laboratory are not published. Each family is chosen
+//! by the published figures of the baselines: the lengths of 4-neighbour A* in the roadways (77, 80
+//! and 88 m), the length of A* in the mine (86.31 m), and the number of turns of A*'s path in the
+//! laboratory (10). RRT, A* and Dijkstra do not avoid unknown obstacles; their runs end at the
+//! first one. So a length, a search time or a contact of these methods is measured on their path,
+//! as in the paper's tables: a robot that follows the path also touches the mapped walls whose
+//! corners it cuts.
 
 use super::super::experiment::{Experiment, Scene};
 use super::super::method::Method;
@@ -38,19 +40,20 @@ const RRT: PlannerConfig = PlannerConfig::Rrt(RrtConfig {
     seed: 0,
 });
 
-/// Why there are no maps that fit.
+/// Reason why no maps fit.
 const LENGTHS_FIT_ALL: &str = "the lengths of 4-neighbour A* are the distances of start and goal along the axes, so every open map fits them; \
     how often its path turns is decided among equally short paths, and not by the map; RRT is random";
 const NO_ROOM: &str = "neither plan nor size of the room is published, nor the limits of its robot; that A* turns 10 times there chose the family";
 
-/// How far from the way the unknown obstacles' centres are at most \[m\].
+/// Maximum distance of the unknown obstacles' centres from the path \[m\].
 const ON_THE_WAY_M: f64 = 0.5;
-/// Unknown obstacles of figure 7, as in its scenes: those that stand, and those that walk.
+/// Unknown obstacles of figure 7, as in its scenes: standing and walking ones.
 const STANDING_AND_WALKING: [u32; 2] = [3, 2];
-/// The same of figure 8, in which nothing moves.
+/// Unknown obstacles of figure 8, where nothing moves.
 const STANDING: [u32; 2] = [3, 0];
 
-/// A square mine; rough sides of its pillars make each map another one. Around its ends there is room for the constraint.
+/// A square mine; the rough sides of its pillars make each map different. Around its ends there is
+/// room for the constraint.
 const fn mine(
     side_m: f64,
     [roadway_m, pillar_m]: [f64; 2],
@@ -60,12 +63,12 @@ const fn mine(
     square(side_m, 0.5, Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }))
 }
 
-/// Share of the stretches between two crossings.
+/// Share of the stretches between two crossings that have fallen in.
 const FALLEN_IN: f64 = 0.2;
-/// More than a cell, so that it changes the map \[m\].
+/// Roughness \[m\]; more than a cell, so that it changes the map.
 const ROUGH_M: f64 = 2.0;
 
-/// A stack among three obstacles that stand on the way.
+/// A stack among three static obstacles on its path.
 pub(in super::super) const fn past_three(name: &'static str, stack: &'static str) -> Method {
     Method::driving(name, stack).among_unknown(STANDING, ON_THE_WAY_M)
 }
@@ -106,7 +109,7 @@ pub(super) static ROADWAYS: Experiment = Experiment {
         Method::driving(GUIDED, GUIDED).among_unknown(STANDING_AND_WALKING, ON_THE_WAY_M),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    // The first of the three.
+    // The first of the three roadways.
     scene: Some(Scene {
         file: "scenes/zhuyin2024/turning_roadway.toml",
         ends: [Cell::new(1, 1), Cell::new(40, 39)],
@@ -115,7 +118,7 @@ pub(super) static ROADWAYS: Experiment = Experiment {
     reconstruction: Err(LENGTHS_FIT_ALL),
 };
 
-/// Table 3: roadways as wide as those of the family, around one large pillar.
+/// Table 3: roadways with the width of the family, around one large pillar.
 static FITTED_MINE: Reconstruction = Reconstruction {
     name: "zhuyin2024-coal-mine",
     family: mine(66.0, [6.0, 40.0], 1.4, 0.0),
@@ -150,7 +153,8 @@ pub(super) static COAL_MINE: Experiment = Experiment {
     reconstruction: Ok(&FITTED_MINE),
 };
 
-/// Figure 10: a simulated room stands for the real one, and the robot `small` for the real robot.
+/// Figure 10: a simulated room in place of the real one, and the robot `small` in place of the real
+/// robot.
 pub(super) static LABORATORY: Experiment = Experiment {
     name: "zhuyin2024-laboratory",
     about: "12.5 m x 9 m in cells of 5 cm, discs of 0.2 to 0.4 m that cover 5 %, with the robot small",
@@ -182,7 +186,7 @@ mod tests {
 
     const MAPS: u64 = 100;
 
-    /// Mean length of a method over maps of an experiment.
+    /// Mean length of a method over the maps of an experiment.
     fn mean_length_m(experiment: &Experiment, method: &str) -> f64 {
         let (_, method) = experiment.method(method).unwrap();
         let mut workspace = Workspace::default();
@@ -194,7 +198,7 @@ mod tests {
         (1..=MAPS).map(&mut length_m).sum::<f64>() / MAPS as f64
     }
 
-    /// Mean turns of the path of A* in the laboratory with another share.
+    /// Mean number of turns of A*'s path in the laboratory with another share.
     fn mean_turns(share: f64) -> f64 {
         let obstacles = Pattern::Clutter(Clutter { share, radius_m: [0.2, 0.4] });
         let family = GeneratedMap { obstacles, ..LABORATORY.family.clone() };
@@ -221,7 +225,7 @@ mod tests {
         assert!((roadways_m - published_m).abs() < 0.01 * published_m, "{roadways_m}");
         let mine_m = mean_length_m(&COAL_MINE, PATH_OF_ASTAR);
         assert!((mine_m - 86.31).abs() < 0.01 * 86.31, "{mine_m}");
-        // Of all shares in steps of 5 % this comes nearest to 10 turns.
+        // Of all shares in steps of 5 %, this one is nearest to 10 turns.
         let Pattern::Clutter(Clutter { share, .. }) = LABORATORY.family.obstacles else {
             panic!("no clutter")
         };

@@ -1,4 +1,4 @@
-//! The way of one robot among random obstacles, and whether it still has one.
+//! Path of one robot among random obstacles, and a check that the robot still has a path.
 
 use keyway::ConfigError;
 use keyway::geometry::{PlannedLine, Point, Polyline};
@@ -8,24 +8,25 @@ use keyway::robot::Footprint;
 use keyway::search::{Query, Workspace};
 use keyway::smooth::{Smoother, Taut};
 
-/// How exactly the bends of a way are followed \[m\].
+/// Tolerance for flattening the bends of a path \[m\].
 const FLAT_M: f64 = 0.01;
 
-/// A robot's way from its start by its way-points to its goal.
+/// A robot's path from its start via its way-points to its goal.
 pub(super) struct Lane {
-    /// Around what the map shows and what was added since, for the robot's inscribed radius.
+    /// Layers of the map with all obstacles added so far, for the robot's inscribed radius.
     map: SearchMap,
     ends: Vec<Point>,
-    /// Around what the map shows; empty where there is none.
+    /// Path on the original map; empty if there is none.
     pub(super) way: Polyline,
     pub(super) inscribed_m: f64,
-    /// From the ends to the rim of any obstacle \[m\].
+    /// Free distance from the ends to the rim of any obstacle \[m\].
     free_ends_m: f64,
     workspace: Workspace,
 }
 
 impl Lane {
-    /// `ends` are all places that the robot has to be at, in their order; `free_ends_m` is what is kept free around its footprint there.
+    /// `ends` are all positions that the robot has to visit, in order; `free_ends_m` is the free
+    /// margin around its footprint there.
     pub(super) fn of(
         known: &OccupancyGrid,
         footprint: &Footprint,
@@ -33,7 +34,7 @@ impl Lane {
         free_ends_m: f64,
     ) -> Result<Self, ConfigError> {
         let inscribed_m = footprint.inscribed_radius_m();
-        // The robot stands at its ends, however near they are to something.
+        // The robot stands at its ends, however near they are to an obstacle.
         let layers = LayerConfig {
             clearance_m: inscribed_m,
             free_ends_m: inscribed_m,
@@ -59,28 +60,30 @@ impl Lane {
         Ok(lane)
     }
 
-    /// Whether there is a way on the map.
+    /// True if there is a path on the original map.
     pub(super) fn has_way(&self) -> bool {
         self.way.length_m() > 0.0
     }
 
-    /// Adds obstacles, or takes them away again.
+    /// Adds obstacles, or removes them again.
     pub(super) fn set(&mut self, cells: &[Cell], state: CellState) {
         let edits: Vec<Edit> = cells.iter().map(|&cell| Edit { cell, state }).collect();
         self.map.apply(&edits);
     }
 
-    /// Whether it has a way around all that was added. One that never had a way has lost none.
+    /// True if there is a path around all added obstacles. A robot that never had a path has lost
+    /// none.
     pub(super) fn still_has_way(&mut self) -> bool {
         !self.has_way() || self.legs(&Jps).is_some()
     }
 
-    /// Whether everything within `radius_m` around the nearest of places is off the ends; `apart_m` is how far an end is from it.
+    /// True if a disc of `radius_m` leaves the ends free at its nearest position; `apart_m` is the
+    /// distance of an end from this position.
     pub(super) fn leaves_ends(&self, radius_m: f64, apart_m: impl Fn(Point) -> f64) -> bool {
         self.ends.iter().all(|&end| apart_m(end) >= self.free_ends_m + radius_m)
     }
 
-    /// A line from each end to the next; `None` where there is none.
+    /// Plans a line from each end to the next; `None` if a leg has no path.
     fn legs(&mut self, planner: &dyn GlobalPlanner) -> Option<Vec<PlannedLine>> {
         let mut plan = Plan::default();
         let mut leg = |pair: &[Point]| {

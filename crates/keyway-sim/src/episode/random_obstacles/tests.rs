@@ -2,7 +2,8 @@ use super::*;
 use keyway::map::{GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 
-/// A hall of 12 m x 6 m in cells of 0.1 m, with walls around it, and one across with a door from 2 m to 3.2 m up.
+/// A hall of 12 m x 6 m in cells of 0.1 m, with walls around it, and a wall across with a door from
+/// 2 m to 3.2 m up.
 fn hall(with_door: bool) -> OccupancyGrid {
     let frame = GridFrame::new(120, 60, 0.1, keyway::geometry::Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |Cell { x, y }| {
@@ -36,7 +37,7 @@ fn squares(map: &OccupancyGrid) -> Vec<Cell> {
     map.frame().cells().filter(|&cell| map.occupied().get(cell)).collect()
 }
 
-/// From a place to the nearest of squares, one after the other \[m\].
+/// Distance from a position to the nearest of several squares, checked one by one \[m\].
 fn to_squares_m(squares: &[Cell], at: Point) -> f64 {
     let gap =
         |at: f64, low: i32| (f64::from(low) * 0.1 - at).max(at - f64::from(low + 1) * 0.1).max(0.0);
@@ -44,7 +45,7 @@ fn to_squares_m(squares: &[Cell], at: Point) -> f64 {
     squares.iter().map(apart_m).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether cells lead from the start to the goal whose centres are so far from squares and discs.
+/// True if cells whose centres keep these distances from squares and discs connect start and goal.
 fn has_way(episode: &Episode, radius_m: f64, beside_discs_m: f64) -> bool {
     let (frame, squares) = (episode.known.frame(), squares(&episode.known));
     let is_free = |cell: Cell| {
@@ -76,7 +77,8 @@ fn a_seed_gives_one_world_and_another_seed_another_one() {
     assert_eq!(of(&all, 7), of(&all, 7));
     assert_ne!(of(&all, 7).obstacles, of(&all, 8).obstacles);
     assert_ne!(of(&all, 7).movers, of(&all, 8).movers);
-    // Those that stand are the same however many move, and the first ones however many follow.
+    // The static discs do not depend on the number of moving ones, nor the first discs on the
+    // number of later ones.
     assert_eq!(of(&all, 7).obstacles, of(&config(4, 0), 7).obstacles);
     assert_eq!(of(&all, 7).obstacles[..3], of(&config(3, 2), 7).obstacles);
     let placed = of(&all, 7).random.unwrap();
@@ -86,7 +88,7 @@ fn a_seed_gives_one_world_and_another_seed_another_one() {
 
 #[test]
 fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
-    // Without the wall the shortest way is straight.
+    // Without the wall, the shortest path is straight.
     for (seed, robot) in (0..12).zip([Robot::small(), Robot::jackal()].into_iter().cycle()) {
         let inscribed_m = robot.footprint.inscribed_radius_m();
         let circumscribed_m = robot.footprint.circumscribed_radius_m();
@@ -109,7 +111,8 @@ fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
 
 #[test]
 fn beside_a_disc_there_is_room_to_spare() {
-    // In the door, 0.5 m are left beside a disc: the robot is 0.36 m wide, and fits through a row of cells, but not with a margin.
+    // In the door, 0.5 m are left beside a disc: the robot is 0.36 m wide, and fits through a row
+    // of cells, but not with a margin.
     let narrow = RandomObstacles {
         unknown: Some(RandomUnknown { count: 1, radius_m: [0.14, 0.14] }),
         moving: None,
@@ -164,7 +167,8 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
 
 #[test]
 fn what_finds_no_place_is_counted() {
-    // In the door, 1.2 m wide, there is no room for a disc of 0.6 m and the robot, and the way is all within the door.
+    // The door is 1.2 m wide, too narrow for a disc of 0.6 m and the robot, and the whole path is
+    // within the door.
     let mut episode = episode(true, Robot::small());
     episode.start.position = Point::new(5.05, 2.55);
     episode.goal.position = Point::new(7.05, 2.55);
@@ -178,7 +182,7 @@ fn what_finds_no_place_is_counted() {
     let placed = episode.random.unwrap();
     assert_eq!((placed.unknown_placed, placed.moving_placed, placed.left_out()), (0, 0, 5));
     assert!(episode.obstacles.is_empty() && episode.movers.is_empty());
-    // Where there is no way, there is nothing near it.
+    // Without a path, nothing is near it.
     let mut closed = self::episode(true, Robot::small());
     closed.goal.position = Point::new(0.05, 0.05);
     config(2, 1).put_into(&mut closed, 1).unwrap();
@@ -213,7 +217,8 @@ fn bad_values_are_named() {
     assert_eq!(field(&|it| it.moving = moving([1.0, 200.0])), "moving.speed_mps[1]");
 }
 
-/// A wide robot that stays on the left, and two that pass through the door from opposite sides.
+/// A wide robot that stays on the left, and two robots that pass through the door from opposite
+/// sides.
 fn team(with_door: bool) -> Team {
     let robot = |robot: Robot, from: [f64; 2], to: [f64; 2]| {
         TeamRobot::new(robot, Point::from(from), Point::from(to))
@@ -266,7 +271,7 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
                     assert!(times.clone().all(|t_s| is_off(&mover.at(t_s))), "{seed}: {i}");
                 }
             }
-            // Only the wider robot's way is so far to the left and so far up.
+            // Only the wider robot's path is so far to the left and so far up.
             let is_near = |disc: &&Circle| {
                 let Point { x, y } = disc.centre;
                 match i {
@@ -281,7 +286,7 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
     assert!(near.iter().all(|&count| count > 0) && crossing > 6, "{near:?}, {crossing}");
 }
 
-/// Walled in, it stands where it is; the others drive all the same.
+/// The walled-in robot stays where it is; the others drive all the same.
 #[test]
 fn a_robot_without_a_way_keeps_its_ends_free() {
     let mut team = team(false);

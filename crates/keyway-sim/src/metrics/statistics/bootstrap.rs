@@ -1,38 +1,39 @@
-//! The bootstrap interval of a mean, corrected for bias and acceleration (`BCa`) \[Efron1987\].
+//! Bootstrap interval of a mean, corrected for bias and acceleration (`BCa`) \[Efron1987\].
 //!
 //! # Source
-//! \[Efron1987\]. Samples of the same size are drawn from the values, with
-//! replacement; between which of their means the true mean lies follows from how many of them are below the
-//! mean of the sample, and from its skewness. Nothing is assumed of how values are distributed, but
-//! there have to be enough of them: of 1000 intervals of 95 %, 80 to 82 % held the true mean with 5 values each, 90 %
-//! with 10, 92 to 93 % with 20, and 94 % with 50 (of normal and of exponential values).
+//! \[Efron1987\]. Samples of the same size are drawn from the values, with replacement. The
+//! interval of the true mean follows from the share of their means below the mean of the sample,
+//! and from the sample's skewness. No distribution of the values is assumed, but there must be
+//! enough of them: of 1000 intervals of 95 %, 80 to 82 % contained the true mean with 5 values
+//! each, 90 % with 10, 92 to 93 % with 20, and 94 % with 50 (of normal and of exponential values).
 //!
 //! | paper | here |
 //! |---|---|
 //! | B | resamples, 10,000 |
 //! | θ̂ | the mean |
-//! | z0 | the normal quantile of the share of resamples with a lower mean; equal ones count half |
-//! | a | the sum of cubed deviations by 6 times the sum of squared ones to the power of 3/2 |
-//! | z\[α\] = z0 + (z0 + z(α)) / (1 - a (z0 + z(α))) | what end of the resamples' means bounds the interval |
+//! | z0 | normal quantile of the share of resamples with a lower mean; equal ones count half |
+//! | a | the sum of cubed deviations over 6 times the sum of squared ones to the power of 3/2 |
+//! | z\[α\] = z0 + (z0 + z(α)) / (1 - a (z0 + z(α))) | interval end among the resamples' means |
 //!
 //! # Where this differs from the paper
-//! Half of the means that are equal count as lower: values such as numbers of turns give many of them.
+//! Half of the equal means count as lower: values such as numbers of turns give many of them.
 //!
 //! # Errors / cost
-//! `None` for a single value. Where all values are equal, the interval has no width. 10,000 n draws.
+//! `None` for a single value. If all values are equal, the interval has no width. 10,000 n draws.
 
 use super::confidence::{Confidence, Interval};
 use super::normal;
 use super::sample::Sample;
 use keyway::random::Random;
 
-/// Resamples for an interval.
+/// Number of resamples for an interval.
 const RESAMPLES: usize = 10_000;
 
 impl Sample {
-    /// Between what the true mean lies: Efron's `BCa` interval of 10,000 resamples, drawn from this seed. `None` for
-    /// a single value; without width where all are equal. With few values it is too narrow: with 10, an interval of
-    /// 95 % holds the true mean in about 90 % of cases.
+    /// Returns the interval of the true mean: Efron's `BCa` interval of 10,000 resamples, drawn
+    /// from this seed. `None` for a single value; without width where all are equal. With few
+    /// values it is too narrow: with 10, an interval of 95 % contains the true mean in about 90 %
+    /// of cases.
     pub fn mean_interval(&self, confidence: Confidence, seed: u64) -> Option<Interval> {
         let values = self.values();
         if values.len() < 2 {
@@ -49,36 +50,36 @@ impl Sample {
     }
 }
 
-/// The mean of as many values as there are, each drawn at random. `draws` is memory.
+/// Mean of a resample of the same size. `draws` is scratch memory.
 fn resampled_mean(values: &[f64], draws: &mut [u32], random: &mut Random) -> f64 {
     draws.fill(0);
     let count = u32::try_from(values.len()).unwrap_or(u32::MAX);
     for _ in values {
         draws[random.below(count) as usize] += 1;
     }
-    // In the order of the values: the sum of the sample itself comes out the same to the bit.
+    // In the order of the values, the sum of the sample itself is the same to the bit.
     let drawn = values.iter().zip(draws).map(|(value, draws)| value * f64::from(*draws));
     drawn.sum::<f64>() / values.len() as f64
 }
 
-/// The means of resamples -> the interval.
+/// Interval from the means of the resamples.
 fn corrected(means: Vec<f64>, sample: &Sample, confidence: Confidence) -> Interval {
     let mean = sample.values().iter().sum::<f64>() / sample.values().len() as f64;
     let count =
         |is: fn(&f64, &f64) -> bool| means.iter().filter(|one| is(one, &mean)).count() as f64;
     let below = count(|one, mean| one < mean) + 0.5 * count(|one, mean| one == mean);
-    // Within the digits of a share of so many; rounding must not lead to one of 0 or 1.
+    // Limited to the resolution of the share; rounding must not give a share of 0 or 1.
     let count = means.len() as f64;
     let bias = normal::quantile(below.clamp(0.5, count - 0.5) / count);
     let acceleration = acceleration(sample);
     let Ok(means) = Sample::new(means) else {
-        // Means of numbers are numbers.
+        // Means of finite numbers are finite.
         return Interval { low: mean, high: mean, confidence };
     };
     let end = |z: f64| {
         let shifted = bias + z;
         let scale = 1.0 - acceleration * shifted;
-        // A tail so far out that the correction has turned over: the last of the means.
+        // In a tail so far out that the correction changes its sign, the last mean is used.
         let place = if scale > 0.0 { bias + shifted / scale } else { shifted * f64::INFINITY };
         means.quantile(normal::probability_below(place))
     };
@@ -86,7 +87,8 @@ fn corrected(means: Vec<f64>, sample: &Sample, confidence: Confidence) -> Interv
     Interval { low: end(-z), high: end(z), confidence }
 }
 
-/// For a mean the jackknife's formula is a sixth of the skewness by the root of the number of values.
+/// For a mean, the jackknife's formula is a sixth of the skewness over the root of the number of
+/// values.
 fn acceleration(sample: &Sample) -> f64 {
     let mean = sample.mean();
     let deviations = || sample.values().iter().map(|value| value - mean);
@@ -112,7 +114,8 @@ mod tests {
         values.iter().sum::<f64>() / values.len() as f64
     }
 
-    /// The interval of all n^n resamples, with the acceleration of the jackknife: each value left out.
+    /// Interval of all n^n resamples, with the acceleration of the jackknife: each value left out
+    /// once.
     fn of_all_resamples(values: &[f64], confidence: f64) -> [f64; 2] {
         let (n, whole) = (values.len(), mean(values));
         let draw = |mut number: usize| {
@@ -165,7 +168,8 @@ mod tests {
         }
     }
 
-    /// Without skewness it is the interval of a normal distribution: 288 values of 0 to 287, each once.
+    /// Without skewness it is the interval of a normal distribution: the 288 values 0 to 287, each
+    /// once.
     #[test]
     fn many_even_values() {
         let values: Vec<f64> = (0..288).map(f64::from).collect();
@@ -180,9 +184,10 @@ mod tests {
         let one = Sample::new(vec![3.0]).unwrap();
         assert_eq!(one.mean_interval(Confidence::USUAL, SEED), None);
         assert_eq!(interval(&[0.1; 7], 0.95), [0.1, 0.1]);
-        // Two values: all that can be drawn is within them, and they are drawn.
+        // Two values: every draw is within them, and both are drawn.
         assert_eq!(interval(&[1.0, 2.0], 0.95), [1.0, 2.0]);
-        // Where rounding decides which means are lower, and where the correction would turn over.
+        // Cases in which rounding decides which means are lower, or the correction would change its
+        // sign.
         let next = [1.0, 1.0 + f64::EPSILON, 1.0];
         let skewed: Vec<f64> = (0..40).map(|i| if i == 0 { 1e6 } else { 0.0 }).collect();
         for values in [&next[..], &skewed] {
@@ -196,7 +201,7 @@ mod tests {
         let values = [0.3, 9.1, 2.2, 4.7, 4.7, 3.9, 0.1];
         let backwards: Vec<f64> = values.iter().rev().copied().collect();
         assert_eq!(interval(&values, 0.95), interval(&backwards, 0.95));
-        // Powers of 2 change no digit.
+        // A factor of 2 changes no digit.
         let doubled = values.map(|value| 2.0 * value);
         assert_eq!(interval(&values, 0.95).map(|end| 2.0 * end), interval(&doubled, 0.95));
         let sample = Sample::new(values.to_vec()).unwrap();

@@ -1,27 +1,27 @@
-//! How sure an interval is.
+//! Confidence of an interval.
 
 use super::error::StatisticsError;
 use super::normal;
 use serde::{Deserialize, Serialize};
 
-/// The share of samples whose interval holds the true value; above 0 and below 1.
+/// Share of samples whose interval contains the true value; above 0 and below 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "f64")]
 pub struct Confidence(f64);
 
-/// Between what a true value lies with some confidence, both ends included.
+/// Confidence interval of a true value, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// The lower end.
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// How sure that is.
+    /// Confidence of the interval.
     pub confidence: Confidence,
 }
 
 impl Confidence {
-    /// 95 %, as is usual.
+    /// The usual 95 %.
     pub const USUAL: Self = Self(0.95);
 
     /// # Errors
@@ -31,17 +31,17 @@ impl Confidence {
         if is_sound { Ok(Self(share)) } else { Err(StatisticsError::Confidence(share)) }
     }
 
-    /// As a share.
+    /// Returns the confidence as a share.
     pub const fn share(self) -> f64 {
         self.0
     }
 
-    /// The probability on each side of an interval.
+    /// Returns the probability on each side of an interval.
     pub(super) fn tail(self) -> f64 {
         0.5 * (1.0 - self.0)
     }
 
-    /// How many standard deviations an interval of a normal distribution reaches to each side.
+    /// Half width of an interval of the normal distribution, in standard deviations.
     pub(super) fn normal_quantile(self) -> f64 {
         -normal::quantile(self.tail())
     }

@@ -1,29 +1,29 @@
-//! Why there is no answer.
+//! Errors of the statistics.
 
 use keyway::given::Given;
 use thiserror::Error;
 
-/// What is wrong with the numbers that were given.
+/// Error in the given numbers.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StatisticsError {
-    /// A sample of nothing.
+    /// The sample is empty.
     #[error("there are no values; a sample needs at least one")]
     NoValues,
-    /// A value that is no number, or so large that its square is none.
+    /// A value is not a number, or is too large to be squared.
     #[error("value {number} is {}, expected a number from -1e90 to 1e90", Given(*.value))]
     Value {
-        /// Which one, from 1.
+        /// Number of the value, from 1.
         number: usize,
         /// The value.
         value: f64,
     },
-    /// A confidence that no interval has.
+    /// A confidence is not above 0 and below 1.
     #[error("the confidence is {}, expected a share above 0 and below 1, such as 0.95", Given(*.0))]
     Confidence(f64),
-    /// A probability that is none.
+    /// A p-value is not a probability.
     #[error("p-value {number} is {}, expected a number from 0 to 1", Given(*.value))]
     PValue {
-        /// Which one, from 1.
+        /// Number of the value, from 1.
         number: usize,
         /// The value.
         value: f64,

@@ -1,22 +1,22 @@
-//! Holm's correction of several tests \[Holm1979\].
+//! Holm's correction for several tests \[Holm1979\].
 //!
 //! # Source
-//! \[Holm1979\]: of m tests the one with the smallest p is judged as one of m, the next one as
-//! one of m - 1, and so on until one does not hold. With what is returned here, every test is compared with
-//! the usual level.
+//! \[Holm1979\]: of m tests, the one with the smallest p is judged as one of m, the next as one of
+//! m - 1, and so on until one is not significant. The values returned here are compared with the
+//! usual level.
 //!
 //! | paper | here |
 //! |---|---|
 //! | P(1) ≤ ... ≤ P(n) | the p-values in ascending order |
-//! | α / (n - k + 1) | what P(k) is compared with; here (n - k + 1) P(k), and no less than those before it, is compared with α |
+//! | α / (n - k + 1) | level of P(k); here (n - k + 1) P(k), made ascending, is compared with α |
 //!
 //! # Errors / cost
-//! [`StatisticsError`] for what is no probability. Sorts the p-values.
+//! [`StatisticsError`] for a value that is not a probability. Sorts the p-values.
 
 use super::error::StatisticsError;
 
-/// The p-values that count when all of these tests are judged together, in the given order: the chance of a
-/// single wrong rejection among them stays below the level that they are compared with.
+/// Returns the corrected p-values of tests that are judged together, in the given order: the chance
+/// of a single wrong rejection among them stays below the level that they are compared with.
 ///
 /// ```
 /// use keyway_sim::metrics::statistics::holm;
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// What R's `p.adjust(p, "holm")` gives for these.
+    /// Values of R's `p.adjust(p, "holm")`.
     #[test]
     fn by_hand() {
         let near = |p: &[f64], expected: &[f64]| {
@@ -71,8 +71,8 @@ mod tests {
     }
 
     proptest! {
-        /// The closure principle: a test holds when every set of tests in which it is holds by Bonferroni's
-        /// inequality.
+        /// The closure principle: a test is significant when every set of tests that contains it is
+        /// significant by Bonferroni's inequality.
         #[test]
         fn the_closure_of_bonferronis_tests(
             p_values in prop::collection::vec((0u32..=40).prop_map(|p| f64::from(p) / 40.0), 0..7),

@@ -1,9 +1,11 @@
-//! McNemar's exact test \[McNemar1947\]: which of two methods succeeds more often on the same tasks.
+//! McNemar's exact test \[McNemar1947\]: which of two methods succeeds more often on the same
+//! tasks.
 //!
 //! # Source
-//! \[McNemar1947\]. Only pairs in which one of the two succeeds say which is better. If neither is, each of
-//! them is as likely to be for the first as for the second method, so their number for one is binomial. The
-//! paper approximates that by a chi-squared distribution; here it is exact.
+//! \[McNemar1947\]. Only pairs in which exactly one method succeeds show which is better. If
+//! neither is better, each of these pairs is as likely to favour the first method as the second, so
+//! the number for one method is binomial. The paper approximates it by a chi-squared distribution;
+//! here it is exact.
 //!
 //! | paper | here |
 //! |---|---|
@@ -17,7 +19,7 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::LN_2;
 
-/// Successes and failures of two methods on the same tasks, compared.
+/// Comparison of successes and failures of two methods on the same tasks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct McNemarTest {
     /// Tasks in which both succeeded.
@@ -28,15 +30,15 @@ pub struct McNemarTest {
     pub only_second: u64,
     /// Tasks in which neither did.
     pub neither: u64,
-    /// The rate of the first less that of the second; `None` without pairs.
+    /// Rate of the first less the rate of the second; `None` without pairs.
     pub rate_difference: Option<f64>,
-    /// The probability of a difference as large as this or larger, in either direction, if both were equally
-    /// good.
+    /// Probability of a difference at least as large, in either direction, if both methods were
+    /// equally good.
     pub p_value: f64,
 }
 
 impl McNemarTest {
-    /// Compares outcomes: for each task whether the first and whether the second method succeeded.
+    /// Compares outcomes: for each task, whether the first and whether the second method succeeded.
     pub fn of_pairs(pairs: impl IntoIterator<Item = [bool; 2]>) -> Self {
         let [mut both, mut only_first, mut only_second, mut neither] = [0; 4];
         for pair in pairs {
@@ -60,10 +62,10 @@ impl McNemarTest {
     }
 }
 
-/// Twice the probability of so few heads in tosses of a coin that shows heads and tails so often.
+/// Twice the probability of at most this many heads in tosses of a fair coin.
 fn two_sided(heads: u64, tails: u64) -> f64 {
     let (few, tosses) = (heads.min(tails) as f64, heads as f64 + tails as f64);
-    // The last term, and those before it by their ratios.
+    // The last term, and the earlier ones by their ratios.
     let log_choices =
         libm::lgamma(tosses + 1.0) - libm::lgamma(few + 1.0) - libm::lgamma(tosses - few + 1.0);
     let mut term = libm::exp(log_choices - tosses * LN_2);
@@ -108,7 +110,7 @@ mod tests {
         assert_eq!(pairs([1, 7, 7, 0]).p_value, 1.0);
     }
 
-    /// Every way in which the pairs that differ could have come out.
+    /// All possible outcomes of the pairs that differ.
     #[test]
     fn all_outcomes_of_up_to_twelve_pairs() {
         for tosses in 0u32..=12 {
@@ -123,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Sums of binomial coefficients in whole numbers.
+    /// Sums of binomial coefficients in integers.
     #[test]
     fn exact_sums_of_a_hundred_pairs() {
         let (tosses, mut choices, mut sum) = (100u64, 1u128, 0u128);
@@ -136,7 +138,7 @@ mod tests {
         }
     }
 
-    /// The normal distribution with a continuity correction, where there are many.
+    /// The normal distribution with a continuity correction, for many pairs.
     #[test]
     fn many_pairs() {
         let p = two_sided(500_500, 499_500);

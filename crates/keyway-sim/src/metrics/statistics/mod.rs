@@ -1,17 +1,18 @@
-//! What many runs say together: summaries, intervals, and tests between two methods.
+//! Statistics of many runs: summaries, intervals, and tests between two methods.
 //!
 //! | question | answer | source |
 //! |---|---|---|
 //! | how large are these values? | [`Sample::summary`] | \[Hyndman1996\] |
-//! | between what does their true mean lie? | [`Sample::mean_interval`] | \[Efron1987\] |
-//! | between what does a true rate lie? | [`Rate::interval`] | \[Wilson1927\] |
+//! | what is the range of their true mean? | [`Sample::mean_interval`] | \[Efron1987\] |
+//! | what is the range of a true rate? | [`Rate::interval`] | \[Wilson1927\] |
 //! | does one of two methods succeed more often? | [`McNemarTest`] | \[McNemar1947\] |
 //! | does one of two methods give larger values? | [`SignedRankTest`] | \[Wilcoxon1945\] |
 //! | which of several tests still hold together? | [`holm`] | \[Holm1979\] |
 //!
-//! Two methods are compared on the same tasks, so both tests are of pairs. Everything is
+//! Two methods are compared on the same tasks, so both tests are paired. Everything is
 //! deterministic: the same values in any order give the same bytes. Only the normal distribution is
-//! needed, and it follows from `libm::erfc`; the crate `statrs` has none of these intervals and tests.
+//! needed, and it follows from `libm::erfc`; the crate `statrs` has none of these intervals and
+//! tests.
 //!
 //! ```
 //! use keyway_sim::metrics::statistics::{Confidence, Rate, Sample, SignedRankTest};

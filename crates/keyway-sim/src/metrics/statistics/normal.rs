@@ -1,23 +1,23 @@
 //! The standard normal distribution.
 //!
 //! # Errors / cost
-//! A share of 0 or less has no quantile but minus infinity, one of 1 or more none but infinity. A quantile
-//! takes about a hundred error functions.
+//! The quantile of a share of 0 or less is minus infinity, and that of a share of 1 or more is
+//! infinity. A quantile takes about a hundred error functions.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// The probability of a value up to `z`, to the last digits in the lower tail, too.
+/// Returns the probability of a value up to `z`, accurate in the lower tail, too.
 pub(super) fn probability_below(z: f64) -> f64 {
     0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
 }
 
-/// The value that is not exceeded with this probability, by halving.
+/// Returns the value that is not exceeded with this probability, by bisection.
 pub(super) fn quantile(share: f64) -> f64 {
     if share <= 0.0 {
         return f64::NEG_INFINITY;
     }
     if share > 0.5 {
-        // The lower tail has the digits; from 0.5 on, the difference is exact.
+        // The lower tail is accurate; from 0.5 on, the difference is exact.
         return -quantile(1.0 - share);
     }
     // Below -40 no probability is above 0.
@@ -35,7 +35,7 @@ pub(super) fn quantile(share: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Quantiles as they are tabulated, such as in the test data of algorithm AS 241.
+    /// Tabulated quantiles, such as those in the test data of algorithm AS 241.
     #[test]
     fn published_values() {
         for (share, z) in [

@@ -1,15 +1,16 @@
-//! The sums of ranks whose signs are up to chance \[Wilcoxon1945\].
+//! Sums of ranks with random signs \[Wilcoxon1945\].
 //!
-//! If neither of two methods is better, every difference is as likely to be positive as negative. So the sum
-//! of the positive ranks takes each rank or leaves it, each with probability 1/2.
+//! If neither of two methods is better, every difference is as likely to be positive as negative.
+//! So the sum of the positive ranks contains each rank with probability 1/2.
 //!
-//! Ranks are doubled: those of ties are halves then. The probabilities are built rank by rank; all of it is
-//! sums of positive numbers, so hardly a digit is lost.
+//! Ranks are doubled because tied ranks are multiples of one half. The probabilities are built rank
+//! by rank as sums of positive numbers, so hardly any precision is lost.
 //!
 //! # Errors / cost
-//! At most 2^n sums for n ranks, and no more than the largest sum; ranks 1 to 50 take 60,000 additions.
+//! At most 2^n sums for n ranks, and no more than the largest sum; the ranks 1 to 50 take 60,000
+//! additions.
 
-/// The distribution of a sum of doubled ranks.
+/// Distribution of a sum of doubled ranks.
 pub(super) struct RankSums {
     /// Each sum and its probability, ascending.
     sums: Vec<(u64, f64)>,
@@ -24,14 +25,14 @@ impl RankSums {
         Self { sums }
     }
 
-    /// The probability of this sum or less.
+    /// Returns the probability of this sum or less.
     pub(super) fn at_most(&self, sum: u64) -> f64 {
         let small = self.sums.iter().take_while(|(one, _)| *one <= sum);
         small.map(|(_, probability)| probability).sum()
     }
 }
 
-/// Without the rank and with it, each half as probable as before; equal sums become one.
+/// Sums without and with the rank, each half as probable as before; equal sums are merged.
 fn with_rank(sums: &[(u64, f64)], rank: u64) -> Vec<(u64, f64)> {
     let mut merged: Vec<(u64, f64)> = Vec::with_capacity(2 * sums.len());
     let mut left = sums.iter().map(|&(sum, probability)| (sum, 0.5 * probability)).peekable();
@@ -56,7 +57,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The largest sums with a probability of at most 2.5 %, as the tables of textbooks have them
+    /// The largest sums with a probability of at most 2.5 %, as tabulated in textbooks
     /// (\[Hollander1999\], table A.4).
     #[test]
     fn published_critical_values() {

@@ -1,9 +1,9 @@
-//! A rate and Wilson's score interval \[Wilson1927\]: between what a true rate lies.
+//! A rate with Wilson's score interval \[Wilson1927\].
 //!
 //! # Source
-//! \[Wilson1927\]; \[Newcombe1998\] compares it with others and recommends it. Its
-//! ends are the rates p for which the observed one is z standard deviations away:
-//! |p̂ - p| = z sqrt(p (1 - p) / n). It never leaves 0 to 1, and is right for 0 of n and n of n, too,
+//! \[Wilson1927\]; \[Newcombe1998\] compares it with others and recommends it. The ends of the
+//! interval are the rates p for which the observed rate is z standard deviations away: |p̂ - p| = z
+//! sqrt(p (1 - p) / n). The interval stays within 0 to 1. It is also right for 0 of n and n of n,
 //! where the usual p̂ ± z sqrt(p̂ (1 - p̂) / n) would have no width.
 //!
 //! | paper | here |
@@ -18,17 +18,17 @@
 use super::confidence::{Confidence, Interval};
 use serde::{Deserialize, Serialize};
 
-/// How often something succeeded.
+/// Numbers of successes and failures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rate {
-    /// How often it did.
+    /// Number of successes.
     pub successes: u64,
-    /// How often it did not.
+    /// Number of failures.
     pub failures: u64,
 }
 
 impl Rate {
-    /// The rate of outcomes.
+    /// Returns the rate of these outcomes.
     pub fn of(outcomes: impl IntoIterator<Item = bool>) -> Self {
         let mut rate = Self::default();
         for is_success in outcomes {
@@ -37,7 +37,7 @@ impl Rate {
         rate
     }
 
-    /// Successes by trials; `None` without trials.
+    /// Successes over trials; `None` without trials.
     pub fn share(&self) -> Option<f64> {
         let trials = self.trials();
         (trials > 0.0).then(|| self.successes as f64 / trials)
@@ -50,7 +50,7 @@ impl Rate {
         let middle = (share + z * z / (2.0 * n)) / scale;
         let variance = share * (1.0 - share) / n + z * z / (4.0 * n * n);
         let half = z * variance.sqrt() / scale;
-        // Where nothing or everything succeeded, that end is exact but for rounding.
+        // Where nothing or everything succeeded, that end is exact except for rounding.
         let low = if self.successes == 0 { 0.0 } else { (middle - half).max(0.0) };
         let high = if self.failures == 0 { 1.0 } else { (middle + half).min(1.0) };
         Some(Interval { low, high, confidence })
@@ -85,7 +85,7 @@ mod tests {
         }
     }
 
-    /// The equation that defines the ends, solved by halving.
+    /// The equation that defines the ends, solved by bisection.
     #[test]
     fn the_ends_are_as_far_as_the_confidence_says() {
         for (successes, trials, confidence) in

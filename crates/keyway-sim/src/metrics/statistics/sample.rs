@@ -1,7 +1,7 @@
 //! A sample and its summary.
 //!
 //! # Source
-//! Quantiles are those of definition 7 of \[Hyndman1996\], which R and `NumPy` use unless told otherwise.
+//! Quantiles follow definition 7 of \[Hyndman1996\], the default of R and `NumPy`.
 //!
 //! | paper | here |
 //! |---|---|
@@ -10,39 +10,40 @@
 //! | (n - 1) p | the place of the quantile, counted from 0; between two places it is interpolated |
 //!
 //! # Errors / cost
-//! [`StatisticsError`] for no values and for what is no number. Sorted once; all else is linear or less.
+//! [`StatisticsError`] for no values, and for a value that is not a number. Sorted once; all else
+//! is linear or less.
 
 use super::error::StatisticsError;
 use serde::{Deserialize, Serialize};
 
-/// Beyond this the sums of squares and cubes lose their meaning.
+/// Limit beyond which the sums of squares and cubes are meaningless.
 const LARGEST: f64 = 1e90;
 
-/// At least one value, all of them numbers; in ascending order, so that no result depends on the order in
-/// which they came.
+/// At least one value, all of them numbers; in ascending order, so that no result depends on the
+/// order of the input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
     sorted: Vec<f64>,
 }
 
-/// How large the values of a sample are.
+/// Summary of the values of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// How many values.
+    /// Number of values.
     pub count: usize,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
-    /// The square root of the sum of squared deviations by n - 1; `None` for a single value.
+    /// Square root of the sum of squared deviations over n - 1; `None` for a single value.
     pub standard_deviation: Option<f64>,
-    /// The smallest value.
+    /// Smallest value.
     pub min: f64,
-    /// The quantile of 0.25.
+    /// Quantile of 0.25.
     pub lower_quartile: f64,
-    /// The quantile of 0.5: of an even number of values the mean of the two in the middle.
+    /// Quantile of 0.5: the mean of the two middle values if their number is even.
     pub median: f64,
-    /// The quantile of 0.75.
+    /// Quantile of 0.75.
     pub upper_quartile: f64,
-    /// The largest value.
+    /// Largest value.
     pub max: f64,
 }
 
@@ -50,7 +51,7 @@ impl Sample {
     /// A sample of these values, in any order.
     ///
     /// # Errors
-    /// When there are none, or one is no number from -1e90 to 1e90.
+    /// When there are none, or one is not a number from -1e90 to 1e90.
     pub fn new(mut values: Vec<f64>) -> Result<Self, StatisticsError> {
         if values.is_empty() {
             return Err(StatisticsError::NoValues);
@@ -68,31 +69,31 @@ impl Sample {
         &self.sorted
     }
 
-    /// The sum of the values by their number.
+    /// Sum of the values over their number.
     pub fn mean(&self) -> f64 {
         let mean = self.sorted.iter().sum::<f64>() / self.sorted.len() as f64;
-        // Rounding may lead out of the values: three times 0.1 is more than 0.3.
+        // Rounding may leave the range of the values: three times 0.1 is more than 0.3.
         mean.clamp(self.min(), self.max())
     }
 
-    /// The square root of the sum of squared deviations by n - 1; `None` for a single value.
+    /// Square root of the sum of squared deviations over n - 1; `None` for a single value.
     pub fn standard_deviation(&self) -> Option<f64> {
         let (mean, count) = (self.mean(), self.sorted.len());
         let squares: f64 = self.sorted.iter().map(|value| (value - mean) * (value - mean)).sum();
         (count > 1).then(|| (squares / (count - 1) as f64).sqrt())
     }
 
-    /// The value that this share of the values does not exceed, interpolated between neighbours. The share
-    /// is cut off at 0 and 1.
+    /// Returns the value that this share of the values does not exceed, interpolated between
+    /// neighbours. The share is limited to 0 to 1.
     pub fn quantile(&self, share: f64) -> f64 {
         let place = share.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
         let (below, part) = (place.floor() as usize, place.fract());
         let (low, high) = (self.sorted[below], self.sorted[self.sorted.len().min(below + 2) - 1]);
-        // Between equal values nothing is rounded.
+        // Between equal values, nothing is rounded.
         if low == high { low } else { low + part * (high - low) }
     }
 
-    /// All of it in one.
+    /// Returns all figures at once.
     pub fn summary(&self) -> Summary {
         Summary {
             count: self.sorted.len(),
@@ -123,8 +124,8 @@ mod tests {
         Sample::new(values.to_vec()).unwrap().summary()
     }
 
-    /// The examples of R's `quantile(x, type = 7)`: 1:10, and 2, 4, 4, 4, 5, 5, 7, 9, whose sum of squared
-    /// deviations is 32.
+    /// Examples of R's `quantile(x, type = 7)`: 1:10, and 2, 4, 4, 4, 5, 5, 7, 9, whose sum of
+    /// squared deviations is 32.
     #[test]
     fn summaries_by_hand() {
         let tens = summary(&[3.0, 10.0, 1.0, 2.0, 9.0, 8.0, 4.0, 7.0, 5.0, 6.0]);

@@ -1,4 +1,5 @@
-//! Wilcoxon's signed-rank test \[Wilcoxon1945\]: which of two methods gives larger values on the same tasks.
+//! Wilcoxon's signed-rank test \[Wilcoxon1945\]: which of two methods gives larger values on the
+//! same tasks.
 //!
 //! # Source
 //! \[Wilcoxon1945\], with the zeros of \[Pratt1959\] and the effect size of \[Kerby2014\].
@@ -6,22 +7,24 @@
 //! | source | here |
 //! |---|---|
 //! | d(i) | differences, first less second |
-//! | rank of \|d(i)\| | from 1; equal sizes share the mean of their ranks; zeros are ranked, then left out (\[Pratt1959\]) |
+//! | rank of \|d(i)\| | from 1; ties: mean rank; zeros are ranked, then dropped \[Pratt1959\] |
 //! | T+, T- | [`SignedRankTest::positive_rank_sum`], [`SignedRankTest::negative_rank_sum`] |
 //! | r = (T+ - T-) / (T+ + T-) | [`SignedRankTest::rank_biserial`] |
 //!
 //! # Why Pratt's zeros
-//! Wilcoxon drops zeros before ranking. A result may then become *more* significant when a value moves
-//! against it \[Pratt1959\]. Methods that often agree, as planners on easy tasks, give many zeros.
+//! Wilcoxon drops zeros before ranking. A result may then become *more* significant when a value
+//! moves against it \[Pratt1959\]. Methods that often agree, such as planners on easy tasks, give
+//! many zeros.
 //!
 //! # Exact or not
-//! With up to 50 differences that are not 0, p is exact, with ties and zeros, too: see [`RankSums`]. Beyond
-//! that, T+ is taken as normal with the mean and the variance that the ranks themselves give: the sum of
-//! ranks by 2 and of their squares by 4, in which the usual corrections for ties and zeros are
-//! contained; half a rank is the correction for continuity.
+//! With up to 50 differences other than 0, p is exact, also with ties and zeros: see [`RankSums`].
+//! Beyond that, T+ is taken as normal, with the mean and the variance that the ranks themselves
+//! give: half of their sum, and a quarter of the sum of their squares. This includes the usual
+//! corrections for ties and zeros; half a rank is the continuity correction.
 //!
 //! # Errors / cost
-//! A sample is never empty, so nothing fails. Sorts the differences; for the interval see `walsh.rs`.
+//! A sample is never empty, so nothing fails. Sorts the differences; for the interval, see
+//! `walsh.rs`.
 
 use super::confidence::{Confidence, Interval};
 use super::normal;
@@ -30,33 +33,34 @@ use super::sample::Sample;
 use super::walsh::{EXACT_RANKS, WalshAverages};
 use serde::{Deserialize, Serialize};
 
-/// Values of two methods on the same tasks, compared.
+/// Comparison of the values of two methods on the same tasks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignedRankTest {
-    /// How many differences.
+    /// Number of differences.
     pub pairs: usize,
-    /// How many of them are 0.
+    /// Number of differences that are 0.
     pub zeros: usize,
-    /// The ranks of the positive differences.
+    /// Sum of the ranks of the positive differences.
     pub positive_rank_sum: f64,
-    /// The ranks of the negative differences.
+    /// Sum of the ranks of the negative differences.
     pub negative_rank_sum: f64,
-    /// The probability of rank sums as different as these or more, in either direction, if differences were
-    /// as likely to be positive as negative.
+    /// Probability of rank sums at least as different, in either direction, if differences were as
+    /// likely to be positive as negative.
     pub p_value: f64,
-    /// Whether that is exact, not approximated by a normal distribution.
+    /// True if p is exact, not approximated by a normal distribution.
     pub is_exact: bool,
-    /// From -1, all differences are negative, to 1, all are positive; 0 where all are 0.
+    /// Effect size from -1, all differences are negative, to 1, all are positive; 0 where all are
+    /// 0.
     pub rank_biserial: f64,
-    /// The median of the means of all pairs of differences \[Hodges1963\].
+    /// Median of the means of all pairs of differences \[Hodges1963\].
     pub median_difference: f64,
-    /// Between what that lies; `None` where there are too few pairs to be so sure.
+    /// Interval of the median difference; `None` where there are too few pairs for this confidence.
     pub median_difference_interval: Option<Interval>,
 }
 
 impl SignedRankTest {
-    /// Compares two methods by their differences, first less second. Sizes that differ by rounding only are
-    /// no ties, so round the differences before where that matters.
+    /// Compares two methods by their differences, first less second. Sizes that differ only by
+    /// rounding are not ties, so round the differences first where that matters.
     pub fn of_differences(differences: &Sample, confidence: Confidence) -> Self {
         let ranks = Ranks::of(differences.values());
         let total = ranks.positive + ranks.negative;
@@ -77,12 +81,12 @@ impl SignedRankTest {
     }
 }
 
-/// The doubled ranks of the differences that are not 0.
+/// Doubled ranks of the differences that are not 0.
 struct Ranks {
     doubled: Vec<u64>,
-    /// The sum of those of positive differences.
+    /// Sum of the ranks of positive differences.
     positive: u64,
-    /// The sum of those of negative differences.
+    /// Sum of the ranks of negative differences.
     negative: u64,
 }
 
@@ -93,7 +97,7 @@ impl Ranks {
         let mut ranks = Self { doubled: Vec::new(), positive: 0, negative: 0 };
         let mut before = 0;
         for ties in by_size.chunk_by(|a, b| a.abs() == b.abs()) {
-            // The mean of the ranks before + 1 to before + ties, doubled.
+            // Mean of the ranks before + 1 to before + ties, doubled.
             let rank = (2 * before + 1 + ties.len()) as u64;
             before += ties.len();
             for difference in ties.iter().filter(|difference| **difference != 0.0) {
@@ -115,7 +119,7 @@ impl Ranks {
         let square = |&rank: &u64| rank as f64 * rank as f64;
         let variance = self.doubled.iter().map(square).sum::<f64>() / 4.0;
         let distance = 0.5 * self.positive.abs_diff(self.negative) as f64;
-        // Half a rank, doubled as all of them.
+        // Half a rank, doubled like all ranks.
         let z = (distance - 1.0).max(0.0) / variance.sqrt();
         (2.0 * normal::probability_below(-z)).min(1.0)
     }
@@ -131,8 +135,9 @@ mod tests {
         SignedRankTest::of_differences(&sample, Confidence::USUAL)
     }
 
-    /// Darwin's pairs of plants, eighths of an inch: only subsets of the ranks 1 to 15 with a sum of at most
-    /// 24 are as far off, 676 of 32,768. R's `wilcox.test` gives V = 96 and p = 0.04126.
+    /// Darwin's pairs of plants, in eighths of an inch: only subsets of the ranks 1 to 15 with a
+    /// sum of at most 24 are at least as extreme, 676 of 32,768. R's `wilcox.test` gives V = 96 and
+    /// p = 0.04126.
     #[test]
     fn darwins_plants() {
         let eighths = [49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48];
@@ -143,8 +148,8 @@ mod tests {
         assert_eq!(test.rank_biserial, 0.6);
     }
 
-    /// The depression scores of \[Hollander1999\], table 3.1: T+ is 5 for second less first, the estimate
-    /// -0.46 and the interval of 96 % -0.786 to -0.010.
+    /// The depression scores of \[Hollander1999\], table 3.1: T+ is 5 for second less first, the
+    /// estimate -0.46 and the interval of 96 % -0.786 to -0.010.
     #[test]
     fn depression_scores() {
         let first = [1830, 500, 1620, 2480, 1680, 1880, 1550, 3060, 1300];
@@ -159,13 +164,13 @@ mod tests {
         assert!((interval.high + 0.010).abs() < 1e-3, "{test:?}");
     }
 
-    /// Ranks 1.5, 1.5 for the zeros, which are left out; 3.5, 3.5, 5 for the others.
+    /// The zeros have the ranks 1.5 and 1.5 and are left out; the others have 3.5, 3.5 and 5.
     #[test]
     fn zeros_are_ranked_and_left_out() {
         let test = test_of(&[0.0, 1.0, -1.0, 3.0, -0.0]);
         assert_eq!((test.pairs, test.zeros), (5, 2));
         assert_eq!((test.positive_rank_sum, test.negative_rank_sum), (8.5, 3.5));
-        // Of the eight sums 3.5 and less are three: 0, 3.5, 3.5.
+        // Three of the eight sums are at most 3.5: 0, 3.5, 3.5.
         assert_eq!(test.p_value, 0.75);
     }
 
@@ -180,7 +185,8 @@ mod tests {
         assert_eq!(test_of(&[2.0]).median_difference_interval, None);
     }
 
-    /// The variance of a textbook: n (n + 1) (2 n + 1) / 24, less zeros, less the sum of t³ - t by 48.
+    /// Variance as in textbooks: n (n + 1) (2 n + 1) / 24, less zeros, less the sum of t³ - t over
+    /// 48.
     #[test]
     fn many_pairs_with_zeros_and_ties() {
         let differences: Vec<f64> = (0..120).map(|i| f64::from((i * 37 % 23) - 10) / 2.0).collect();
@@ -200,7 +206,7 @@ mod tests {
         assert!(expected > 1e-3 && expected < 0.9, "{expected}");
     }
 
-    /// Where both can be had, they agree.
+    /// The exact and the normal result agree where both are available.
     #[test]
     fn exact_and_normal() {
         for shift in [4.0, 6.0, 9.0] {
@@ -224,7 +230,7 @@ mod tests {
     }
 
     proptest! {
-        /// Every choice of signs, with zeros and ties.
+        /// All choices of signs, with zeros and ties.
         #[test]
         fn all_signs(differences in differences()) {
             let test = test_of(&differences);
@@ -246,7 +252,7 @@ mod tests {
             prop_assert!((test.p_value - expected).abs() < 1e-12, "{test:?} {expected}");
         }
 
-        /// The other way round.
+        /// The mirrored differences.
         #[test]
         fn mirrored(differences in differences()) {
             let (test, mirror) = (
@@ -258,7 +264,8 @@ mod tests {
             prop_assert_eq!(test.median_difference, -mirror.median_difference);
         }
 
-        /// The interval holds the shifts that the test does not reject. Sums of powers of 2 are all different.
+        /// The interval contains the shifts that the test does not reject. Sums of powers of 2 are
+        /// all different.
         #[test]
         fn the_interval_inverts_the_test(order in Just((0..9).collect::<Vec<i32>>()).prop_shuffle(),
                                          signs in 0u32..512) {

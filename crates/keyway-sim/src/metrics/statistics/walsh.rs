@@ -1,10 +1,11 @@
-//! The median difference of pairs and its interval \[Hodges1963\].
+//! Median difference of pairs, with its interval \[Hodges1963\].
 //!
 //! # Source
-//! \[Hodges1963\]; the interval is that of \[Hollander1999\], section 3.3. The means of all pairs
-//! of differences, each with itself, too, are Walsh averages. Their median estimates the shift between two
-//! methods. As many of them are below a value as the ranks of the differences above that value sum up to, so
-//! the interval holds the shifts that a signed-rank test does not reject.
+//! \[Hodges1963\]; the interval is from \[Hollander1999\], section 3.3. Walsh averages are the
+//! means of all pairs of differences, including each difference with itself. Their median estimates
+//! the shift between two methods. The number of averages above a value is the sum of the positive
+//! ranks of the differences less that value, so the interval contains the shifts that a signed-rank
+//! test does not reject.
 //!
 //! | source | here |
 //! |---|---|
@@ -13,22 +14,24 @@
 //! | C(α) | the largest c with P(T+ ≤ c - 1) ≤ α / 2; the interval is W(c) to W(M + 1 - c) |
 //!
 //! # Where this differs from the source
-//! Differences may be equal and may be 0. The interval is then wider than it need be, never too narrow.
+//! Differences may be equal and may be 0. The interval is then wider than necessary, never too
+//! narrow.
 //!
 //! # Errors / cost
-//! `None` where even the widest interval is less sure than was asked for: 95 % need 6 differences. An
-//! average is found by halving in at most 64 n steps; no list of them is made.
+//! `None` if even the widest interval has less than the requested confidence: 95 % needs 6
+//! differences. An average is found by bisection in at most 64 n steps; no list of averages is
+//! made.
 
 use super::confidence::{Confidence, Interval};
 use super::rank_sums::RankSums;
 use super::sample::Sample;
 
-/// Beyond this number of ranks their sums are taken as normally distributed.
+/// Number of ranks beyond which their sums are taken as normally distributed.
 pub(super) const EXACT_RANKS: usize = 50;
 
-/// The means of all pairs of values of a sample.
+/// Means of all pairs of values of a sample.
 pub(super) struct WalshAverages<'a> {
-    /// Ascending.
+    /// The values in ascending order.
     values: &'a [f64],
 }
 
@@ -37,21 +40,21 @@ impl<'a> WalshAverages<'a> {
         Self { values: sample.values() }
     }
 
-    /// The estimate of \[Hodges1963\].
+    /// Returns the estimate of \[Hodges1963\].
     pub(super) fn median(&self) -> f64 {
         let count = self.count();
         let (low, high) = (self.nth(count.div_ceil(2)), self.nth(count / 2 + 1));
         if low == high { low } else { 0.5 * (low + high) }
     }
 
-    /// Between what the true median difference lies.
+    /// Returns the interval of the true median difference.
     pub(super) fn interval(&self, confidence: Confidence) -> Option<Interval> {
         let first = self.first_inside(confidence)?;
         let last = self.count() + 1 - first;
         Some(Interval { low: self.nth(first), high: self.nth(last), confidence })
     }
 
-    /// The number of the interval's lower end.
+    /// Returns the number of the average at the interval's lower end.
     fn first_inside(&self, confidence: Confidence) -> Option<u64> {
         let n = self.values.len();
         let inside = if n <= EXACT_RANKS {
@@ -61,13 +64,13 @@ impl<'a> WalshAverages<'a> {
         } else {
             let n = n as f64;
             let (mean, variance) = (n * (n + 1.0) / 4.0, n * (n + 1.0) * (2.0 * n + 1.0) / 24.0);
-            // The half corrects for sums being whole numbers.
+            // The 0.5 is the continuity correction for integer sums.
             (mean - confidence.normal_quantile() * variance.sqrt() + 0.5).max(0.0) as u64
         };
         (inside > 0).then_some(inside)
     }
 
-    /// M.
+    /// Number of averages, M.
     fn count(&self) -> u64 {
         let n = self.values.len() as u64;
         n * (n + 1) / 2
@@ -81,15 +84,15 @@ impl<'a> WalshAverages<'a> {
             let middle = low + (high - low) / 2;
             if self.at_most(value_at(middle)) >= number { high = middle } else { low = middle + 1 }
         }
-        // Without the sign of a zero.
+        // Drops the sign of a zero.
         value_at(low) + 0.0
     }
 
-    /// How many averages are this large or less.
+    /// Returns the number of averages up to this limit.
     fn at_most(&self, limit: f64) -> u64 {
         let (mut end, mut count) = (self.values.len(), 0);
         for (i, low) in self.values.iter().enumerate() {
-            // The larger this value, the fewer others are small enough.
+            // The larger this value is, the fewer others are small enough.
             while end > i && 0.5 * (low + self.values[end - 1]) > limit {
                 end -= 1;
             }
@@ -99,13 +102,13 @@ impl<'a> WalshAverages<'a> {
     }
 }
 
-/// Where a number stands among all floating point numbers: neighbours have neighbouring places.
+/// Position of a number among all floating point numbers: neighbours have neighbouring positions.
 const fn place(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
-/// The number at a place.
+/// Returns the number at a position.
 const fn value_at(place: u64) -> f64 {
     f64::from_bits(if place >> 63 == 1 { place & !(1 << 63) } else { !place })
 }
@@ -134,7 +137,7 @@ mod tests {
         assert_eq!(interval(&six[..5], 0.95), None);
         assert_eq!(interval(&six[..1], 0.95), None);
         assert_eq!(interval(&[0.0; 9], 0.95), Some([0.0, 0.0]));
-        // With next to no confidence the ends are beside the middle one of 21 averages.
+        // With hardly any confidence, the ends are next to the middle one of 21 averages.
         assert_eq!(interval(&six, 1e-9), Some([4.5, 5.0]));
     }
 
@@ -170,7 +173,7 @@ mod tests {
             for (i, average) in all.iter().enumerate() {
                 prop_assert_eq!(walsh.nth(i as u64 + 1), *average);
             }
-            // The same rule as for the medians of summaries.
+            // As for the medians of summaries.
             let middle = Sample::new(all).unwrap().quantile(0.5);
             prop_assert!((walsh.median() - middle).abs() < 1e-12);
         }

@@ -1,4 +1,4 @@
-//! What motors make of commands.
+//! Delayed and inexact execution of commands by the motors.
 
 use super::gaussian::Gaussian;
 use super::{ActuationNoise, Kind, Source};
@@ -7,25 +7,25 @@ use keyway::geometry::{Pose, Velocity};
 use keyway::robot::{Limits, Robot, in_cycles};
 use std::collections::VecDeque;
 
-/// A robot's motors, late and inexact.
+/// A robot's motors with delay and errors.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Actuation {
     noise: ActuationNoise,
     cycle_s: f64,
     v: Gaussian,
     omega: Gaussian,
-    /// Commands of the whole cycles of the delay, the oldest first.
+    /// Commands waiting for the whole cycles of the delay, oldest first.
     waiting: VecDeque<Velocity>,
-    /// The rest of the delay, as a part of a cycle: each command has its effect from this part of a cycle on to the same
-    /// part of the next one.
+    /// Rest of the delay as a fraction of a cycle. Each command takes effect from this fraction of
+    /// a cycle until the same fraction of the next.
     late: f64,
-    /// The velocity at the end of the effect of the last command that has one.
+    /// Velocity at the end of the effect of the last command that has one.
     reached: Velocity,
 }
 
 impl Actuation {
-    /// `None` for motors that do exactly and at once what they are told. What the robot knows of its delay comes first, what
-    /// disturbs it in addition.
+    /// Returns the motors, or `None` if they are exact and without delay. The robot's known delay
+    /// and the disturbing delay add up.
     pub(in crate::sim) fn new(
         noise: ActuationNoise,
         source: Source,
@@ -46,13 +46,13 @@ impl Actuation {
         (delay_s > 0.0 || !noise.is_none()).then_some(actuation)
     }
 
-    /// Whether the robot, standing, stays where it is: no command that moves it is on its way.
+    /// True if a standing robot stays where it is: no command that moves it is pending.
     pub(in crate::sim) fn is_at_rest(&self) -> bool {
         let mut all = self.waiting.iter().chain([&self.reached]);
         all.all(|velocity| *velocity == Velocity::ZERO)
     }
 
-    /// The motion of the next cycle, at the beginning of which this command is given.
+    /// Motion of the next cycle for the command given at its beginning.
     pub(in crate::sim) fn motion(
         &mut self,
         pose: Pose,

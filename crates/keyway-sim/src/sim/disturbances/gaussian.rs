@@ -1,21 +1,21 @@
-//! Normal deviations from random bits.
+//! Normally distributed deviations from random bits.
 
 use super::{Kind, Source};
 use keyway::random::Random;
 use std::f64::consts::TAU;
 
-/// Deviations are cut at so many standard deviations.
+/// Largest deviation after clipping, in standard deviations.
 const LARGEST: f64 = 3.0;
 
 /// Independent deviations with mean 0 and standard deviation 1.
 ///
 /// # Source
-/// \[Box1958\], equation 1: of two numbers u and w above 0 and up to 1, sqrt(-2 ln u) cos(2 pi w) and
-/// sqrt(-2 ln u) sin(2 pi w) are independent and normal.
+/// \[Box1958\], equation 1: of two numbers u and w above 0 and up to 1, sqrt(-2 ln u) cos(2 pi w)
+/// and sqrt(-2 ln u) sin(2 pi w) are independent and normal.
 #[derive(Clone, Debug)]
 pub(super) struct Gaussian {
     random: Random,
-    /// The second of a pair.
+    /// Unused second deviation of a pair.
     spare: Option<f64>,
 }
 
@@ -35,13 +35,13 @@ impl Gaussian {
         radius * cos
     }
 
-    /// The next deviation, cut.
+    /// The next deviation, clipped to three standard deviations.
     pub(super) fn next_cut(&mut self) -> f64 {
         cut(self.next())
     }
 }
 
-/// What is beyond three standard deviations is set to three.
+/// Clips a deviation to three standard deviations.
 pub(super) const fn cut(deviation: f64) -> f64 {
     deviation.clamp(-LARGEST, LARGEST)
 }
@@ -54,7 +54,7 @@ mod tests {
         Gaussian::new(Source { seed, robot: 0 }, Kind::Range)
     }
 
-    /// Shares of deviations up to a few values, against the normal distribution.
+    /// Compares the shares of deviations up to a few values with the normal distribution.
     #[test]
     fn deviations_are_normal() {
         let mut gaussian = gaussian(1);
@@ -68,7 +68,7 @@ mod tests {
             assert!((share - expected).abs() < tolerance, "{value}: {share}");
         }
         assert!(all.iter().any(|deviation| deviation.abs() > 4.0));
-        // Neighbours, of one pair and of two, do not depend on each other.
+        // Neighbours are independent, within one pair and across two.
         let products = all.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 1e5;
         assert!(products.abs() < 4.0 / f64::sqrt(1e5), "{products}");
     }
@@ -80,7 +80,8 @@ mod tests {
         let mean = all.iter().sum::<f64>() / 2e5;
         let variance = all.iter().map(|deviation| deviation * deviation).sum::<f64>() / 2e5;
         assert!(mean.abs() < 4.0 / f64::sqrt(2e5), "{mean}");
-        // 1 less what is beyond: 0.9950, a standard deviation of 0.9975. Its own error is 0.0032.
+        // Clipping reduces the variance to 0.9950, a standard deviation of 0.9975. Its standard
+        // error is 0.0032.
         assert!((variance - 0.9950).abs() < 4.0 * 0.0032, "{variance}");
         let largest = all.iter().copied().fold(0.0, f64::max);
         let smallest = all.iter().copied().fold(0.0, f64::min);

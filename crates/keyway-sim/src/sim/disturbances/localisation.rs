@@ -1,10 +1,10 @@
-//! Where a robot takes itself to be.
+//! Pose and velocity that a robot is told.
 
 use super::gaussian::{Gaussian, cut};
 use super::{Kind, LocalisationNoise, Source};
 use keyway::geometry::{Pose, Velocity};
 
-/// The errors of a robot's localisation and odometry.
+/// Errors of a robot's localisation and odometry.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Localisation {
     noise: LocalisationNoise,
@@ -16,7 +16,7 @@ pub(in crate::sim) struct Localisation {
 }
 
 impl Localisation {
-    /// `None` for a robot that knows all exactly.
+    /// Returns the errors, or `None` for a robot that knows its state exactly.
     pub(in crate::sim) fn new(
         noise: LocalisationNoise,
         source: Source,
@@ -34,7 +34,7 @@ impl Localisation {
         (!noise.is_none()).then_some(localisation)
     }
 
-    /// What the controller is told in the next cycle, for what is true.
+    /// Pose and velocity that the controller is told in the next cycle, given the true ones.
     pub(in crate::sim) fn told(&mut self, pose: Pose, velocity: Velocity) -> (Pose, Velocity) {
         let LocalisationNoise { position_m, heading_rad, v_relative, omega_relative, .. } =
             self.noise;
@@ -51,14 +51,15 @@ impl Localisation {
     }
 }
 
-/// An error with mean 0 and standard deviation 1 that drifts: a stationary Gauss-Markov process in time steps.
+/// A drifting error with mean 0 and standard deviation 1: a stationary Gauss-Markov process in
+/// discrete time.
 ///
-/// e' = q e + sqrt(1 - q²) n with a normal n and the correlation q of two errors one step apart. Then the variance
-/// stays q² + (1 - q²) = 1, and errors k steps apart have the correlation q^k.
+/// e' = q e + sqrt(1 - q²) n, where n is normal and q is the correlation of two errors one step
+/// apart. The variance stays q² + (1 - q²) = 1, and errors k steps apart have the correlation q^k.
 #[derive(Clone, Debug)]
 struct Drift {
     gaussian: Gaussian,
-    /// The correlation of two errors one cycle apart.
+    /// Correlation of two errors one cycle apart.
     kept: f64,
     error: Option<f64>,
 }
@@ -69,7 +70,8 @@ impl Drift {
         Self { gaussian: Gaussian::new(source, kind), kept, error: None }
     }
 
-    /// The next error, cut. The process itself is not, so cutting leaves the correlation as it is.
+    /// The next error, clipped. The process itself is not clipped, so its correlation does not
+    /// change.
     fn next(&mut self) -> f64 {
         let fresh = self.gaussian.next();
         let kept = self.kept;
@@ -113,12 +115,13 @@ mod tests {
         sum / count
     }
 
-    /// Mean, deviation and correlations of 100,000 errors that are drawn anew every time.
+    /// Checks mean, standard deviation and correlations of 100,000 errors that are drawn anew each
+    /// time.
     #[test]
     fn errors_without_correlation_are_white() {
         let noise = LocalisationNoise { position_m: 0.05, heading_rad: 0.02, ..NONE };
         let all = errors(noise, 0, 100_000);
-        // Four standard deviations of a mean of 100,000.
+        // Four standard deviations of the mean of 100,000 errors.
         let tolerance = 4.0 / f64::sqrt(1e5);
         for part in 0..3 {
             assert!(mean(all.iter().map(|errors| errors[part])).abs() < tolerance);
@@ -132,8 +135,8 @@ mod tests {
         }
     }
 
-    /// Over many robots, so that all means are of independent draws: at every time the errors have the same
-    /// deviation, from the first on, and their correlation falls as it is defined.
+    /// Uses many robots, so that all means are of independent draws. From the first time on, the
+    /// errors keep their standard deviation, and their correlation decays as defined.
     #[test]
     fn errors_drift_with_their_correlation_time() {
         const ROBOTS: usize = 20_000;
@@ -177,7 +180,7 @@ mod tests {
         assert!((v_squared / 0.01 - 0.995).abs() < 4.0 * f64::sqrt(2e-5), "{v_squared}");
         assert!((omega_squared / 0.04 - 0.995).abs() < 4.0 * f64::sqrt(2e-5), "{omega_squared}");
         assert!(product.abs() < 4.0 * 0.02 / f64::sqrt(1e5), "{product}");
-        // One that stands is told so.
+        // A standing robot is told that it stands.
         assert_eq!(localisation.told(pose, Velocity::ZERO), (pose, Velocity::ZERO));
     }
 }

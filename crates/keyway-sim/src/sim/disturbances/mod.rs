@@ -1,12 +1,12 @@
-//! What keeps a simulated robot from being ideal: an inexact sensor, late and inexact motors, a robot that does not
-//! know exactly where it is.
+//! Disturbances of a simulated robot: an inexact sensor, late and inexact motors, and errors of its
+//! localisation.
 //!
-//! Only what the controller is told and what the motors do is disturbed. Contact, clearance, arrival and what is recorded
-//! ([`Run`](super::Run)) are those of the true motion.
+//! Disturbances change only the controller's inputs and the action of the motors. Contact,
+//! clearance, arrival and the record of a run ([`Run`](super::Run)) follow the true motion.
 //!
-//! Every kind of noise of every robot draws from a stream of its own, so one kind can be changed without any other drawing
-//! other numbers. Deviations are normal and cut at three standard deviations: what would be beyond is set to
-//! three. So nothing is ever off by more, and the standard deviation is 0.9975 times the one that was asked for.
+//! Every kind of noise of every robot draws from its own stream, so a change of one kind leaves the
+//! numbers of the others unchanged. Deviations are normal and clipped to three standard deviations.
+//! No error is ever larger, and the actual standard deviation is 0.9975 times the requested one.
 
 mod actuation;
 mod gaussian;
@@ -21,8 +21,9 @@ use keyway::ConfigError;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// What disturbs a robot; by default nothing. Random numbers are those of `seed` and of the robot's place among the
-/// participants, so several robots may have equal disturbances and are disturbed differently.
+/// Disturbances of a robot; by default none. Random numbers follow from `seed` and the robot's
+/// place among the participants, so several robots with equal disturbances are disturbed
+/// differently.
 ///
 /// ```
 /// use keyway_sim::sim::Disturbances;
@@ -40,21 +41,22 @@ use std::f64::consts::PI;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Disturbances {
-    /// Which random numbers are drawn: the same seed gives the same run.
+    /// Seed of the random numbers: the same seed gives the same run.
     pub seed: u64,
-    /// What the sensor gets wrong.
+    /// Errors of the sensor.
     pub sensor: SensorNoise,
-    /// What the motors get wrong.
+    /// Errors of the motors.
     pub actuation: ActuationNoise,
-    /// What the robot gets wrong about where it is and how it moves.
+    /// Errors of the robot's estimated pose and velocity.
     pub localisation: LocalisationNoise,
 }
 
-/// What a range sensor gets wrong.
+/// Errors of a range sensor.
 ///
-/// The range r of a beam that met something is measured as r + e, where the standard deviation of e is the root of
-/// `range_m`² + (`range_relative` r)², anew for every beam and scan. It stays between 0, which says nothing, and the
-/// sensor's range. A beam that met nothing says so.
+/// The range r of a beam that hits something is measured as r + e. The standard deviation of e is
+/// the root of `range_m`² + (`range_relative` r)², and e is drawn anew for every beam and scan. The
+/// result stays between 0, which carries no information, and the sensor's range. A beam that hits
+/// nothing reports this without error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -63,41 +65,45 @@ pub struct SensorNoise {
     pub range_m: f64,
     /// Standard deviation as a share of the range, from 0 to 0.3.
     pub range_relative: f64,
-    /// Share of the beams that return nothing, from 0 to 1: any beam of any scan, independently. They are NaN,
-    /// by which a scan says nothing: neither an obstacle nor free ground.
+    /// Share of the beams that return nothing, from 0 to 1, chosen independently for every beam and
+    /// scan. These beams are NaN, which carries no information: neither an obstacle nor free
+    /// ground.
     pub dropped_beams: f64,
-    /// Share of the scans that are lost, from 0 to 1: any of them, independently. The controller is asked in every
-    /// cycle, as on a real robot; without a scan of that cycle it is given one in which every beam is NaN, and not an
-    /// old one, which would show things where they are not.
+    /// Share of the scans that are lost, from 0 to 1, chosen independently. The controller is
+    /// called in every cycle, as on a real robot. Without a scan of that cycle, it gets one in
+    /// which every beam is NaN, and not an old one, which would show obstacles in wrong places.
     pub dropped_scans: f64,
 }
 
-/// What motors get wrong. Whatever it is, the robot keeps its limits of speed and acceleration, and stands when it is
-/// told to.
+/// Errors of the motors. The robot still keeps its limits of speed and acceleration, and stands
+/// when commanded to stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuationNoise {
-    /// Time from a command to its effect \[s\], from 0 to 10, of which the robot does not know; it comes on top of the one that it
-    /// does know ([`Robot::actuation_delay_s`](keyway::robot::Robot::actuation_delay_s)). A command that is given at the time t changes the velocity
-    /// from t + `delay_s` on, for one cycle, as it would from t on without a delay: so the same commands drive the same
-    /// velocities, `delay_s` later, whether that is a whole number of cycles or not. Before the first
-    /// command has an effect, the robot stands. A robot has only arrived when no command that moves it is on its way.
+    /// Delay from a command to its effect that the robot does not know \[s\], from 0 to 10. It adds
+    /// to the known delay ([`Robot::actuation_delay_s`](keyway::robot::Robot::actuation_delay_s)).
+    /// A command given at the time t changes the velocity from t + `delay_s` on, for one cycle, as
+    /// it would from t on without a delay. So the same commands drive the same velocities `delay_s`
+    /// later, whether or not the delay is a whole number of cycles. Before the first command takes
+    /// effect, the robot stands. A robot has arrived only when no command that moves it is pending.
     pub delay_s: f64,
-    /// Standard deviation of the speed as a share of it, from 0 to 0.3. The robot obeys (1 + e) times the command, e anew
-    /// in every cycle, as far as its limits allow. As it cannot be above a limit but below it, a robot that is driven at
-    /// a limit is slower in the mean, and brakes less hard in the mean where it is told to brake as hard as it can.
+    /// Standard deviation of the speed as a share of it, from 0 to 0.3. The robot obeys (1 + e)
+    /// times the command within its limits; e is drawn anew in every cycle. The speed can fall
+    /// below a limit but not exceed it. So a robot driven at a limit is slower on average, and
+    /// brakes less hard on average when commanded to brake as hard as it can.
     pub v_relative: f64,
-    /// The same of the turn rate.
+    /// Standard deviation of the turn rate as a share of it, from 0 to 0.3.
     pub omega_relative: f64,
 }
 
-/// What a robot gets wrong about where it is and how it moves.
+/// Errors of a robot's estimated pose and velocity.
 ///
-/// Errors of real localisation drift: they stay alike for a while. Those of position and heading are stationary
-/// Gauss-Markov processes: two errors that are t apart have the correlation exp(-t / `correlation_s`), and those of x, y and
-/// heading do not depend on each other. The first pose has an error already. Errors of the velocity are drawn anew in
-/// every cycle, and a robot that stands is told so.
+/// Errors of real localisation drift: they change slowly. Errors of position and heading are
+/// stationary Gauss-Markov processes: two errors that are t apart have the correlation
+/// exp(-t / `correlation_s`). The errors of x, y and heading are independent. The first pose
+/// already has an error. Errors of the velocity are drawn anew in every cycle; a standing robot is
+/// told that it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -106,8 +112,9 @@ pub struct LocalisationNoise {
     pub position_m: f64,
     /// Standard deviation of the heading \[rad\], from 0 to pi.
     pub heading_rad: f64,
-    /// How long errors of position and heading last \[s\], from 0 to 1000000. 0: they are drawn anew in every cycle, so
-    /// that the robot seems to jump to and fro; a few seconds and more are like a robot that matches scans with a map.
+    /// Correlation time of the errors of position and heading \[s\], from 0 to 1000000. With 0 they
+    /// are drawn anew in every cycle, so the robot seems to jump to and fro; a few seconds or more
+    /// resemble a robot that matches scans with a map.
     pub correlation_s: f64,
     /// Standard deviation of the speed as a share of it, from 0 to 0.3.
     pub v_relative: f64,
@@ -116,7 +123,7 @@ pub struct LocalisationNoise {
 }
 
 impl Disturbances {
-    /// Whether nothing is disturbed, whatever the seed.
+    /// True if nothing is disturbed, whatever the seed.
     pub fn is_none(&self) -> bool {
         self.sensor.is_none() && self.actuation.is_none() && self.localisation.is_none()
     }
@@ -124,8 +131,8 @@ impl Disturbances {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with the values that can. Relative deviations end at 0.3, as with three
-    /// of them the sign must not change.
+    /// Names the first field that cannot be used, with its valid values. Relative deviations are at
+    /// most 0.3, so that three of them cannot change the sign.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let SensorNoise { range_m, range_relative, dropped_beams, dropped_scans } = self.sensor;
         let Self { actuation, localisation, .. } = self;
@@ -177,7 +184,7 @@ impl LocalisationNoise {
     }
 }
 
-/// Whose random numbers are drawn.
+/// Seed and robot that random numbers are drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     pub(super) seed: u64,
@@ -185,7 +192,7 @@ pub(super) struct Source {
     pub(super) robot: usize,
 }
 
-/// What random numbers are drawn for. The numbers are part of what a seed means.
+/// Purpose of random numbers. The discriminants are part of the meaning of a seed.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     Range = 0,

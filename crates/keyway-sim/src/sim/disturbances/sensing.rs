@@ -1,4 +1,4 @@
-//! What a scan looks like when it reaches the controller.
+//! Sensor errors in the scans given to the controller.
 
 use super::gaussian::Gaussian;
 use super::{Kind, SensorNoise, Source};
@@ -15,14 +15,14 @@ pub(in crate::sim) struct Sensing {
 }
 
 impl Sensing {
-    /// `None` for a sensor without faults.
+    /// Returns the faults, or `None` for a sensor without any.
     pub(in crate::sim) fn new(noise: SensorNoise, source: Source) -> Option<Self> {
         let ranges = Gaussian::new(source, Kind::Range);
         let (beams, scans) = (source.stream(Kind::DroppedBeam), source.stream(Kind::DroppedScan));
         (!noise.is_none()).then_some(Self { noise, ranges, beams, scans })
     }
 
-    /// From the exact scan to that which is measured.
+    /// Turns an exact scan into a measured one.
     pub(in crate::sim) fn disturb(&mut self, scan: &mut Scan) {
         let SensorNoise { range_m, range_relative, dropped_beams, dropped_scans } = self.noise;
         let range_max_m = scan.range_max_m;
@@ -98,16 +98,16 @@ mod tests {
         let all = measured(noise, 1.0, 1000).concat();
         assert!(all.iter().all(|range_m| range_m.is_nan() || *range_m == 1.0));
         let dropped = all.iter().filter(|range_m| range_m.is_nan()).count();
-        // 10,000 with a standard deviation of 95.
+        // Expected are 10,000 with a standard deviation of 95.
         assert!((9620..10_380).contains(&dropped), "{dropped}");
         let noise = SensorNoise { dropped_scans: 0.1, ..SensorNoise::default() };
         let scans = measured(noise, 1.0, 10_000);
         let nans = |scan: &Vec<f64>| scan.iter().filter(|range_m| range_m.is_nan()).count();
         assert!(scans.iter().all(|scan| [0, 100].contains(&nans(scan))), "whole scans");
         let dropped = scans.iter().filter(|scan| nans(scan) == 100).count();
-        // 1000 with a standard deviation of 30.
+        // Expected are 1000 with a standard deviation of 30.
         assert!((880..1120).contains(&dropped), "{dropped}");
-        // What is dropped says nothing, and nothing else about the scan changes.
+        // A dropped scan has no ranges, and its other fields do not change.
         let exact = Scan { range_max_m: 10.0, ranges_m: vec![f64::INFINITY; 3], ..Scan::default() };
         let mut scan = exact.clone();
         sensing(SensorNoise { dropped_scans: 1.0, ..SensorNoise::default() }).disturb(&mut scan);

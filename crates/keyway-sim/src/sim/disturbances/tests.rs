@@ -4,7 +4,7 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use serde_json::{Value, json};
 
-/// Every field but the seed, with a value that disturbs, and one that cannot be used.
+/// Every field except the seed, with a value that disturbs and an invalid one.
 const FIELDS: [(&str, &str, f64, f64); 12] = [
     ("sensor", "range_m", 0.01, 101.0),
     ("sensor", "range_relative", 0.01, 0.31),
@@ -29,7 +29,7 @@ fn every_field_is_there_disturbs_and_is_checked() {
     let Value::Object(all) = serde_json::to_value(Disturbances::default()).unwrap() else {
         panic!()
     };
-    // In this order or another one: that depends on who else uses the crate for JSON.
+    // Their order depends on which other crates use the JSON crate.
     let mut names: Vec<&String> = all.keys().collect();
     names.sort();
     assert_eq!(names, ["actuation", "localisation", "seed", "sensor"]);
@@ -65,8 +65,8 @@ fn unknown_fields_are_refused() {
     assert_eq!(serde_json::from_str::<Disturbances>(&again).unwrap(), disturbances);
 }
 
-/// What every kind draws in some cycles, for a state that does not change: ranges, dropped beams, scans, motions, poses,
-/// velocities.
+/// Draws of every kind in some cycles for a constant state: ranges, dropped beams, scans, motions,
+/// poses, velocities.
 fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
     let source = Source { seed: disturbances.seed, robot };
     let exact = Scan { range_max_m: 4.0, ranges_m: vec![2.0; 20], ..Scan::default() };
@@ -82,7 +82,7 @@ fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
         if let Some(sensing) = &mut sensing {
             sensing.disturb(&mut scan);
         }
-        // Ranges of beams that are not dropped; which are is apart.
+        // Ranges of beams that are not dropped; the dropped ones are recorded separately.
         ranges.extend(scan.ranges_m.iter().copied().filter(|range_m| !range_m.is_nan()));
         dropped.extend(scan.ranges_m.iter().map(|range_m| f64::from(range_m.is_nan())));
         if let Some(actuation) = &mut actuation {
@@ -120,7 +120,7 @@ fn streams_are_independent() {
             assert_ne!(a, b, "another {what}, kind {kind}");
         }
     }
-    // With one kind changed, the others draw what they drew.
+    // A change of one kind leaves the draws of the others unchanged.
     let same = |changed: Disturbances| {
         let other = drawn(changed, 0);
         std::array::from_fn::<bool, 5, _>(|kind| usual[kind] == other[kind])

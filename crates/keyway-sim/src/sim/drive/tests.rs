@@ -5,7 +5,7 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use std::f64::consts::FRAC_PI_2;
 
-/// 20 m x 20 m around the origin.
+/// A world of 20 m x 20 m around the origin.
 fn world(circles: &[(f64, f64, f64)]) -> World {
     let frame = GridFrame::new(200, 200, 0.1, Pose::new(-10.0, -10.0, 0.0)).unwrap();
     let circle = |&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
@@ -20,7 +20,7 @@ fn robot() -> Robot {
     robot
 }
 
-/// Without acceleration limits to speak of.
+/// A robot with practically no acceleration limits.
 fn brisk(cycle_s: f64) -> Robot {
     let mut robot = Robot { cycle_s, ..robot() };
     let limits = &mut robot.limits;
@@ -183,7 +183,7 @@ fn stuck_at_the_exact_time() {
         let run = alone(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
             cycle += 1;
             let remaining_m = remaining(cycle - 1);
-            // What is longer than 20 m is a second route.
+            // A path longer than 20 m is a second route.
             let route = if remaining_m > 20.0 { 2 } else { 1 };
             Control { action: Action::Stop, remaining_m, route }
         });
@@ -193,7 +193,7 @@ fn stuck_at_the_exact_time() {
     assert_eq!(stuck_at(&|_| 5.0), (Outcome::Stuck, 200));
     assert_eq!(stuck_at(&|_| f64::NAN), (Outcome::Stuck, 200));
     assert_eq!(stuck_at(&|_| f64::INFINITY), (Outcome::Stuck, 200));
-    // Progress in cycle 150, then none but a longer way.
+    // Progress in cycle 150, then only longer paths.
     assert_eq!(stuck_at(&|n| if n < 150 { 5.0 } else { 4.0 + n as f64 }), (Outcome::Stuck, 200));
     // A detour: longer than before, but the robot makes progress.
     let detour = |n: u64| if n < 100 { 5.0 } else { 60.0 - n as f64 * 0.05 };
@@ -283,7 +283,7 @@ fn refuses_what_cannot_be() {
     assert!(error.to_string().starts_with("rules.time_limit_s must be a positive number"));
     let error = run(&robot(), start, &rules, f64::NAN).unwrap_err();
     assert!(matches!(error, SimError::Command { robot: 0, cycle: 0, .. }));
-    // Infinite is only fast.
+    // An infinite velocity only means fast.
     assert_eq!(run(&robot(), start, &rules, f64::INFINITY).unwrap().cycles, 10);
     let mut warp = brisk(0.1);
     (warp.limits.v_max_mps, warp.limits.deceleration_mps2) = (100.0, 10.0);

@@ -1,4 +1,4 @@
-//! One robot of a simulation: its run under way.
+//! State of one robot during a simulation.
 
 use super::{Entrant, Touched};
 use crate::sim::cycle_motion::CycleMotion;
@@ -13,7 +13,7 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use std::borrow::Cow;
 
-/// A run under way, or ended.
+/// A run that is in progress or has ended.
 pub(super) struct Drive<'a> {
     pub(super) robot: Cow<'a, Robot>,
     goal: Point,
@@ -27,22 +27,22 @@ pub(super) struct Drive<'a> {
     pub(super) least: Clearances,
     pub(super) beams: Beams,
     pub(super) scan: Scan,
-    /// What the controller is told of [`Self::pose`] and [`Self::velocity`].
+    /// Pose and velocity that the controller is told for [`Self::pose`] and [`Self::velocity`].
     pub(super) told: (Pose, Velocity),
-    /// What disturbs the robot, `None` where nothing does.
+    /// Disturbances of the robot, each `None` if nothing is disturbed.
     sensing: Option<Sensing>,
     pub(super) actuation: Option<Actuation>,
     localisation: Option<Localisation>,
     samples: Vec<Sample>,
     pub(super) progress: Progress,
-    /// In the present cycle.
+    /// Motion in the current cycle.
     pub(super) motion: CycleMotion,
-    /// What was touched in the present cycle.
+    /// Object touched in the current cycle.
     touched: Option<Touched>,
     pub(super) outcome: Option<Outcome>,
 }
 
-/// The least clearances of a run so far \[m\], infinite where there is nothing of the kind.
+/// Smallest clearances of a run so far \[m\]; infinite if there is nothing of the kind.
 #[derive(Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "names end with their unit")]
 pub(super) struct Clearances {
@@ -97,7 +97,7 @@ impl<'a> Drive<'a> {
         self.pose.point().distance(self.goal) <= self.goal_tolerance_m
     }
 
-    /// What the controller is told, for an exact scan.
+    /// Updates the controller's inputs from an exact scan.
     pub(super) fn learn(&mut self, mut scan: Scan) {
         if let Some(sensing) = &mut self.sensing {
             sensing.disturb(&mut scan);
@@ -105,7 +105,7 @@ impl<'a> Drive<'a> {
         self.learn_place(scan);
     }
 
-    /// Tells the controller of a scan as it is.
+    /// Stores a scan as it is, and updates the pose and velocity that the controller is told.
     pub(super) fn learn_place(&mut self, scan: Scan) {
         self.scan = scan;
         self.told = match &mut self.localisation {
@@ -114,13 +114,13 @@ impl<'a> Drive<'a> {
         };
     }
 
-    /// Whether the robot stands, and no command on its way moves it.
+    /// True if the robot stands and no pending command moves it.
     pub(super) fn is_at_rest(&self) -> bool {
         let will_stand = self.actuation.as_ref().is_none_or(Actuation::is_at_rest);
         self.velocity == Velocity::ZERO && will_stand
     }
 
-    /// Whether the robot has neither ended nor touched anything.
+    /// True if the robot's run has not ended and it has touched nothing.
     pub(super) const fn is_moving(&self) -> bool {
         self.outcome.is_none() && self.touched.is_none()
     }
@@ -141,7 +141,7 @@ impl<'a> Drive<'a> {
         PairSweep { robots: [self.moving(), other.moving()] }
     }
 
-    /// A contact in the present cycle, unless the robot stood already.
+    /// Records a contact in the current cycle, unless the robot already stands.
     pub(super) fn touch(&mut self, place: f64, with: Touched) {
         if self.is_moving() {
             self.touched = Some(with);
@@ -149,7 +149,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// To the end of the cycle, or to the contact.
+    /// Moves the robot to the end of the cycle or to the contact.
     pub(super) fn advance(&mut self, world: &World, cycle_s: f64) {
         let end = self.motion.stop();
         self.pose = self.motion.pose(end);
@@ -163,7 +163,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Ends the run by a contact at a place of the present motion.
+    /// Ends the run with a contact at a place on the current motion.
     pub(super) fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
         let (jumped_onto, mover_speed_mps) = match with {
             Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
@@ -195,7 +195,7 @@ impl<'a> Drive<'a> {
         self.motion = CycleMotion::standing(self.pose, cycle_s);
     }
 
-    /// What those who give way see of it.
+    /// The robot as obstacles that give way see it.
     pub(super) fn body(&self) -> Body {
         let (sin, cos) = libm::sincos(self.pose.theta);
         let v_mps = if self.outcome.is_none() { self.velocity.v } else { 0.0 };
@@ -206,7 +206,8 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// `ways` are those of all obstacles that give way, up to the end of the last run.
+    /// The finished run. `ways` are the ways of all obstacles that give way, up to the end of the
+    /// last run.
     pub(super) fn into_run(self, ways: &[MoverWay]) -> Option<Run> {
         let movers = ways.iter().map(|way| way.until(self.cycles)).collect();
         let Clearances { standing_m, movers_m, robots_m } = self.least;

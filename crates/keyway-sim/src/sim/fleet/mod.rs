@@ -15,19 +15,19 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use std::borrow::Cow;
 
-/// Robots that drive in a world at the same time. Between two cycles each has decided, or its run has
-/// ended and it stands.
+/// Robots that drive in a world at the same time. Between two cycles, each robot has decided, or
+/// its run has ended and it stands.
 pub(super) struct Fleet<'a> {
-    /// With the obstacles that give way where they are.
+    /// World with the current places of the obstacles that give way.
     world: Cow<'a, World>,
     giving_way: Vec<GivingWay>,
-    /// Cycles driven.
+    /// Number of cycles driven.
     cycle: u64,
     cycle_s: f64,
     drives: Vec<Drive<'a>>,
 }
 
-/// A robot that is to drive, without what decides for it: the fields are those of [`Participant`].
+/// A robot before its run, without its controller: the fields are those of [`Participant`].
 pub(super) struct Entrant<'a> {
     pub(super) robot: Cow<'a, Robot>,
     pub(super) start: Pose,
@@ -43,18 +43,19 @@ impl<'a> Entrant<'a> {
     }
 }
 
-/// What a robot touched.
+/// Object that a robot touched.
 #[derive(Clone, Copy)]
 enum Touched {
-    /// Something that stands, or the border: the nearest.
+    /// The nearest stationary obstacle, or the border.
     Standing,
-    /// The mover of this index, whether it has just jumped there, and how fast it moved.
+    /// The moving obstacle of this index, with its speed; `jumped_onto` if it has just jumped
+    /// there.
     Mover { index: usize, jumped_onto: bool, speed_mps: f64 },
     /// The robot of this index.
     Robot(usize),
 }
 
-/// Who touches what, and where on the motion of a cycle.
+/// A robot's contact, and its place on the motion of a cycle.
 struct Contact {
     place: f64,
     robot: usize,
@@ -62,7 +63,7 @@ struct Contact {
 }
 
 impl<'a> Fleet<'a> {
-    /// All robots at rest at their starts; those in contact have ended.
+    /// All robots at rest at their starts; the runs of robots in contact have ended.
     pub(super) fn new(
         mut world: Cow<'a, World>,
         entrants: impl IntoIterator<Item = Entrant<'a>>,
@@ -76,12 +77,12 @@ impl<'a> Fleet<'a> {
         fleet
     }
 
-    /// Whether any run has not ended.
+    /// True if any run has not ended.
     pub(super) fn is_driving(&self) -> bool {
         self.drives.iter().any(|drive| drive.outcome.is_none())
     }
 
-    /// Measures what a robot is told for its next decision; false when its run has ended or ends now.
+    /// Measures a robot's inputs for its next decision; false if its run has ended or ends now.
     pub(super) fn sense(&mut self, index: usize) -> bool {
         let drive = &mut self.drives[index];
         if drive.outcome.is_some() {
@@ -94,7 +95,7 @@ impl<'a> Fleet<'a> {
         }
         let mut scan = std::mem::take(&mut drive.scan);
         if !drive.robot.scans_in(drive.cycles) {
-            // Between two scans, the controller is told where it is, and nothing else.
+            // Between two scans, the controller is told only its pose and velocity.
             scan.ranges_m.fill(f64::NAN);
             drive.learn_place(scan);
             return true;
@@ -107,18 +108,19 @@ impl<'a> Fleet<'a> {
         true
     }
 
-    /// The scan that a robot measured last.
+    /// Last scan of a robot.
     pub(super) fn scan(&self, index: usize) -> &Scan {
         &self.drives[index].scan
     }
 
-    /// The state at the beginning of the cycle that a robot was told last, and the number of the cycle.
+    /// Pose and velocity that a robot was last told, at the beginning of a cycle, and the number of
+    /// that cycle.
     pub(super) fn told(&self, index: usize) -> (Pose, Velocity, u64) {
         let Drive { told: (pose, velocity), cycles, .. } = self.drives[index];
         (pose, velocity, cycles)
     }
 
-    /// Tests a robot's arrival and progress by its controller's answer; true when the run goes on.
+    /// Tests a robot's arrival and progress by its controller's answer; true if the run goes on.
     pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
         if control.action == Action::Arrived && drive.is_at_rest() && drive.is_near_goal() {
@@ -132,7 +134,7 @@ impl<'a> Fleet<'a> {
         !is_stuck
     }
 
-    /// A robot's command for the next cycle.
+    /// Sets a robot's command for the next cycle.
     pub(super) fn command(&mut self, index: usize, command: Velocity) {
         let drive = &mut self.drives[index];
         let Drive { robot, pose, velocity, actuation, .. } = drive;
@@ -145,8 +147,9 @@ impl<'a> Fleet<'a> {
         };
     }
 
-    /// One cycle of all robots at the same time. Contacts are taken in the order in which they happen,
-    /// because who has touched something stands from then on, in the way of the others.
+    /// Drives one cycle of all robots at the same time. Contacts are handled in the order in which
+    /// they happen, because a robot that has touched something stands in the way of the others from
+    /// then on.
     pub(super) fn drive_cycle(&mut self) {
         let end_s = (self.cycle + 1) as f64 * self.cycle_s;
         let robots: Vec<Body> = self.drives.iter().map(Drive::body).collect();
@@ -166,24 +169,24 @@ impl<'a> Fleet<'a> {
         self.cycle += 1;
     }
 
-    /// How a robot's run has ended, if it has.
+    /// Outcome of a robot's run, if it has ended.
     pub(super) fn outcome(&self, index: usize) -> Option<Outcome> {
         self.drives[index].outcome
     }
 
-    /// Where a robot truly is, and how it moves.
+    /// A robot's true pose and velocity.
     pub(super) fn state(&self, index: usize) -> (Pose, Velocity) {
         let Drive { pose, velocity, .. } = self.drives[index];
         (pose, velocity)
     }
 
-    /// What happened to each robot; all of them have ended.
+    /// Runs of all robots, which have all ended.
     pub(super) fn into_runs(self) -> Vec<Run> {
         let ways = GivingWay::ways(&self.giving_way, &self.world);
         self.drives.into_iter().filter_map(|drive| drive.into_run(&ways)).collect()
     }
 
-    /// Clearances and contacts before anything moves.
+    /// Measures clearances and contacts before anything moves.
     fn measure_starts(&mut self) {
         for index in 0..self.drives.len() {
             let (least, touched) = self.clearances_at_start(index);
@@ -194,8 +197,8 @@ impl<'a> Fleet<'a> {
         }
     }
 
-    /// Distances from a robot to everything else, and what it touches (ties: what stands, then movers, then
-    /// robots, and the lowest index).
+    /// Distances from a robot to everything else, and the object it touches. Ties go to stationary
+    /// obstacles, then moving obstacles, then robots, and to the lowest index.
     fn clearances_at_start(&self, index: usize) -> (Clearances, Option<Touched>) {
         let Drive { ref robot, pose, .. } = self.drives[index];
         let footprint = &robot.footprint;
@@ -226,13 +229,13 @@ impl<'a> Fleet<'a> {
         (Clearances { standing_m, movers_m, robots_m }, touched)
     }
 
-    /// The first contact that has not been taken yet (ties: with what stands, then with movers, then among
-    /// robots, and the lowest indices).
+    /// The first contact that has not been handled yet. Ties go to stationary obstacles, then
+    /// moving obstacles, then robots, and to the lowest indices.
     fn first_contact(&self) -> Option<Contact> {
         let standing = (0..self.drives.len()).filter_map(|robot| self.contact_with_standing(robot));
         let mut first = standing.min_by(|a, b| a.place.total_cmp(&b.place));
-        // Only up to what is known to happen first. Until then robots are on the map, so two that are
-        // faster than any number holds are not followed for ever.
+        // Search only up to the first known contact. Until then robots are on the map, so two
+        // robots with speeds beyond the range of numbers are not followed for ever.
         let until = |first: &Option<Contact>| {
             first.as_ref().map_or(CycleMotion::END, |contact| contact.place)
         };
@@ -279,7 +282,7 @@ impl<'a> Fleet<'a> {
         Some(Contact { place, robot, with: Touched::Robot(other) })
     }
 
-    /// The least clearances of a robot's run up to the end of the cycle.
+    /// Smallest clearances of a robot's run up to the end of the cycle.
     fn least_clearances(&self, index: usize) -> Clearances {
         let drive = &self.drives[index];
         let least = drive.least;
@@ -287,7 +290,7 @@ impl<'a> Fleet<'a> {
             return least;
         }
         let until = drive.motion.stop();
-        // Where there is nothing of a kind, its clearance stays infinite.
+        // The clearance stays infinite if there is nothing of the kind.
         let standing_m = if least.standing_m.is_finite() {
             drive.sweep(&self.world).least_clearance(until, least.standing_m)
         } else {

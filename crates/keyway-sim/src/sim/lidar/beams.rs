@@ -1,14 +1,15 @@
-//! Where a sensor's beams look.
+//! Directions of a sensor's beams.
 
 use keyway::geometry::Point;
 use keyway::robot::RangeSensor;
 use keyway::sense::Scan;
 use std::f64::consts::{PI, TAU};
 
-/// Bearings are compared with this much to spare \[rad\]: far more than rounding, far less than a beam.
+/// Margin for comparisons of bearings \[rad\]: far more than rounding, far less than the angle
+/// between beams.
 const MARGIN_RAD: f64 = 1e-6;
 
-/// The beams of a sensor in the robot's frame, worked out once.
+/// Beams of a sensor in the robot's frame, computed once.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Beams {
     angle_min_rad: f64,
@@ -28,21 +29,21 @@ impl Beams {
         Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, directions }
     }
 
-    /// A scan of these beams in which nothing was measured yet.
+    /// A scan of these beams without measurements.
     pub(in crate::sim) fn scan(&self) -> Scan {
         let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
         let ranges_m = vec![f64::INFINITY; self.directions.len()];
         Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
-    /// Directions of all beams of a robot that is turned by `theta` \[rad\].
+    /// Directions of all beams of a robot with the heading `theta` \[rad\].
     pub(super) fn directions(&self, theta: f64) -> impl Iterator<Item = Point> {
         let ahead = direction(theta);
         self.directions.iter().map(move |&beam| turned(beam, ahead))
     }
 
-    /// The beams whose bearings are within `half_rad` of a bearing \[rad\], and perhaps a few beside them;
-    /// with their directions for a robot that is turned by `theta` \[rad\].
+    /// Beams with bearings within `half_rad` of a bearing \[rad\], and perhaps a few beside them,
+    /// with their directions for a robot with the heading `theta` \[rad\].
     pub(super) fn near(
         &self,
         bearing_rad: f64,
@@ -54,13 +55,14 @@ impl Beams {
         spans.map(move |beam| (beam, turned(self.directions[beam], ahead)))
     }
 
-    /// Beams from `bearing_rad - half_rad` on, and those that are a whole turn before them.
+    /// Index ranges of the beams from `bearing_rad - half_rad` on, and of the beams a whole turn
+    /// before them.
     fn spans_near(&self, bearing_rad: f64, half_rad: f64) -> [std::ops::Range<usize>; 2] {
         let count = self.directions.len();
         if half_rad >= PI || self.angle_increment_rad == 0.0 {
             return [0..count, 0..0];
         }
-        // From the first beam on.
+        // Angles are measured from the first beam.
         let from_rad = (bearing_rad - half_rad - self.angle_min_rad).rem_euclid(TAU);
         let to_rad = from_rad + 2.0 * half_rad;
         let before = |angle_rad: f64| (angle_rad / self.angle_increment_rad).ceil() as usize;
@@ -78,7 +80,7 @@ fn direction(angle_rad: f64) -> Point {
     Point::new(cos, sin)
 }
 
-/// A direction of a robot that looks `ahead`.
+/// Direction of a beam of a robot that faces `ahead`.
 fn turned(beam: Point, ahead: Point) -> Point {
     Point::new(ahead.x * beam.x - ahead.y * beam.y, ahead.y * beam.x + ahead.x * beam.y)
 }

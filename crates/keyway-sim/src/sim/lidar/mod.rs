@@ -1,4 +1,4 @@
-//! What a range sensor measures in a world: exact ray casting.
+//! Measurements of a range sensor in a world: exact ray casting.
 
 mod beams;
 mod shapes;
@@ -13,18 +13,18 @@ use keyway::sense::Scan;
 use shapes::Shapes;
 
 impl WorldAt<'_> {
-    /// What a sensor at `pose` measures, without noise: for every beam the exact distance to the
-    /// first square, circle or polygon, infinity when that is beyond the sensor's range; 0 inside an
-    /// obstacle. Outside the map there are no squares.
+    /// Scan of a sensor at `pose`, without noise. Each range is the exact distance to the first
+    /// square, circle or polygon: infinity beyond the sensor's range, 0 inside an obstacle. There
+    /// are no squares outside the map.
     ///
-    /// All around (360 degrees), beam 0 looks back (-180 degrees) and the others follow evenly; with
-    /// a smaller field of view the first and the last beam look along its edges. A single beam
-    /// looks straight ahead.
+    /// With a field of view of 360 degrees, beam 0 looks back (-180 degrees) and the others follow
+    /// evenly. With a smaller field of view, the first and the last beam look along its edges. A
+    /// single beam looks straight ahead.
     ///
-    /// A beam is a line without width: it passes between two squares that only share a corner, and
-    /// along the border of two squares it sees the one that `map::ray` visits.
+    /// A beam is a line without width: it passes between two squares that only share a corner.
+    /// Along the border of two squares, it sees the one that `map::ray` visits.
     ///
-    /// Costs a few operations per free square of cells that a beam passes (not per cell), per circle within
+    /// Costs a few operations per free square of cells on a beam (not per cell), per circle within
     /// range, and per beam that looks towards it.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {
         let beams = Beams::of(sensor);
@@ -33,8 +33,8 @@ impl WorldAt<'_> {
         scan
     }
 
-    /// The same with beams that are ready, into a scan of theirs, and among other robots: each is seen as
-    /// its footprint at its pose.
+    /// Casts prepared beams into their scan, among other robots: each is seen as its footprint at
+    /// its pose.
     pub(super) fn cast_among<'f>(
         &self,
         pose: Pose,
@@ -58,7 +58,7 @@ impl WorldAt<'_> {
         }
     }
 
-    /// Distances along all beams to the first square, infinity where none is within `range_m` \[m\].
+    /// Distances along all beams to the first square; infinity if none is within `range_m` \[m\].
     fn cast_at_squares(&self, pose: Pose, beams: &Beams, range_m: f64, ranges_m: &mut Vec<f64>) {
         let frame = self.world().frame();
         let start = frame.grid_from_world(pose.point());

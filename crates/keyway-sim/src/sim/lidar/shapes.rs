@@ -1,11 +1,11 @@
-//! What beams meet apart from squares.
+//! Ranges to circles and polygons.
 
 use super::beams::Beams;
 use crate::sim::Circle;
 use keyway::geometry::{Point, Pose, Segment, outline};
 use keyway::robot::Footprint;
 
-/// Ranges of all beams, lowered by one shape after the other.
+/// Ranges of all beams, lowered shape by shape.
 pub(super) struct Shapes<'a> {
     pub(super) beams: &'a Beams,
     pub(super) from: Point,
@@ -47,7 +47,7 @@ impl Shapes<'_> {
         let from = self.from;
         let placed = polygon.vertices().iter().map(|&vertex| pose.world_from_body(vertex));
         for edge in outline(placed) {
-            // An edge is within the circle around it.
+            // An edge lies within the circle around it.
             let (middle, half_m) = (edge.a.lerp(edge.b, 0.5), 0.5 * edge.length());
             self.lower_near(middle, half_m, |direction| range_to_edge(from, direction, &edge));
         }
@@ -57,7 +57,7 @@ impl Shapes<'_> {
     fn lower_near(&mut self, centre: Point, radius_m: f64, range_m: impl Fn(Point) -> f64) {
         let to_centre = centre - self.from;
         let sin = radius_m / to_centre.norm();
-        // Seen from within, it is all around.
+        // From inside, it is seen at every bearing.
         let half_rad = if sin < 1.0 { libm::asin(sin) } else { std::f64::consts::PI };
         let bearing_rad = to_centre.heading() - self.theta;
         for (beam, direction) in self.beams.near(bearing_rad, half_rad, self.theta) {
@@ -67,12 +67,13 @@ impl Shapes<'_> {
     }
 }
 
-/// How far a point is outside a circle, as a difference of squares \[m²\]; not positive inside.
+/// Squared distance from a point to a circle's centre minus the squared radius \[m²\]; not positive
+/// inside.
 pub(super) fn outside(from: Point, circle: &Circle) -> f64 {
     (circle.centre - from).norm_sq() - circle.radius_m * circle.radius_m
 }
 
-/// Distance along a beam to a circle, infinity when it is missed \[m\].
+/// Distance along a beam to a circle \[m\]; infinity if the beam misses it.
 pub(super) fn range_to_circle(from: Point, direction: Point, circle: &Circle) -> f64 {
     let to_centre = circle.centre - from;
     let outside = outside(from, circle);
@@ -85,13 +86,13 @@ pub(super) fn range_to_circle(from: Point, direction: Point, circle: &Circle) ->
     if ahead <= 0.0 || half_chord_sq < 0.0 {
         return f64::INFINITY;
     }
-    // The smaller root as c / q: without the cancellation of `ahead - half_chord` near the circle.
+    // The smaller root as c / q avoids the cancellation of `ahead - half_chord` near the circle.
     outside / (ahead + half_chord_sq.sqrt())
 }
 
-/// Distance along a beam to an edge of a polygon, infinity when it is missed \[m\]. An edge along the beam
-/// counts as missed: its neighbours have the same ends. On which side of the beam a vertex lies does not
-/// depend on the edge, so no beam slips through between two edges.
+/// Distance along a beam to an edge of a polygon \[m\]; infinity if the beam misses it. An edge
+/// along the beam counts as missed: its neighbours have the same ends. The side of the beam on
+/// which a vertex lies does not depend on the edge, so no beam slips through between two edges.
 pub(super) fn range_to_edge(from: Point, direction: Point, edge: &Segment) -> f64 {
     let (to_a, to_b) = (edge.a - from, edge.b - from);
     let (aside_a, aside_b) = (direction.cross(to_a), direction.cross(to_b));

@@ -20,8 +20,8 @@ fn cast_among<'f>(
     scan
 }
 
-/// Every beam against every cell that it passes, every circle and every edge of a robot, one after the
-/// other.
+/// Ranges from testing every beam against every cell that it passes, every circle and every edge of
+/// a robot.
 fn beam_by_beam(
     world: &World,
     t_s: f64,
@@ -108,8 +108,8 @@ fn beam_layouts() {
     assert_eq!(one, [0.0]);
 }
 
-/// Whether a segment meets the closed square of this lower-left corner and a side of 1: the parts of
-/// it that lie between the lines of two opposite sides overlap.
+/// True if a segment meets the closed square with this lower-left corner and a side of 1: the parts
+/// of the segment between the lines of two opposite sides overlap.
 fn meets_square(a: Point, b: Point, corner: Point) -> bool {
     let between = |a: f64, b: f64, low: f64| {
         if a == b {
@@ -123,8 +123,8 @@ fn meets_square(a: Point, b: Point, corner: Point) -> bool {
     x.0.max(y.0).max(0.0) <= x.1.min(y.1).min(1.0)
 }
 
-/// Entering distance of the ray into the closed square, by the distance along the ray at which
-/// sampled clearance to it vanishes: bisection on "the segment up to here meets it".
+/// Distance along the ray at which it enters the closed square: bisection on "the segment up to
+/// here meets it".
 fn square_by_bisection(start: Point, direction: Point, range: f64, corner: Point) -> f64 {
     let meets = |length: f64| meets_square(start, start + direction * length, corner);
     if !meets(range) {
@@ -191,7 +191,7 @@ proptest! {
         }
     }
 
-    /// No place on a beam before its range is on another robot, and the one at its range is.
+    /// No place on a beam before its range is on another robot, and the place at its range is.
     #[test]
     fn other_robots_are_seen_as_their_footprints(
         radii in prop::collection::vec(0.1..0.6f64, 3..8), offset in (-0.5..0.5f64, -0.5..0.5f64),
@@ -260,7 +260,7 @@ proptest! {
         };
         prop_assert_eq!(among(&robots), beam_by_beam(&world, t_s, from, &sensor, &robots));
         prop_assert_eq!(&among(&[]), &world.at(t_s).cast(from, &sensor).ranges_m);
-        // Directions are those of the bearings.
+        // Directions agree with the bearings.
         let scan = world.at(t_s).cast(from, &sensor);
         for (beam, direction) in Beams::of(&sensor).directions(from.theta).enumerate() {
             let heading = from.theta + scan.bearing_rad(beam);
@@ -269,7 +269,8 @@ proptest! {
         }
     }
 
-    /// Where a mover is at the instant of the scan, by walking along its motion.
+    /// Ranges agree with the place of a moving obstacle at the instant of the scan, found by
+    /// walking along its motion.
     #[test]
     fn movers_are_seen_where_they_are(
         mover in moving_obstacle(), t_s in 0.0..9.0f64, from in (-2.0..2.0f64, -2.0..2.0f64, -3.1..3.1f64),
@@ -285,7 +286,7 @@ proptest! {
             let heading = from.theta + scan.bearing_rad(beam);
             let along = Point::new(libm::cos(heading), libm::sin(heading));
             let nearest = (centre - from.point()).dot(along).max(0.0);
-            // Grazing beams may do either.
+            // Grazing beams may hit or miss.
             let depth_m = -gap_m(from.point() + along * nearest);
             prop_assert!(depth_m.abs() < 1e-9 || range.is_finite() == (depth_m > 0.0), "{beam}: {range}");
             if range.is_finite() {

@@ -5,22 +5,22 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// Where an obstacle is at a time: `[t, x, y]` \[s, m, m\].
+/// Place of an obstacle at a time: `[t, x, y]` \[s, m, m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 3]", into = "[f64; 3]")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "[f64; 3]"))]
 pub struct KeyFrame {
-    /// When \[s\].
+    /// Time \[s\].
     pub t_s: f64,
-    /// Where \[m\].
+    /// Place \[m\].
     pub position: Point,
 }
 
-/// A motion through key frames: from each to the next in a straight line at one speed. Before the first
-/// and after the last the obstacle stands there.
+/// A motion through key frames: in a straight line at constant speed from each to the next. Before
+/// the first and after the last, the obstacle stands there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyFrames {
-    /// At least one; times grow.
+    /// At least one, with increasing times.
     frames: Vec<KeyFrame>,
 }
 
@@ -28,8 +28,9 @@ impl KeyFrames {
     /// A motion through these places at these times.
     ///
     /// # Errors
-    /// When there is no key frame, a number is not finite, times do not grow, or it is faster than
-    /// [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS) on its way from one to the next. Paths begin with `key_frames`.
+    /// When there is no key frame, a number is not finite, times do not increase, or the speed
+    /// between two key frames is higher than [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS).
+    /// Paths begin with `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
         unless_in_order("key_frames", &frames, 1)?;
         for (i, pair) in frames.windows(2).enumerate() {
@@ -38,12 +39,12 @@ impl KeyFrames {
         Ok(Self { frames })
     }
 
-    /// The same from key frames that are known to be usable.
+    /// A motion through key frames that are known to be valid.
     pub(in crate::sim) const fn in_order(frames: Vec<KeyFrame>) -> Self {
         Self { frames }
     }
 
-    /// Adds a frame, later than the last.
+    /// Adds a key frame that is later than the last.
     pub(super) fn push(&mut self, frame: KeyFrame) {
         self.frames.push(frame);
     }
@@ -61,14 +62,16 @@ impl KeyFrames {
                 from.position.lerp(to.position, (t_s - from.t_s) / (to.t_s - from.t_s))
             }
             (Some(only), None) | (None, Some(only)) => only.position,
-            // There is at least one.
+            // There is at least one key frame.
             (None, None) => Point::default(),
         }
     }
 
-    /// The highest speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, that of both sides.
+    /// Highest speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, the higher of
+    /// both sides.
     pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
-        // From the stretch that holds `from_s`, or ends there, to the one that holds `to_s` or begins there.
+        // From the stretch that contains `from_s` or ends there to the one that contains `to_s` or
+        // begins there.
         let first = self.frames.partition_point(|frame| frame.t_s < from_s).saturating_sub(1);
         let end = self.frames.partition_point(|frame| frame.t_s <= to_s) + 1;
         let stretch = &self.frames[first..end.min(self.frames.len())];
@@ -80,7 +83,8 @@ fn speed_mps(pair: &[KeyFrame]) -> f64 {
     pair[0].position.distance(pair[1].position) / (pair[1].t_s - pair[0].t_s)
 }
 
-/// Refuses fewer than `least` key frames, numbers that are not finite, and times that do not grow.
+/// Returns an error for fewer than `least` key frames, numbers that are not finite, and times that
+/// do not increase.
 pub(super) fn unless_in_order(
     path: &str,
     frames: &[KeyFrame],

@@ -1,4 +1,4 @@
-//! Round obstacles that move.
+//! Round moving obstacles.
 
 mod key_frames;
 mod random_walk;
@@ -19,11 +19,13 @@ use keyway::given::Given;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// A round obstacle that moves, through whatever is in its way: it gives way to nobody, unless its motion says so.
+/// A round moving obstacle. It passes through whatever is in its way and gives way to nothing,
+/// unless its motion says so.
 ///
-/// In files and reports it is a table with its `radius_m` and the fields of one motion: `position` and
-/// `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and `speed_mps`, and `to_and_fro` if
-/// it turns back, and `gives_way` if it does; or `random_walk`.
+/// In files and reports it is a table with its `radius_m` and the fields of one motion: `position`
+/// and `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and
+/// `speed_mps`, with `to_and_fro` if it turns back and `gives_way` if it gives way; or
+/// `random_walk`.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -44,11 +46,11 @@ pub struct Mover {
     motion: Motion,
 }
 
-/// How an obstacle moves: its place at any time, bounds of its speed, and when it jumps.
+/// Motion of an obstacle: its place at any time, bounds of its speed, and the times of its jumps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Motion {
-    /// For ever at one velocity.
+    /// At constant velocity for ever.
     Straight {
         /// Place at time 0 \[m\].
         from: Point,
@@ -57,20 +59,21 @@ pub enum Motion {
     },
     /// From place to place at given times.
     KeyFrames(KeyFrames),
-    /// Smoothly through places at given times, lap after lap: it may jump from the end of one to the next.
+    /// Smoothly through places at given times, lap after lap. The obstacle may jump from the end of
+    /// a lap to the beginning of the next.
     Spline(Spline),
-    /// For ever along a closed course at one speed.
+    /// Along a closed course at constant speed for ever.
     WayPoints(WayPoints),
-    /// For ever in a rectangle, by chance.
+    /// At random in a rectangle for ever.
     RandomWalk(RandomWalk),
-    /// For ever from way-point to way-point, giving way to robots and to other obstacles that move. Where it goes depends
-    /// on them, so this motion stands at its first way-point, and [`simulate`](super::simulate) finds out
-    /// ([`Run::movers`](super::Run::movers)).
+    /// From way-point to way-point for ever, giving way to robots and other moving obstacles. Its
+    /// course depends on them, so this motion stands at its first way-point, and
+    /// [`simulate`](super::simulate) computes the course ([`Run::movers`](super::Run::movers)).
     GivesWay(WayPoints),
 }
 
 impl Motion {
-    /// Place at a time \[m\]; at the instant of a jump, where the obstacle is from then on.
+    /// Place at a time \[m\]; at the instant of a jump, the place after it.
     pub fn position(&self, t_s: f64) -> Point {
         match self {
             Self::Straight { from, velocity_mps } => *from + *velocity_mps * t_s,
@@ -82,7 +85,7 @@ impl Motion {
         }
     }
 
-    /// Place just before a time \[m\]: at the instant of a jump, where the obstacle was until then; otherwise
+    /// Place just before a time \[m\]: at the instant of a jump, the place before it; otherwise
     /// [`Self::position`].
     pub fn position_before(&self, t_s: f64) -> Point {
         if let Self::Spline(spline) = self {
@@ -92,18 +95,18 @@ impl Motion {
         }
     }
 
-    /// The first jump later than a time \[s\].
+    /// Time of the first jump after a time \[s\].
     pub fn next_jump_s(&self, t_s: f64) -> Option<f64> {
         if let Self::Spline(spline) = self { spline.next_jump_s(t_s) } else { None }
     }
 
-    /// The last jump not later than a time \[s\].
+    /// Time of the last jump that is not after a time \[s\].
     pub fn last_jump_s(&self, t_s: f64) -> Option<f64> {
         if let Self::Spline(spline) = self { spline.last_jump_s(t_s) } else { None }
     }
 
-    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\], to rounding; a jump has none.
-    /// A bound for a part of that time is not higher.
+    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\], up to rounding; a jump
+    /// does not count. The bound for a part of that time is not higher.
     pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         match self {
             Self::Straight { velocity_mps, .. } => velocity_mps.norm(),
@@ -117,18 +120,19 @@ impl Motion {
 }
 
 impl Mover {
-    /// No obstacle moves faster \[m/s\], except along a [`Spline`]: contact is exact at every instant, so what moves
-    /// fast costs time.
+    /// Highest speed of an obstacle \[m/s\], except along a [`Spline`]. Contact is exact at every
+    /// instant, so fast motion costs computing time.
     pub const FASTEST_MPS: f64 = 100.0;
 
-    /// What is faster than this darts \[m/s\]: nothing that walks or drives among robots does.
+    /// Speed above which an obstacle darts \[m/s\]: nothing that walks or drives among robots is
+    /// faster.
     pub const DART_MPS: f64 = 5.0;
 
-    /// An obstacle of this radius and motion.
+    /// An obstacle with this radius and motion.
     ///
     /// # Errors
-    /// When the radius is negative, the radius or the place is not finite, or the velocity is faster than
-    /// [`Self::FASTEST_MPS`].
+    /// When the radius is negative, the radius or the place is not finite, or the velocity is
+    /// higher than [`Self::FASTEST_MPS`].
     pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("radius_m", radius_m)?;
         if let Motion::Straight { from, velocity_mps } = &motion {
@@ -139,7 +143,7 @@ impl Mover {
         Ok(Self { radius_m, motion })
     }
 
-    /// An obstacle that moves for ever at one velocity.
+    /// An obstacle that moves at constant velocity for ever.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -147,22 +151,23 @@ impl Mover {
         Self::new(radius_m, Motion::Straight { from, velocity_mps })
     }
 
-    /// Whether it walks by chance, and without a seed of its own.
+    /// True for a random walk without a seed of its own.
     pub const fn needs_seed(&self) -> bool {
         matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
     }
 
-    /// The same, and where it [needs a seed](Self::needs_seed), with one that follows from another and the `index` of the obstacle.
+    /// Returns the obstacle. If it [needs a seed](Self::needs_seed), it gets one that follows from
+    /// another seed and the `index` of the obstacle.
     #[must_use]
     pub fn seeded(self, seed: u64, index: u64) -> Self {
         let Motion::RandomWalk(walk) = &self.motion else { return self };
         if !self.needs_seed() {
             return self;
         }
-        // As large as any file may have it.
+        // Seeds in files are not larger.
         let own = Random::stream(seed, &[index]).bits() >> 1;
         let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
-        // The same but for its choices, so as good as before.
+        // Only the choices change, so the configuration stays valid.
         let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
         Self { motion: Motion::RandomWalk(walk), ..self }
     }
@@ -172,29 +177,29 @@ impl Mover {
         self.radius_m
     }
 
-    /// How it moves.
+    /// Its motion.
     pub const fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// The same obstacle on another way.
+    /// The obstacle with another motion.
     pub(super) const fn moving(&self, motion: Motion) -> Self {
         Self { radius_m: self.radius_m, motion }
     }
 
-    /// Where it is from now on, of one that moves from place to place.
+    /// Adds a key frame to an obstacle that moves along key frames.
     pub(super) fn goes_on(&mut self, frame: KeyFrame) {
         if let Motion::KeyFrames(frames) = &mut self.motion {
             frames.push(frame);
         }
     }
 
-    /// Its speed at a time \[m/s\]; where it changes at once, the higher one.
+    /// Its speed at a time \[m/s\]; the higher one where the speed changes abruptly.
     pub fn speed_mps(&self, t_s: f64) -> f64 {
         self.motion.speed_bound_mps(t_s, t_s)
     }
 
-    /// What it covers at a time.
+    /// Circle that it covers at a time.
     pub fn at(&self, t_s: f64) -> Circle {
         Circle::standing(self.motion.position(t_s), self.radius_m)
     }
@@ -212,7 +217,7 @@ fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
     unless_faster(path, speed_mps, Mover::FASTEST_MPS)
 }
 
-/// Refuses a speed above a limit, and what is no speed.
+/// Returns an error for a speed above a limit or NaN.
 fn unless_faster(path: &str, speed_mps: f64, fastest_mps: f64) -> Result<(), ConfigError> {
     if speed_mps <= fastest_mps {
         return Ok(());

@@ -7,30 +7,32 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// What a [`RandomWalk`] follows from.
+/// Parameters of a [`RandomWalk`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomWalkConfig {
     /// Place at time 0 \[m\].
     pub position: Point,
-    /// Two opposite corners of the rectangle in which the centre stays, the lower left one first \[m\].
+    /// Two opposite corners of the rectangle in which the centre stays, the lower left one first
+    /// \[m\].
     pub area: [Point; 2],
     /// The lowest and the highest speed \[m/s\].
     pub speed_mps: [f64; 2],
     /// The shortest and the longest time between two choices \[s\].
     pub leg_s: [f64; 2],
-    /// What all choices follow from; `None`: the seed of the scene, or without one 0.
+    /// Seed of all choices; `None`: the seed of the scene, or 0 without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
 }
 
-/// A random walk in a rectangle, all of which follows from a seed: straight on for a while, then straight on in another
-/// direction at another speed. Where the centre meets a side of the rectangle it is reflected.
+/// A random walk in a rectangle that follows entirely from a seed: straight on for a while, then
+/// straight on in another direction at another speed. The obstacle is reflected where its centre
+/// meets a side of the rectangle.
 ///
-/// Directions are equally likely, and so are speeds and durations within their bounds. After
-/// [`RandomWalkConfig::LEGS`] legs the same choices come again, and lead elsewhere then. Before time 0 the obstacle
-/// stands.
+/// Directions are uniformly distributed, and so are speeds and durations within their bounds. After
+/// [`RandomWalkConfig::LEGS`] legs the choices repeat, but lead to other places. Before time 0 the
+/// obstacle stands.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -52,19 +54,19 @@ pub struct RandomWalkConfig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomWalk {
     config: RandomWalkConfig,
-    /// One round of choices, in a plane that the sides of the area do not bound.
+    /// One round of choices in an unbounded plane.
     unbounded: KeyFrames,
 }
 
 impl RandomWalkConfig {
-    /// Choices until they are the same again.
+    /// Number of legs until the choices repeat.
     pub const LEGS: usize = 1000;
-    /// No leg is shorter \[s\].
+    /// Shortest leg \[s\].
     pub const SHORTEST_LEG_S: f64 = 0.1;
-    /// No leg is longer \[s\].
+    /// Longest leg \[s\].
     pub const LONGEST_LEG_S: f64 = 3600.0;
 
-    /// Checks every value. Paths are those of the fields.
+    /// Checks every value. Error paths name the field.
     fn validate(&self) -> Result<(), ConfigError> {
         let Self { position, area: [low, high], speed_mps, leg_s, .. } = self;
         unless_finite("position", *position)?;
@@ -97,10 +99,10 @@ impl RandomWalkConfig {
 }
 
 impl RandomWalk {
-    /// The walk that follows from these values.
+    /// The walk with these parameters.
     ///
     /// # Errors
-    /// When a value cannot be used. Paths are those of the fields.
+    /// When a value cannot be used. Paths name the field.
     pub fn new(config: RandomWalkConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let mut random = Random::new(config.seed.unwrap_or_default());
@@ -117,7 +119,7 @@ impl RandomWalk {
         Ok(Self { config, unbounded: KeyFrames::in_order(frames) })
     }
 
-    /// What the walk follows from.
+    /// Parameters of the walk.
     pub const fn config(&self) -> &RandomWalkConfig {
         &self.config
     }
@@ -131,7 +133,8 @@ impl RandomWalk {
         Point::new(reflected(at.x, low.x, high.x), reflected(at.y, low.y, high.y))
     }
 
-    /// The highest speed at any time from `from_s` to `to_s` \[m/s\]; where it changes, that of both sides.
+    /// Highest speed at any time from `from_s` to `to_s` \[m/s\]; where it changes, the higher of
+    /// both sides.
     pub(super) fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let ((first, from_s), (last, to_s)) = (self.round(from_s), self.round(to_s));
         let bound = |from_s, to_s| self.unbounded.speed_bound_mps(from_s, to_s);
@@ -148,7 +151,7 @@ impl RandomWalk {
         frames[frames.len() - 1]
     }
 
-    /// The round of choices at a time, from 0, and the time since its beginning \[s\].
+    /// Round of choices at a time, from 0, and the time since its beginning \[s\].
     fn round(&self, t_s: f64) -> (f64, f64) {
         let round_s = self.last().t_s;
         let round = (t_s / round_s).floor().max(0.0);
@@ -156,7 +159,7 @@ impl RandomWalk {
     }
 }
 
-/// A coordinate between two mirrors.
+/// A coordinate, reflected by two mirrors.
 fn reflected(at: f64, low: f64, high: f64) -> f64 {
     let width = high - low;
     let gone = (at - low).rem_euclid(2.0 * width);

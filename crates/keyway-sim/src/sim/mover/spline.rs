@@ -1,9 +1,9 @@
-//! A smooth motion through places at times, lap after lap.
+//! A smooth motion through places at given times, lap after lap.
 //!
 //! # Source
-//! The moving obstacles of `DynaBARN` \[Nair2022\] are animations of the Gazebo simulator that repeat: its
-//! `PoseAnimation` moves a model along a cardinal spline of tension 0 \[Catmull1974\] through key frames, which is
-//! transcribed here.
+//! The moving obstacles of `DynaBARN` \[Nair2022\] are repeating animations of the Gazebo
+//! simulator. Gazebo's `PoseAnimation` moves a model through key frames along a cardinal spline of
+//! tension 0 \[Catmull1974\], which is transcribed here.
 //!
 //! | symbol | here |
 //! |---|---|
@@ -11,42 +11,47 @@
 //! | `m_i`: tangent there | [`tangent`] |
 //! | `u`: part of a stretch, from 0 to 1 | `part` |
 //!
-//! Between two key frames the place is the cubic polynomial of `u = (t - t_i) / (t_{i+1} - t_i)` with the places
-//! `p_i`, `p_{i+1}` and the derivatives by `u` `m_i`, `m_{i+1}` at its ends:
+//! Between two key frames the place is the cubic polynomial of `u = (t - t_i) / (t_{i+1} - t_i)`
+//! with the places `p_i`, `p_{i+1}` and the derivatives with respect to `u`, `m_i` and `m_{i+1}`,
+//! at its ends:
 //!
-//! 1. `m_i = (p_{i+1} - p_{i-1}) / 2` between others,
+//! 1. `m_i = (p_{i+1} - p_{i-1}) / 2` at inner key frames,
 //! 2. `m_0 = (p_1 - p_0) / 2` and `m_{n-1} = (p_{n-1} - p_{n-2}) / 2` at the ends,
-//! 3. `m_0 = m_{n-1} = (p_1 - p_{n-2}) / 2` where the last place is the first one.
+//! 3. `m_0 = m_{n-1} = (p_1 - p_{n-2}) / 2` if the last place is the first one.
 //!
-//! The tangents do not depend on the times. So a stretch has the velocity `m_i / (t_{i+1} - t_i)` at its beginning
-//! and `m_{i+1} / (t_{i+1} - t_i)` at its end: at a key frame the direction goes on, and the speed does where the
-//! stretches on both sides last equally long.
+//! The tangents do not depend on the times. So a stretch has the velocity `m_i / (t_{i+1} - t_i)`
+//! at its beginning and `m_{i+1} / (t_{i+1} - t_i)` at its end. At a key frame the direction is
+//! continuous; the speed is continuous if the stretches on both sides last equally long.
 //!
-//! Where two key frames are close in time and their neighbours far away, the tangents are much longer than the way: the
-//! obstacle darts out and back. Those of `DynaBARN` do so in places, one at more than 70 m/s for 0.03 s.
+//! If two key frames are close in time and their neighbours are far away, the tangents are much
+//! longer than the distance between the two: the obstacle darts out and back. Obstacles of
+//! `DynaBARN` do so in places, one at more than 70 m/s for 0.03 s.
 //!
-//! The velocity of a stretch is a Bézier curve of degree 2, and so is that of any part of it: it stays within the
-//! triangle of its three control points, so the farthest of these from 0 bounds the speed.
+//! The velocity of a stretch is a Bézier curve of degree 2, and so is the velocity of any part of
+//! it. It stays within the triangle of its three control points, so the control point farthest from
+//! 0 bounds the speed.
 //!
 //! # Cost
-//! A place costs a binary search; a bound of the speed two, and a few operations per stretch between.
+//! A place costs a binary search. A bound of the speed costs two, and a few operations per stretch
+//! between.
 
 use super::key_frames::{KeyFrame, unless_in_order};
 use super::unless_faster;
 use keyway::ConfigError;
 use keyway::geometry::{Cubic, Point};
 
-/// A smooth motion through key frames, repeated: after `duration_s` the obstacle jumps back to the first place, unless
-/// the last one is the same. It stands at the last place until then, and at the first one before its time.
+/// A smooth motion through key frames, repeated: after `duration_s` the obstacle jumps back to the
+/// first place, unless the last place is the same. It stands at the last place until then, and at
+/// the first place before the time of the first key frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     frames: Vec<KeyFrame>,
     duration_s: f64,
-    /// From each key frame to the next.
+    /// Stretches from each key frame to the next.
     stretches: Vec<Stretch>,
 }
 
-/// From one key frame to the next.
+/// The stretch from one key frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 struct Stretch {
     from_s: f64,
@@ -55,19 +60,21 @@ struct Stretch {
 }
 
 impl Spline {
-    /// No lap is shorter \[s\].
+    /// Shortest lap \[s\].
     pub const SHORTEST_S: f64 = 0.1;
 
-    /// No control point of the velocity is faster \[m/s\]. That is more than others may be: where two key frames are
-    /// much closer in time than in the way that their neighbours suggest, the curve darts to and fro between them.
+    /// Highest speed of a control point of the velocity \[m/s\]. It is higher than for other
+    /// motions: if two key frames are much closer in time than the distance of their neighbours
+    /// suggests, the curve darts to and fro between them.
     pub const FASTEST_MPS: f64 = 1000.0;
 
-    /// A motion through these places at these times, which begins anew after each `duration_s`.
+    /// A motion through these places at these times that starts again after each `duration_s`.
     ///
     /// # Errors
-    /// When there are less than two key frames, a number is not finite, the first time is before 0, times do not grow,
-    /// `duration_s` is less than the last time or than [`Self::SHORTEST_S`], or a control point of the velocity is
-    /// faster than [`Self::FASTEST_MPS`]. Paths begin with `spline` or `duration_s`.
+    /// When there are fewer than two key frames, a number is not finite, the first time is before
+    /// 0, times do not increase, `duration_s` is less than the last time or than
+    /// [`Self::SHORTEST_S`], or a control point of the velocity is faster than
+    /// [`Self::FASTEST_MPS`]. Paths begin with `spline` or `duration_s`.
     pub fn new(frames: Vec<KeyFrame>, duration_s: f64) -> Result<Self, ConfigError> {
         unless_in_order("spline", &frames, 2)?;
         let (first_s, last_s) = (frames[0].t_s, frames[frames.len() - 1].t_s);
@@ -96,18 +103,18 @@ impl Spline {
         &self.frames
     }
 
-    /// How long a lap lasts \[s\].
+    /// Duration of a lap \[s\].
     pub const fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
-    /// Place at a time \[m\]; at the end of a lap, the first one of the next.
+    /// Place at a time \[m\]; at the end of a lap, the first place of the next lap.
     pub fn position(&self, t_s: f64) -> Point {
         let lap = self.lap(t_s);
         self.position_in_lap(t_s - self.start_s(lap))
     }
 
-    /// Place just before a time \[m\]: at the end of a lap, the last one.
+    /// Place just before a time \[m\]; at the end of a lap, the last place of the lap.
     pub(super) fn position_before(&self, t_s: f64) -> Point {
         let lap = self.lap(t_s);
         if lap > 0.0 && t_s == self.start_s(lap) {
@@ -116,20 +123,21 @@ impl Spline {
         self.position_in_lap(t_s - self.start_s(lap))
     }
 
-    /// The first jump later than a time \[s\].
+    /// Time of the first jump after a time \[s\].
     pub(super) fn next_jump_s(&self, t_s: f64) -> Option<f64> {
         let jump_s = self.start_s(self.lap(t_s) + 1.0);
-        // Times may be so large that no lap can be told from the next.
+        // At very large times one lap cannot be told from the next.
         (self.jumps() && jump_s > t_s).then_some(jump_s)
     }
 
-    /// The last jump not later than a time \[s\].
+    /// Time of the last jump that is not after a time \[s\].
     pub(super) fn last_jump_s(&self, t_s: f64) -> Option<f64> {
         let lap = self.lap(t_s);
         (self.jumps() && lap > 0.0).then(|| self.start_s(lap))
     }
 
-    /// The speed is not higher than this at any time from `from_s` to `to_s` \[m/s\]; at a key frame, on both sides.
+    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, on
+    /// both sides.
     pub(super) fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let (first, last) = (self.lap(from_s), self.lap(to_s));
         let (from_s, to_s) = (from_s - self.start_s(first), to_s - self.start_s(last));
@@ -147,17 +155,18 @@ impl Spline {
         &self.frames[self.frames.len() - 1]
     }
 
-    /// Whether the next lap begins elsewhere than a lap ends.
+    /// True if the next lap does not begin where a lap ends.
     fn jumps(&self) -> bool {
         self.frames[0].position != self.last().position
     }
 
-    /// When a lap begins \[s\]. Which lap a time belongs to is decided by this number, so a jump has one instant.
+    /// Start time of a lap \[s\]. This number alone decides which lap a time belongs to, so a jump
+    /// has one instant.
     fn start_s(&self, lap: f64) -> f64 {
         lap * self.duration_s
     }
 
-    /// The lap of a time: a whole number from 0; before time 0 it is the first.
+    /// Lap of a time: a whole number from 0; a time before 0 belongs to the first lap.
     fn lap(&self, t_s: f64) -> f64 {
         let lap = (t_s / self.duration_s).floor();
         // The quotient is rounded, by less than 1.
@@ -182,10 +191,11 @@ impl Spline {
 }
 
 impl Stretch {
-    /// After a key frame, by the tangents there and at the next.
+    /// The stretch after key frame `i`, from the tangents there and at the next.
     fn between(frames: &[KeyFrame], i: usize) -> Self {
         let (from, to) = (frames[i], frames[i + 1]);
-        // The derivative of a cubic Bézier curve at an end is three times the leg of its control polygon there.
+        // The derivative of a cubic Bézier curve at an end is three times the leg of its control
+        // polygon there.
         let [first, last] = [i, i + 1].map(|i| tangent(frames, i) * (1.0 / 3.0));
         let middle = to.position - from.position - first - last;
         let curve = Cubic { start: from.position, legs: [first, middle, last] };
@@ -205,18 +215,19 @@ impl Stretch {
         self.curve.legs.map(|leg| leg * (3.0 / (self.to_s - self.from_s)))
     }
 
-    /// The speed is not higher between two times, of which the parts outside the stretch do not count \[m/s\].
+    /// Upper bound of the speed between two times \[m/s\]; the parts outside the stretch do not
+    /// count.
     fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let (from, to) = (self.part(from_s), self.part(to_s));
         let [a, b, c] = self.velocities_mps();
-        // Control points of the part between.
+        // Control points of the part in between.
         let control_at = |s: f64, t: f64| a.lerp(b, s).lerp(b.lerp(c, s), t);
         let control = [control_at(from, from), control_at(from, to), control_at(to, to)];
         control.map(Point::norm).into_iter().fold(0.0, f64::max)
     }
 }
 
-/// Derivative by the part of a stretch at a key frame \[m\]: equations 1 to 3.
+/// Derivative at a key frame with respect to the part of a stretch \[m\]: equations 1 to 3.
 fn tangent(frames: &[KeyFrame], i: usize) -> Point {
     let last = frames.len() - 1;
     let is_closed = frames[0].position == frames[last].position;

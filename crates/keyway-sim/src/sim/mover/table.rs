@@ -5,7 +5,7 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// A round obstacle that moves: its `radius_m` and the fields of one motion.
+/// A round moving obstacle: its `radius_m` and the fields of one motion.
 #[derive(Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "Mover", extend("oneOf" = [
@@ -22,39 +22,42 @@ use serde::{Deserialize, Serialize};
 pub(super) struct MoverTable {
     /// Its radius \[m\], at least 0.
     radius_m: f64,
-    /// Straight on for ever: where it is at the beginning \[m\].
+    /// Straight on for ever: place at time 0 \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     position: Option<Point>,
-    /// Straight on for ever: its velocity, `[vx, vy]` \[m/s\].
+    /// Straight on for ever: velocity, `[vx, vy]` \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     velocity_mps: Option<Point>,
-    /// From one place to the next, each in a straight line at one speed: `[t, x, y]` each \[s, m, m\], in the order of their times.
+    /// From each place to the next in a straight line at constant speed: `[t, x, y]` each
+    /// \[s, m, m\], in the order of their times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     key_frames: Option<Vec<KeyFrame>>,
-    /// Smoothly through places, lap after lap: `[t, x, y]` each \[s, m, m\], in the order of their times.
+    /// Smoothly through places, lap after lap: `[t, x, y]` each \[s, m, m\], in the order of their
+    /// times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     spline: Option<Vec<KeyFrame>>,
-    /// Along a spline: how long a lap lasts \[s\], at least 0.1.
+    /// Along a spline: duration of a lap \[s\], at least 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
-    /// From one place to the next at one speed, and from the last to the first again, for ever \[m\].
+    /// From each place to the next at constant speed, and from the last to the first again, for
+    /// ever \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     way_points: Option<Vec<Point>>,
-    /// Along way-points: its speed \[m/s\].
+    /// Along way-points: speed \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     speed_mps: Option<f64>,
-    /// Along way-points: whether it turns back at the last one the way it came.
+    /// Along way-points: true if it turns back at the last one and returns the same way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to_and_fro: Option<bool>,
-    /// In a rectangle, by chance, for ever.
+    /// At random in a rectangle, for ever.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     random_walk: Option<RandomWalkConfig>,
-    /// Along way-points: whether it gives way to robots and to other obstacles that move.
+    /// Along way-points: true if it gives way to robots and other moving obstacles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gives_way: Option<bool>,
 }
 
-/// What a table may hold beside its radius.
+/// Fields that a table may have beside its radius.
 const MOTIONS: &str = "`position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, \
      or `way_points` and `speed_mps`, or `random_walk`";
 
@@ -74,7 +77,7 @@ impl TryFrom<MoverTable> for Mover {
 
 impl MoverTable {
     fn motion(self) -> Result<Motion, ConfigError> {
-        // Of each motion, what is given beside the fields of others is too much.
+        // Fields of a second motion are an error.
         let given: Vec<&str> = self
             .fields()
             .into_iter()
@@ -111,7 +114,7 @@ impl MoverTable {
         }
     }
 
-    /// The fields of motions that every such motion has, and which of them are given.
+    /// Required fields of all motions, and whether each is given.
     fn fields(&self) -> [(&'static str, bool); 8] {
         [
             ("position", self.position.is_some()),
@@ -126,7 +129,7 @@ impl MoverTable {
     }
 }
 
-/// The fields of a table are too many or too few for one motion.
+/// Error for a table whose fields are too many or too few for one motion.
 fn not_one_motion(given: &[&str]) -> ConfigError {
     let given: Vec<String> = given.iter().map(|name| format!("`{name}`")).collect();
     let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };

@@ -7,7 +7,8 @@ fn place() -> impl Strategy<Value = Point> {
     (-1.5..1.5f64, -1.5..1.5f64).prop_map(|(x, y)| Point::new(x, y))
 }
 
-/// A spline near the origin at up to 6 m/s; its lap may end where it began, or later than at its last place.
+/// A spline near the origin at up to 6 m/s; its lap may end where it began, or later than at its
+/// last place.
 fn spline() -> impl Strategy<Value = Motion> {
     let frames = prop::collection::vec((0.1..1.2f64, place()), 2..7);
     (frames, 0.0..0.5f64, any::<bool>(), prop_oneof![Just(0.0), 0.0..0.5f64]).prop_map(
@@ -22,7 +23,8 @@ fn spline() -> impl Strategy<Value = Motion> {
             if is_closed {
                 frames[last].position = frames[0].position;
             }
-            // Speeds are proportional to the lengths, whose derivatives are at most four steps per stretch.
+            // Speeds are proportional to the lengths, whose derivatives are at most four steps per
+            // stretch.
             let leg = |pair: &[KeyFrame]| pair[0].position.distance(pair[1].position);
             let longest_m = frames.windows(2).map(leg).fold(0.0, f64::max);
             let gaps = frames.windows(2).map(|pair| pair[1].t_s - pair[0].t_s);
@@ -73,7 +75,7 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = Mover> {
     (motion, 0.0..0.3f64).prop_map(|(motion, radius_m)| Mover::new(radius_m, motion).unwrap())
 }
 
-/// Where an obstacle is, by walking along its motion from the beginning.
+/// Place of an obstacle, found by walking along its motion from the beginning.
 pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
     match mover.motion() {
         Motion::Straight { from, velocity_mps } => {
@@ -112,8 +114,8 @@ pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
     }
 }
 
-/// `Spline::RecalcTangents` and `Spline::Interpolate` of the simulator Gazebo 2 to 9, transcribed: by powers and a
-/// matrix.
+/// `Spline::RecalcTangents` and `Spline::Interpolate` of the simulator Gazebo 2 to 9, transcribed:
+/// by powers and a matrix.
 fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
     let points: Vec<Point> = spline.frames().iter().map(|frame| frame.position).collect();
     let (n, is_closed) = (points.len(), points[0] == points[points.len() - 1]);
@@ -158,7 +160,7 @@ fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
     place
 }
 
-/// Leg by leg, from wall to wall.
+/// Place on a random walk, found leg by leg and wall by wall.
 fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
     let RandomWalkConfig { position, area: [low, high], speed_mps, leg_s, seed } = *config;
     let mut random = keyway::random::Random::new(seed.unwrap());
@@ -167,7 +169,7 @@ fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
     };
     let (mut at, mut left_s) = ([position.x, position.y], t_s);
     let walls = [[low.x, high.x], [low.y, high.y]];
-    // A wall turns what is chosen after it, too.
+    // A wall also reflects the later choices.
     let mut turned = [false; 2];
     while left_s > 0.0 {
         let heading = between([0.0, 2.0 * std::f64::consts::PI]);
@@ -199,7 +201,8 @@ proptest! {
         prop_assert!(at.distance(walked) < 1e-9, "{at:?} {walked:?}");
     }
 
-    /// Never faster than the bound, and somewhere as fast; a part of a time has no higher bound.
+    /// The speed is never above the bound, and reaches it somewhere; a part of a time has no higher
+    /// bound.
     #[test]
     fn speed_bounds_hold_and_are_reached(
         mover in moving_obstacle(), from_s in -1.0..6.0f64, long_s in 0.001..3.0f64, part in (0.0..1.0f64, 0.0..1.0f64),
@@ -212,7 +215,8 @@ proptest! {
         let moved = (0..2000).filter(|&i| !jumps(i)).map(|i| at(i).distance(at(i + 1)) / step_s);
         let fastest_mps = moved.fold(0.0, f64::max);
         prop_assert!(fastest_mps <= bound_mps + 1e-6, "{fastest_mps} {bound_mps}");
-        // A stretch of which the interval has less than a step, or a round of few steps, may be missed.
+        // Sampling may miss a stretch with less than a step inside the interval, or a round of few
+        // steps.
         let (a, b) = (from_s + long_s * part.0.min(part.1), from_s + long_s * part.0.max(part.1));
         prop_assert!(mover.motion().speed_bound_mps(a, b) <= bound_mps * (1.0 + 1e-9) + 1e-12);
         if let Motion::KeyFrames(frames) = mover.motion() {

@@ -4,14 +4,15 @@ use super::{unless_finite, unless_usable_speed};
 use keyway::ConfigError;
 use keyway::geometry::Point;
 
-/// A motion for ever along a course at one speed: around way-points in turn, or along them to and fro. At
-/// time 0 the obstacle is at the first. It turns at once: corners are not rounded.
+/// A motion along a course at constant speed for ever: around way-points in turn, or along them to
+/// and fro. At time 0 the obstacle is at the first way-point. It turns at once: corners are not
+/// rounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WayPoints {
     points: Vec<Point>,
     to_and_fro: bool,
     speed_mps: f64,
-    /// One round: the way-points, those of the way back, and the first again.
+    /// One round: the way-points, the way-points of the way back, and the first again.
     course: Vec<Station>,
 }
 
@@ -24,17 +25,17 @@ struct Station {
 }
 
 impl WayPoints {
-    /// From each way-point to the next, and from the last to the first.
+    /// A course from each way-point to the next, and from the last to the first.
     ///
     /// # Errors
-    /// When there are less than two different points, a number is not finite, or the speed is not positive or higher
-    /// than [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS).
-    /// Paths begin with `way_points` or `speed_mps`.
+    /// When there are fewer than two different points, a number is not finite, or the speed is not
+    /// positive or higher than [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS). Paths begin with
+    /// `way_points` or `speed_mps`.
     pub fn around(points: Vec<Point>, speed_mps: f64) -> Result<Self, ConfigError> {
         Self::new(points, speed_mps, false)
     }
 
-    /// From the first way-point to the last and back.
+    /// A course from the first way-point to the last and back.
     ///
     /// # Errors
     /// As for [`Self::around`].
@@ -74,7 +75,7 @@ impl WayPoints {
         &self.points
     }
 
-    /// Whether the obstacle turns back at the last way-point.
+    /// True if the obstacle turns back at the last way-point.
     pub const fn is_to_and_fro(&self) -> bool {
         self.to_and_fro
     }
@@ -88,7 +89,8 @@ impl WayPoints {
     pub fn position(&self, t_s: f64) -> Point {
         let round_m = self.course[self.course.len() - 1].driven_m;
         let driven_m = (self.speed_mps * t_s).rem_euclid(round_m);
-        // The first is at 0, so there is one before; at the end of a round there is none after.
+        // The first station is at 0, so there is one before; at the end of a round there is none
+        // after.
         let after = self.course.partition_point(|station| station.driven_m <= driven_m);
         let from = self.course[after.max(1) - 1];
         let Some(to) = self.course.get(after) else { return from.position };

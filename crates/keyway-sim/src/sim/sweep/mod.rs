@@ -1,4 +1,4 @@
-//! What touches along one cycle of motion, and how near things come: certified, not sampled.
+//! Contacts and smallest clearances along one cycle of motion: certified, not sampled.
 
 mod mover;
 
@@ -8,52 +8,52 @@ use super::World;
 use super::cycle_motion::CycleMotion;
 use keyway::robot::Footprint;
 
-/// Below this \[m\] a stretch is not halved any more: it touches when it cannot be shown not to,
-/// and the smallest clearance is accurate to that.
+/// Length below which a stretch is not halved any more \[m\]. It then counts as contact unless it
+/// can be shown to be free, and the smallest clearance has this accuracy.
 pub(super) const TOLERANCE_M: f64 = 1e-4;
 
-/// Two things that move during a cycle.
+/// Two objects that move during a cycle.
 ///
-/// The distance between two things changes at most by how far parts of both move. So between two places
-/// between which they move by `ds` together and whose clearances are `c1` and `c2`, a place after a
-/// move of `s` has at least `max(c1 - s, c2 - (ds - s))`, which is smallest where both are equal:
-/// `(c1 + c2 - ds) / 2`. Where that bound is not enough the stretch is halved.
+/// The distance between two objects changes at most by how far parts of both move. Take two places
+/// with the clearances `c1` and `c2` between which the objects move by `ds` together. A place after
+/// a move of `s` has a clearance of at least `max(c1 - s, c2 - (ds - s))`, which is smallest where
+/// both are equal: `(c1 + c2 - ds) / 2`. If that bound is not enough, the stretch is halved.
 pub(super) trait Sweep {
-    /// How far apart the two are at a place \[m\]; `reach_m` where that is less.
+    /// Distance between the two at a place, but at most `reach_m` \[m\].
     fn clearance_m(&self, place: f64, reach_m: f64) -> f64;
 
-    /// What is left at a place until there is contact \[m\]: the clearance, unless there is contact with
-    /// something that does not count for clearances.
+    /// Distance at a place until there is contact \[m\]: the clearance, unless there is contact
+    /// with something that does not count for clearances.
     fn gap_m(&self, place: f64, reach_m: f64) -> f64 {
         self.clearance_m(place, reach_m)
     }
 
-    /// What parts of both move together between two places, at most \[m\].
+    /// Upper bound of how far parts of both move together between two places \[m\].
     fn moved_m(&self, from: f64, to: f64) -> f64;
 
-    /// The first place from `from` to `until` from which on the two touch, to [`TOLERANCE_M`]: a gap that the
-    /// bound cannot tell from contact on a shorter stretch than that (so one of at most half of it) is
-    /// contact. The two are assumed to be apart at `from`.
+    /// The first place from `from` to `until` from which on the two touch, to [`TOLERANCE_M`]. A
+    /// gap that the bound cannot tell from contact on a stretch shorter than that (so a gap of at
+    /// most half of it) is contact. The two are assumed to be apart at `from`.
     fn first_contact_between(&self, from: f64, until: f64) -> Option<f64> {
         let moved_m = self.moved_m(from, until);
         if moved_m == 0.0 {
             return None;
         }
-        // Two clearances of the stretch's length are always enough: none needs to be known beyond.
-        // The tolerance keeps a length shorter than the radius' last digit from looking like
+        // Two clearances of the stretch's length are always enough, so larger ones need not be
+        // known. The tolerance keeps a length shorter than the radius' last digit from looking like
         // contact.
         let reach_m = moved_m + TOLERANCE_M;
         let probe = |place| Probe { place, clearance_m: self.gap_m(place, reach_m) };
         contact_between(self, probe(from), probe(until), &probe)
     }
 
-    /// The first contact before a place, from the motion's beginning on.
+    /// The first contact from the motion's beginning to a place.
     fn first_contact(&self, until: f64) -> Option<f64> {
         self.first_contact_between(0.0, until)
     }
 
-    /// The smaller of `known_m` and the smallest clearance from a place on the motion to another, accurate to
-    /// [`TOLERANCE_M`].
+    /// The smaller of `known_m` and the smallest clearance between two places on the motion,
+    /// accurate to [`TOLERANCE_M`].
     fn least_clearance_between(&self, from: f64, until: f64, known_m: f64) -> f64 {
         // Anything farther away cannot matter on this motion.
         let reach_m = known_m + self.moved_m(from, until);
@@ -64,20 +64,20 @@ pub(super) trait Sweep {
         least
     }
 
-    /// The least clearance up to a place, from the motion's beginning on.
+    /// The smaller of `known_m` and the smallest clearance from the motion's beginning to a place.
     fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
         self.least_clearance_between(0.0, until, known_m)
     }
 }
 
-/// A robot's footprint on its way.
+/// A robot's footprint and its motion.
 #[derive(Clone, Copy)]
 pub(super) struct Moving<'a> {
     pub(super) footprint: &'a Footprint,
     pub(super) motion: &'a CycleMotion,
 }
 
-/// A robot among the obstacles of a world that stand; leaving the map is contact.
+/// A robot among the stationary obstacles of a world; leaving the map is contact.
 pub(super) struct StandingSweep<'a> {
     pub(super) world: &'a World,
     pub(super) robot: Moving<'a>,
@@ -89,7 +89,7 @@ pub(super) struct PairSweep<'a> {
 }
 
 impl Moving<'_> {
-    /// No part moves farther than this between two places \[m\].
+    /// Upper bound of how far any part moves between two places \[m\].
     fn moved_m(&self, from: f64, to: f64) -> f64 {
         let driven_m = self.motion.driven_m(to) - self.motion.driven_m(from);
         let turned_rad = self.motion.turned_rad(to) - self.motion.turned_rad(from);
@@ -145,7 +145,7 @@ fn contact_between<S: Sweep + ?Sized>(
         return None;
     }
     let half_way = 0.5 * (a.place + b.place);
-    // A velocity beyond all measure can exhaust the places before the tolerance is met.
+    // At an extreme velocity, places may become too close to halve before the tolerance is met.
     if moved_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
         return Some(a.place);
     }
@@ -173,7 +173,7 @@ fn least_within<S: Sweep + ?Sized>(
     least_within(sweep, middle, b, probe, least);
 }
 
-/// The least clearance that a stretch between two places can have.
+/// Lower bound of the clearance on a stretch between two places.
 fn least_between(a: Probe, b: Probe, moved_m: f64) -> f64 {
     0.5 * (a.clearance_m + b.clearance_m - moved_m)
 }

@@ -1,12 +1,12 @@
-//! A robot and an obstacle that moves, and may jump on its way.
+//! A robot and a moving obstacle, which may jump on its way.
 
 use super::{Moving, Sweep, TOLERANCE_M};
 use crate::sim::cycle_motion::CycleMotion;
 use crate::sim::world::to_circle;
 use crate::sim::{Circle, Mover};
 
-/// A robot and an obstacle that moves. Where the obstacle jumps, the motion is cut in two: before that instant it is
-/// judged up to the old place, from then on from the new one.
+/// A robot and a moving obstacle. The motion is cut in two where the obstacle jumps: before that
+/// instant the old place counts, from then on the new one.
 pub(in crate::sim) struct MoverSweep<'a> {
     pub(in crate::sim) mover: &'a Mover,
     pub(in crate::sim) robot: Moving<'a>,
@@ -34,7 +34,7 @@ impl<'a> MoverSweep<'a> {
         })
     }
 
-    /// Whether the obstacle jumped within the time of a cycle before a place.
+    /// True if the obstacle jumped within the time of a cycle before a place.
     pub(in crate::sim) fn jumped_before(&self, place: f64) -> bool {
         let since_s = |stretch: Stretch<'_>| {
             let jump_s = self.mover.motion().last_jump_s(stretch.from_s)?;
@@ -51,11 +51,11 @@ impl<'a> MoverSweep<'a> {
 
     /// The last stretch that has begun at a place.
     fn stretch_of(&self, place: f64) -> Option<Stretch<'a>> {
-        // Up to the end, because at the place itself another stretch may begin.
+        // All stretches are searched, because another one may begin at the place itself.
         self.stretches(CycleMotion::END).take_while(|stretch| stretch.from <= place).last()
     }
 
-    /// The parts of the motion up to a place that no jump interrupts.
+    /// Parts of the motion up to a place, separated by jumps.
     fn stretches(&self, until: f64) -> impl Iterator<Item = Stretch<'a>> {
         let Self { mover, robot, start_s } = *self;
         let from_to = move |from: f64, from_s: f64| {
@@ -70,8 +70,8 @@ impl<'a> MoverSweep<'a> {
     }
 }
 
-/// A part of the motion without a jump, from a place to another. The obstacle is where it is from `from_s` on and
-/// before `to_s`, however places are rounded.
+/// A part of the motion without a jump, from a place to another. Times stay from `from_s` to
+/// `to_s`, and at `to_s` the obstacle is where it was just before, however places are rounded.
 struct Stretch<'a> {
     mover: &'a Mover,
     robot: Moving<'a>,

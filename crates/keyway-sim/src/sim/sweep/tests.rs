@@ -127,7 +127,8 @@ proptest! {
         }
     }
 
-    /// A disc that drives past a polygon that stands: free before the contact, touching there, and as near as it comes.
+    /// A disc that drives past a stationary polygon: free before the contact, touching there, and
+    /// with the sampled smallest clearance.
     #[test]
     fn contact_with_standing_polygons_agrees_with_dense_sampling(
         radii in prop::collection::vec(0.05..0.6f64, 3..9), at in (-1.2..1.2f64, -1.2..1.2f64),
@@ -156,9 +157,9 @@ proptest! {
         prop_assert!(known_m <= least_m + TOLERANCE_M && known_m > least_m - 2e-3, "{known_m} {least_m}");
     }
 
-    /// A disc or a polygon that drives and turns, stops or stands, and a mover of any motion, which may turn
-    /// corners in the cycle: apart before the contact, touching there, and as near as they come at 4000
-    /// instants.
+    /// A disc or a polygon that drives and turns, stops or stands, and an obstacle of any motion,
+    /// which may turn corners in the cycle: apart before the contact, touching there, and with the
+    /// smallest clearance of 4000 instants.
     #[test]
     fn contact_with_movers_agrees_with_dense_sampling(
         (shape, motion) in mover(), mover in moving_obstacle(), start_s in 0.0..4.0f64, stands in prop::bool::weighted(0.3),
@@ -167,7 +168,7 @@ proptest! {
         let sweep = MoverSweep {
             mover: &mover, robot: Moving { footprint: &shape, motion: &motion }, start_s,
         };
-        // Positions by the motion's own parameters, not by its own code.
+        // Positions come from the motion's parameters, not from its own code.
         let gap_m = |place: f64| {
             let circle = Circle::standing(place_of(&mover, start_s + place / 4.0), mover.radius_m());
             match &shape {
@@ -190,7 +191,7 @@ proptest! {
         let until = contact.unwrap_or(CycleMotion::END);
         let sampled_m = places.filter(|&place| place <= until).map(gap_m).fold(9.0, f64::min);
         prop_assert!(sampled_m > 0.0, "{sampled_m}");
-        // Parts of the robot move by at most 1 mm between two instants, the mover by 1.5 mm.
+        // Parts of the robot move by at most 1 mm between two instants, the obstacle by 1.5 mm.
         let least_m = sweep.least_clearance(until, 9.0);
         prop_assert!(least_m < sampled_m + TOLERANCE_M, "{least_m} {sampled_m}");
         prop_assert!(least_m > sampled_m - 0.0015 - TOLERANCE_M, "{least_m} {sampled_m}");
@@ -209,7 +210,8 @@ fn polygon_gap_m(vertices: &[Point], pose: Pose, circle: &Circle) -> f64 {
     if is_inside { edges_m.min(-circle.radius_m) } else { edges_m }
 }
 
-/// A shape around a point: a disc of the first radius, or a polygon with its vertices at all of them.
+/// A shape around a point: a disc with the first radius, or a polygon with its vertices at all
+/// radii.
 fn shape(is_disc: bool, radii: &[f64], offset: (f64, f64)) -> Footprint {
     if is_disc {
         return Footprint::circle(radii[0]).unwrap();
@@ -217,7 +219,8 @@ fn shape(is_disc: bool, radii: &[f64], offset: (f64, f64)) -> Footprint {
     Footprint::polygon(star(radii, offset)).unwrap()
 }
 
-/// A robot of any shape, near the origin, and its motion in a cycle of a second; it may stop on its way.
+/// A robot of any shape near the origin, and its motion in a cycle of a second; it may stop on its
+/// way.
 fn mover() -> impl Strategy<Value = (Footprint, CycleMotion)> {
     let shape =
         (any::<bool>(), prop::collection::vec(0.05..0.4f64, 3..7), (-0.2..0.2f64, -0.2..0.2f64))
@@ -243,7 +246,7 @@ fn two_discs_meet_half_way() {
     // A gap of 1.5 m at 2 m/s.
     let place = PairSweep { robots }.first_contact(CycleMotion::END).unwrap();
     assert!((right.elapsed_s(place) - 0.75).abs() < TOLERANCE_M, "{place}");
-    // One that is stopped after 0.25 s is met by the other 0.75 s later, or not in this cycle.
+    // The other robot does not meet a robot that stops after 0.25 s in this cycle.
     let mut stopped = left.clone();
     stopped.stop_at(1.0);
     let robots = [&right, &stopped].map(|motion| Moving { footprint: &disc, motion });
@@ -253,8 +256,8 @@ fn two_discs_meet_half_way() {
 }
 
 proptest! {
-    /// Two discs, a disc and a polygon, or two polygons, that drive and turn: apart before the contact,
-    /// touching there, and as near to each other as they come at 4000 places.
+    /// Two discs, a disc and a polygon, or two polygons, that drive and turn: apart before the
+    /// contact, touching there, and with the smallest clearance of 4000 places.
     #[test]
     fn contact_of_two_robots_agrees_with_dense_sampling(one in mover(), other in mover()) {
         let moving = |mover: &'_ (Footprint, CycleMotion)| (mover.0.clone(), mover.1.clone());
@@ -283,7 +286,7 @@ proptest! {
     }
 }
 
-/// From (x, 0) aside, and in each lap of 0.45 s again.
+/// An obstacle that moves aside from (x, 0), and again in each lap of 0.45 s.
 fn comes_again(x: f64) -> Mover {
     let frames = [[0.0, x, 0.0], [0.4, x, 5.0]].map(KeyFrame::from).to_vec();
     Mover::new(0.1, Motion::Spline(Spline::new(frames, 0.45).unwrap())).unwrap()
@@ -291,7 +294,7 @@ fn comes_again(x: f64) -> Mover {
 
 #[test]
 fn a_jump_is_no_way() {
-    // Across the robot, which would be met on the way between.
+    // The jump passes over the robot, which a continuous motion would hit.
     let frames = [[0.0, -2.0, 0.0], [0.1, -2.0, 0.5], [0.2, 2.0, 0.5], [0.3, 2.0, 0.0]];
     let frames = frames.map(|[t_s, x, y]| KeyFrame::from([t_s, x, y + 3.0 * t_s])).to_vec();
     let mover = Mover::new(0.1, Motion::Spline(Spline::new(frames, 0.3).unwrap())).unwrap();
@@ -300,7 +303,8 @@ fn a_jump_is_no_way() {
     let robot = Moving { footprint: &footprint, motion: &motion };
     let sweep = MoverSweep { mover: &mover, robot, start_s: 0.275 };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
-    // At its end it is at (2, 0.9), then at (-2, 0): that is nearer than any place before.
+    // At the end of its lap it is at (2, 0.9), then at (-2, 0): that is nearer than any place
+    // before.
     let least_m = |until| sweep.least_clearance(until, 9.0);
     assert!((least_m(CycleMotion::END) - 1.7).abs() < 2.0 * TOLERANCE_M);
     let before_m = 2.0_f64.hypot(0.9) - 0.3;
@@ -312,7 +316,8 @@ fn contact_by_a_jump_is_at_its_instant() {
     let footprint = Footprint::circle(0.2).unwrap();
     let start = Pose::new(2.0, 0.0, 0.0);
     let mover = comes_again(2.25);
-    // The jump is at every time of a cycle once, its beginning and its end included, and within one of 0.45 s twice.
+    // The jump falls within each cycle once, at its beginning or end as well, and twice in the long
+    // cycle.
     for (start_s, duration_s) in
         [(0.41, 0.1), (0.45, 0.1), (0.449, 0.1), (0.2, 0.8), (3.55, 0.1), (4.05, 0.1)]
     {
@@ -325,13 +330,13 @@ fn contact_by_a_jump_is_at_its_instant() {
         assert!((start_s + motion.elapsed_s(place) - jump_s).abs() < 1e-12, "{start_s} {place}");
         assert!(sweep.jumped_before(place));
     }
-    // One that ends with the jump has its contact in the next.
+    // If a cycle ends with the jump, the contact is in the next cycle.
     let motion = CycleMotion::standing(start, 0.125);
     let robot = Moving { footprint: &footprint, motion: &motion };
     let sweep = MoverSweep { mover: &mover, robot, start_s: 0.325 };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
     assert!(sweep.least_clearance(CycleMotion::END, 9.0) > 2.0);
-    // What was there since longer than a cycle did not jump just now.
+    // An obstacle that has stood there for longer than a cycle did not just jump.
     let standing = [[0.0, 2.25, 0.0], [0.3, 2.25, 0.0], [0.4, 2.25, 5.0]].map(KeyFrame::from);
     let standing = Spline::new(standing.to_vec(), 0.5).unwrap();
     let mover = Mover::new(0.1, Motion::Spline(standing)).unwrap();

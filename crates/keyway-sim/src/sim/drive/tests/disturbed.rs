@@ -3,10 +3,11 @@
 use super::*;
 use crate::sim::{ActuationNoise, Arrival, LocalisationNoise, SensorNoise};
 
-/// What the controller was told and saw in a cycle.
+/// Pose, velocity and ranges that the controller was given in a cycle.
 type Told = (Pose, Velocity, Vec<f64>);
 
-/// A run by the commands of every cycle, whatever the robot is told; and what it was told.
+/// A run with a given command for every cycle, whatever the robot is told, and the controller's
+/// inputs.
 fn driven(
     world: &World,
     robot: &Robot,
@@ -55,14 +56,14 @@ fn without_disturbances_all_is_exact_to_the_bit() {
     let none = Disturbances { seed: 77, ..Disturbances::default() };
     let (run, told) = driven(&world, &robot, none, 6.0, wavy);
     assert_eq!((run.cycles, told.len()), (60, 60));
-    // The motion as it is defined, one cycle after the other.
+    // Recomputes the motion from its definition, cycle by cycle.
     let (mut pose, mut velocity) = (run.samples[0].pose, Velocity::ZERO);
     for (cycle, (told_pose, told_velocity, ranges_m)) in told.iter().enumerate() {
         assert_eq!((*told_pose, *told_velocity), (pose, velocity));
         assert_eq!(*ranges_m, world.at(0.0).cast(pose, &robot.sensor).ranges_m);
         let reached = robot.limits.reached(velocity, wavy(cycle as u64), robot.cycle_s);
         pose = pose.after_ramp(velocity, reached, robot.cycle_s);
-        // What the robot has reached, by the formula that changes the velocity linearly.
+        // The reached velocity, by the formula that changes it linearly.
         velocity = velocity.lerp(reached, 1.0);
         let sample = run.samples[cycle + 1];
         assert_eq!((sample.pose, sample.velocity), (pose, velocity), "{cycle}");
@@ -100,13 +101,13 @@ fn the_same_commands_drive_the_same_velocities_later() {
     let (world, robot) = (world(&[]), robot());
     let velocities_after = |delay_s| {
         let (run, told) = driven(&world, &robot, late(delay_s), 6.0, wavy);
-        // The controller is told what is driven, not what it has commanded.
+        // The controller is told the driven velocity, not the commanded one.
         let told: Vec<_> = told.iter().map(|told| told.1).collect();
         assert_eq!(told, velocities(&run)[..60]);
         velocities(&run)
     };
     let at_once = velocities_after(0.0);
-    // 0.3 s are three cycles, although 0.3 / 0.1 is rounded to less.
+    // 0.3 s is three cycles, although 0.3 / 0.1 is rounded to less.
     for (delay_s, cycles) in [(0.1, 1), (0.2, 2), (0.3, 3), (1.0, 10)] {
         let later = velocities_after(delay_s);
         assert!(later[..=cycles].iter().all(|velocity| *velocity == Velocity::ZERO));
@@ -124,7 +125,7 @@ fn the_same_commands_drive_the_same_velocities_later() {
     }
 }
 
-/// A contact that the delay puts off, on the motion with a knee.
+/// A delay postpones a contact on a motion with a knee.
 #[test]
 fn a_late_robot_touches_later() {
     let touch_s = |delay_s| {
@@ -181,7 +182,8 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
     assert_eq!([0.0, 0.1, 0.5, 0.55].map(cycles), [2, 3, 7, 8]);
 }
 
-/// Half a cycle late, from backwards to forwards: at the end of a cycle it stands for an instant.
+/// Reverses from backwards to forwards, half a cycle late: at the end of a cycle the robot stands
+/// for an instant.
 #[test]
 fn a_robot_that_turns_back_has_not_arrived() {
     let rules = RunRules { arrival: Arrival::Standing, goal_tolerance_m: 1.0, ..limit(20.0) };
@@ -262,7 +264,7 @@ fn limits_are_kept_and_who_is_told_to_stand_stands() {
             assert!(change[0].abs() <= 0.5 * 0.1 + 1e-12, "{pair:?}");
             assert!(change[1].abs() <= 3.0 * 0.1 + 1e-12, "{pair:?}");
         }
-        // It brakes as hard as ever: within a second, and a cycle for what rounding leaves.
+        // It brakes as hard as ever: within a second, plus a cycle for rounding.
         let stands = 150 + 11 + (delay_s / 0.1).ceil() as usize;
         assert!(driven[stands..].iter().all(|velocity| *velocity == Velocity::ZERO), "{delay_s}");
         let (never, _) = driven_never(&robot, disturbances);
@@ -275,7 +277,7 @@ fn driven_never(robot: &Robot, disturbances: Disturbances) -> (Run, Vec<Told>) {
     driven(&world(&[]), robot, disturbances, 3.0, |_| Velocity::ZERO)
 }
 
-/// The sensor and the localisation change what the controller is told, and nothing else.
+/// Errors of the sensor and the localisation change only the controller's inputs.
 #[test]
 fn what_is_recorded_is_the_truth() {
     let disturbances = Disturbances {
@@ -295,7 +297,7 @@ fn what_is_recorded_is_the_truth() {
     let (run, told) = driven(&world, &robot, disturbances, 6.0, wavy);
     assert_eq!(run, ideal);
     assert_eq!(told.len(), exact.len());
-    // From the first cycle on; the robot stands there, and knows that it does.
+    // Poses differ from the first cycle on. The robot stands then, and knows that it does.
     assert_ne!(told[0].0, exact[0].0);
     assert_eq!(told[0].1, Velocity::ZERO);
     assert!(told.iter().zip(&exact).skip(1).all(|(told, exact)| told.0 != exact.0));
@@ -310,12 +312,12 @@ fn what_is_recorded_is_the_truth() {
             .filter(|(told, exact)| told.is_finite() && told != exact)
             .count();
         for (told_m, exact_m) in told.iter().zip(exact).filter(|(told_m, _)| !told_m.is_nan()) {
-            // What is measured is measured from where the robot is.
+            // Ranges are measured from the true pose.
             assert_eq!(told_m.is_finite(), exact_m.is_finite());
             assert!(exact_m.is_infinite() || (told_m - exact_m).abs() <= 0.3 + 1e-9);
         }
     }
-    // Of 480 beams a tenth, and most of those that meet something.
+    // A tenth of 480 beams are dropped, and most of the beams that hit something are off.
     assert!(dropped > 20 && off > 20, "{dropped} {off}");
 }
 

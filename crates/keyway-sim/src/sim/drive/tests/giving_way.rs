@@ -3,13 +3,13 @@
 use super::*;
 use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, MoverWay, WayPoints};
 
-/// To and fro between two places at 1 m/s.
+/// An obstacle that moves to and fro between two places at 1 m/s.
 fn between(from: Point, to: Point) -> Mover {
     let course = WayPoints::to_and_fro(vec![from, to], 1.0).unwrap();
     Mover::new(0.25, Motion::GivesWay(course)).unwrap()
 }
 
-/// Among these a robot is commanded one velocity.
+/// A run among moving obstacles with one commanded velocity.
 fn among(movers: Vec<Mover>, start: Pose, command: Velocity, time_limit_s: f64) -> Run {
     let mut left = 1e6;
     let controller = move |_: Pose, _: Velocity, _: &Scan| {
@@ -20,7 +20,7 @@ fn among(movers: Vec<Mover>, start: Pose, command: Velocity, time_limit_s: f64) 
     alone(&world, &robot(), start, FAR, &limit(time_limit_s), controller).unwrap()
 }
 
-/// The least distance of two centres, both going straight on between equal times.
+/// Smallest distance between two centres, both moving straight between equal times.
 fn least_m(one: &MoverWay, other: &MoverWay) -> f64 {
     let apart = |i: usize| other.key_frames[i].position - one.key_frames[i].position;
     let pairs = (1..one.key_frames.len()).map(|i| {
@@ -44,7 +44,7 @@ fn a_standing_robot_is_passed_from_every_side_without_contact() {
         assert_eq!(run.outcome, Outcome::Timeout, "{degrees}");
         let clearance_m = run.min_mover_clearance_m.unwrap();
         assert!(clearance_m > 0.05 && clearance_m < 1.0, "{degrees}: {clearance_m}");
-        // It goes on to the other place, and turns back there.
+        // It goes on to the other place and turns back there.
         let places = &run.movers[0].key_frames;
         let nearest_m = |to: Point| {
             places.iter().map(|frame| frame.position.distance(to)).fold(f64::INFINITY, f64::min)
@@ -65,7 +65,8 @@ fn two_who_meet_head_on_pass_each_other_on_the_right() {
         let run = among(both(), far_off(), Velocity::ZERO, 10.0);
         let [one, other] = &run.movers[..] else { panic!("{:?}", run.movers) };
         assert!(least_m(one, other) > 0.55, "{degrees}: {}", least_m(one, other));
-        // Each does what the other does, turned by half a circle, but for what the robot far off exerts; and both arrive.
+        // Both ways are equal after half a turn, except for the force of the distant robot, and
+        // both arrive.
         for (a, b) in one.key_frames.iter().zip(&other.key_frames) {
             assert!((a.position + b.position).norm() < 1e-2, "{degrees}: {a:?} {b:?}");
         }
@@ -83,11 +84,11 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
     for command in [Velocity::ZERO, Velocity::new(0.5, 0.1), Velocity::new(0.5, -0.6)] {
         let run = among(movers.clone(), Pose::new(-1.0, 0.0, 0.0), command, 15.0);
         assert_eq!(run.movers.iter().map(|way| way.index).collect::<Vec<_>>(), [1, 2]);
-        // The same with obstacles that take no notice of anybody.
+        // Repeats the run with obstacles that ignore everything.
         let mut driven = vec![crossing.clone()];
         for way in &run.movers {
             assert_eq!(way.key_frames.len() as u64, run.cycles + 1);
-            // At the end of every cycle, of which a contact may cut the last one short.
+            // Compares places at the end of every cycle; a contact may cut the last one short.
             for (frame, sample) in
                 way.key_frames.iter().zip(&run.samples).take(run.samples.len() - 1)
             {

@@ -1,4 +1,4 @@
-//! Runs among obstacles that move.
+//! Runs among moving obstacles.
 
 use super::*;
 use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, Spline, WayPoints};
@@ -59,7 +59,7 @@ fn a_disc_that_turns_on_the_spot_is_run_into() {
     };
     let disc = Footprint::circle(0.18).unwrap();
     assert!(matches!(turned(disc.clone(), 0.0), (_, _, Obstacle::Mover(0), true)));
-    // On a small circle, and with corners that sweep, the robot covers other ground.
+    // On a small circle, or with corners that sweep, the covered ground changes.
     assert!(matches!(turned(disc, 0.01), (_, _, Obstacle::Mover(0), false)));
     let square = Footprint::rectangle(0.36, 0.36).unwrap();
     assert!(matches!(turned(square, 0.0), (_, _, Obstacle::Mover(0), false)));
@@ -67,7 +67,8 @@ fn a_disc_that_turns_on_the_spot_is_run_into() {
 
 #[test]
 fn corners_within_a_cycle_count() {
-    // In a cycle of 1 s a mover darts in to 0.44 m from the centre, or to 0.42 m, and out again.
+    // In a cycle of 1 s an obstacle darts in to 0.44 m from the centre, or to 0.42 m, and out
+    // again.
     for (nearest_m, touches) in [(0.44, false), (0.42, true)] {
         let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 0.0) };
         let frames = KeyFrames::new(vec![frame(0.2, 3.0), frame(0.5, nearest_m), frame(0.8, 3.0)]);
@@ -86,7 +87,8 @@ fn corners_within_a_cycle_count() {
 
 #[test]
 fn the_first_of_several_contacts_counts() {
-    // A post ahead is reached after a while; a mover from the side comes earlier or later.
+    // A post ahead is reached after a while; a moving obstacle from the side comes earlier or
+    // later.
     let post = world(&[(2.0, 0.0, 0.25)]);
     for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Circle(0))] {
         let world = post.clone().with_movers(vec![straight(1.0, 3.0, 0.0, -speed_mps)]);
@@ -149,7 +151,8 @@ fn the_speed_at_a_contact_is_said() {
     assert_eq!(speed_mps(&open(vec![straight(3.0, 0.0, -0.7, 0.0)])).0, Some(0.7));
     // It stands from the beginning on.
     assert_eq!(speed_mps(&open(vec![straight(0.3, 0.0, 0.0, 0.0)])).0, Some(0.0));
-    // 8 m in 0.4 s: the contact, at 0.43 m, is by the cubic of Hermite where its derivative is its speed.
+    // 8 m in 0.4 s: the cubic of Hermite gives the contact at 0.43 m, and its derivative the speed
+    // there.
     let frames = [[1.0, 4.0, 0.0], [1.4, -4.0, 0.0]].map(KeyFrame::from).to_vec();
     let darts = Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap();
     let (speed, t_s) = speed_mps(&open(vec![darts]));
@@ -159,13 +162,13 @@ fn the_speed_at_a_contact_is_said() {
     let expected_mps = (4.0 + 24.0 * u - 24.0 * u * u) / 0.4;
     assert!((speed.unwrap() - expected_mps).abs() < 1e-9, "{speed:?} {expected_mps}");
     assert!(expected_mps > Mover::DART_MPS);
-    // What stands has no speed.
+    // A stationary obstacle has no speed.
     let wall =
         drive(&world(&[(1.0, 0.0, 0.1)]), &robot(), FAR, &limit(9.0), Velocity::new(0.5, 0.0));
     assert!(matches!(wall.outcome, Outcome::Collided { mover_speed_mps: None, .. }));
 }
 
-/// At (x, 0) for a second, then aside; after 3 s it jumps back.
+/// An obstacle at (x, 0) for a second, then aside; after 3 s it jumps back.
 fn jumping_to(x: f64) -> Mover {
     let frames = [[0.0, x, 0.0], [1.0, x, 0.0], [1.5, x, 5.0]].map(KeyFrame::from).to_vec();
     Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
@@ -173,7 +176,8 @@ fn jumping_to(x: f64) -> Mover {
 
 #[test]
 fn what_has_just_jumped_is_said() {
-    // The robot is at 1.25 m after 3 s, at 0.5 m/s. It is jumped onto, or drives on into what has jumped there.
+    // After 3 s the robot is at 1.25 m, at 0.5 m/s. The obstacle jumps onto it, or the robot drives
+    // on into the obstacle that has jumped.
     for (gap_m, t_s, expected) in [(-0.1, 3.0, true), (0.03, 3.06, true), (0.06, 3.12, false)] {
         let world = open(vec![jumping_to(1.25 + 0.43 + gap_m)]);
         let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
@@ -182,7 +186,7 @@ fn what_has_just_jumped_is_said() {
         };
         assert_eq!((with, robot_stood, jumped_onto), (Obstacle::Mover(0), false, expected));
         let late_s = (contact(&run).0 - t_s).abs();
-        // While it drives, the mover goes aside by millimetres.
+        // While the robot drives, the obstacle moves aside by millimetres.
         assert!(late_s < if gap_m < 0.0 { 1e-9 } else { 0.01 }, "{late_s}");
         assert_eq!(run.min_mover_clearance_m, Some(0.0));
     }
@@ -193,7 +197,7 @@ fn what_has_just_jumped_is_said() {
 
 #[test]
 fn a_jump_at_every_time_of_a_cycle_is_met() {
-    // Jumps onto where the robot is by then, at times that are rounded.
+    // The obstacle jumps onto the place that the robot has reached, at rounded times.
     for lap in 0..40 {
         let duration_s = 2.0 + f64::from(lap) * 0.0125;
         let frames = [[0.0, 1.0, 0.0], [1.0, 1.0, 5.0]].map(KeyFrame::from).to_vec();

@@ -4,7 +4,7 @@ use super::*;
 use keyway::robot::Footprint;
 use std::f64::consts::PI;
 
-/// Where a robot starts, where it is to go, and what it is commanded in every cycle.
+/// A robot, its start, its goal and its command in every cycle.
 type Task<'a> = (&'a Robot, Pose, Point, Velocity);
 
 fn drive_all(world: &World, rules: &RunRules, tasks: &[Task<'_>]) -> Vec<Run> {
@@ -54,7 +54,8 @@ fn two_robots_that_drive_towards_each_other_meet_at_the_computed_time() {
     {
         let tasks = [(one, start, FAR, ahead(0.5)), (other, opposite, FAR, ahead(0.5))];
         let runs = drive_all(&world(&[]), &limit(20.0), &tasks);
-        // Each is 0.25 + 0.5 (t - 1) ahead after t > 1 s; together they drive 4 m less both reaches.
+        // Each is 0.25 + 0.5 (t - 1) ahead after t > 1 s; together they drive 4 m less both
+        // reaches.
         let expected_s = 1.0 + (0.5 * (4.0 - reach_m) - 0.25) / 0.5;
         for (index, run) in runs.iter().enumerate() {
             assert_eq!(touched(run), Obstacle::Robot(1 - index));
@@ -186,7 +187,8 @@ fn who_has_ended_stands_in_the_way() {
     );
     assert_eq!(touched(&runs[1]), Obstacle::Robot(0));
     assert!((runs[1].length_m - (2.0 - 0.36)).abs() < 1e-4);
-    // One that is stuck, and one whose goal is beyond it: it ends when it has not moved for 20 s.
+    // One robot is stuck, and another one has its goal beyond it. The run of the latter ends when
+    // it has not moved for 20 s.
     let mut cycles = 0;
     let mut stays = |_: Pose, _: Velocity, _: &Scan| {
         cycles += 1;
@@ -223,8 +225,9 @@ fn who_has_ended_stands_in_the_way() {
 
 #[test]
 fn contacts_in_one_cycle_happen_in_their_order() {
-    // In the first cycle, of a second: 0 touches the post 0.32 m ahead after 0.38 s and stands. 1 crosses
-    // its line at 0.75 s, when 0 would be 1 m farther on, and runs into it.
+    // The first cycle lasts a second. Robot 0 touches the post 0.32 m ahead after 0.38 s and
+    // stands. Robot 1 crosses its line at 0.75 s, when robot 0 would be 1 m farther on, and runs
+    // into it.
     let mut fast = brisk(1.0);
     fast.sensor.beams = 1;
     let world = world(&[(0.6, 0.0, 0.1)]);
@@ -252,8 +255,8 @@ fn contacts_in_one_cycle_happen_in_their_order() {
 
 #[test]
 fn clearances_are_those_of_one_instant() {
-    // 0 touches the post 0.42 m ahead. 1 is nearer to that place at first than it ever is to 0, because it
-    // drives away at the same speed.
+    // Robot 0 touches the post 0.42 m ahead. Robot 1 is nearer to that place at first than it ever
+    // is to robot 0, because it drives away at the same speed.
     let fast = brisk(1.0);
     let tasks = [
         (&fast, Pose::new(0.0, 0.0, 0.0), FAR, ahead(4.0)),
@@ -272,7 +275,8 @@ fn two_that_touched_stand_in_the_way_of_a_third() {
         let (sin, cos) = libm::sincos(angle);
         (&robot, Pose::new(-2.0 * cos, -2.0 * sin, angle), FAR, ahead(0.5))
     };
-    // 1 and 2 touch beside the x axis, on which 0 comes and touches both, the first one by the rule.
+    // Robots 1 and 2 touch beside the x axis. Robot 0 comes along the axis and touches both; by the
+    // rule, the first one counts.
     let tasks = [0.0, 2.3, -2.3].map(towards_the_middle);
     let runs = drive_all(&world(&[]), &limit(20.0), &tasks);
     let with: Vec<Obstacle> = runs.iter().map(touched).collect();

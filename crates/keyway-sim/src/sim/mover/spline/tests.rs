@@ -18,7 +18,7 @@ fn equal_steps_on_a_line_are_uniform_between_the_first_and_the_last() {
         let t_s = 2.0 + f64::from(i) * 0.02;
         assert!(line.position(t_s).distance(Point::new(t_s * 0.5, 3.0)) < 1e-12, "{t_s}");
         assert!((line.speed_bound_mps(t_s, 4.0) - 0.5).abs() < 1e-12 || t_s == 4.0);
-        // It begins at half the speed: u / 2 + u² - u³ / 2, and ends so.
+        // It begins and ends at half the speed: u / 2 + u² - u³ / 2.
         let part = f64::from(i) * 0.01;
         let x = part * (0.5 + part * (1.0 - 0.5 * part));
         assert!((line.position(part * 2.0).x - x).abs() < 1e-12);
@@ -48,7 +48,8 @@ fn a_lap_ends_with_a_jump_at_its_instant() {
         assert_eq!((jumping.position(jump_s), jumping.position_before(jump_s)), (first, last));
         before_s = jump_s;
     }
-    // Standing before and after, it is fast only while it moves; the jump counts nothing.
+    // The obstacle stands before and after, and is fast only while it moves; the jump does not
+    // count.
     assert_eq!(jumping.speed_bound_mps(0.21, 0.34), 0.0);
     assert!(jumping.speed_bound_mps(0.2, 0.36) > 1.0);
     assert!(jumping.position(1e300).is_finite());
@@ -84,7 +85,8 @@ fn frames() -> impl Strategy<Value = Vec<KeyFrame>> {
 }
 
 proptest! {
-    /// Through all key frames at their times, in one direction; at one speed where both stretches last equally long.
+    /// Passes through all key frames at their times with a continuous direction; the speed is
+    /// continuous where both stretches last equally long.
     #[test]
     fn passes_through_its_key_frames(frames in frames(), rest_s in 0.1..1.0f64) {
         let duration_s = frames[frames.len() - 1].t_s + rest_s;
@@ -107,7 +109,7 @@ proptest! {
         }
     }
 
-    /// A bound of a short time is close to the highest of many sampled speeds, and never below.
+    /// A bound for a short time is close to the highest of many sampled speeds, and never below.
     #[test]
     fn speed_bounds_are_tight(frames in frames(), from in 0.0..3.0f64, long_s in 0.001..0.2f64) {
         let duration_s = frames[frames.len() - 1].t_s.max(Spline::SHORTEST_S);
@@ -132,7 +134,8 @@ proptest! {
             (0..5).any(|lap| (a..=b).contains(&(frame.t_s + f64::from(lap) * duration_s)))
         };
         if !moves.frames().iter().any(is_near) {
-            // The hull of the velocity's curve is wider by at most a half of the second derivative's change.
+            // The hull of the velocity's curve is wider by at most a half of the second
+            // derivative's change.
             let jerk = |stretch: &Stretch| {
                 let [a, b, c] = stretch.velocities_mps();
                 (a - b * 2.0 + c).norm() / (stretch.to_s - stretch.from_s).powi(2)
