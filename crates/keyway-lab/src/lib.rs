@@ -3,7 +3,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
-//! | [`bench`] | planners on the queries of MovingAI scenario files |
+//! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files |
 //! | [`batch`] | many runs, and summaries by stack |
 //! | [`claims`] | claims of papers, measured again |
 //! | [`results`] | folders of results, and journals |

@@ -193,7 +193,8 @@ impl SceneFile {
     }
 
     /// Returns the run that the scene describes, on its map, with its robot and its stack. The
-    /// caller reads them, as they may be files (see [`super::find_robot`], [`super::find_stack`]).
+    /// caller reads them, as they may be files (see [`keyway::files::find_robot`] and
+    /// [`keyway::files::find_stack`]).
     ///
     /// # Errors
     /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no

@@ -6,7 +6,6 @@ use super::{
 };
 use crate::file_system::Staged;
 use crate::file_system::{read_file, write_atomically};
-use crate::geometry::Pose;
 use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -16,23 +15,6 @@ use std::path::{Path, PathBuf};
 pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
 pub(super) const YAML_BYTES: u64 = 1 << 20;
 const SCENARIOS_BYTES: u64 = 1 << 30;
-
-/// Where a map lies, when its file does not say so.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ImagePlacement {
-    /// Side of a cell \[m\].
-    pub resolution_m: f64,
-    /// World pose of the lower-left corner of the map.
-    pub origin: Pose,
-}
-
-impl Default for ImagePlacement {
-    /// Cells of 1 m, the lower-left corner at the origin of the world.
-    fn default() -> Self {
-        Self { resolution_m: 1.0, origin: Pose::default() }
-    }
-}
 
 /// The formats of map files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -1,10 +1,11 @@
 use super::super::{
-    CellRule, ImageError, MapWarning, MovingAiError, RosMapError, ScenarioError, digest,
-    grid_from_image, map_from_bytes, read_map,
+    CellRule, ImageError, ImagePlacement, MapWarning, MovingAiError, RosMapError, ScenarioError,
+    digest, grid_from_image, map_from_bytes, read_map,
 };
 use super::*;
 use crate::file_system::ReadError;
 use crate::file_system::test_folder::TestFolder;
+use crate::geometry::Pose;
 use crate::map::{CellState, FrameError, OccupancyThresholds};
 use proptest::prelude::*;
 use proptest::sample::Index;

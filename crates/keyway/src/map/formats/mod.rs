@@ -26,6 +26,7 @@ mod movingai;
 mod notices;
 #[cfg(feature = "images")]
 mod other_image;
+mod placement;
 mod png;
 mod png_fault;
 mod pnm;
@@ -41,12 +42,13 @@ pub use decoded_image::ImageError;
 pub use digest::digest;
 pub use error::MapFileError;
 pub use files::{
-    ImagePlacement, MAX_MAP_BYTES, MapFormat, read_scenarios, read_scenarios_for, ros_map_image,
+    MAX_MAP_BYTES, MapFormat, read_scenarios, read_scenarios_for, ros_map_image,
     scenarios_from_bytes, write_map, write_ros_map,
 };
 pub use image::{ImageKind, grid_from_image, image_from_grid};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
 pub use notices::{MapLoss, MapWarning};
+pub use placement::ImagePlacement;
 pub use reader::{LoadedMap, MapReader, map_from_bytes, read_map};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};

@@ -3,7 +3,7 @@
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of [`Tracker`].
+/// Parameters of [`Tracker`](super::Tracker).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
