@@ -42,6 +42,9 @@ impl ConfigError {
     }
 
     /// Refuses what is not a positive number.
+    ///
+    /// # Errors
+    /// When it is not; the error names the path.
     pub fn unless_positive(path: &str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             return Ok(());
@@ -50,6 +53,9 @@ impl ConfigError {
     }
 
     /// Refuses what is not a number of at least 0.
+    ///
+    /// # Errors
+    /// When it is not; the error names the path.
     pub fn unless_not_negative(path: &str, value: f64) -> Result<(), Self> {
         if value >= 0.0 && value.is_finite() {
             return Ok(());
@@ -62,6 +68,9 @@ impl ConfigError {
     }
 
     /// Refuses what is no range of positive numbers.
+    ///
+    /// # Errors
+    /// When it is not; the error names the path.
     pub fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         Self::unless_positive(&format!("{path}[0]"), low)?;
         Self::unless_positive(&format!("{path}[1]"), high)?;
@@ -69,6 +78,9 @@ impl ConfigError {
     }
 
     /// Refuses bounds of which the first is higher.
+    ///
+    /// # Errors
+    /// When it is not; the error names the path.
     pub fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         if low <= high {
             return Ok(());
@@ -79,6 +91,9 @@ impl ConfigError {
 
     /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
     /// and at last are not numbers.
+    ///
+    /// # Errors
+    /// When it is not; the error names the path.
     pub fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
         if (0.0..=1e9).contains(&value) {
             return Ok(());

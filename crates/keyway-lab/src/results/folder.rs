@@ -56,6 +56,9 @@ impl OutDir {
     }
 
     /// Writes one of the planned files as a whole, or not at all.
+    ///
+    /// # Errors
+    /// When somebody else's file is in the way, or it cannot be written.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
         // A name may have a folder within this one.
@@ -113,6 +116,9 @@ impl OutDir {
 
     /// Removes planned files of an earlier run that this one did not write: they would seem to
     /// belong to it. Gives the paths of those that it wrote.
+    ///
+    /// # Errors
+    /// When the list of files cannot be written.
     pub fn finish(mut self) -> Result<Vec<PathBuf>, ResultsError> {
         let stale: Vec<String> =
             self.planned.iter().filter(|name| !self.written.contains(name)).cloned().collect();
@@ -167,6 +173,9 @@ impl OutDir {
 }
 
 /// Refuses a folder that cannot be made or written to, before anything is computed.
+///
+/// # Errors
+/// When it is one of these.
 pub fn check_folder(folder: &Path) -> Result<(), ResultsError> {
     let current = Path::new(".");
     let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });

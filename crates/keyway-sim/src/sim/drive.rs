@@ -121,13 +121,19 @@ impl Asked<'_, '_> {
 /// Calls the controllers. All decide on the same state, so their order does not matter.
 fn decide_all(asked: &mut [Asked<'_, '_>], fleet: &Fleet<'_>, threads: usize) {
     if threads <= 1 || asked.len() <= 1 {
-        asked.iter_mut().for_each(|asked| asked.decide(fleet));
+        for asked in asked {
+            asked.decide(fleet);
+        }
         return;
     }
     let share = asked.len().div_ceil(threads);
     std::thread::scope(|scope| {
         for part in asked.chunks_mut(share) {
-            scope.spawn(|| part.iter_mut().for_each(|asked| asked.decide(fleet)));
+            scope.spawn(|| {
+                for asked in part {
+                    asked.decide(fleet);
+                }
+            });
         }
     });
 }
