@@ -282,14 +282,18 @@ impl<'a> Manoeuvres<'a> {
         if by_squares >= 0.0 { Ok(by_squares) } else { Err(Refusal::Standing { after_s }) }
     }
 
-    /// Shows that a mover cannot touch the footprint on a stretch: at its middle the footprint is farther from all ground
-    /// that the mover may cover meanwhile than any part of it moves from there. Otherwise each half is looked at.
+    /// Shows that a mover cannot touch the footprint on a stretch, unless nothing moves on it.
     fn check_mover(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
+        let (core, _) = self.robot.footprint.core();
+        let stands = stretch.moves_m(&core) <= Self::ROUNDING_M;
+        if stands { Ok(()) } else { self.check_apart(stretch, mover) }
+    }
+
+    /// Shows it: at the middle of the stretch the footprint is farther from all ground that the mover
+    /// may cover meanwhile than any part of it moves from there. Otherwise each half is looked at.
+    fn check_apart(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, radius_m) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);
-        if moves_m <= Self::ROUNDING_M {
-            return Ok(());
-        }
         let bounds = &self.config.movers;
         let middle = stretch.pose(0.5 * stretch.duration_s);
         let until_s = stretch.after_s + stretch.duration_s;
@@ -304,7 +308,7 @@ impl<'a> Manoeuvres<'a> {
         if approach_m < self.config.margin_m.max(Self::LEAST_STEP_M) {
             return Err(Refusal::Mover { id: mover.id, after_s: stretch.after_s });
         }
-        stretch.halves().iter().try_for_each(|half| self.check_mover(half, mover))
+        stretch.halves().iter().try_for_each(|half| self.check_apart(half, mover))
     }
 }
 

@@ -78,8 +78,8 @@
 //! standing, to what it drifts until the end of the cycle: such a velocity is taken for noise of
 //! odometry (at most half of a cycle at a hundredth of full speed). In between two instants that
 //! are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
-//! movers: beside one that may touch it, no part of a robot moves farther than a nanometre in a
-//! cycle, until the mover is gone, or has stood so long that it counts as standing
+//! movers: beside one that may touch it, no part of a robot moves farther than a nanometre in
+//! a quarter of a cycle, until the mover is gone, or has stood so long that it counts as standing
 //! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
 //!
 //! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may

@@ -40,8 +40,8 @@ proptest! {
                 for (on_way, moving, elapsed_s) in instants(&robot, pose, velocity, next) {
                     let gap_m = gap_m(on_way, walker.at(elapsed_s, robot.cycle_s), walker.radius_m);
                     // A disc that turns on the spot covers no other ground.
-                    let (driven_m, turned_rad) = (moving.v * robot.cycle_s, moving.omega * robot.cycle_s);
-                    let moves = core.moves_m(driven_m, turned_rad) > 1e-9;
+                    let arc_s = robot.cycle_s / f64::from(Pose::RAMP_ARCS);
+                    let moves = core.moves_m(moving.v * arc_s, moving.omega * arc_s) > 1e-9;
                     prop_assert!(gap_m > 0.0 || !moves, "{gap_m} {moving:?} {gated:?}");
                 }
                 walker.centre = walker.at(robot.cycle_s, robot.cycle_s);
