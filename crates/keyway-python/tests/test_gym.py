@@ -44,6 +44,17 @@ def test_the_same_seed_is_the_same_episode(noisy: keyway.Scene) -> None:
     assert episode(1)[:30] != episode(2)[:30]
 
 
+def test_a_beam_that_says_nothing_shows_no_obstacle() -> None:
+    grid = keyway.Map.from_array(np.pad(np.zeros((38, 78), dtype=bool), 1, constant_values=True), resolution=0.1)
+    # Some ranges are off by more than they are long: the sensor then says 0.
+    scene = keyway.Scene(grid, (1, 2), (7, 2), disturbances={"sensor": {"range_m": 1.0}})
+    env = keyway.gym.Drive(scene)
+    observation, _ = env.reset(seed=0)
+    for _ in range(10):
+        assert observation["ranges"].min() > 0.0
+        observation, *_ = env.step(np.array([0.0, 0.3], dtype=np.float32))
+
+
 @pytest.mark.parametrize(("speed", "turn", "outcome", "last"), [(0.5, 0.0, "collided", -10), (0.0, 0.0, "stuck", 0)])
 def test_how_an_episode_ends(scene: keyway.Scene, speed: float, turn: float, outcome: str, last: float) -> None:
     env = keyway.gym.Drive(scene)

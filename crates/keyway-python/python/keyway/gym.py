@@ -155,8 +155,9 @@ class Drive(Base):
         dx, dy = goal_x - x, goal_y - y
         bearing = np.arctan2(dy, dx) - theta
         bearing = (bearing + np.pi) % (2 * np.pi) - np.pi
-        # A beam that says nothing says nothing of an obstacle.
-        ranges = np.nan_to_num(simulation.scan.ranges, nan=simulation.range, posinf=simulation.range)
+        # A beam that says nothing, which is NaN or 0, says nothing of an obstacle.
+        ranges = simulation.scan.ranges
+        ranges = np.where(ranges > 0.0, ranges, simulation.range)
         return {
             "ranges": np.clip(ranges, 0.0, simulation.range).astype(np.float32),
             "goal": np.array([np.hypot(dx, dy), bearing], dtype=np.float32),
