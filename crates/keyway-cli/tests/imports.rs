@@ -1,5 +1,5 @@
-//! Who knows whom: a module of the library and of the simulator knows earlier ones only, and in no crate
-//! two files import each other. That no crate knows a later one is what Cargo sees to.
+//! Imports: a module of the library or the simulator knows earlier modules only, and in no crate do
+//! two files import each other. Cargo sees to it that no crate knows a later one.
 //!
 //! Reads the `use` lines of the sources, and every path that begins with `crate::`, outside tests and
 //! comments.
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// The modules of a crate, earlier ones first. Those of one line do not know each other.
 type Layers = &'static [&'static [&'static str]];
 
-/// What a robot carries.
+/// Modules that a robot carries.
 const KEYWAY: Layers = &[
     &["file_system", "given", "random", "registry", "geometry"],
     &["config_error"],

@@ -1,8 +1,8 @@
-//! How lines look.
+//! Style of lines.
 
 use crate::color::Rgb;
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineStyle {
     /// Its colour.

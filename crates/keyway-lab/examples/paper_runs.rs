@@ -1,7 +1,8 @@
 //! Every driving scene of the papers with every stack: how each run ends, how long it takes, how long the way is, and
 //! how near the robot comes to anything.
 //!
-//! `cargo run --release -p keyway-lab --example paper_runs -- scenes runs.json` prints the tables of docs/FINDINGS.md,
+//! `cargo run --release -p keyway-lab --example paper_runs -- scenes runs.json`
+//! prints the tables of docs/FINDINGS.md,
 //! and writes what is measured of each run into the file, which may be left out.
 
 use keyway::files::find_robot;

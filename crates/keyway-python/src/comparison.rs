@@ -79,9 +79,10 @@ impl Comparison {
 ///
 /// `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
 /// paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-/// dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. With `as_published` they begin
-/// with the values of their papers, for maps with cells of 1 m, whatever the robot. Without `times`, the same arguments give
-/// the same report. `progress(done, expected)` is called meanwhile.
+/// dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`.
+/// With `as_published` they begin with the values of their papers, for maps with cells of 1 m,
+/// whatever the robot. Without `times`, the same arguments give the same report.
+/// `progress(done, expected)` is called meanwhile.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)

@@ -256,9 +256,10 @@ fn all_routes(
 ///
 /// `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
 /// robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
-/// `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner and smoother begin with the
-/// values of their papers, for maps with cells of 1 m, whatever the robot. `budget` limits the expanded nodes; with
-/// `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
+/// `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner
+/// and smoother begin with the values of their papers, for maps with cells of 1 m, whatever the
+/// robot. `budget` limits the expanded nodes; with `nearest_reachable` the path ends in the cell
+/// nearest to the goal that can be reached.
 ///
 /// What a map needs for a choice of parameters is kept with the map, so a second call is fast.
 ///

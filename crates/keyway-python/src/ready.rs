@@ -226,8 +226,8 @@ impl Ready {
     }
 }
 
-/// Parts that are chosen by their names begin with distances for the robot where one is given, otherwise
-/// for the radius; as published with those of their papers.
+/// Parts that are chosen by their names begin with distances for the robot where one is given,
+/// otherwise for the radius; as published with those of their papers.
 fn plan_base<'a>(stack: &'a Stack, robot: &'a Robot, choice: &Choice) -> StackBase<'a> {
     match choice.robot {
         _ if choice.as_published => StackBase::as_published(stack, robot),

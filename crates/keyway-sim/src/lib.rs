@@ -10,8 +10,8 @@
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //! | files | `scene_files` | a text -> an episode or a team |
 //!
-//! Everything is deterministic: equal inputs and seeds give equal bytes. No function prints or reads
-//! a clock.
+//! Everything is deterministic: equal inputs and seeds give equal bytes. No function prints or
+//! reads a clock.
 
 pub mod episode;
 pub mod metrics;

@@ -44,7 +44,7 @@ impl Case {
         SearchMap::new(&OccupancyGrid::from_ascii(&rows), LayerConfig::default()).unwrap()
     }
 
-    /// Whether a planner passes between two blocked cells that share a corner.
+    /// True if a planner passes between two blocked cells that share a corner.
     fn cuts_corners(&self, planner: &PlannerConfig) -> bool {
         planner.build(&self.search_map()).unwrap().connectivity() == Connectivity::Eight
     }
@@ -58,8 +58,8 @@ impl Case {
         planner.plan_into(&map, &query, &mut workspace, None, &mut plan).map(|()| plan)
     }
 
-    /// Whatever a planner gives, it is no better than the truth, and no worse where it is said to be
-    /// optimal.
+    /// Checks that an answer is no better than the truth, and no worse where the planner is said to
+    /// be optimal.
     fn check(&self, planner: &PlannerConfig) {
         let about = format!("{}, {}\n{}", self.name, planner.name(), self.map);
         let optimum = self.cost.map(|[straight, diagonal]| Cost::new(straight, diagonal).cells());

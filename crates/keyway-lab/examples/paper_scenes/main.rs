@@ -2,7 +2,8 @@
 //! map. The papers print pictures and lengths of paths, but no map; each map here is the first of a row of seeded
 //! ones on which the papers' baselines have the published lengths. See `scenes/README.md`.
 //!
-//! `cargo run --release -p keyway-lab --example paper_scenes -- scenes` writes the files in `scenes/` again, byte for byte.
+//! `cargo run --release -p keyway-lab --example paper_scenes -- scenes`
+//! writes the files in `scenes/` again, byte for byte.
 
 mod clutter;
 mod fit;

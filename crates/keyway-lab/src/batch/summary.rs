@@ -2,6 +2,7 @@
 
 use super::record::Record;
 use super::row::{ContactWhile, Row};
+use crate::measure::mean;
 use crate::table::{comment, latex_table};
 use crate::table::{number, percent, rows, with_range};
 use keyway_sim::episode::EpisodeOutcome;
@@ -111,10 +112,6 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
 /// Interval with a fixed seed: the same runs give the same bytes.
 fn mean_interval(sample: &Sample) -> Option<Interval> {
     sample.mean_interval(Confidence::USUAL, 0)
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 /// Column names: as in the text below the table, and with units.

@@ -18,7 +18,7 @@ pub(super) struct Contender<'a> {
     stack: &'a Stack,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     map: SearchMap,
-    /// How long it took to derive the map's layers.
+    /// Time of deriving the map's layers.
     preparation: Duration,
     workspace: Workspace,
     plan: Plan,

@@ -1,4 +1,4 @@
-//! Planners on the queries of MovingAI scenario files: their times, and whether their answers are right.
+//! Planners on the queries of MovingAI scenario files: their times, and their wrong answers.
 //!
 //! Planners take turns round by round: each answers all queries, then the next one does, and so on.
 //! So a planner runs on caches that are warm with its own data, as in real use, and what disturbs
@@ -59,7 +59,7 @@ pub struct FileResult {
     answers: Vec<Vec<Answer>>,
 }
 
-/// Why planners cannot answer queries on a map.
+/// Error of planners on a map.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GridError {
@@ -69,13 +69,17 @@ pub enum GridError {
     /// A planner cannot be used.
     #[error(transparent)]
     Planner(PlanError),
+    /// The observer stopped it.
+    #[error("stopped before the end")]
+    Stopped,
 }
 
 impl GridRequest<'_> {
     /// Answers the queries of a file.
     ///
     /// # Errors
-    /// When a planner cannot be used on the map. Queries without a path are results.
+    /// When a planner cannot be used on the map, or the observer stops it. Queries without a path
+    /// are results.
     pub fn on(&self, file: &GridFile, progress: &dyn Progress) -> Result<FileResult, GridError> {
         let GridFile { name, map_name, grid, raw, scenarios } = file;
         let prepare = |stack| Contender::prepare(stack, grid);
@@ -91,8 +95,9 @@ impl GridRequest<'_> {
                         let times = contender.plan(scenario).1;
                         contender.answers[i].times.keep_faster(times);
                     }
-                    // Whoever stops it is not answered.
-                    let _ = progress.answered();
+                    if progress.answered().is_break() {
+                        return Err(GridError::Stopped);
+                    }
                 }
             }
         }

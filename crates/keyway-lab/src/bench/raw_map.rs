@@ -10,7 +10,7 @@ pub struct RawMap {
 }
 
 impl RawMap {
-    /// The rows after the line `map` of a file's text. Checking that they are complete is the reader's business.
+    /// The rows after the line `map` of a file's text. The reader checks that they are complete.
     pub fn new(text: &str) -> Self {
         let rows = text.lines().skip_while(|line| line.trim() != "map").skip(1);
         Self { rows: rows.map(|row| row.trim_end().as_bytes().to_vec()).collect() }

@@ -5,7 +5,7 @@ use keyway::file_system::{WriteError, system_error_in_words};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why results cannot be written, or those of an earlier run cannot be used.
+/// Error of writing results, or of using those of an earlier run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ResultsError {

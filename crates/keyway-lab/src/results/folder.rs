@@ -1,9 +1,9 @@
 //! A folder of results, in which nothing is overwritten that Keyway did not write.
 //!
-//! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content. A
-//! content is listed before it is written. So a run may be killed at any moment: each file is then what
-//! it was before, or what was listed last, and the next run knows both. One run at a time may write
-//! there ([`OutputLock`]).
+//! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content.
+//! A content is listed before it is written. So a run may be killed at any moment: each file is
+//! then what it was before, or what was listed last, and the next run knows both. One run at a time
+//! may write there ([`OutputLock`]).
 
 use super::ResultsError;
 use super::json_lines::read_lines;
@@ -21,7 +21,7 @@ pub struct OutDir {
     manifest: Manifest,
     planned: Vec<String>,
     written: Vec<String>,
-    /// Whether files of an earlier run are to be removed ([`Self::supersede`]).
+    /// True if files of an earlier run are to be removed ([`Self::supersede`]).
     supersedes: bool,
     lock: Arc<OutputLock>,
 }
@@ -101,9 +101,9 @@ impl OutDir {
         Arc::clone(&self.lock)
     }
 
-    /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them; but not
-    /// those that somebody changed. The same goes for the files of an earlier run of this kind that
-    /// was killed.
+    /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them,
+    /// except those that somebody changed. The same goes for the files of an earlier run of this
+    /// kind that was killed.
     pub fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
         self.supersedes = true;
         let unfinished: Vec<String> = self.manifest.unfinished().cloned().collect();

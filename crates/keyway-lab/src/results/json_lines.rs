@@ -10,7 +10,7 @@ const MAX_FILE_BYTES: u64 = 4 << 30;
 /// More than a run of as many robots as there may be takes.
 const MAX_LINE_BYTES: usize = 16 << 20;
 
-/// Why a file of an earlier run cannot be used.
+/// Error of a file of an earlier run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LinesError {
@@ -38,7 +38,7 @@ pub enum LinesError {
         path: PathBuf,
         /// The line, from 1.
         line: usize,
-        /// What it is instead.
+        /// Description of what it is instead.
         what: &'static str,
     },
 }

@@ -58,7 +58,7 @@ impl OutputLock {
         Ok(Self { file: locked(|| open(&path), &path, busy)?, path, made: Vec::new() })
     }
 
-    /// True if the system cannot lock files there: nothing keeps others from writing at the same time.
+    /// True if the system cannot lock files there: others may write at the same time.
     pub const fn is_unguarded(&self) -> bool {
         matches!(self.file, LockFile::Unguarded)
     }
@@ -87,8 +87,8 @@ enum LockFile {
     Unguarded,
 }
 
-/// A file that is there, and of which no other program has this or another one; `busy` says that one
-/// has it.
+/// Locks the file at a path, which is still there afterwards; `busy` is the error where another
+/// program has the lock.
 fn locked(
     open: impl Fn() -> io::Result<File>,
     path: &Path,

@@ -27,7 +27,7 @@ pub(super) struct Manifest {
     unfinished: BTreeSet<String>,
 }
 
-/// Why the list of the files in a folder cannot be used.
+/// Error of the list of the files in a folder.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManifestError {
@@ -39,7 +39,7 @@ pub enum ManifestError {
     Text {
         /// The list.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: TextError,
     },
     /// A line names no file.

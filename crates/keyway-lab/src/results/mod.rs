@@ -1,5 +1,5 @@
-//! Files of results: a folder in which nothing is overwritten that Keyway did not write, and a journal
-//! from which long work goes on after it was killed.
+//! Files of results: a folder in which nothing is overwritten that Keyway did not write, and a
+//! journal from which long work goes on after it was killed.
 
 mod error;
 mod folder;

@@ -684,9 +684,10 @@ def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequenc
 
     `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
     paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`. With `as_published` they begin
-    with the values of their papers, for maps with cells of 1 m, whatever the robot. Without `times`, the same arguments give
-    the same report. `progress(done, expected)` is called meanwhile.
+    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`.
+    With `as_published` they begin with the values of their papers, for maps with cells of 1 m,
+    whatever the robot. Without `times`, the same arguments give the same report.
+    `progress(done, expected)` is called meanwhile.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -721,9 +722,10 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
 
     `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
     robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
-    `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner and smoother begin with the
-    values of their papers, for maps with cells of 1 m, whatever the robot. `budget` limits the expanded nodes; with
-    `nearest_reachable` the path ends in the cell nearest to the goal that can be reached.
+    `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner
+    and smoother begin with the values of their papers, for maps with cells of 1 m, whatever the
+    robot. `budget` limits the expanded nodes; with `nearest_reachable` the path ends in the cell
+    nearest to the goal that can be reached.
 
     What a map needs for a choice of parameters is kept with the map, so a second call is fast.
 

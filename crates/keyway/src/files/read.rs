@@ -13,7 +13,7 @@ use toml::{Table, Value};
 /// More than any scene, robot, stack or file of parameters holds \[bytes\].
 pub const MAX_TOML_BYTES: u64 = 16 << 20;
 
-/// Why a robot or stack file cannot be used: the file, and what is wrong with it.
+/// Error of a robot or stack file: the file, and the fault.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConfigFileError {

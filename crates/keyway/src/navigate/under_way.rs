@@ -90,7 +90,7 @@ mod tests {
             Self { robot, delay, commands: (0..60).map(command).collect() }
         }
 
-        /// Where it is `cycles` and a part of one after the first command has begun to act.
+        /// State `cycles` and a part of one after the first command has begun to act.
         fn after(&self, cycles: usize, part: f64) -> (Pose, Velocity) {
             let Robot { ref limits, cycle_s, .. } = self.robot;
             let (mut pose, mut velocity) = (Pose::new(20.0, 20.0, 0.3), Velocity::ZERO);
@@ -103,7 +103,7 @@ mod tests {
             (pose, velocity)
         }
 
-        /// What it is told when it is to give a command.
+        /// State that it is told when it is to give a command.
         fn told(&self, cycle: usize) -> (Pose, Velocity) {
             let (whole, part) = self.delay;
             match cycle.checked_sub(whole + usize::from(part > 0.0)) {

@@ -5,8 +5,8 @@ use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, GridFrame, RayCells};
 use crate::robot::RangeSensor;
 
-/// Distances from the sensor to the first occupied cell or disc; a disc is its centre and its radius
-/// \[m\].
+/// Distances from the sensor to the first occupied cell or disc. A disc is its centre and its
+/// radius \[m\].
 pub(crate) fn scan_among(
     (frame, occupied): (&GridFrame, &[&BitGrid]),
     discs: &[(Point, f64)],

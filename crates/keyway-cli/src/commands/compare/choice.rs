@@ -22,7 +22,8 @@ const ALL: &str = "all";
 const USUAL_PLANNERS: [&str; 2] = ["jps", "theta-star"];
 const USUAL_SMOOTHERS: [&str; 3] = ["none", "taut", "continuous-curvature"];
 
-/// What the arguments ask to compare. Wrong names and parameters are reported before anything is planned.
+/// Request that the arguments stand for. Wrong names and parameters are reported before anything is
+/// planned.
 pub(super) fn request(args: &CompareArgs) -> Result<CompareRequest, CliError> {
     let is_open =
         args.planners.is_empty() && args.smoothers.is_empty() && args.config.config.is_none();

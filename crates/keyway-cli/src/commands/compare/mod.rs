@@ -135,7 +135,7 @@ fn compared(
     Ok(compared)
 }
 
-/// What a comparison could not be made with, in the words of the command line.
+/// Error of a comparison in the words of the command line.
 fn refused(error: CompareError) -> CliError {
     match error {
         CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {

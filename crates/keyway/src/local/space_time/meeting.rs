@@ -74,7 +74,7 @@ impl Foreseen {
         });
     }
 
-    /// Where it is expected.
+    /// Expected position.
     #[inline]
     fn centre_at(&self, after_s: f64) -> Point {
         self.centre + self.velocity_mps * after_s.min(self.wall_s)

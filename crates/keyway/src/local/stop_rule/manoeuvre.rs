@@ -289,8 +289,9 @@ impl<'a> Manoeuvres<'a> {
         if stands { Ok(()) } else { self.check_apart(stretch, mover) }
     }
 
-    /// Shows it: at the middle of the stretch the footprint is farther from all ground that the mover
-    /// may cover meanwhile than any part of it moves from there. Otherwise each half is looked at.
+    /// Shows it: at the middle of the stretch the footprint is farther from all ground that the
+    /// mover may cover meanwhile than any part of it moves from there. Otherwise each half is
+    /// looked at.
     fn check_apart(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, radius_m) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);

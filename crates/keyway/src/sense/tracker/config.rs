@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct TrackerConfig {
     /// Hits this near to an occupied cell of the known map are hits on it \[m\]; whole cells count.
     pub explained_m: f64,
-    /// Successive hits that are farther apart than this belong to different things \[m\]; where beams are farther apart, twice
-    /// their distance counts.
+    /// Successive hits that are farther apart than this belong to different things \[m\]; where
+    /// beams are farther apart, twice their distance counts.
     pub gap_m: f64,
     /// Anything wider than this is no mover \[m\].
     pub largest_diameter_m: f64,
@@ -29,8 +29,8 @@ pub struct TrackerConfig {
 
 impl Default for TrackerConfig {
     /// For people and other robots around a robot: up to 1.2 m wide, 2 m/s fast, accelerating at up
-    /// to 2 m/s². Hits within 0.1 m of known walls are hits on them, ranges are right to 0.02 m, hits
-    /// 0.2 m apart are two things; a mover stands after 2 s, and is remembered for 2 s.
+    /// to 2 m/s². Hits within 0.1 m of known walls are hits on them, ranges are right to 0.02 m,
+    /// hits 0.2 m apart are two things; a mover stands after 2 s, and is remembered for 2 s.
     fn default() -> Self {
         Self {
             explained_m: 0.1,
