@@ -108,7 +108,9 @@ fn plans() -> Digests {
         }
         let planner = PlannerConfig::by_name("jps").unwrap();
         for smoother in SmootherConfig::NAMES {
-            let config = SmootherConfig::for_robot(smoother, &Robot::small()).unwrap();
+            let config = SmootherConfig::by_name(smoother)
+                .unwrap()
+                .keeping(Robot::small().preferred_clearance_m());
             let digest = route_digest(&grid, &planner, &config);
             digests.insert(format!("{name} jps {smoother}"), digest);
         }

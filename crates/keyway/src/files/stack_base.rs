@@ -39,6 +39,9 @@ pub enum ParameterError {
 /// // Names choose parts for the robot, whose distances are not those of papers with cells of 1 m.
 /// let named = base.with(&from_toml("smoother.name = \"hierarchical\"")?)?;
 /// assert_eq!(named.smoother.safe_distance_m(0.05), robot.preferred_clearance_m());
+/// let named = base.with(&from_toml("planner.name = \"hsta\"")?)?;
+/// let keyway::plan::PlannerConfig::Hsta(hsta) = named.planner else { unreachable!() };
+/// assert_eq!(hsta.l1_constraint, 2.0 * robot.preferred_clearance_m());
 /// let wrong = base.with(&from_toml("map.clearance = 0.3")?).unwrap_err().to_string();
 /// assert!(wrong.starts_with("there is no field `map.clearance`; `map` has: "), "{wrong}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -111,17 +114,17 @@ impl<'a> StackBase<'a> {
     pub fn part(&self, path: &str, name: &str) -> Result<Table, Vec<&'static str>> {
         match path {
             "planner" => {
-                let planner = PlannerConfig::by_name(name);
+                let planner = PlannerConfig::by_name(name).map(|planner| match self.safe_m() {
+                    Some(safe_distance_m) => planner.keeping(safe_distance_m),
+                    None => planner,
+                });
                 self.table(planner, PlannerConfig::as_published, &PlannerConfig::NAMES)
             }
             "smoother" => {
-                let smoother = match self.presets {
-                    Presets::Robot => SmootherConfig::for_robot(name, self.robot),
-                    Presets::Keeping(radius_m) => {
-                        SmootherConfig::by_name(name).map(|smoother| smoother.keeping(radius_m))
-                    }
-                    Presets::Usual | Presets::Published => SmootherConfig::by_name(name),
-                };
+                let smoother = SmootherConfig::by_name(name).map(|smoother| match self.safe_m() {
+                    Some(safe_distance_m) => smoother.keeping(safe_distance_m),
+                    None => smoother,
+                });
                 self.table(smoother, SmootherConfig::as_published, &SmootherConfig::NAMES)
             }
             "guide" => {
@@ -133,6 +136,15 @@ impl<'a> StackBase<'a> {
                 self.table(local, LocalConfig::as_published, &LocalConfig::NAMES)
             }
             _ => Err(Vec::new()),
+        }
+    }
+
+    /// The safe distance of the robot, where one is known \[m\].
+    fn safe_m(&self) -> Option<f64> {
+        match self.presets {
+            Presets::Robot => Some(self.robot.preferred_clearance_m()),
+            Presets::Keeping(radius_m) => Some(radius_m),
+            Presets::Usual | Presets::Published => None,
         }
     }
 

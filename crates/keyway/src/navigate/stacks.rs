@@ -234,8 +234,9 @@ impl Parts {
         let clearance_m = robot.preferred_clearance_m();
         let mut stack = Stack {
             map: LayerConfig { clearance_m, ..self.layers() },
-            planner: with_corners(PlannerConfig::by_name(self.planner)?, Forbid),
-            smoother: SmootherConfig::for_robot(self.smoother, robot)?,
+            planner: with_corners(PlannerConfig::by_name(self.planner)?, Forbid)
+                .keeping(clearance_m),
+            smoother: SmootherConfig::by_name(self.smoother)?.keeping(clearance_m),
             guide: GuideConfig::by_name(self.guide, robot)?,
             local: LocalConfig::by_name(self.local, robot)?,
             controller: ControllerConfig::for_robot(robot),

@@ -67,6 +67,16 @@ registry! {
 }
 
 impl PlannerConfig {
+    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of those of papers,
+    /// whose cells are 1 m wide: the constraint of [`Hsta`] becomes as many safe distances as it was cells.
+    #[must_use]
+    pub fn keeping(mut self, safe_distance_m: f64) -> Self {
+        if let Self::Hsta(config) = &mut self {
+            *config = config.clone().keeping(safe_distance_m);
+        }
+        self
+    }
+
     /// Checks the parameters, as [`Self::build`] does; without a map.
     ///
     /// # Errors

@@ -9,7 +9,6 @@ use super::{
 };
 use crate::ConfigError;
 use crate::registry::registry;
-use crate::robot::Robot;
 
 registry! {
     /// A smoother and its parameters, as data.
@@ -36,13 +35,8 @@ registry! {
 }
 
 impl SmootherConfig {
-    /// A smoother by its name, with distances for a robot in the place of those of papers, whose
-    /// cells are 1 m wide.
-    pub fn for_robot(name: &str, robot: &Robot) -> Option<Self> {
-        Self::by_name(name).map(|smoother| smoother.keeping(robot.preferred_clearance_m()))
-    }
-
-    /// The same with a safe distance of its own \[m\], where it has one.
+    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of those of papers,
+    /// whose cells are 1 m wide.
     #[must_use]
     pub fn keeping(mut self, safe_distance_m: f64) -> Self {
         match &mut self {

@@ -178,6 +178,14 @@ impl HstaConfig {
         corners: CornerRule::Forbid,
     };
 
+    /// The same with a constraint of as many safe distances \[m\] as it has cells: the paper's robot has a cell
+    /// for itself. The weight k is as it was.
+    #[must_use]
+    pub fn keeping(self, safe_distance_m: f64) -> Self {
+        let l1_constraint = Self::PAPER.l1_constraint * safe_distance_m / self.reference_cell_m;
+        Self { l1_constraint, ..self }
+    }
+
     /// This many of the map's cells are one unit of the distances.
     fn cells_per_unit(&self, map: &SearchMap) -> f64 {
         match self.distances {
