@@ -130,7 +130,8 @@ impl Controller {
         let known = Arc::clone(&grid.grid);
         let controller = watched(py, progress.as_ref(), move |_| {
             let goal = Goal { position, heading_rad };
-            keyway::navigate::Controller::by_way_of(&known, &robot, &config, start, &via, goal)
+            let stack = config.fit(&robot)?;
+            keyway::navigate::Controller::by_way_of(&known, &stack, start, &via, goal)
         })?;
         let controller = controller.map_err(|error| navigate_error(&error))?;
         let inner = Mutex::new(Inner { controller, scan });

@@ -6,7 +6,6 @@
 use keyway::geometry::{Point, Velocity};
 use keyway::local::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::Parts;
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_with_parts};
 use keyway_sim::sim::Circle;
@@ -54,9 +53,8 @@ fn run(has_stop_rule: bool) -> Result<EpisodeReport, Box<dyn Error>> {
     if has_stop_rule {
         episode.stack.controller = episode.stack.controller.with_stop_rule(&robot);
     }
-    let parts = Parts::of(&episode.stack, &robot)?;
-    let parts = Parts { local: Arc::new(Bee { robot }), ..parts };
-    Ok(run_with_parts(&episode, parts, None, &mut ())?)
+    let bee = Arc::new(Bee { robot });
+    Ok(run_with_parts(&episode, |stack| stack.with_local(bee), None, &mut ())?)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -17,7 +17,8 @@ use keyway_sim::sim::{
 /// The stack `key-point-fusion` on the small robot, from [`START`] to [`GOAL`].
 fn small_controller(map: &OccupancyGrid) -> Controller {
     let robot = Robot::small();
-    Controller::new(map, &robot, &Stack::key_point_fusion(&robot), START, GOAL).unwrap()
+    Controller::new(map, &Stack::key_point_fusion(&robot).fit(&robot).unwrap(), START, GOAL)
+        .unwrap()
 }
 
 /// Everything a controller saw and answered in a run.
@@ -122,7 +123,7 @@ fn says_when_what_it_sees_leaves_no_route() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
-    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     // A fence from wall to wall, 1 m ahead.
     let scan = Scan {
         angle_min_rad: -1.0,
@@ -160,7 +161,7 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
         range_max_m: 3.0,
         ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
     };
-    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     controller.step(pose, Velocity::ZERO, &scan(0));
     assert_eq!((controller.routes_planned(), controller.ways_taken()), (2, 2));
     for _ in 0..25 {
@@ -172,7 +173,7 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     assert_eq!(controller.routes_planned(), 2);
     // As published, nobody watches.
     stack.controller.watch_route = false;
-    let mut unwatched = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let mut unwatched = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     unwatched.step(pose, Velocity::ZERO, &scan(0));
     assert_eq!(unwatched.routes_planned(), 1);
 }
@@ -185,7 +186,7 @@ fn says_that_something_stands_on_the_goal() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(2.0, 1.0));
-    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let range = |i: i32| if (90..110).contains(&i) { 1.0 } else { f64::INFINITY };
     let scan = Scan {
         angle_min_rad: -1.0,
@@ -213,13 +214,14 @@ fn the_guide_leaves_a_rectangle_room_to_turn() {
     let stack = Stack::key_point_fusion(&robot);
     let layers = SearchMap::new(&map, LayerConfig::default()).unwrap();
     let turning_m = robot.footprint.circumscribed_radius_m();
-    let first = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+    let first = Controller::new(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
     assert!(first.route().clearance_m > turning_m && first.misfit().is_none());
     let path = first.route().smoothed.clone();
     let mut guides = Vec::new();
     for step in 0..60 {
         let Some(place) = path.at_length(0.1 * f64::from(step)) else { break };
-        let mut controller = Controller::new(&map, &robot, &stack, START, GOAL).unwrap();
+        let mut controller =
+            Controller::new(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
         controller.step(Pose::new(place.x, place.y, 0.0), Velocity::ZERO, &nothing());
         let guide = controller.guidance().point;
         let way = Segment::new(place, guide);
@@ -242,7 +244,7 @@ fn a_route_through_a_narrow_place_keeps_to_its_middle() {
     let robot = Robot::jackal();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(0.6, 0.6), Point::new(3.4, 0.6));
-    let controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let route = controller.route();
     assert!((0.3..0.325).contains(&route.clearance_m), "{}", route.clearance_m);
     let inside = (0..100).filter_map(|i| route.smoothed.at_length(0.05 * f64::from(i)));
@@ -309,7 +311,7 @@ fn says_so_as_long_as_there_is_no_route() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
-    let mut controller = Controller::new(&map, &robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let fence = |range: f64| Scan {
         angle_min_rad: -1.2,
         angle_increment_rad: 0.01,

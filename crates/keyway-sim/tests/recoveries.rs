@@ -258,7 +258,7 @@ fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
     let stack = Stack::keyway(&robot);
     let ask = |yaw_deg: f64| {
         let goal = Goal::try_from(vec![0.35, 0.5, yaw_deg]).unwrap();
-        Controller::new(&map, &robot, &stack, Point::new(0.45, 1.3), goal).map(drop)
+        Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(0.45, 1.3), goal).map(drop)
     };
     let refused = ask(0.0).unwrap_err();
     let NavigateError::GoalHeading { heading_rad, fits, .. } = &refused else {

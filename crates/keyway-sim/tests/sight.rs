@@ -91,7 +91,8 @@ fn a_robot_that_has_never_seen_anything_stands() {
         for (name, stack) in stacks(&robot) {
             for scan in silent_scans(&robot) {
                 let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
-                let mut controller = Controller::new(&hall(), &robot, &stack, start, goal).unwrap();
+                let mut controller =
+                    Controller::new(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
                 let pose = Pose::new(1.0, 2.0, 0.0);
                 for _ in 0..30 {
                     let step = controller.step(pose, Velocity::ZERO, &scan);
@@ -111,7 +112,8 @@ fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
         for (name, stack) in stacks(&robot) {
             for silent in silent_scans(&robot) {
                 let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
-                let mut controller = Controller::new(&hall(), &robot, &stack, start, goal).unwrap();
+                let mut controller =
+                    Controller::new(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
                 let world = World::from_known(&hall(), vec![]).unwrap();
                 let (mut pose, mut velocity) = (Pose::new(1.0, 2.0, 0.0), Velocity::ZERO);
                 let mut cycle = 0.0;
@@ -152,7 +154,7 @@ fn a_published_stack_does_not_ask_for_scans() {
     let stack = Stack::published_by_name("s0-key-point").unwrap();
     let known = OccupancyGrid::from_ascii(&["...................."; 9]);
     let (start, goal) = (Point::new(1.5, 4.5), Point::new(18.5, 4.5));
-    let mut controller = Controller::new(&known, &robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&known, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let step = controller.step(Pose::new(1.5, 4.5, 0.0), Velocity::ZERO, &Scan::default());
     assert!(matches!(step, Step::Drive(command) if command.v > 0.0), "{step:?}");
 }
@@ -191,7 +193,7 @@ fn drive_changed(
 ) -> Outcome {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let stack = Stack::keyway(robot);
-    let mut controller = Controller::new(&hall(), robot, &stack, start, goal).unwrap();
+    let mut controller = Controller::new(&hall(), &stack.fit(robot).unwrap(), start, goal).unwrap();
     let world = World::from_known(&hall(), unknown).unwrap();
     let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
         let mut scan = scan.clone();

@@ -64,9 +64,9 @@ impl Hardware {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let map = OccupancyGrid::from_ascii(&HALL);
     let robot = Robot::small();
-    let stack = Stack::keyway(&robot);
+    let stack = Stack::keyway(&robot).fit(&robot)?;
     let (start, goal) = (Point::new(2.5, 3.5), Point::new(9.5, 3.5));
-    let mut controller = Controller::new(&map, &robot, &stack, start, goal)?;
+    let mut controller = Controller::new(&map, &stack, start, goal)?;
     println!("route of {:.2} m", controller.route().smoothed.length_m());
 
     let mut hardware = Hardware {

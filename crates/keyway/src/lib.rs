@@ -27,9 +27,9 @@
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "...##...", "...##...", "........"]);
 //! let robot = Robot::small();
-//! let stack = Stack::keyway(&robot);
+//! let stack = Stack::keyway(&robot).fit(&robot)?;
 //! let (start, goal) = (Point::new(0.5, 0.5), Point::new(7.5, 3.5));
-//! let controller = Controller::new(&map, &robot, &stack, start, goal)?;
+//! let controller = Controller::new(&map, &stack, start, goal)?;
 //! assert!(controller.route().smoothed.length_m() < 8.7);
 //! # Ok::<(), keyway::navigate::NavigateError>(())
 //! ```

@@ -17,7 +17,9 @@ fn starts_and_goals_that_are_no_places() {
     let (map, robot) = (building(), Robot::small());
     let mut stack = Stack::key_point_fusion(&robot);
     stack.controller.start_error_m = 0.0;
-    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
+    let ask = |start, goal| {
+        Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap()
+    };
     let nowhere = Point::new(f64::NAN, 1.0);
     let start = ask(nowhere, GOAL);
     assert!(matches!(start, NavigateError::NotFinite { end: PathEnd::Start, .. }), "{start}");
@@ -35,7 +37,9 @@ fn starts_and_goals_that_are_no_places() {
         "at the start (1.25, 0.68) the robot (radius 0.18 m) touches something (an obstacle is 0.180 m away); \
          move the start away from it"
     );
-    assert!(Controller::new(&map, &robot, &stack, Point::new(1.25, 0.681), GOAL).is_ok());
+    assert!(
+        Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(1.25, 0.681), GOAL).is_ok()
+    );
 }
 
 #[test]
@@ -43,9 +47,9 @@ fn a_stack_must_leave_room_for_its_robot() {
     let robot = Robot::small();
     let mut stack = Stack::key_point_fusion(&Robot::paper());
     // That of the paper is a point.
-    assert_eq!(stack.validate(&Robot::paper()), Ok(()));
+    assert!(stack.fit(&Robot::paper()).is_ok());
     stack = Stack { map: stack.map, ..Stack::key_point_fusion(&robot) };
-    let error = stack.validate(&robot).unwrap_err();
+    let error = stack.fit(&robot).unwrap_err();
     assert_eq!(
         error.to_string(),
         "map.clearance_m must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, \
@@ -53,7 +57,7 @@ fn a_stack_must_leave_room_for_its_robot() {
     );
     let mut tight = Stack::key_point_fusion(&robot);
     tight.controller.least_clearance_m = 0.1;
-    assert_eq!(tight.validate(&robot).unwrap_err().path, "controller.least_clearance_m");
+    assert_eq!(tight.fit(&robot).unwrap_err().path, "controller.least_clearance_m");
 }
 
 #[test]
@@ -61,7 +65,9 @@ fn refuses_what_cannot_be_driven() {
     let map = building();
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
-    let ask = |start, goal| Controller::new(&map, &robot, &stack, start, goal).err().unwrap();
+    let ask = |start, goal| {
+        Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap()
+    };
     let in_wall = ask(Point::new(0.1, 1.0), GOAL);
     let NavigateError::NoRoom { end, nearest, .. } = &in_wall else { panic!("{in_wall}") };
     assert_eq!(*end, PathEnd::Start);
@@ -70,7 +76,7 @@ fn refuses_what_cannot_be_driven() {
     let text = in_wall.to_string();
     assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
     let solid = blocks(&["###", "###"]);
-    let nowhere = Controller::new(&solid, &robot, &stack, Point::new(0.5, 0.5), GOAL);
+    let nowhere = Controller::new(&solid, &stack.fit(&robot).unwrap(), Point::new(0.5, 0.5), GOAL);
     let text = nowhere.err().unwrap().to_string();
     assert!(text.ends_with("; no other place on this map has room either"), "{text}");
     // Beside a wall, nearer than the radius.
@@ -85,7 +91,7 @@ fn refuses_what_cannot_be_driven() {
     let wide = Robot { footprint: Footprint::circle(0.6).unwrap(), ..Robot::small() };
     let its_stack = Stack::key_point_fusion(&wide);
     let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
-    let narrow = Controller::new(&map, &wide, &its_stack, start, goal).err().unwrap();
+    let narrow = Controller::new(&map, &its_stack.fit(&wide).unwrap(), start, goal).err().unwrap();
     let NavigateError::NoWay { why: Separation::TooNarrow { widest_m, .. } } = narrow else {
         panic!("{narrow}")
     };
@@ -110,7 +116,7 @@ fn errors_name_the_whole_path_of_a_field() {
             *at.unwrap() = part;
         }
         let stack: Stack = serde_json::from_value(json).unwrap();
-        match Controller::new(&map, robot, &stack, START, GOAL).err().unwrap() {
+        match Controller::new(&map, &stack.fit(robot).unwrap(), START, GOAL).err().unwrap() {
             NavigateError::Config(error) => (error.path, error.reason),
             other => panic!("{other}"),
         }

@@ -119,7 +119,7 @@ fn a_controller_follows_the_route_of_the_pipeline() {
     let (grid, robot) = (OccupancyGrid::from_ascii(&rows), Robot::small());
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(0.5, 0.5), Point::new(9.4, 3.6));
-    let controller = Controller::new(&grid, &robot, &stack, start, goal).unwrap();
+    let controller = Controller::new(&grid, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let map = SearchMap::new(&grid, stack.map.clone()).unwrap();
     let planner = stack.planner.build(&map).unwrap();
     let smoother = stack.smoother.build().unwrap();

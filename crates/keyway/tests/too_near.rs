@@ -29,7 +29,8 @@ fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
 
 /// The robot's pose after 60 s, and true if it has arrived there; it sees nothing.
 fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) {
-    let mut controller = Controller::new(&hall(), robot, stack, start.point(), GOAL).unwrap();
+    let mut controller =
+        Controller::new(&hall(), &stack.fit(robot).unwrap(), start.point(), GOAL).unwrap();
     let scan = Scan::of_nothing(&robot.sensor);
     let lowest_m = |pose: Pose| match &robot.footprint {
         Footprint::Circle(circle) => pose.y - circle.radius_m(),
@@ -101,7 +102,8 @@ fn a_start_that_is_too_near_by_more_is_refused() {
     let (map, robot) = (hall(), Robot::small());
     let mut stack = Stack::keyway(&robot);
     let ask = |stack: &Stack, y: f64| {
-        let controller = Controller::new(&map, &robot, stack, Point::new(2.0, y), GOAL);
+        let controller =
+            Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(2.0, y), GOAL);
         controller.map(|controller| controller.too_near().cloned())
     };
     assert_eq!(stack.controller.start_error_m, 0.05);
@@ -131,7 +133,7 @@ fn what_has_been_left_is_not_told_again() {
     let (map, robot) = (hall(), Robot::small());
     let start = Point::new(2.0, 0.2);
     let mut controller =
-        Controller::new(&map, &robot, &Stack::keyway(&robot), start, GOAL).unwrap();
+        Controller::new(&map, &Stack::keyway(&robot).fit(&robot).unwrap(), start, GOAL).unwrap();
     let scan = Scan::of_nothing(&robot.sensor);
     for (y, is_told) in [(0.2, true), (0.229, true), (0.24, false), (0.2, false)] {
         controller.step(Pose::new(2.0, y, 0.0), Velocity::ZERO, &scan);

@@ -13,14 +13,14 @@ use crate::sim::{
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{BitGrid, UnknownPolicy};
-use keyway::navigate::{Blocked, Controller, Misfit, Parts, Step};
+use keyway::navigate::{Blocked, Controller, FittedStack, Misfit, Step};
 use keyway::route::Route;
 use keyway::sense::Scan;
 
 /// A robot about to drive.
 pub(super) struct Entry<'a> {
     pub(super) task: Task<'a>,
-    pub(super) parts: Parts,
+    pub(super) stack: FittedStack,
     pub(super) observer: &'a mut dyn EpisodeObserver,
 }
 
@@ -125,11 +125,10 @@ impl<'a> Ready<'a> {
         clock: Clock<'a>,
         index: usize,
     ) -> Result<Self, TeamError> {
-        let Entry { task, parts, observer } = entry;
+        let Entry { task, stack, observer } = entry;
         let of_robot = |error| TeamError::of_robot(index, error);
-        let Task { known, robot, stack, start, via, goal, .. } = task;
-        let way = (start.position, via, goal);
-        let controller = match Controller::with_parts(known, robot, stack, parts, way) {
+        let Task { known, start, via, goal, .. } = task;
+        let controller = match Controller::by_way_of(known, &stack, start.position, via, goal) {
             Ok(controller) => controller,
             Err(error) => {
                 let Some(report) = task.without_route(&error) else { return Err(of_robot(error)) };

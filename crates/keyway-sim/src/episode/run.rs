@@ -3,7 +3,7 @@
 use super::driver::{Entry, run_all};
 use super::{Episode, EpisodeError, EpisodeObserver, EpisodeReport};
 use crate::report::{Clock, Inputs};
-use keyway::navigate::{NavigateError, Parts};
+use keyway::navigate::FittedStack;
 
 /// Runs an episode. Equal episodes give equal reports; times are not measured.
 ///
@@ -22,23 +22,23 @@ pub fn watch_episode(
     clock: Clock<'_>,
     observer: &mut dyn EpisodeObserver,
 ) -> Result<EpisodeReport, EpisodeError> {
-    let Episode { stack, robot, .. } = episode;
-    let checked = stack.validate(robot).and_then(|()| Parts::of(stack, robot));
-    run_with_parts(episode, checked.map_err(NavigateError::from)?, clock, observer)
+    run_with_parts(episode, |stack| stack, clock, observer)
 }
 
-/// Runs an episode with the caller's own local planner or guide, in place of those of its stack.
-/// The report does not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
+/// Runs an episode with the caller's own local planner or guide: `exchange` puts them in the place
+/// of those of its stack ([`FittedStack::with_local`], [`FittedStack::with_guide`]). The report does
+/// not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
 ///
 /// # Errors
 /// As for [`run_episode`].
 pub fn run_with_parts(
     episode: &Episode,
-    parts: Parts,
+    exchange: impl FnOnce(FittedStack) -> FittedStack,
     clock: Clock<'_>,
     observer: &mut dyn EpisodeObserver,
 ) -> Result<EpisodeReport, EpisodeError> {
-    let entry = Entry { task: episode.task(), parts, observer };
+    let task = episode.task();
+    let entry = Entry { task, stack: exchange(task.fit()?), observer };
     let mut ended = run_all(vec![entry], clock, 1).map_err(|error| error.why)?;
     // One robot has one report.
     Ok(ended.swap_remove(0).report)

@@ -17,14 +17,8 @@ impl Episode {
         let task = self.task();
         let world = world_of(&[task])?;
         let (position, goal) = (self.start.position, self.goal);
-        let controller = Controller::by_way_of(
-            &self.known,
-            &self.robot,
-            &self.stack,
-            position,
-            &self.via,
-            goal,
-        )?;
+        let stack = task.fit()?;
+        let controller = Controller::by_way_of(&self.known, &stack, position, &self.via, goal)?;
         let start: Pose = task.start_pose(&world, controller.route())?;
         let rules: RunRules = task.run_rules(controller.guidance().remaining_m);
         let ends = (start, goal.position);
@@ -52,7 +46,8 @@ mod tests {
         episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
         let mut run = episode.stepper().unwrap();
         let Episode { known, robot, stack, .. } = &episode;
-        let mut controller = Controller::new(known, robot, stack, start, goal).unwrap();
+        let mut controller =
+            Controller::new(known, &stack.fit(robot).unwrap(), start, goal).unwrap();
         while run.outcome().is_none() {
             let (pose, velocity) = run.told();
             let action = match controller.step(pose, velocity, run.scan()) {

@@ -6,7 +6,7 @@ use crate::sim::{Circle, Disturbances, Mover, RunRules, StandingPolygon, World};
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, Cell, Clearance, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
-use keyway::navigate::{Goal, NavigateError, Stack, touches};
+use keyway::navigate::{FittedStack, Goal, NavigateError, Stack, touches};
 use keyway::plan::{Plan, PlanError};
 use keyway::robot::Robot;
 use keyway::route::Route;
@@ -56,6 +56,11 @@ impl Episode {
 }
 
 impl Task<'_> {
+    /// Its stack, built for its robot.
+    pub(super) fn fit(&self) -> Result<FittedStack, NavigateError> {
+        Ok(self.stack.fit(self.robot)?)
+    }
+
     /// Cells that the robot knows to be obstacles, under its policy for unknown cells.
     pub(super) fn known_squares(&self) -> BitGrid {
         let mut squares = self.known.occupied().clone();

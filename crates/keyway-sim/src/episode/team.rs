@@ -9,7 +9,7 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway::given::Given;
 use keyway::map::{Cell, OccupancyGrid};
-use keyway::navigate::{Goal, NavigateError, Parts, Stack};
+use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
 
 /// Several robots that drive in one world at the same time, each with its own stack and to its own
@@ -176,11 +176,8 @@ pub fn watch_team<O: EpisodeObserver>(
     let mut entries = Vec::with_capacity(team.robots.len());
     for (index, (robot, observer)) in team.robots.iter().zip(&mut observers).enumerate() {
         let task = team.task(robot);
-        let checked =
-            task.stack.validate(task.robot).and_then(|()| Parts::of(task.stack, task.robot));
-        let parts =
-            checked.map_err(|error| TeamError::of_robot(index, NavigateError::from(error)))?;
-        entries.push(Entry { task, parts, observer });
+        let stack = task.fit().map_err(|error| TeamError::of_robot(index, error))?;
+        entries.push(Entry { task, stack, observer });
     }
     let (reports, clearances_m): (Vec<_>, Vec<_>) = run_all(entries, clock, threads)?
         .into_iter()

@@ -54,8 +54,8 @@ pub fn stack_from_bytes(
         let reason = in_part(text, &error, robot).unwrap_or(error);
         ConfigFileError::Toml { path: path(), reason }
     })?;
-    match stack.validate(robot) {
-        Ok(()) => Ok(stack),
+    match stack.fit(robot) {
+        Ok(_) => Ok(stack),
         Err(reason) => Err(ConfigFileError::Stack { path: path(), reason }),
     }
 }

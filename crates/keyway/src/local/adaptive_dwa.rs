@@ -39,6 +39,7 @@ use crate::ConfigError;
 use crate::geometry::Velocity;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Parameters of [`AdaptiveDwa`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,7 +126,10 @@ impl AdaptiveDwa {
     /// # Errors
     /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
     /// the field.
-    pub fn new(config: AdaptiveDwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub fn new(
+        config: AdaptiveDwaConfig,
+        robot: impl Into<Arc<Robot>>,
+    ) -> Result<Self, ConfigError> {
         let AdaptiveDwaConfig { window, weights, a, safe_radius_m } = config;
         if window.distance_at != DistanceAt::End {
             let reason = "must be `end`: the weights depend on the distance at the end";
@@ -146,7 +150,7 @@ impl AdaptiveDwa {
     }
 
     /// The robot that it drives.
-    pub const fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
@@ -174,8 +178,8 @@ impl LocalParameters for AdaptiveDwaConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(AdaptiveDwa::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(AdaptiveDwa::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn as_published() -> Option<Self> {

@@ -8,6 +8,7 @@ use super::{
 use crate::ConfigError;
 use crate::registry::registry;
 use crate::robot::Robot;
+use std::sync::Arc;
 
 registry! {
     /// A local planner and its parameters, as data.
@@ -32,6 +33,14 @@ impl LocalConfig {
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names it.
     pub fn build(&self, robot: &Robot) -> Result<Box<dyn LocalPlanner + Send + Sync>, ConfigError> {
+        self.build_for(&Arc::new(robot.clone()))
+    }
+
+    /// The same for a robot that others use, too.
+    pub(crate) fn build_for(
+        &self,
+        robot: &Arc<Robot>,
+    ) -> Result<Box<dyn LocalPlanner + Send + Sync>, ConfigError> {
         self.parameters().build(robot)
     }
 

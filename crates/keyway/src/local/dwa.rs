@@ -29,6 +29,7 @@ use crate::ConfigError;
 use crate::geometry::Velocity;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Parameters of [`Dwa`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,7 +129,7 @@ impl Dwa {
     /// When a value of the robot or the config cannot be used, or the two do not fit together (a
     /// horizon too short to stop within it, or steps too small for one cycle); the error names the
     /// field.
-    pub fn new(config: DwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub fn new(config: DwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let DwaConfig { window, weights, distance_term_cap_m: distance_cap_m } = config;
         let window = DynamicWindow::new(window, robot)?;
         weights.validate().map_err(|error| error.within("weights"))?;
@@ -142,7 +143,7 @@ impl Dwa {
     }
 
     /// The robot that it drives.
-    pub const fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
@@ -161,8 +162,8 @@ impl LocalParameters for DwaConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(Dwa::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(Dwa::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn as_published() -> Option<Self> {

@@ -29,6 +29,7 @@ use crate::geometry::{Point, Polyline, Velocity};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Parameters of [`Follower`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +62,7 @@ impl FollowerConfig {
 #[derive(Clone, Debug)]
 pub struct Follower {
     config: FollowerConfig,
-    robot: Robot,
+    robot: Arc<Robot>,
 }
 
 impl Follower {
@@ -72,7 +73,8 @@ impl Follower {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names the field.
-    pub fn new(config: FollowerConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub fn new(config: FollowerConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
+        let robot = robot.into();
         robot.validate().map_err(|error| error.within("robot"))?;
         ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
         Ok(Self { config, robot })
@@ -110,8 +112,8 @@ impl LocalParameters for FollowerConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(Follower::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(Follower::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn as_published() -> Option<Self> {

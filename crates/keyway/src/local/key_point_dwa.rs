@@ -36,6 +36,7 @@ use crate::geometry::{Point, Pose, Velocity};
 use crate::map::Clearance;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Parameters of [`KeyPointDwa`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -224,7 +225,10 @@ impl KeyPointDwa {
     /// # Errors
     /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
     /// the field.
-    pub fn new(config: KeyPointDwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub fn new(
+        config: KeyPointDwaConfig,
+        robot: impl Into<Arc<Robot>>,
+    ) -> Result<Self, ConfigError> {
         let KeyPointDwaConfig { window, weights, speed_weight, distance_term_cap_m } = config;
         let window = DynamicWindow::new(window, robot)?;
         ConfigError::unless_weight("weights.key_point", weights.key_point)?;
@@ -235,7 +239,7 @@ impl KeyPointDwa {
     }
 
     /// The robot that it drives.
-    pub const fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
@@ -264,8 +268,8 @@ impl LocalParameters for KeyPointDwaConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(KeyPointDwa::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(KeyPointDwa::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn as_published() -> Option<Self> {

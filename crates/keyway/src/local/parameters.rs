@@ -3,6 +3,7 @@
 use super::LocalPlanner;
 use crate::ConfigError;
 use crate::robot::Robot;
+use std::sync::Arc;
 
 /// A local planner chosen by name.
 pub(super) type BoxedLocalPlanner = Box<dyn LocalPlanner + Send + Sync>;
@@ -15,7 +16,7 @@ pub(super) trait LocalParameters {
         Self: Sized;
 
     /// The local planner for a robot.
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError>;
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError>;
 
     /// The values of the local planner's paper.
     fn as_published() -> Option<Self>

@@ -1,6 +1,7 @@
 //! Driving: a map and a goal -> a route -> one command per cycle. No simulator is needed: a
-//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is its parameters;
-//! [`Parts`] are a local planner and a guide of your own, as in the example `own_local_planner`.
+//! [`Controller`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is
+//! its parameters. Fitted to a robot ([`Stack::fit`]) it is what a controller takes; there a local
+//! planner or a guide of your own can be put in, as in the example `own_local_planner`.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};
@@ -11,8 +12,8 @@
 //!
 //! let (map, robot) = (OccupancyGrid::from_ascii(&["......", "......", "......"]), Robot::small());
 //! let (start, goal) = (Point::new(0.5, 1.5), Point::new(5.5, 1.5));
-//! let mut controller =
-//!     Controller::new(&map, &robot, &Stack::keyway(&robot), start, goal)?;
+//! let stack = Stack::keyway(&robot).fit(&robot)?;
+//! let mut controller = Controller::new(&map, &stack, start, goal)?;
 //! // Stand for the odometry, the lidar and the motors of a robot: nothing is seen, each command is obeyed.
 //! let (mut pose, mut velocity) = (Pose::new(0.5, 1.5, 0.0), Velocity::ZERO);
 //! let nothing = Scan {
@@ -38,10 +39,10 @@
 
 mod blocked;
 mod controller;
+mod fitted;
 mod goal;
 mod headings;
 mod misfit;
-mod parts;
 mod recovery;
 mod route;
 mod stack;
@@ -53,10 +54,10 @@ mod watch;
 
 pub use blocked::{Blocked, Step};
 pub use controller::Controller;
+pub use fitted::FittedStack;
 pub use goal::Goal;
 pub use headings::HeadingRange;
 pub use misfit::Misfit;
-pub use parts::Parts;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};

@@ -2,7 +2,7 @@
 
 use super::headings::fits_within;
 use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
-use super::{Goal, HeadingRange, Stack};
+use super::{FittedStack, Goal, HeadingRange, Stack};
 use crate::ConfigError;
 use crate::geometry::{Point, Pose, degrees};
 use crate::given::{Computed, Given};
@@ -17,6 +17,7 @@ use crate::search::{Query, Workspace};
 use crate::sense::Disc;
 use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a robot cannot be sent to a goal.
@@ -206,7 +207,7 @@ pub(super) fn turning_clearance_m(stack: &Stack, robot: &Robot) -> f64 {
 pub(super) struct Router {
     pub(super) layers: Layers,
     planner: Box<dyn GlobalPlanner + Send + Sync>,
-    smoother: Box<dyn Smoother + Send + Sync>,
+    smoother: Arc<dyn Smoother + Send + Sync>,
     workspace: Workspace,
     radius_m: f64,
 }
@@ -214,17 +215,12 @@ pub(super) struct Router {
 impl Router {
     /// # Errors
     /// When the stack cannot be used.
-    pub(super) fn new(
-        known: &OccupancyGrid,
-        stack: &Stack,
-        robot: &Robot,
-    ) -> Result<Self, NavigateError> {
-        stack.check_planner()?;
-        stack.check_map()?;
+    pub(super) fn new(known: &OccupancyGrid, fitted: &FittedStack) -> Result<Self, NavigateError> {
+        let FittedStack { stack, robot, smoother, .. } = fitted;
         let layers = Layers::new(known, stack, robot)?;
         Ok(Self {
             planner: stack.planner.build(layers.obstacles())?,
-            smoother: stack.smoother.build()?,
+            smoother: Arc::clone(smoother),
             layers,
             workspace: Workspace::default(),
             radius_m: robot.footprint.inscribed_radius_m(),

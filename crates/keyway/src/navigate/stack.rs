@@ -2,7 +2,6 @@
 
 use super::RecoveryKind;
 use crate::ConfigError;
-use crate::given::Given;
 use crate::guide::GuideConfig;
 use crate::local::{LocalConfig, StopRule, StopRuleConfig};
 use crate::map::{GridFrame, LayerConfig};
@@ -12,6 +11,7 @@ use crate::sense::{SeenGround, SeenWanted, Tracker, TrackerConfig};
 use crate::smooth::{SmootherConfig, UnsmoothedConfig};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A stack: planner, smoother, guide and local planner with all their parameters. An ablation is
 /// another value of this type.
@@ -175,7 +175,8 @@ impl ControllerConfig {
 }
 
 impl ControllerConfig {
-    fn check(&self, robot: &Robot) -> Result<(), ConfigError> {
+    /// Checks the values of its own; those of its tracker and its stop rule are checked when they are built.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
         ConfigError::unless_positive("goal_yaw_tolerance_rad", self.goal_yaw_tolerance_rad)?;
         ConfigError::unless_positive("blocked_s", self.blocked_s)?;
@@ -185,12 +186,11 @@ impl ControllerConfig {
         ConfigError::unless_not_negative("wait_s", self.wait_s)?;
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
         ConfigError::unless_not_negative("start_error_m", self.start_error_m)?;
-        self.build_tracker()?;
         if self.go_around && self.movers.is_none() {
             let reason = "needs `controller.movers`: movers that are not told apart cannot be gone around; set it to false";
             return Err(ConfigError::new("go_around", reason));
         }
-        self.build_stop_rule(robot).map(drop)
+        Ok(())
     }
 
     /// What counts as progress within [`Self::no_progress_s`] for a robot of this top speed \[m\].
@@ -210,13 +210,16 @@ impl ControllerConfig {
     }
 
     /// The stop rule, if there is one.
-    pub(super) fn build_stop_rule(&self, robot: &Robot) -> Result<Option<StopRule>, ConfigError> {
+    pub(super) fn build_stop_rule(
+        &self,
+        robot: &Arc<Robot>,
+    ) -> Result<Option<StopRule>, ConfigError> {
         let Some(safe) = &self.safe else { return Ok(None) };
         if self.movers.is_none() {
             let reason = "needs `controller.movers`: who does not tell movers apart cannot keep clear of them";
             return Err(ConfigError::new("safe", reason));
         }
-        let rule = StopRule::new(safe.clone(), robot.clone());
+        let rule = StopRule::new(safe.clone(), Arc::clone(robot));
         rule.map(Some).map_err(|error| error.within("safe"))
     }
 }
@@ -248,79 +251,5 @@ impl Stack {
         let stack = Self::keyway(robot);
         let map = LayerConfig { clearance_m: 0.0, ..stack.map };
         Self { map, smoother: SmootherConfig::None(UnsmoothedConfig::default()), ..stack }
-    }
-
-    /// Checks that the planner can plan on a map that changes.
-    ///
-    /// # Errors
-    /// When it cannot.
-    pub fn check_planner(&self) -> Result<(), ConfigError> {
-        if self.planner.needs_static_map() {
-            let name = self.planner.name();
-            let reason = format!(
-                "cannot be `{name}`, which needs a map that stays as it is, but a robot's sensor changes it; use jps"
-            );
-            return Err(ConfigError::new("planner.name", reason));
-        }
-        Ok(())
-    }
-
-    /// Checks that no clearance is lifted: otherwise a route would lead where the footprint does
-    /// not fit.
-    ///
-    /// # Errors
-    /// When it is.
-    pub fn check_map(&self) -> Result<(), ConfigError> {
-        if self.map.free_ends_m == 0.0 {
-            return Ok(());
-        }
-        let expected = "0 for a robot: its route goes straight from the start to the nearest free \
-                        cell, and from there to the goal, as far as its footprint fits";
-        Err(ConfigError::must_be("map.free_ends_m", expected, self.map.free_ends_m))
-    }
-
-    /// Checks every value, and that the stack fits the robot: what routes keep from obstacles must leave room for it.
-    /// What else the map layers need is checked with the map.
-    ///
-    /// # Errors
-    /// Names the first field that cannot be used.
-    pub fn validate(&self, robot: &Robot) -> Result<(), ConfigError> {
-        self.check_parameters(robot)?;
-        self.check_room(robot)
-    }
-
-    /// Checks every value alone. Whoever only plans with parts of a stack needs no clearances that suit a robot.
-    ///
-    /// # Errors
-    /// As for [`Self::validate`].
-    pub fn check_parameters(&self, robot: &Robot) -> Result<(), ConfigError> {
-        let within = |parent| move |error: ConfigError| error.within(parent);
-        robot.validate().map_err(within("robot"))?;
-        self.planner.check().map_err(within("planner"))?;
-        self.smoother.build().map_err(within("smoother"))?;
-        self.guide.build().map_err(within("guide"))?;
-        self.local.build(robot).map_err(within("local"))?;
-        self.controller.check(robot).map_err(within("controller"))
-    }
-
-    /// Refuses clearances at which no footprint of the robot's size fits: its routes would lead through gaps in which
-    /// the local planner finds nothing but contact.
-    fn check_room(&self, robot: &Robot) -> Result<(), ConfigError> {
-        let radius_m = robot.footprint.inscribed_radius_m();
-        let clearances = [
-            ("map.clearance_m", self.map.clearance_m),
-            ("controller.least_clearance_m", self.controller.least_clearance_m),
-        ];
-        match clearances.into_iter().find(|(_, clearance_m)| *clearance_m < radius_m) {
-            Some((field, clearance_m)) => {
-                let expected = format!(
-                    "at least {}, the radius of the robot ({}): a route must leave room for it",
-                    Given(radius_m),
-                    robot.footprint
-                );
-                Err(ConfigError::must_be(field, &expected, clearance_m))
-            }
-            None => Ok(()),
-        }
     }
 }

@@ -311,8 +311,7 @@ mod tests {
         for (name, parts) in Stack::NAMES.into_iter().zip(&STACKS) {
             for robot in Robot::NAMES.map(|name| Robot::by_name(name).unwrap()) {
                 let stack = Stack::by_name(name, &robot).expect(name);
-                assert_eq!(stack.validate(&robot), Ok(()), "{name}");
-                assert_eq!(stack.check_planner(), Ok(()), "{name}");
+                assert_eq!(stack.fit(&robot).map(drop), Ok(()), "{name}");
                 let names = [
                     stack.planner.name(),
                     stack.smoother.name(),
@@ -327,7 +326,7 @@ mod tests {
             let published = Stack::published_by_name(name);
             assert_eq!(published.is_some(), source.is_some(), "{name}");
             if let Some(stack) = published {
-                assert_eq!(stack.validate(&Robot::paper()), Ok(()), "{name}");
+                assert_eq!(stack.fit(&Robot::paper()).map(drop), Ok(()), "{name}");
                 assert_eq!((stack.map.clearance_m, stack.controller.goal_tolerance_m), (0.0, 0.5));
             }
         }

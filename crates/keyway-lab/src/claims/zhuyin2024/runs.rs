@@ -211,7 +211,7 @@ mod tests {
             let mut episode = Episode::new(grid, Robot::small(), start, goal);
             episode.stack = Stack::by_name(ASTAR_FOLLOW, &episode.robot).unwrap();
             let Episode { known, robot, stack, .. } = &episode;
-            let controller = Controller::new(known, robot, stack, start, goal).ok()?;
+            let controller = Controller::new(known, &stack.fit(robot).ok()?, start, goal).ok()?;
             Some(controller.route().line.polyline().turns_rad().len() as f64)
         });
         let turns: Vec<f64> = turns.collect();

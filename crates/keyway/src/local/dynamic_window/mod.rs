@@ -74,12 +74,13 @@ use evaluation::Ranking;
 use motion::Timing;
 use roller::{RollMemory, Roller};
 use rollouts::Rollouts;
+use std::sync::Arc;
 use window::{Lattice, Window};
 /// The dynamic window of a robot.
 #[derive(Clone, Debug)]
 pub(super) struct DynamicWindow {
     config: WindowConfig,
-    robot: Robot,
+    robot: Arc<Robot>,
 }
 
 /// The footprint would touch something or leave the map.
@@ -128,7 +129,11 @@ impl DynamicWindow {
     /// When a value of the robot or the config cannot be used, or the two do not fit together (a
     /// horizon too short to stop within it, or steps too small for one cycle); the error names the
     /// field.
-    pub(super) fn new(config: WindowConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub(super) fn new(
+        config: WindowConfig,
+        robot: impl Into<Arc<Robot>>,
+    ) -> Result<Self, ConfigError> {
+        let robot = robot.into();
         robot.validate().map_err(|error| error.within("robot"))?;
         Self::check(&config, &robot).map_err(|error| error.within("window"))?;
         Ok(Self { config, robot })
@@ -180,7 +185,7 @@ impl DynamicWindow {
     }
 
     /// The robot that it drives.
-    pub(super) const fn robot(&self) -> &Robot {
+    pub(super) fn robot(&self) -> &Robot {
         &self.robot
     }
 

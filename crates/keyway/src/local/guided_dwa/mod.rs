@@ -57,6 +57,7 @@ use crate::robot::Robot;
 use detour::{AllCovered, GuidePoints};
 use obstacle::Cluster;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Parameters of [`GuidedDwa`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -167,10 +168,11 @@ impl GuidedDwa {
     /// # Errors
     /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
     /// the field.
-    pub fn new(config: GuidedDwaConfig, robot: Robot) -> Result<Self, ConfigError> {
+    pub fn new(config: GuidedDwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let GuidedDwaConfig { window, weights, detour, follower } = config;
         let safety_margin_m = window.safety_margin_m;
-        let follower = Follower::new(follower, robot.clone());
+        let robot = robot.into();
+        let follower = Follower::new(follower, Arc::clone(&robot));
         let window = DynamicWindow::new(window, robot)?;
         let follower = follower.map_err(|error| error.within("follower"))?;
         weights.validate().map_err(|error| error.within("weights"))?;
@@ -184,7 +186,7 @@ impl GuidedDwa {
     }
 
     /// The robot that it drives.
-    pub const fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
@@ -261,8 +263,8 @@ impl LocalParameters for GuidedDwaConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(GuidedDwa::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(GuidedDwa::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn as_published() -> Option<Self> {

@@ -84,7 +84,7 @@ use super::{
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
-use crate::robot::Robot;
+use crate::robot::{Limits, Robot};
 use crate::sense::{Disc, Mover, SeenCells};
 use commitment::{go_on, reluctance_s};
 use cost_to_go::{CostToGo, WayAhead, Weighing};
@@ -94,12 +94,13 @@ use meeting::{Foreseen, Meeting};
 use polish::{FINEST, STEPS, Total, can_stop, polish};
 use room::{Outline, Room};
 use search::{Beam, Extent, Tally};
+use std::sync::Arc;
 
 /// The planner.
 #[derive(Clone, Debug)]
 pub struct SpaceTime {
     config: SpaceTimeConfig,
-    robot: Robot,
+    robot: Arc<Robot>,
     outline: Outline,
     rear: Rear,
     gate: StopRule,
@@ -151,8 +152,9 @@ impl SpaceTime {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names the field.
-    pub fn new(config: SpaceTimeConfig, robot: Robot) -> Result<Self, ConfigError> {
-        let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), robot.clone())?;
+    pub fn new(config: SpaceTimeConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
+        let robot = robot.into();
+        let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), Arc::clone(&robot))?;
         config.check(&robot)?;
         let rear = Rear::of(&robot.footprint, Outline::SPACING);
         let robot = within_sight(robot);
@@ -160,7 +162,7 @@ impl SpaceTime {
     }
 
     /// The robot that it drives.
-    pub const fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
@@ -241,7 +243,7 @@ impl SpaceTime {
 
     /// What the first cycle of a course asks for.
     fn command(&self, scene: &Scene<'_>, first: Velocity, stretch_s: f64) -> Velocity {
-        let Robot { limits, cycle_s, .. } = &self.robot;
+        let Robot { limits, cycle_s, .. } = &*self.robot;
         let asked = scene.velocity.lerp(first, cycle_s / stretch_s);
         let stoppable = limits.stoppable_mps(scene.velocity.v, scene.remaining_m, *cycle_s);
         let asked = Velocity::new(asked.v.clamp(-stoppable, stoppable), asked.omega);
@@ -389,12 +391,13 @@ impl SpaceTime {
 
 /// The same robot, no faster than it can stop within its sensor's range: the stop rule would let
 /// nothing faster pass. One that sees no farther than its own front is left as it is, and stands.
-fn within_sight(mut robot: Robot) -> Robot {
+fn within_sight(robot: Arc<Robot>) -> Arc<Robot> {
     let sight_mps = robot.sight_mps();
-    if sight_mps > 0.0 {
-        robot.limits.v_max_mps = robot.limits.v_max_mps.min(sight_mps);
+    if sight_mps <= 0.0 || robot.limits.v_max_mps <= sight_mps {
+        return robot;
     }
-    robot
+    let limits = Limits { v_max_mps: sight_mps, ..robot.limits.clone() };
+    Arc::new(Robot { limits, ..(*robot).clone() })
 }
 
 /// A position along the axes of the map's cells, from the corner of the map at its origin \[m\].
@@ -441,8 +444,8 @@ impl LocalParameters for SpaceTimeConfig {
         Self::for_robot(robot)
     }
 
-    fn build(&self, robot: &Robot) -> Result<BoxedLocalPlanner, ConfigError> {
-        Ok(Box::new(SpaceTime::new(self.clone(), robot.clone())?))
+    fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError> {
+        Ok(Box::new(SpaceTime::new(self.clone(), Arc::clone(robot))?))
     }
 
     fn stops_within_sight(&self) -> bool {

@@ -127,6 +127,7 @@ use crate::robot::Robot;
 use crate::sense::{Mover, MoverBounds, SeenCells};
 use manoeuvre::{Manoeuvres, Work};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Parameters of [`StopRule`].
@@ -308,7 +309,7 @@ impl RefusalCounts {
 #[derive(Clone, Debug)]
 pub struct StopRule {
     config: StopRuleConfig,
-    robot: Robot,
+    robot: Arc<Robot>,
     front: Front,
     rear: Rear,
 }
@@ -327,8 +328,8 @@ impl StopRule {
     ///
     /// # Errors
     /// When a value of the robot or the config cannot be used; the error names the field.
-    pub fn new(config: StopRuleConfig, robot: Robot) -> Result<Self, ConfigError> {
-        let rule = Self::for_any_brakes(config, robot)?;
+    pub fn new(config: StopRuleConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
+        let rule = Self::for_any_brakes(config, robot.into())?;
         let robot = &rule.robot;
         if robot.limits.stop_s() / robot.cycle_s > Self::MAX_CYCLES {
             let expected = "longer: the robot needs over 10000 cycles to stop";
@@ -343,7 +344,7 @@ impl StopRule {
     /// When a value of the robot or the config cannot be used; the error names the field.
     pub(super) fn for_any_brakes(
         config: StopRuleConfig,
-        robot: Robot,
+        robot: Arc<Robot>,
     ) -> Result<Self, ConfigError> {
         robot.validate().map_err(|error| error.within("robot"))?;
         config.validate()?;

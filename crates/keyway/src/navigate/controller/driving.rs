@@ -13,8 +13,7 @@ impl Controller {
         let mut memory = self.memory.clone();
         self.asked = Some(Asked { pose, velocity, memory: memory.clone() });
         let mut scratch = std::mem::take(&mut self.scratch);
-        let decision =
-            self.parts.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
+        let decision = self.local.decide(&self.scene(pose, velocity), &mut memory, &mut scratch);
         (self.memory, self.scratch) = (memory, scratch);
         self.evaluation = match &decision {
             Ok(decision) => decision.evaluation.clone(),
@@ -49,7 +48,7 @@ impl Controller {
         let path = &self.route.smoothed;
         let clearance_m = self.needed_m();
         let view = GuideView { path, position, obstacles: clearance, clearance_m };
-        let Some(guidance) = self.parts.guide.guide(&view, &mut self.guide_memory) else { return };
+        let Some(guidance) = self.guide.guide(&view, &mut self.guide_memory) else { return };
         let remaining_m = guidance.remaining_m + self.later_m();
         self.guidance = Guidance { remaining_m, ..guidance };
         self.is_lost = false;

@@ -85,7 +85,7 @@ impl Controller {
         velocity: Velocity,
         command: Velocity,
     ) -> Velocity {
-        let Robot { limits, cycle_s, .. } = &self.robot;
+        let Robot { limits, cycle_s, .. } = &*self.robot;
         let horizon_s = 2.0 * cycle_s + limits.stop_s();
         let looks_m = [horizon_s, self.robot.safety_margin_m()];
         let rule = MoverRule::new(&self.robot, &self.movers_then, (pose, velocity), looks_m);

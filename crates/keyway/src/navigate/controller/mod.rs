@@ -14,16 +14,19 @@ use super::start::{StartTooNear, touches};
 use super::under_way::UnderWay;
 use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
-use super::{Blocked, Goal, Misfit, NavigateError, Parts, RecoveryCounts, Stack, Step};
+use super::{Blocked, FittedStack, Goal, Misfit, NavigateError, RecoveryCounts, Stack, Step};
 use crate::geometry::{Point, Pose, Velocity};
-use crate::guide::{Guidance, GuideMemory};
-use crate::local::{DriveMemory, Evaluation, Explanation, Refusal, RefusalCounts, Scratch};
+use crate::guide::{Guidance, Guide, GuideMemory};
+use crate::local::{
+    DriveMemory, Evaluation, Explanation, LocalPlanner, Refusal, RefusalCounts, Scratch,
+};
 use crate::map::{BitGrid, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
 use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker};
 use guarding::Guard;
 use looking::Look;
+use std::sync::Arc;
 
 /// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
 /// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
@@ -33,15 +36,16 @@ use looking::Look;
 /// same commands. Frames and units are those of the map: metres, radians, seconds.
 pub struct Controller {
     known: OccupancyGrid,
-    stack: Stack,
-    robot: Robot,
+    stack: Arc<Stack>,
+    robot: Arc<Robot>,
     /// Way-points, then the goal, each with the length of the leg that leads there \[m\].
     stops: Vec<(Point, f64)>,
     /// How many of them the robot has passed; never the goal.
     passed: usize,
     goal: Goal,
     router: Router,
-    parts: Parts,
+    local: Arc<dyn LocalPlanner + Send + Sync>,
+    guide: Arc<dyn Guide + Send + Sync>,
     memory: DriveMemory,
     scratch: Scratch,
     /// Distances to what is known and what was sensed.
@@ -101,19 +105,17 @@ impl Controller {
     /// Plans a route from the start to the goal on the known map, which is copied.
     ///
     /// # Errors
-    /// When a value of the robot or the stack cannot be used or the two do not fit together, when
-    /// the robot does not fit at the start or goal, or not with the goal's heading, or touches
+    /// When the robot does not fit at the start or goal, or not with the goal's heading, or touches
     /// something at the start, or when there is no route. A start that is too near to something by
     /// no more than [`start_error_m`](super::ControllerConfig::start_error_m) is none
     /// ([`Self::too_near`]).
     pub fn new(
         known: &OccupancyGrid,
-        robot: &Robot,
-        stack: &Stack,
+        stack: &FittedStack,
         start: Point,
         goal: impl Into<Goal>,
     ) -> Result<Self, NavigateError> {
-        Self::by_way_of(known, robot, stack, start, &[], goal)
+        Self::by_way_of(known, stack, start, &[], goal)
     }
 
     /// The same by way of some points, in their order. Each is passed within the goal tolerance.
@@ -122,32 +124,14 @@ impl Controller {
     /// As for [`Self::new`]; [`NavigateError::WayPoint`] for one that cannot be reached.
     pub fn by_way_of(
         known: &OccupancyGrid,
-        robot: &Robot,
-        stack: &Stack,
+        fitted: &FittedStack,
         start: Point,
         way_points: &[Point],
         goal: impl Into<Goal>,
     ) -> Result<Self, NavigateError> {
-        // Before its parts are built: so errors name the same fields.
-        stack.validate(robot)?;
-        let parts = Parts::of(stack, robot)?;
-        Self::with_parts(known, robot, stack, parts, (start, way_points, goal.into()))
-    }
-
-    /// The same with a local planner or a guide of one's own, in place of those of the stack. The way leads from the start
-    /// by way of some points to the goal.
-    ///
-    /// # Errors
-    /// As for [`Self::by_way_of`].
-    pub fn with_parts(
-        known: &OccupancyGrid,
-        robot: &Robot,
-        stack: &Stack,
-        parts: Parts,
-        (start, way_points, goal): (Point, &[Point], Goal),
-    ) -> Result<Self, NavigateError> {
-        stack.validate(robot)?;
-        let mut router = Router::new(known, stack, robot)?;
+        let goal = goal.into();
+        let FittedStack { robot, stack, local, guide, tracker, stop_rule, .. } = fitted;
+        let mut router = Router::new(known, fitted)?;
         let start_error_m = stack.controller.start_error_m;
         let too_near = router.check_start(start, &robot.footprint, start_error_m)?;
         let begin = too_near.as_ref().map_or(start, |too_near| too_near.nearest);
@@ -164,20 +148,21 @@ impl Controller {
             obstacles,
             sensed: SensedLayer::new(known.frame()),
             seen: stack.build_seen_ground(known.frame(), robot),
-            tracker: stack.controller.build_tracker()?,
+            tracker: tracker.clone(),
             look: Look::default(),
             guide_memory: GuideMemory::default(),
             guidance: Guidance { point, remaining_m },
             is_lost: false,
             track: Track::new(known.frame().resolution_m()),
             known: known.clone(),
-            stack: stack.clone(),
-            robot: robot.clone(),
+            stack: Arc::clone(stack),
+            robot: Arc::clone(robot),
             stops,
             passed: 0,
             goal,
             router,
-            parts,
+            local: Arc::clone(local),
+            guide: Arc::clone(guide),
             memory: DriveMemory::default(),
             scratch: Scratch::default(),
             edits: Vec::new(),
@@ -190,7 +175,7 @@ impl Controller {
             first_turn: None,
             final_turn: None,
             evaluation: Evaluation::default(),
-            guard: Guard::new(stack.controller.build_stop_rule(robot)?),
+            guard: Guard::new(stop_rule.clone()),
             under_way: UnderWay::new(robot),
             movers_then: Vec::new(),
             asked: None,
@@ -221,7 +206,7 @@ impl Controller {
 
     /// The points that the guide hands out along the route, its end last.
     pub fn guide_points(&self) -> Vec<Point> {
-        self.parts.guide.points(&self.route.smoothed)
+        self.guide.points(&self.route.smoothed)
     }
 
     /// Where the last cycle drove to, and what was left of the way to the goal. Before the first cycle: the end of
@@ -258,7 +243,7 @@ impl Controller {
             return Explanation::default();
         };
         // Nothing of it has changed since the decision.
-        self.parts.local.explain(&self.scene(*pose, *velocity), memory)
+        self.local.explain(&self.scene(*pose, *velocity), memory)
     }
 
     /// What the local planner remembers from the last cycle.

@@ -28,7 +28,7 @@ struct Hit {
 }
 
 /// All beams of a scan.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Hits(Vec<Hit>);
 
 impl Hits {

@@ -90,7 +90,7 @@ use track::{Sight, Track};
 /// assert!((mover.velocity_mps - velocity_mps).norm() < 0.05);
 /// # Ok::<(), keyway::ConfigError>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Tracker {
     config: TrackerConfig,
     tracks: Vec<Track>,

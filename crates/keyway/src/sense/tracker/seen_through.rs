@@ -6,7 +6,7 @@ use crate::geometry::{Point, Pose, wrap_angle};
 use crate::sense::{Reading, Scan};
 
 /// A scan that is remembered, with where it was made.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct OldScan {
     pub(super) pose: Pose,
     pub(super) scan: Scan,

@@ -1,0 +1,148 @@
+//! A stack that fits a robot, with its parts built: the only thing a controller takes.
+
+use super::Stack;
+use crate::ConfigError;
+use crate::given::Given;
+use crate::guide::Guide;
+use crate::local::{LocalPlanner, StopRule};
+use crate::robot::Robot;
+use crate::sense::Tracker;
+use crate::smooth::Smoother;
+use std::sync::Arc;
+
+/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them.
+/// Its local planner and its guide can be replaced by others.
+///
+/// ```
+/// use keyway::guide::{Carrot, CarrotConfig};
+/// use keyway::navigate::Stack;
+/// use keyway::robot::Robot;
+/// use std::sync::Arc;
+///
+/// let robot = Robot::small();
+/// // Stands for a guide of your own.
+/// let carrot = Carrot::new(CarrotConfig { look_ahead_m: 0.5 })?;
+/// let stack = Stack::keyway(&robot).fit(&robot)?.with_guide(Arc::new(carrot));
+/// assert_eq!(stack.robot(), &robot);
+/// # Ok::<(), keyway::ConfigError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FittedStack {
+    pub(super) robot: Arc<Robot>,
+    pub(super) stack: Arc<Stack>,
+    pub(super) smoother: Arc<dyn Smoother + Send + Sync>,
+    pub(super) guide: Arc<dyn Guide + Send + Sync>,
+    pub(super) local: Arc<dyn LocalPlanner + Send + Sync>,
+    pub(super) tracker: Option<Tracker>,
+    pub(super) stop_rule: Option<StopRule>,
+}
+
+impl Stack {
+    /// The stack for this robot, ready to drive. What the map layers need is checked with the map.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used: a value that is out of range, a clearance that
+    /// leaves no room for the robot, or a planner that needs a map that stays as it is.
+    pub fn fit(&self, robot: &Robot) -> Result<FittedStack, ConfigError> {
+        let fitted = self.build(robot)?;
+        self.check_room(robot)?;
+        self.check_planner()?;
+        self.check_map()?;
+        Ok(fitted)
+    }
+
+    /// Checks every value alone. Plans with parts of a stack need no clearance that suits a robot.
+    ///
+    /// # Errors
+    /// Names the first field that cannot be used.
+    pub fn check_parameters(&self, robot: &Robot) -> Result<(), ConfigError> {
+        self.build(robot).map(drop)
+    }
+
+    fn build(&self, robot: &Robot) -> Result<FittedStack, ConfigError> {
+        let within = |parent| move |error: ConfigError| error.within(parent);
+        robot.validate().map_err(within("robot"))?;
+        self.planner.check().map_err(within("planner"))?;
+        let smoother = self.smoother.build().map_err(within("smoother"))?;
+        let guide = self.guide.build().map_err(within("guide"))?;
+        let robot = Arc::new(robot.clone());
+        let local = self.local.build_for(&robot).map_err(within("local"))?;
+        self.controller.check().map_err(within("controller"))?;
+        Ok(FittedStack {
+            smoother: smoother.into(),
+            guide: guide.into(),
+            local: local.into(),
+            tracker: self.controller.build_tracker().map_err(within("controller"))?,
+            stop_rule: self.controller.build_stop_rule(&robot).map_err(within("controller"))?,
+            stack: Arc::new(self.clone()),
+            robot,
+        })
+    }
+
+    /// Refuses clearances at which no footprint of the robot's size fits: its routes would lead
+    /// through gaps in which the local planner finds nothing but contact.
+    fn check_room(&self, robot: &Robot) -> Result<(), ConfigError> {
+        let radius_m = robot.footprint.inscribed_radius_m();
+        let clearances = [
+            ("map.clearance_m", self.map.clearance_m),
+            ("controller.least_clearance_m", self.controller.least_clearance_m),
+        ];
+        match clearances.into_iter().find(|(_, clearance_m)| *clearance_m < radius_m) {
+            Some((field, clearance_m)) => {
+                let expected = format!(
+                    "at least {}, the radius of the robot ({}): a route must leave room for it",
+                    Given(radius_m),
+                    robot.footprint
+                );
+                Err(ConfigError::must_be(field, &expected, clearance_m))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses planners that cannot plan on a map that changes.
+    fn check_planner(&self) -> Result<(), ConfigError> {
+        if self.planner.needs_static_map() {
+            let name = self.planner.name();
+            let reason = format!(
+                "cannot be `{name}`, which needs a map that stays as it is, but a robot's sensor changes it; use jps"
+            );
+            return Err(ConfigError::new("planner.name", reason));
+        }
+        Ok(())
+    }
+
+    /// Refuses lifted clearances: a route would lead where the footprint does not fit.
+    fn check_map(&self) -> Result<(), ConfigError> {
+        if self.map.free_ends_m == 0.0 {
+            return Ok(());
+        }
+        let expected = "0 for a robot: its route goes straight from the start to the nearest free \
+                        cell, and from there to the goal, as far as its footprint fits";
+        Err(ConfigError::must_be("map.free_ends_m", expected, self.map.free_ends_m))
+    }
+}
+
+impl FittedStack {
+    /// The robot that it drives.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The stack as data.
+    pub fn stack(&self) -> &Stack {
+        &self.stack
+    }
+
+    /// The same with a local planner of one's own, in the place of that of the stack.
+    #[must_use]
+    pub fn with_local(self, local: Arc<dyn LocalPlanner + Send + Sync>) -> Self {
+        Self { local, ..self }
+    }
+
+    /// The same with a guide of one's own, in the place of that of the stack.
+    #[must_use]
+    pub fn with_guide(self, guide: Arc<dyn Guide + Send + Sync>) -> Self {
+        Self { guide, ..self }
+    }
+}
