@@ -8,7 +8,7 @@ use keyway::geometry::{Point, Pose, Velocity};
 use keyway::local::{Scratch, StopRule, StopRuleConfig, Surroundings};
 use keyway::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sense::{Mover, Scan, SensedLayer, Tracker, TrackerConfig};
+use keyway::sense::{Mover, ProjectedScan, Scan, SensedLayer, Tracker, TrackerConfig};
 use keyway_sim::sim::{self, World};
 use std::hint::black_box;
 
@@ -54,12 +54,14 @@ fn of_a_scan(criterion: &mut Criterion) {
         let scans = scans(&robot, &known, &posts);
         let config = TrackerConfig::default();
         let mut tracker = Tracker::new(config).unwrap();
+        let mut projected = ProjectedScan::default();
         let beams = robot.sensor.beams;
         let mut group = criterion.benchmark_group("sense/40 scans");
         group.bench_function(BenchmarkId::new("tracker", beams), |bencher| {
             bencher.iter(|| {
                 for (pose, scan) in &scans {
-                    tracker.update(&known, *pose, black_box(scan), robot.cycle_s);
+                    projected.project(known.frame(), &robot.footprint, *pose, black_box(scan));
+                    tracker.update(&known, &projected, robot.cycle_s);
                 }
                 tracker.movers().len()
             });
@@ -69,7 +71,8 @@ fn of_a_scan(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("layer beside it", beams), |bencher| {
             bencher.iter(|| {
                 for (pose, scan) in &scans {
-                    layer.update(&known, *pose, black_box(scan), Some(&tracker), &mut edits);
+                    projected.project(known.frame(), &robot.footprint, *pose, black_box(scan));
+                    layer.update(&known, &projected, Some(&tracker), &mut edits);
                 }
                 layer.count()
             });

@@ -1,11 +1,9 @@
 //! What scans have shown that the known map does not.
 
-use super::beam::{Beam, beams};
-use super::{Mover, Scan, Tracker};
-use crate::geometry::{Point, Pose, Square, wrap_angle};
+use super::{Hit, Mover, ProjectedScan, Tracker};
+use crate::geometry::{Point, Square};
 use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid};
 use std::collections::HashMap;
-use std::f64::consts::TAU;
 
 /// Cells in which scans have met something that the known map does not have.
 ///
@@ -51,13 +49,13 @@ impl SensedLayer {
         self.count
     }
 
-    /// Takes in a scan made at `pose` (world frame) on the `known` map, whose frame is the one
-    /// given to [`Self::new`].
+    /// Takes in a scan on the `known` map, whose frame is the one given to [`Self::new`].
     ///
     /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by a beam without a
     /// hit); then every hit marks its cell, unless the known map already has it
     /// as occupied or it lies outside the map. So within one scan marks win over clears. A beam
-    /// that says nothing ([`Scan::reading`]) is ignored, and so is a scan at a pose that is not finite.
+    /// that says nothing ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a
+    /// pose that is not finite.
     ///
     /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked, so movers leave no
     /// trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the cells under a mover that is seen are
@@ -71,8 +69,7 @@ impl SensedLayer {
     pub fn update(
         &mut self,
         known: &OccupancyGrid,
-        pose: Pose,
-        scan: &Scan,
+        scan: &ProjectedScan,
         tracker: Option<&Tracker>,
         edits: &mut Vec<Edit>,
     ) {
@@ -80,19 +77,18 @@ impl SensedLayer {
         self.cleared.clear();
         self.marked.clear();
         let frame = known.frame();
-        self.clear_seen_through(pose, scan);
+        self.clear_seen_through(scan);
         if let Some(tracker) = tracker {
             tracker.left().iter().for_each(|&cell| self.clear(cell));
             let seen = tracker.movers().iter().filter(|mover| mover.unseen_s == 0.0);
             seen.for_each(|mover| self.clear_under(mover, frame));
         }
         self.cleared.sort_unstable();
-        let moves = |beam: &Beam| {
-            let place = || frame.world_from_grid(beam.end());
-            tracker.is_some_and(|tracker| tracker.hits_mover(beam.number, place()))
+        let moves = |beam: usize, hit: &Hit| {
+            tracker.is_some_and(|tracker| tracker.hits_mover(beam, hit.point))
         };
-        for beam in beams(frame, pose, scan).filter(|beam| beam.hit && !moves(beam)) {
-            self.mark(known, &beam);
+        for (_, hit) in scan.hits().filter(|(beam, hit)| !moves(*beam, hit)) {
+            self.mark(known, &hit);
         }
         self.count = self.count + self.marked.len() as u64 - self.cleared.len() as u64;
         // Marked again is unchanged.
@@ -134,8 +130,8 @@ impl SensedLayer {
     }
 
     /// Clears the cells whose places are seen through.
-    fn clear_seen_through(&mut self, pose: Pose, scan: &Scan) {
-        let through = self.places.iter().filter(|(_, place)| is_seen_through(**place, pose, scan));
+    fn clear_seen_through(&mut self, scan: &ProjectedScan) {
+        let through = self.places.iter().filter(|(_, place)| scan.sees_through(**place));
         self.cleared.extend(through.map(|(&cell, _)| cell));
         for cell in &self.cleared {
             self.sensed.set(*cell, false);
@@ -143,56 +139,23 @@ impl SensedLayer {
         }
     }
 
-    fn mark(&mut self, known: &OccupancyGrid, beam: &Beam) {
-        let frame = known.frame();
-        let Some(cell) = beam.hit_cell(frame).filter(|&cell| !known.occupied().get(cell)) else {
-            return;
-        };
-        self.places.insert(cell, frame.world_from_grid(beam.end()));
+    fn mark(&mut self, known: &OccupancyGrid, hit: &Hit) {
+        let Some(cell) = hit.cell.filter(|&cell| !known.occupied().get(cell)) else { return };
+        self.places.insert(cell, hit.point);
         if self.sensed.set(cell, true) {
             self.marked.push(cell);
         }
     }
 }
 
-/// A place this near to a beam is on it, rounded or not \[beams\].
-const ON_A_BEAM: f64 = 1e-6;
-
-/// A beam that ends this little beyond a place ends at it, rounded or not \[m\].
-const AT_PLACE_M: f64 = 1e-6;
-
-/// Whether the beams to both sides of a place go on beyond it.
-pub(super) fn is_seen_through(place: Point, pose: Pose, scan: &Scan) -> bool {
-    let away_m = place.distance(pose.point());
-    if away_m.is_nan() || away_m > scan.range_max_m {
-        return false;
-    }
-    let Scan { angle_min_rad, angle_increment_rad: step_rad, .. } = *scan;
-    let count = scan.ranges_m.len() as f64;
-    // From the middle beam, so that the seam lies opposite to it.
-    let half = 0.5 * (count - 1.0);
-    let middle_rad = angle_min_rad + half * step_rad;
-    let bearing_rad = (place - pose.point()).heading() - pose.theta;
-    let number = half + wrap_angle(bearing_rad - middle_rad) / step_rad;
-    let nearest = number.round();
-    let is_on_it = (number - nearest).abs() <= ON_A_BEAM;
-    let beside = if is_on_it { [nearest; 2] } else { [number.floor(), number.ceil()] };
-    let is_whole_turn = ((count * step_rad).abs() - TAU).abs() < 0.5 * step_rad.abs();
-    beside.into_iter().all(|beam| {
-        let beam = if is_whole_turn { beam.rem_euclid(count) } else { beam };
-        // A number that is none is no beam, either.
-        let is_there = beam >= 0.0 && beam < count;
-        let reading = if is_there { scan.reading(beam as usize) } else { None };
-        reading.is_some_and(|reading| reading.free_m() > away_m + AT_PLACE_M)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
     use crate::map::{LayerConfig, SearchMap};
     use crate::robot::Robot;
-    use crate::sense::test_scan::scan_among;
+    use crate::sense::Scan;
+    use crate::sense::test_scan::{projected, scan_among};
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -225,7 +188,8 @@ mod tests {
         fn scan(&mut self, x: f64, y: f64, ranges: [f64; 4]) -> Vec<(i32, i32, CellState)> {
             let mut edits = vec![Edit { cell: Cell::new(9, 9), state: CellState::Free }];
             let pose = Pose::new(x, y, 0.0);
-            self.layer.update(&self.known, pose, &four(ranges), None, &mut edits);
+            let scan = projected(self.known.frame(), pose, &four(ranges));
+            self.layer.update(&self.known, &scan, None, &mut edits);
             assert_eq!(self.layer.count(), self.layer.sensed().count_ones());
             edits.iter().map(|edit| (edit.cell.x, edit.cell.y, edit.state)).collect()
         }
@@ -295,7 +259,8 @@ mod tests {
             case.scan(0.5, 0.5, [2.7, NO, NO, NO]);
             let mut edits = Vec::new();
             let pose = Pose::new(0.5, 0.5, theta.to_radians());
-            case.layer.update(&case.known, pose, &fan(ranges), None, &mut edits);
+            let scan = projected(case.known.frame(), pose, &fan(ranges));
+            case.layer.update(&case.known, &scan, None, &mut edits);
             edits.iter().any(|edit| edit.cell == Cell::new(3, 0))
         };
         assert!(cleared([MISS, MISS, NO], 0.0));
@@ -307,27 +272,6 @@ mod tests {
         // Within the cell, which spans 10 degrees to both sides, but beside the place.
         assert!(!cleared([MISS; 3], 8.0) && !cleared([MISS; 3], -18.0), "out of the field of view");
         assert!(cleared([NO, MISS, NO], -5.0), "right through it");
-    }
-
-    /// Across the seam of a whole turn, and for a sensor that turns the other way.
-    #[test]
-    fn a_place_is_seen_through_between_any_two_beams() {
-        for sign in [1.0, -1.0] {
-            for tenth in 0..3600 {
-                let bearing = f64::from(tenth).to_radians() / 10.0 - PI;
-                let scan = Scan {
-                    angle_min_rad: -sign * PI,
-                    angle_increment_rad: sign * 2f64.to_radians(),
-                    range_min_m: 0.1,
-                    range_max_m: 3.0,
-                    ranges_m: vec![MISS; 180],
-                };
-                let place = Point::new(2.0 * bearing.cos(), 2.0 * bearing.sin());
-                assert!(is_seen_through(place, Pose::default(), &scan), "{bearing}");
-                let near = Scan { ranges_m: vec![1.9; 180], ..scan };
-                assert!(!is_seen_through(place, Pose::default(), &near), "{bearing}");
-            }
-        }
     }
 
     /// Discs of half a cell and more on cells of 1 m, seen from many places, and left behind.
@@ -343,7 +287,7 @@ mod tests {
             for step in 0..290 {
                 let pose = Pose::new(0.5 + f64::from(step) * 0.1, y, 0.003 * f64::from(step));
                 let scan = scan_among((known.frame(), &[]), &discs, pose, &robot.sensor);
-                layer.update(&known, pose, &scan, None, &mut edits);
+                layer.update(&known, &projected(known.frame(), pose, &scan), None, &mut edits);
                 let freed = edits.iter().find(|edit| edit.state == Free);
                 assert_eq!(freed, None, "from {pose:?}");
             }
@@ -360,9 +304,19 @@ mod tests {
             let scan = Scan { ranges_m: ranges.to_vec(), ..scan };
             let mut edits = Vec::new();
             let pose = Pose::new(0.5, 0.5, 0.0);
-            case.layer.update(&case.known, pose, &scan, None, &mut edits);
+            case.layer.update(
+                &case.known,
+                &projected(case.known.frame(), pose, &scan),
+                None,
+                &mut edits,
+            );
             assert_eq!(edits.len(), 2);
-            case.layer.update(&case.known, pose, &scan, None, &mut edits);
+            case.layer.update(
+                &case.known,
+                &projected(case.known.frame(), pose, &scan),
+                None,
+                &mut edits,
+            );
             assert_eq!((edits.len(), case.layer.count()), (0, 2));
         }
     }
@@ -401,7 +355,7 @@ mod tests {
                 let at = frame.world_from_grid(Point::new(x * 10.0, y * 10.0));
                 let scan = Scan { angle_min_rad: -PI, angle_increment_rad: PI / 12.0,
                     range_min_m: 0.0, range_max_m: 1.0, ranges_m };
-                layer.update(&known, Pose::new(at.x, at.y, theta), &scan, None, &mut edits);
+                layer.update(&known, &projected(known.frame(), Pose::new(at.x, at.y, theta), &scan), None, &mut edits);
                 for cell in frame.cells() {
                     let changed = before.sensed().get(cell) != layer.sensed().get(cell);
                     let edit_count = edits.iter().filter(|edit| edit.cell == cell).count();

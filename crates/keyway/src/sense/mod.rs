@@ -1,10 +1,10 @@
-//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]), and those that move, as
-//! a list ([`Tracker`]).
+//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]), and
+//! those that move, as a list ([`Tracker`]). Each looks at the scan of a cycle as it was projected once
+//! ([`ProjectedScan`]).
 
-mod beam;
 mod layer;
 mod mover;
-mod own_body;
+mod projected;
 mod scan;
 mod seen;
 mod spread;
@@ -14,7 +14,7 @@ mod tracker;
 
 pub use layer::SensedLayer;
 pub use mover::{Disc, Mover, MoverBounds};
-pub(crate) use own_body::OwnBody;
+pub use projected::{Hit, ProjectedScan};
 pub use scan::{Reading, Scan, ScanError};
 pub use seen::{SeenCells, SeenGround, SeenWanted};
 pub use spread::Walls;

@@ -93,15 +93,6 @@ impl Scan {
         Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
-    /// Becomes equal to another scan; allocates nothing where that one is not longer.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        let mut ranges_m = std::mem::take(&mut self.ranges_m);
-        ranges_m.clear();
-        ranges_m.extend_from_slice(&other.ranges_m);
-        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *other;
-        *self = Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m };
-    }
-
     /// True if no beam says anything.
     pub fn is_silent(&self) -> bool {
         (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())

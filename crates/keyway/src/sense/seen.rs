@@ -1,7 +1,6 @@
 //! The ground in which the robot has looked.
 
-use super::Scan;
-use super::layer::is_seen_through;
+use super::ProjectedScan;
 use super::spread::{Spread, Walls};
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
@@ -131,15 +130,16 @@ impl SeenGround {
         }
     }
 
-    /// Takes in a scan made at `pose` (world frame) `elapsed_s` after the last one, on the frame given to [`Self::new`], with the
-    /// walls that are known. A pose that is not finite shows nothing.
+    /// Takes in a scan made `elapsed_s` after the last one, on the frame given to [`Self::new`], with
+    /// the walls that are known. A pose that is not finite shows nothing.
     pub fn update(
         &mut self,
         frame: &GridFrame,
-        (pose, scan): (Pose, &Scan),
+        scan: &ProjectedScan,
         walls: Walls<'_>,
         elapsed_s: f64,
     ) {
+        let pose = scan.pose();
         let window = window(frame, pose, self.reach_m);
         if let Some(walkers) = &mut self.walkers {
             walkers.walk((frame, walls), pose, elapsed_s);
@@ -156,7 +156,7 @@ impl SeenGround {
                 let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
                 let place = frame.world_from_grid(centre);
                 let covers = || self.robot.footprint.covers(pose.body_from_world(place));
-                if covers() || is_seen_through(place, pose, scan) {
+                if covers() || scan.sees_through(place) {
                     self.seen.set(cell, true);
                     walkers.map(|walkers| walkers.left.set(cell, true));
                 }

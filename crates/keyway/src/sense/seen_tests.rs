@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::Polyline;
-use crate::sense::test_scan::scan_among;
+use crate::sense::Scan;
+use crate::sense::test_scan::{projected, scan_among};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -38,7 +39,7 @@ fn the_blind_sector_is_unseen_until_it_is_looked_at() {
         }
     }
     let mut look = |pose: Pose| {
-        seen.update(&frame, (pose, &scan), walls(&open()), 0.05);
+        seen.update(&frame, &projected(&frame, pose, &scan), walls(&open()), 0.05);
         seen.clone()
     };
     let seen = look(Pose::new(5.0, 5.0, 0.0));
@@ -68,9 +69,9 @@ fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
     let scan = Scan::of_nothing(&robot.sensor);
     let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
     let facing = |theta| Pose::new(5.0, 5.0, theta);
-    seen.update(&frame, (facing(PI), &scan), walls, 0.05);
+    seen.update(&frame, &projected(&frame, facing(PI), &scan), walls, 0.05);
     let cycles = (0..100).take_while(|_| {
-        seen.update(&frame, (facing(0.0), &scan), walls, 0.05);
+        seen.update(&frame, &projected(&frame, facing(0.0), &scan), walls, 0.05);
         at(&seen, 4.57, 5.0)
     });
     0.05 * cycles.count() as f64
@@ -111,7 +112,12 @@ fn what_is_far_away_is_forgotten() {
     for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
         let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
         for (x, scan) in [(2.0, &all), (8.0, &nothing), (2.0, &nothing)] {
-            seen.update(&frame, (Pose::new(x, 5.0, 0.0), scan), walls(&open()), 0.0);
+            seen.update(
+                &frame,
+                &projected(&frame, Pose::new(x, 5.0, 0.0), scan),
+                walls(&open()),
+                0.0,
+            );
         }
         assert_eq!(at(&seen, 2.5, 5.0), is_known);
     }
@@ -126,7 +132,11 @@ fn an_update_allocates_nothing() {
     let mut seen = SeenGround::new(&frame, &robot, 1.5, SeenWanted::Behind).unwrap();
     let nothing = BitGrid::new(1000, 100, false);
     let walls = Walls { obstacles: &nothing, unknown: &nothing };
-    let mut look = |x: f64| seen.update(&frame, (Pose::new(x, 0.5, x), &scan), walls, 0.05);
+    let mut projected = ProjectedScan::default();
+    let mut look = |x: f64| {
+        projected.project(&frame, &robot.footprint, Pose::new(x, 0.5, x), &scan);
+        seen.update(&frame, &projected, walls, 0.05);
+    };
     look(0.1);
     // Around it there are more and more of them.
     for x in [1.0, 4.0, 5.0] {
@@ -174,7 +184,7 @@ proptest! {
             now_s += elapsed_s;
             pose = pose.after_arc(crate::geometry::Velocity::new(v, omega), elapsed_s);
             let scan = scan_among((&frame, &[]), &discs_at(now_s), pose, &robot.sensor);
-            seen.update(&frame, (pose, &scan), walls(&open()), elapsed_s);
+            seen.update(&frame, &projected(&frame, pose, &scan), walls(&open()), elapsed_s);
             let touch_m = robot.footprint.circumscribed_radius_m();
             if discs_at(now_s).iter().any(|(centre, radius_m)| centre.distance(pose.point()) < radius_m + touch_m) {
                 break;

@@ -1,9 +1,14 @@
 //! Scans for tests: what a sensor without noise measures among cells and discs.
 
-use super::Scan;
+use super::{ProjectedScan, Scan};
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, GridFrame, RayCells};
-use crate::robot::RangeSensor;
+use crate::robot::{Footprint, RangeSensor};
+
+/// A scan of a robot without a body.
+pub(crate) fn projected(frame: &GridFrame, pose: Pose, scan: &Scan) -> ProjectedScan {
+    ProjectedScan::new(frame, &Footprint::POINT, pose, scan)
+}
 
 /// Distances from the sensor to the first occupied cell or disc. A disc is its centre and its
 /// radius \[m\].

@@ -4,12 +4,13 @@ use super::Controller;
 use crate::geometry::Pose;
 use crate::map::CellWindow;
 use crate::navigate::Blocked;
-use crate::sense::{OwnBody, Scan, SeenCells, SeenGround, Walls};
+use crate::sense::{ProjectedScan, Scan, SeenCells, SeenGround, Walls};
 
 /// The memory from look to look.
 #[derive(Clone, Debug)]
 pub(super) struct Look {
-    own_body: OwnBody,
+    /// The last scan.
+    scan: ProjectedScan,
     /// Since the last scan was taken in \[s\].
     elapsed_s: f64,
     /// Since the last scan that said something \[s\]; infinite before the first one.
@@ -18,7 +19,7 @@ pub(super) struct Look {
 
 impl Default for Look {
     fn default() -> Self {
-        Self { own_body: OwnBody::default(), elapsed_s: 0.0, silent_s: f64::INFINITY }
+        Self { scan: ProjectedScan::default(), elapsed_s: 0.0, silent_s: f64::INFINITY }
     }
 }
 
@@ -29,9 +30,9 @@ impl Look {
         self.silent_s += cycle_s;
     }
 
-    /// A scan is taken in; how long after the last one \[s\].
-    fn taken_in(&mut self, scan: &Scan) -> f64 {
-        if !scan.is_silent() {
+    /// A scan has been taken in; how long after the last one \[s\].
+    fn taken_in(&mut self) -> f64 {
+        if !self.scan.is_silent() {
             self.silent_s = 0.0;
         }
         std::mem::take(&mut self.elapsed_s)
@@ -42,11 +43,11 @@ impl Controller {
     /// Adds what a scan shows to the movers and to the sensed layer, and to every map that follows
     /// from it.
     pub(super) fn take_in(&mut self, pose: Pose, scan: &Scan) {
-        let elapsed_s = self.look.taken_in(scan);
-        let mut own_body = std::mem::take(&mut self.look.own_body);
-        let scan = own_body.taken_out(&self.robot.footprint, scan);
+        self.look.scan.project(self.known.frame(), &self.robot.footprint, pose, scan);
+        let elapsed_s = self.look.taken_in();
+        let scan = &self.look.scan;
         if let Some(tracker) = &mut self.tracker {
-            tracker.update(&self.known, pose, scan, elapsed_s);
+            tracker.update(&self.known, scan, elapsed_s);
             if self.stack.controller.go_around {
                 self.walked.note(tracker.movers(), elapsed_s);
             }
@@ -54,7 +55,7 @@ impl Controller {
             self.movers_then.clear();
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(delay_s)));
         }
-        self.sensed.update(&self.known, pose, scan, self.tracker.as_ref(), &mut self.edits);
+        self.sensed.update(&self.known, scan, self.tracker.as_ref(), &mut self.edits);
         for map in &mut self.router.layers.maps {
             map.apply(&self.edits);
         }
@@ -66,9 +67,8 @@ impl Controller {
         if let Some(seen) = &mut self.seen {
             let obstacles = self.router.layers.obstacles().obstacles();
             let walls = Walls { obstacles, unknown: self.known.unknown() };
-            seen.update(self.known.frame(), (pose, scan), walls, elapsed_s);
+            seen.update(self.known.frame(), scan, walls, elapsed_s);
         }
-        self.look.own_body = own_body;
     }
 
     /// The reason to stop, if the sensor has said nothing for too long. Before its first scan it

@@ -1,9 +1,8 @@
 //! The hits of one scan, and what each of them belongs to.
 
-use crate::geometry::{Point, Pose};
+use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
-use crate::sense::Scan;
-use crate::sense::beam::beams;
+use crate::sense::ProjectedScan;
 
 /// What a beam hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,8 +36,7 @@ impl Hits {
     pub(super) fn take_in(
         &mut self,
         known: &OccupancyGrid,
-        pose: Pose,
-        scan: &Scan,
+        scan: &ProjectedScan,
         explained_m: f64,
     ) {
         let nothing = Hit {
@@ -48,12 +46,12 @@ impl Hits {
             score_m: f64::INFINITY,
         };
         self.0.clear();
-        self.0.resize(scan.ranges_m.len(), nothing);
+        self.0.resize(scan.len(), nothing);
         let frame = known.frame();
         let cells = (explained_m / frame.resolution_m()).ceil().min(f64::from(i32::MAX / 4)) as i32;
-        for beam in beams(frame, pose, scan).filter(|beam| beam.hit) {
-            let hit = &mut self.0[beam.number];
-            (hit.cell, hit.point) = (beam.hit_cell(frame), frame.world_from_grid(beam.end()));
+        for (beam, projected) in scan.hits() {
+            let hit = &mut self.0[beam];
+            (hit.cell, hit.point) = (projected.cell, projected.point);
             if hit.cell.is_some_and(|cell| !is_near_known(known, cell, cells)) {
                 hit.owner = Owner::Nobody;
             }

@@ -54,18 +54,19 @@ mod track;
 
 pub use config::TrackerConfig;
 
-use super::{Mover, Scan};
+use super::{Mover, ProjectedScan};
 use crate::ConfigError;
-use crate::geometry::{Point, Pose};
+use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
 use hits::{Hits, Owner};
-use seen_through::{OldScan, beam_number, beams_before, beams_now, free_m};
+use seen_through::{OldScan, beams_before, beams_now};
 use track::{Sight, Track};
 
 /// Follows what moves.
 ///
 /// ```
-/// use keyway::sense::{Tracker, TrackerConfig};
+/// use keyway::robot::Footprint;
+/// use keyway::sense::{ProjectedScan, Tracker, TrackerConfig};
 /// use keyway::{OccupancyGrid, Point, Pose, Robot, Scan};
 ///
 /// let known = OccupancyGrid::from_ascii(&["......", "......", "......", "......"]);
@@ -83,7 +84,8 @@ use track::{Sight, Track};
 ///             scan.ranges_m[beam] = ahead_m - (0.25 * 0.25 - aside_m * aside_m).sqrt();
 ///         }
 ///     }
-///     tracker.update(&known, pose, &scan, 0.1);
+///     let scan = ProjectedScan::new(known.frame(), &Footprint::POINT, pose, &scan);
+///     tracker.update(&known, &scan, 0.1);
 /// }
 /// let mover = tracker.movers()[0];
 /// assert!(mover.centre.distance(Point::new(3.0, 1.95)) < 0.02);
@@ -181,28 +183,29 @@ impl Tracker {
         &self.left
     }
 
-    /// Takes in a scan made at `pose` on the `known` map, `elapsed_s` after the last one. A scan at a pose that is not finite
-    /// shows nothing; a time that is negative or not finite counts as 0.
-    pub fn update(&mut self, known: &OccupancyGrid, pose: Pose, scan: &Scan, elapsed_s: f64) {
+    /// Takes in a scan on the `known` map, `elapsed_s` after the last one. A scan at a pose that is not
+    /// finite shows nothing; a time that is negative or not finite counts as 0.
+    pub fn update(&mut self, known: &OccupancyGrid, scan: &ProjectedScan, elapsed_s: f64) {
+        let pose = scan.pose();
         let elapsed_s = if elapsed_s.is_finite() { elapsed_s.max(0.0) } else { 0.0 };
         self.left.clear();
         self.own.clear();
-        self.own.reserve(scan.ranges_m.len());
+        self.own.reserve(scan.len());
         self.own_beams.clear();
-        self.own_beams.reserve(scan.ranges_m.len());
+        self.own_beams.reserve(scan.len());
         let config = &self.config;
         self.tracks.iter_mut().for_each(|track| track.predict(elapsed_s, config));
         self.old.iter_mut().for_each(|old| old.age_s += elapsed_s);
-        self.hits.take_in(known, pose, scan, config.explained_m);
+        self.hits.take_in(known, scan, config.explained_m);
         if pose.point().is_finite() && pose.theta.is_finite() {
-            self.offer_hits(pose, scan);
+            self.offer_hits(scan);
             for track in 0..self.tracks.len() {
-                self.see(track, pose, scan);
+                self.see(track, scan);
             }
             self.end_tracks();
-            self.begin_tracks(pose, scan);
+            self.begin_tracks(scan);
             self.note_cells();
-            self.remember(pose, scan);
+            self.remember(scan);
         }
         self.list_movers();
     }
@@ -217,11 +220,11 @@ impl Tracker {
     }
 
     /// Each hit goes to the track whose border it is nearest to, of those that it may belong to.
-    fn offer_hits(&mut self, pose: Pose, scan: &Scan) {
+    fn offer_hits(&mut self, scan: &ProjectedScan) {
         let noise_m = self.config.range_noise_m;
         for (index, track) in self.tracks.iter().enumerate() {
             let reach_m = track.reach_m(noise_m);
-            for beam in beams_towards(track.centre, reach_m, pose, scan) {
+            for beam in scan.beams_towards(track.centre, reach_m) {
                 let Some(hit) = self.hits.point(beam) else { continue };
                 let distance_m = hit.distance(track.centre);
                 let off_m = distance_m - track.radius_m;
@@ -234,14 +237,14 @@ impl Tracker {
     }
 
     /// What a scan shows of a track.
-    fn see(&mut self, index: usize, pose: Pose, scan: &Scan) {
-        self.collect(index, pose, scan);
+    fn see(&mut self, index: usize, scan: &ProjectedScan) {
+        self.collect(index, scan);
         let track = &mut self.tracks[index];
         if self.own.is_empty() {
-            note_unseen(track, pose, scan);
+            note_unseen(track, scan);
             return;
         }
-        let sight = Sight { hits: &self.own, sensor: pose.point() };
+        let sight = Sight { hits: &self.own, sensor: scan.pose().point() };
         track.see(&sight, &self.config);
         if track.is_mover {
             track.watch_rest(&self.own, &self.config);
@@ -251,7 +254,7 @@ impl Tracker {
         let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
         let before = beams_before(track, &sight, scan, (&self.old, &self.config));
         track.note_seen_through(before, self.own.len());
-        let is_shown = before.max(beams_now(track, pose, scan, &self.config)) >= needed;
+        let is_shown = before.max(beams_now(track, scan, &self.config)) >= needed;
         // Who has not been seen to leave has to be contradicted in scans that follow each other.
         let before = if is_shown || has_left { track.evidence } else { 0 };
         track.evidence = before + u32::from(is_shown);
@@ -261,12 +264,12 @@ impl Tracker {
     }
 
     /// Gathers the hits of a track, and gives those back that belong to something else.
-    fn collect(&mut self, index: usize, pose: Pose, scan: &Scan) {
+    fn collect(&mut self, index: usize, scan: &ProjectedScan) {
         self.own.clear();
         self.own_beams.clear();
         let track = &self.tracks[index];
         let reach_m = track.reach_m(self.config.range_noise_m);
-        for beam in beams_towards(track.centre, reach_m, pose, scan) {
+        for beam in scan.beams_towards(track.centre, reach_m) {
             if self.hits.owner(beam) == Some(Owner::Track(index as u32))
                 && let Some(hit) = self.hits.point(beam)
             {
@@ -276,7 +279,7 @@ impl Tracker {
         }
         let (mut best, mut start) = (0..0, 0);
         for at in 1..=self.own.len() {
-            if at == self.own.len() || self.is_split(at, pose, scan) {
+            if at == self.own.len() || self.is_split(at, scan) {
                 best = if at - start > best.len() { start..at } else { best };
                 start = at;
             }
@@ -291,16 +294,16 @@ impl Tracker {
     }
 
     /// Whether beams see through between two successive hits of a track that are far apart.
-    fn is_split(&self, at: usize, pose: Pose, scan: &Scan) -> bool {
+    fn is_split(&self, at: usize, scan: &ProjectedScan) -> bool {
         let (a, b) = (self.own[at - 1], self.own[at]);
-        let far_m = a.distance(pose.point()).max(b.distance(pose.point()));
+        let far_m = a.distance(scan.pose().point()).max(b.distance(scan.pose().point()));
         if a.distance(b) <= self.config.gap_m.max(2.0 * far_m * scan.step_rad()) {
             return false;
         }
-        let count = scan.ranges_m.len();
+        let count = scan.len();
         let (from, to) = (self.own_beams[at - 1], self.own_beams[at]);
         let between = (1..(to + count - from) % count).map(|step| (from + step) % count);
-        let sees_through = |beam| free_m(beam, scan).is_some_and(|free_m| free_m > far_m);
+        let sees_through = |beam| scan.free_m(beam).is_some_and(|free_m| free_m > far_m);
         between.into_iter().any(sees_through)
     }
 
@@ -324,14 +327,14 @@ impl Tracker {
     }
 
     /// Groups what is left of the hits into new tracks.
-    fn begin_tracks(&mut self, pose: Pose, scan: &Scan) {
-        let sensor = pose.point();
+    fn begin_tracks(&mut self, scan: &ProjectedScan) {
+        let sensor = scan.pose().point();
         let gap_m = self.config.gap_m;
         let step_rad = scan.step_rad();
         let is_near =
             |a: Point, b: Point| a.distance(b) <= gap_m.max(2.0 * step_rad * b.distance(sensor));
         let mut beam = 0;
-        while beam < scan.ranges_m.len() {
+        while beam < scan.len() {
             self.own.clear();
             self.own_beams.clear();
             while let Some(hit) = self.hits.unexplained(beam) {
@@ -346,18 +349,18 @@ impl Tracker {
                 beam += 1;
                 continue;
             }
-            self.begin_track(pose, scan);
+            self.begin_track(scan);
         }
     }
 
     /// A new track of the collected hits.
-    fn begin_track(&mut self, pose: Pose, scan: &Scan) {
+    fn begin_track(&mut self, scan: &ProjectedScan) {
         let (Some(&first), Some(&last)) = (self.own.first(), self.own.last()) else { return };
         let is_large = first.distance(last) > self.config.largest_diameter_m;
         if self.own.len() < LEAST_HITS || is_large {
             return;
         }
-        let sight = Sight { hits: &self.own, sensor: pose.point() };
+        let sight = Sight { hits: &self.own, sensor: scan.pose().point() };
         let Some(mut track) = Track::new(self.next_id, &sight, &self.config) else { return };
         if 2.0 * track.radius_m > self.config.largest_diameter_m {
             return;
@@ -382,57 +385,26 @@ impl Tracker {
     }
 
     /// Keeps a scan from time to time, in the place of the oldest one.
-    fn remember(&mut self, pose: Pose, scan: &Scan) {
-        let is_used = |old: &&OldScan| !old.scan.ranges_m.is_empty();
+    fn remember(&mut self, scan: &ProjectedScan) {
+        let is_used = |old: &&OldScan| !old.scan.is_empty();
         let youngest_s = self.old.iter().filter(is_used).map(|old| old.age_s);
         // Times are sums of cycles.
         if youngest_s.fold(f64::INFINITY, f64::min) >= OLD_SCAN_STEP_S * (1.0 - 1e-9) {
-            self.old[self.remembered % OLD_SCANS].replace(pose, scan);
+            self.old[self.remembered % OLD_SCANS].replace(scan);
             self.remembered += 1;
         }
     }
 }
 
-/// The beams that look at a disc, in order; all around where the sensor is inside it.
-fn beams_towards(
-    centre: Point,
-    reach_m: f64,
-    pose: Pose,
-    scan: &Scan,
-) -> impl Iterator<Item = usize> + use<> {
-    let count = scan.ranges_m.len();
-    let step_rad = scan.step_rad();
-    let is_full = step_rad * (count as f64 + 0.5) >= std::f64::consts::TAU;
-    let distance_m = centre.distance(pose.point());
-    let half_rad =
-        if distance_m > reach_m { libm::asin(reach_m / distance_m) } else { std::f64::consts::PI };
-    let middle = beam_number(centre, pose, scan).unwrap_or(0.0);
-    let (low, high) =
-        ((middle - half_rad / step_rad).ceil(), (middle + half_rad / step_rad).floor());
-    let last = count as f64 - 1.0;
-    // Also where a bearing is no number.
-    let looks = low <= high && count > 0;
-    let (low, high) = if !looks {
-        (0.0, -1.0)
-    } else if !is_full {
-        (low.max(0.0), high.min(last))
-    } else if high - low >= count as f64 {
-        (0.0, last)
-    } else {
-        (low, high)
-    };
-    (low as i64..=high as i64).map(move |beam| beam.rem_euclid(count.max(1) as i64) as usize)
-}
-
 /// Notes whether beams see through a track that none of them hit.
-fn note_unseen(track: &mut Track, pose: Pose, scan: &Scan) {
+fn note_unseen(track: &mut Track, scan: &ProjectedScan) {
     let disc = Track::now(track);
-    let far_m = track.centre.distance(pose.point()) + disc.radius_m;
-    let beams = beams_towards(track.centre, track.radius_m, pose, scan);
+    let far_m = track.centre.distance(scan.pose().point()) + disc.radius_m;
+    let beams = scan.beams_towards(track.centre, track.radius_m);
     let (mut looking, mut through) = (0, 0);
     for beam in beams {
         looking += 1;
-        through += u32::from(free_m(beam, scan).is_some_and(|free_m| free_m > far_m));
+        through += u32::from(scan.free_m(beam).is_some_and(|free_m| free_m > far_m));
     }
     let is_empty = looking > 0 && through == looking;
     track.miss(is_empty);

@@ -2,22 +2,21 @@
 
 use super::TrackerConfig;
 use super::track::{Sight, Track};
-use crate::geometry::{Point, Pose, wrap_angle};
-use crate::sense::{Reading, Scan};
+use crate::geometry::Point;
+use crate::sense::ProjectedScan;
 
-/// A scan that is remembered, with where it was made.
+/// A scan that is remembered.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OldScan {
-    pub(super) pose: Pose,
-    pub(super) scan: Scan,
+    pub(super) scan: ProjectedScan,
     /// How long ago \[s\].
     pub(super) age_s: f64,
 }
 
 impl OldScan {
     /// Takes the place of what was remembered; allocates nothing for a scan that is not longer.
-    pub(super) fn replace(&mut self, pose: Pose, scan: &Scan) {
-        (self.pose, self.age_s) = (pose, 0.0);
+    pub(super) fn replace(&mut self, scan: &ProjectedScan) {
+        self.age_s = 0.0;
         self.scan.copy_from(scan);
     }
 }
@@ -30,18 +29,17 @@ const WIDEST_GAP_NOISES: f64 = 3.0;
 pub(super) fn beams_before(
     track: &Track,
     sight: &Sight<'_>,
-    scan: &Scan,
+    scan: &ProjectedScan,
     (old, config): (&[OldScan], &TrackerConfig),
 ) -> u32 {
-    let surface = Surface::of(track, sight.hits, (sight.sensor, scan), config);
-    let old = old.iter().filter(|old| !old.scan.ranges_m.is_empty());
-    old.map(|old| surface.beams_through(old.pose, &old.scan)).fold(0, u32::max)
+    let surface = Surface::of(track, sight.hits, scan, config);
+    let old = old.iter().filter(|old| !old.scan.is_empty());
+    old.map(|old| surface.beams_through(&old.scan)).fold(0, u32::max)
 }
 
 /// How many beams of this scan see through what was seen of a track at its anchor.
-pub(super) fn beams_now(track: &Track, pose: Pose, scan: &Scan, config: &TrackerConfig) -> u32 {
-    let hits = &track.anchor.surface;
-    Surface::of(track, hits, (pose.point(), scan), config).beams_through(pose, scan)
+pub(super) fn beams_now(track: &Track, scan: &ProjectedScan, config: &TrackerConfig) -> u32 {
+    Surface::of(track, &track.anchor.surface, scan, config).beams_through(scan)
 }
 
 /// A surface that was seen: the line through hits that were made one after the other.
@@ -54,15 +52,10 @@ struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    fn of(
-        track: &Track,
-        hits: &'a [Point],
-        (sensor, scan): (Point, &Scan),
-        config: &TrackerConfig,
-    ) -> Self {
+    fn of(track: &Track, hits: &'a [Point], scan: &ProjectedScan, config: &TrackerConfig) -> Self {
         // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
         // be a gap that no beam met.
-        let far_m = track.centre.distance(sensor) + track.radius_m;
+        let far_m = track.centre.distance(scan.pose().point()) + track.radius_m;
         let noise_m = config.range_noise_m;
         let seen_m = noise_m + 2.5 * far_m * scan.step_rad();
         Self { hits, gap_m: seen_m.min(WIDEST_GAP_NOISES * noise_m), noise_m }
@@ -73,14 +66,15 @@ impl<'a> Surface<'a> {
 
     /// How many beams of a scan made at `pose` pass through the surface: between its ends as they are seen from there, not along
     /// it, and by more than errors explain.
-    fn beams_through(&self, pose: Pose, scan: &Scan) -> u32 {
+    fn beams_through(&self, scan: &ProjectedScan) -> u32 {
         let runs = self.hits.chunk_by(|a, b| a.distance(*b) <= self.gap_m);
-        runs.map(|run| self.beams_through_run(run, pose, scan)).sum()
+        runs.map(|run| self.beams_through_run(run, scan)).sum()
     }
 
-    fn beams_through_run(&self, run: &[Point], pose: Pose, scan: &Scan) -> u32 {
+    fn beams_through_run(&self, run: &[Point], scan: &ProjectedScan) -> u32 {
+        let from = scan.pose().point();
         let (mut count, mut last_beam) = (0, None);
-        let mut places = run.iter().map(|&hit| beam_number(hit, pose, scan));
+        let mut places = run.iter().map(|&hit| scan.beam_towards(hit));
         let mut place = places.next().flatten();
         for (pair, next) in run.windows(2).zip(places) {
             let ends = place.zip(next);
@@ -89,16 +83,15 @@ impl<'a> Surface<'a> {
                 continue;
             };
             // No part of the line between two points is nearer than this.
-            let least_m = pair[0].distance(pose.point()).min(pair[1].distance(pose.point()))
+            let least_m = pair[0].distance(from).min(pair[1].distance(from))
                 - 0.5 * pair[0].distance(pair[1]);
             for beam in (low..=high).filter(|&beam| last_beam != Some(beam)) {
-                let Some(free_m) = free_m(beam, scan).filter(|&free_m| free_m > least_m) else {
+                let Some(free_m) = scan.free_m(beam).filter(|&free_m| free_m > least_m) else {
                     continue;
                 };
-                let (sin, cos) = libm::sincos(pose.theta + scan.bearing_rad(beam));
-                let direction = Point::new(cos, sin);
-                let passed = self.passes(free_m, direction, (pair[0], pair[1]), pose.point());
-                count += u32::from(passed && self.is_inside(run, pose.point(), direction));
+                let direction = scan.direction(beam);
+                let passed = self.passes(free_m, direction, (pair[0], pair[1]), from);
+                count += u32::from(passed && self.is_inside(run, from, direction));
             }
             last_beam = Some(high);
         }
@@ -126,9 +119,9 @@ impl<'a> Surface<'a> {
 }
 
 /// The beams that look between two points, which are seen at these fractions of beams, if any.
-fn beams_between((at_a, at_b): (f64, f64), scan: &Scan) -> Option<(usize, usize)> {
+fn beams_between((at_a, at_b): (f64, f64), scan: &ProjectedScan) -> Option<(usize, usize)> {
     let (low, high) = (at_a.min(at_b), at_a.max(at_b));
-    let count = scan.ranges_m.len() as f64;
+    let count = scan.len() as f64;
     // Two points to both sides of the seam of a full turn.
     if high - low > 0.5 * count {
         return None;
@@ -137,35 +130,24 @@ fn beams_between((at_a, at_b): (f64, f64), scan: &Scan) -> Option<(usize, usize)
     (first <= last).then_some((first as usize, last as usize))
 }
 
-/// At which beam a point is seen: a fraction between two of them. Outside the field of view it is below 0 or beyond
-/// the last one.
-pub(super) fn beam_number(point: Point, pose: Pose, scan: &Scan) -> Option<f64> {
-    let step_rad = scan.angle_increment_rad;
-    let is_usable = step_rad != 0.0 && point.is_finite();
-    // A bearing from the middle beam, so that the seam lies opposite to it.
-    let half = 0.5 * (scan.ranges_m.len() as f64 - 1.0);
-    let middle_rad = scan.angle_min_rad + half * step_rad;
-    let from_middle_rad = wrap_angle((point - pose.point()).heading() - pose.theta - middle_rad);
-    is_usable.then(|| half + from_middle_rad / step_rad)
-}
-
-/// How far a beam reports that nothing stands \[m\]; none when it says nothing.
-pub(super) fn free_m(beam: usize, scan: &Scan) -> Option<f64> {
-    scan.reading(beam).map(Reading::free_m)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
+    use crate::map::GridFrame;
+    use crate::robot::Footprint;
+    use crate::sense::Scan;
 
-    fn scan(ranges_m: &[f64]) -> Scan {
-        Scan {
+    fn scan(pose: Pose, ranges_m: &[f64]) -> ProjectedScan {
+        let frame = GridFrame::new(9, 9, 1.0, Pose::default()).unwrap();
+        let scan = Scan {
             angle_min_rad: -0.2,
             angle_increment_rad: 0.1,
             range_min_m: 0.0,
             range_max_m: 5.0,
             ranges_m: ranges_m.to_vec(),
-        }
+        };
+        ProjectedScan::new(&frame, &Footprint::POINT, pose, &scan)
     }
 
     #[test]
@@ -173,7 +155,7 @@ mod tests {
         // A wall 2 m ahead, 0.5 m to both sides: it fills the bearings up to 0.245.
         let wall: Vec<Point> = (-5..=5).map(|i| Point::new(2.0, f64::from(i) * 0.1)).collect();
         let surface = |hits| Surface { hits, gap_m: 0.2, noise_m: 0.03 };
-        let seen_from = |pose, ranges: &[f64]| surface(&wall).beams_through(pose, &scan(ranges));
+        let seen_from = |pose, ranges: &[f64]| surface(&wall).beams_through(&scan(pose, ranges));
         let through = |ranges: &[f64]| seen_from(Pose::default(), ranges);
         let inf = f64::INFINITY;
         assert_eq!(through(&[inf; 5]), 5);
@@ -181,9 +163,9 @@ mod tests {
         assert_eq!(through(&[2.2, 2.0, f64::NAN, 2.15, 1.0]), 2);
         // The outer beams pass 9 cm from the ends.
         let coarse = Surface { noise_m: 0.05, ..surface(&wall) };
-        assert_eq!(coarse.beams_through(Pose::default(), &scan(&[inf; 5])), 3);
+        assert_eq!(coarse.beams_through(&scan(Pose::default(), &[inf; 5])), 3);
         let gap = [Point::new(2.0, -0.4), Point::new(2.0, 0.4)];
-        assert_eq!(surface(&gap).beams_through(Pose::default(), &scan(&[inf; 5])), 0);
+        assert_eq!(surface(&gap).beams_through(&scan(Pose::default(), &[inf; 5])), 0);
         // From the other side, with the back to it, and along it.
         assert_eq!(seen_from(Pose::new(4.0, 0.0, std::f64::consts::PI), &[inf; 5]), 5);
         assert_eq!(seen_from(Pose::new(4.0, 0.0, 0.0), &[inf; 5]), 0);

@@ -4,9 +4,9 @@ mod possible;
 use super::*;
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, CellState, Edit, GridFrame};
-use crate::robot::Robot;
-use crate::sense::SensedLayer;
-use crate::sense::test_scan::scan_among;
+use crate::robot::{Footprint, Robot};
+use crate::sense::test_scan::{projected, scan_among};
+use crate::sense::{Scan, SensedLayer};
 
 /// 12 m x 12 m around the origin, in cells of 5 cm, with the cells inside these boxes occupied.
 fn map(boxes: &[[f64; 4]]) -> OccupancyGrid {
@@ -56,9 +56,10 @@ impl Drive {
     }
 
     fn step_with(&mut self, pose: Pose, scan: &Scan) -> &[Mover] {
-        self.tracker.update(&self.known, pose, scan, if self.cycle == 0 { 0.0 } else { 0.1 });
+        let scan = projected(self.known.frame(), pose, scan);
+        self.tracker.update(&self.known, &scan, if self.cycle == 0 { 0.0 } else { 0.1 });
         let Self { layer, known, tracker, edits, .. } = self;
-        layer.update(known, pose, scan, Some(tracker), edits);
+        layer.update(known, &scan, Some(tracker), edits);
         self.cycle += 1;
         self.tracker.movers()
     }
@@ -439,8 +440,9 @@ fn bad_input_shows_nothing_and_bad_values_are_named() {
                     range_max_m,
                     ranges_m: ranges.to_vec(),
                 };
-                tracker.update(&known, pose, &scan, elapsed_s);
-                tracker.update(&known, pose, &Scan::default(), elapsed_s);
+                for scan in [scan, Scan::default()] {
+                    tracker.update(&known, &projected(known.frame(), pose, &scan), elapsed_s);
+                }
                 assert!(tracker.possible_movers().is_empty());
             }
         }
@@ -468,11 +470,13 @@ fn warm_it_allocates_nothing_and_nothing_is_random() {
         })
         .collect();
     let Drive { tracker, layer, known, edits, .. } = &mut one;
+    let mut projected = ProjectedScan::default();
     let mut again = || {
         allocation_counter::measure(|| {
             for (pose, scan) in &scans {
-                tracker.update(known, *pose, scan, 0.1);
-                layer.update(known, *pose, scan, Some(tracker), edits);
+                projected.project(known.frame(), &Footprint::POINT, *pose, scan);
+                tracker.update(known, &projected, 0.1);
+                layer.update(known, &projected, Some(tracker), edits);
             }
         })
     };

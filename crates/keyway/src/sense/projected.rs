@@ -1,0 +1,309 @@
+//! A scan where it was made: what each beam says and where it ends, computed once per cycle.
+
+use super::{Reading, Scan};
+use crate::geometry::{Point, Pose, wrap_angle};
+use crate::map::{Cell, GridFrame};
+use crate::robot::Footprint;
+use std::f64::consts::{PI, TAU};
+
+/// A scan made at a pose on a grid. Everything that looks at a scan looks at this: the tracker, the
+/// sensed layer, the seen ground.
+///
+/// Nothing but the robot can be where the robot is: a beam that ends inside of the footprint has met
+/// a post of the housing, a cable or a gripper, and says nothing.
+///
+/// Memory: 64 bytes per beam.
+#[derive(Clone, Debug, Default)]
+pub struct ProjectedScan {
+    pose: Pose,
+    angle_min_rad: f64,
+    angle_increment_rad: f64,
+    range_max_m: f64,
+    beams: Vec<Beam>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Beam {
+    reading: Option<Reading>,
+    hit: Option<Hit>,
+}
+
+/// The end of a beam at something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Where, in the world frame \[m\].
+    pub point: Point,
+    /// The cell that it marks; `None` outside the map.
+    pub cell: Option<Cell>,
+}
+
+/// Length along a beam by which a hit is advanced before its cell is looked up \[cells\]. A hit
+/// exactly on a square's face then marks the square behind the face, rounded or not, and not the
+/// free cell before it. A square that the beam crosses for less than this, or at a flatter angle
+/// than rounding allows, may still be mistaken for its neighbour.
+const HIT_ADVANCE_CELLS: f64 = 1e-6;
+
+/// A place this near to a beam is on it, rounded or not \[beams\].
+const ON_A_BEAM: f64 = 1e-6;
+
+/// A beam that ends this little beyond a place ends at it, rounded or not \[m\].
+const AT_PLACE_M: f64 = 1e-6;
+
+impl ProjectedScan {
+    /// A scan made at `pose` (world frame) by a robot of this footprint.
+    pub fn new(frame: &GridFrame, footprint: &Footprint, pose: Pose, scan: &Scan) -> Self {
+        let mut projected = Self::default();
+        projected.project(frame, footprint, pose, scan);
+        projected
+    }
+
+    /// Takes in another scan in the place of this one. Allocates nothing where it is not longer.
+    pub fn project(&mut self, frame: &GridFrame, footprint: &Footprint, pose: Pose, scan: &Scan) {
+        let start = frame.grid_from_world(pose.point());
+        let ahead_rad = pose.theta - frame.origin().theta;
+        let beam = |number: usize| {
+            let reading = scan.reading(number)?;
+            let Reading::Hit(range_m) = reading else {
+                return Some(Beam { reading: Some(reading), hit: None });
+            };
+            let bearing_rad = scan.bearing_rad(number);
+            if is_own(footprint, bearing_rad, range_m) {
+                return None;
+            }
+            let (sin, cos) = libm::sincos(ahead_rad + bearing_rad);
+            let direction = Point::new(cos, sin);
+            let free = range_m / frame.resolution_m();
+            let hit = (start.is_finite() && direction.is_finite()).then(|| Hit {
+                point: frame.world_from_grid(start + direction * free),
+                cell: frame.cell_from_grid(start + direction * (free + HIT_ADVANCE_CELLS)),
+            });
+            Some(Beam { reading: Some(reading), hit })
+        };
+        let nothing = Beam { reading: None, hit: None };
+        self.beams.clear();
+        self.beams.extend((0..scan.ranges_m.len()).map(|number| beam(number).unwrap_or(nothing)));
+        let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = *scan;
+        (self.pose, self.range_max_m) = (pose, range_max_m);
+        (self.angle_min_rad, self.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
+    }
+
+    /// Becomes equal to another one; allocates nothing where that is not longer.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let mut beams = std::mem::take(&mut self.beams);
+        beams.clone_from(&other.beams);
+        let Self { pose, angle_min_rad, angle_increment_rad, range_max_m, .. } = *other;
+        *self = Self { pose, angle_min_rad, angle_increment_rad, range_max_m, beams };
+    }
+
+    /// Where it was made, in the world frame.
+    pub const fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Number of beams.
+    pub const fn len(&self) -> usize {
+        self.beams.len()
+    }
+
+    /// True for a scan without beams.
+    pub const fn is_empty(&self) -> bool {
+        self.beams.is_empty()
+    }
+
+    /// True if no beam says anything.
+    pub fn is_silent(&self) -> bool {
+        self.beams.iter().all(|beam| beam.reading.is_none())
+    }
+
+    /// As far as this nothing stands along a beam \[m\]; `None` when there is no such beam, or it
+    /// says nothing.
+    pub fn free_m(&self, beam: usize) -> Option<f64> {
+        self.beams.get(beam)?.reading.map(Reading::free_m)
+    }
+
+    /// What a beam met, if it met something.
+    pub fn hit(&self, beam: usize) -> Option<Hit> {
+        self.beams.get(beam)?.hit
+    }
+
+    /// All hits, each with the number of its beam.
+    pub fn hits(&self) -> impl Iterator<Item = (usize, Hit)> + '_ {
+        self.beams.iter().enumerate().filter_map(|(number, beam)| Some((number, beam.hit?)))
+    }
+
+    /// The direction in which a beam looks, in the world frame, of length 1.
+    pub(super) fn direction(&self, beam: usize) -> Point {
+        let bearing_rad = self.angle_min_rad + beam as f64 * self.angle_increment_rad;
+        let (sin, cos) = libm::sincos(self.pose.theta + bearing_rad);
+        Point::new(cos, sin)
+    }
+
+    /// Angle between two neighbouring beams \[rad\], whichever way they go.
+    pub(super) const fn step_rad(&self) -> f64 {
+        self.angle_increment_rad.abs()
+    }
+
+    /// True if the last beam is followed by the first one.
+    fn is_full_turn(&self) -> bool {
+        self.step_rad() * (self.beams.len() as f64 + 0.5) >= TAU
+    }
+
+    /// The number of the beam that looks at a place: a fraction between two of them; below 0 or
+    /// beyond the last one outside the field of view. `None` where no beam looks anywhere.
+    pub(super) fn beam_towards(&self, place: Point) -> Option<f64> {
+        let step_rad = self.angle_increment_rad;
+        let is_usable = step_rad != 0.0 && place.is_finite();
+        // A bearing from the middle beam, so that the seam lies opposite to it.
+        let half = 0.5 * (self.beams.len() as f64 - 1.0);
+        let middle_rad = self.angle_min_rad + half * step_rad;
+        let heading_rad = (place - self.pose.point()).heading();
+        let from_middle_rad = wrap_angle(heading_rad - self.pose.theta - middle_rad);
+        is_usable.then(|| half + from_middle_rad / step_rad)
+    }
+
+    /// The beams that look at a disc, in order; all around where the sensor is inside it.
+    pub(super) fn beams_towards(
+        &self,
+        centre: Point,
+        radius_m: f64,
+    ) -> impl Iterator<Item = usize> + use<> {
+        let (count, step_rad) = (self.beams.len(), self.step_rad());
+        let distance_m = centre.distance(self.pose.point());
+        let half_rad = if distance_m > radius_m { libm::asin(radius_m / distance_m) } else { PI };
+        let middle = self.beam_towards(centre).unwrap_or(0.0);
+        let low = (middle - half_rad / step_rad).ceil();
+        let high = (middle + half_rad / step_rad).floor();
+        let last = count as f64 - 1.0;
+        // Also where a bearing is no number.
+        let looks = low <= high && count > 0;
+        let (low, high) = if !looks {
+            (0.0, -1.0)
+        } else if !self.is_full_turn() {
+            (low.max(0.0), high.min(last))
+        } else if high - low >= count as f64 {
+            (0.0, last)
+        } else {
+            (low, high)
+        };
+        (low as i64..=high as i64).map(move |beam| beam.rem_euclid(count.max(1) as i64) as usize)
+    }
+
+    /// True if the beams to both sides of a place go on beyond it.
+    pub fn sees_through(&self, place: Point) -> bool {
+        let away_m = place.distance(self.pose.point());
+        if away_m.is_nan() || away_m > self.range_max_m {
+            return false;
+        }
+        let Some(number) = self.beam_towards(place) else { return false };
+        let nearest = number.round();
+        let is_on_it = (number - nearest).abs() <= ON_A_BEAM;
+        let beside = if is_on_it { [nearest; 2] } else { [number.floor(), number.ceil()] };
+        let count = self.beams.len() as f64;
+        beside.into_iter().all(|beam| {
+            let beam = if self.is_full_turn() { beam.rem_euclid(count) } else { beam };
+            // A number that is none is no beam, either.
+            let is_there = beam >= 0.0 && beam < count;
+            let free_m = if is_there { self.free_m(beam as usize) } else { None };
+            free_m.is_some_and(|free_m| free_m > away_m + AT_PLACE_M)
+        })
+    }
+}
+
+/// True if a beam ends inside of the footprint.
+fn is_own(footprint: &Footprint, bearing_rad: f64, range_m: f64) -> bool {
+    range_m <= footprint.circumscribed_radius_m() && {
+        let (sin, cos) = libm::sincos(bearing_rad);
+        footprint.covers(Point::new(cos, sin) * range_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    /// Ahead, to the left, behind, to the right.
+    fn scan(ranges_m: [f64; 4]) -> Scan {
+        Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad: FRAC_PI_2,
+            range_min_m: 0.0,
+            range_max_m: 3.0,
+            ranges_m: ranges_m.to_vec(),
+        }
+    }
+
+    fn frame() -> GridFrame {
+        GridFrame::new(10, 10, 1.0, Pose::default()).unwrap()
+    }
+
+    #[test]
+    fn what_is_inside_of_the_footprint_says_nothing() {
+        let disc = Footprint::circle(0.2).unwrap();
+        let rectangle = Footprint::rectangle(0.6, 0.3).unwrap();
+        let scan = scan([0.19, 0.16, 0.25, f64::INFINITY]);
+        for (footprint, own) in
+            [(disc, [true, true, false, false]), (rectangle, [true, false, true, false])]
+        {
+            let seen = ProjectedScan::new(&frame(), &footprint, Pose::new(5.0, 5.0, 0.3), &scan);
+            for (beam, own) in own.into_iter().enumerate() {
+                let expected = if own { None } else { scan.reading(beam).map(Reading::free_m) };
+                assert_eq!(seen.free_m(beam), expected, "{footprint} {beam}");
+                assert_eq!(seen.hit(beam).is_some(), !own && beam < 3, "{footprint} {beam}");
+            }
+        }
+        // A point has no body.
+        let near = Scan { ranges_m: vec![1e-9; 4], ..scan };
+        let seen = ProjectedScan::new(&frame(), &Footprint::POINT, Pose::default(), &near);
+        assert!((0..4).all(|beam| seen.free_m(beam) == Some(1e-9)) && !seen.is_silent());
+    }
+
+    #[test]
+    fn hits_on_a_grid_that_is_turned() {
+        let frame = GridFrame::new(4, 6, 0.5, Pose::new(1.0, 2.0, FRAC_PI_2)).unwrap();
+        let pose = Pose::new(0.0, 2.25, FRAC_PI_2);
+        let seen = ProjectedScan::new(
+            &frame,
+            &Footprint::POINT,
+            pose,
+            &scan([1.3, 1.2, f64::NAN, f64::INFINITY]),
+        );
+        let hits: Vec<(usize, Hit)> = seen.hits().collect();
+        let expected = [
+            (0, Point::new(0.0, 3.55), Cell::new(3, 2)),
+            (1, Point::new(-1.2, 2.25), Cell::new(0, 4)),
+        ];
+        assert_eq!(hits.len(), 2);
+        for ((beam, hit), (expected_beam, point, cell)) in hits.into_iter().zip(expected) {
+            assert!(hit.point.distance(point) < 1e-12, "{hit:?}");
+            assert_eq!((beam, hit.cell), (expected_beam, Some(cell)));
+        }
+        assert_eq!((seen.free_m(2), seen.free_m(3), seen.free_m(4)), (None, Some(3.0), None));
+        let nowhere = Pose { x: f64::NAN, ..pose };
+        let lost = ProjectedScan::new(&frame, &Footprint::POINT, nowhere, &scan([1.0; 4]));
+        assert_eq!((lost.hits().count(), lost.sees_through(Point::new(0.0, 0.0))), (0, false));
+    }
+
+    /// Across the seam of a whole turn, and for a sensor that turns the other way.
+    #[test]
+    fn a_place_is_seen_through_between_any_two_beams() {
+        let seen =
+            |scan: &Scan| ProjectedScan::new(&frame(), &Footprint::POINT, Pose::default(), scan);
+        for sign in [1.0, -1.0] {
+            for tenth in 0..3600 {
+                let bearing = f64::from(tenth).to_radians() / 10.0 - PI;
+                let scan = Scan {
+                    angle_min_rad: -sign * PI,
+                    angle_increment_rad: sign * 2f64.to_radians(),
+                    range_min_m: 0.1,
+                    range_max_m: 3.0,
+                    ranges_m: vec![f64::INFINITY; 180],
+                };
+                let place = Point::new(2.0 * bearing.cos(), 2.0 * bearing.sin());
+                assert!(seen(&scan).sees_through(place), "{bearing}");
+                let near = Scan { ranges_m: vec![1.9; 180], ..scan };
+                assert!(!seen(&near).sees_through(place), "{bearing}");
+            }
+        }
+    }
+}
