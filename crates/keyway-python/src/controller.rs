@@ -49,7 +49,7 @@ impl Step {
 impl Step {
     fn new(step: keyway::navigate::Step, notice: Option<String>) -> Self {
         use keyway::navigate::Step;
-        let Velocity { v, omega } = step.command();
+        let Velocity { v, omega, .. } = step.command();
         let (status, why) = match step {
             Step::Drive(_) => ("drive", None),
             Step::Arrived => ("arrived", None),

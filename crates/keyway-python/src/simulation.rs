@@ -116,7 +116,7 @@ impl Simulation {
     /// How the robot takes itself to move (v, omega) [m/s, rad/s].
     #[getter]
     fn velocity(&self) -> (f64, f64) {
-        let (_, Velocity { v, omega }) = self.lock().told();
+        let (_, Velocity { v, omega, .. }) = self.lock().told();
         (v, omega)
     }
 

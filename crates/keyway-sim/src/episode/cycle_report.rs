@@ -129,7 +129,7 @@ impl CycleReport {
 }
 
 impl From<Velocity> for Speeds {
-    fn from(Velocity { v, omega }: Velocity) -> Self {
+    fn from(Velocity { v, omega, .. }: Velocity) -> Self {
         // -0 becomes 0.
         Self { v_mps: v + 0.0, omega_radps: omega + 0.0 }
     }

@@ -112,7 +112,7 @@ impl CycleMotion {
     /// True if the covered ground does not change on the arc of a place: the robot stands, or turns
     /// on the spot as a disc.
     pub(super) fn keeps_ground_at(&self, place: f64, footprint: &Footprint) -> bool {
-        let (Arc { velocity: Velocity { v, omega }, .. }, _) = self.arc(place);
+        let (Arc { velocity: Velocity { v, omega, .. }, .. }, _) = self.arc(place);
         let is_zero = |rate: &f64| rate.abs() <= Self::ROUNDING;
         is_zero(v) && (is_zero(omega) || matches!(footprint, Footprint::Circle(_)))
     }

@@ -78,8 +78,9 @@ impl Pose {
     pub const RAMP_ARCS: u32 = 4;
 }
 
-/// Body velocity of a wheeled robot.
+/// Body velocity of a wheeled robot. Made by [`Self::new`]; a drive that moves sideways will add a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Velocity {
     /// Forward \[m/s\].
     pub v: f64,

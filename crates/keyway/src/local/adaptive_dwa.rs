@@ -28,7 +28,7 @@
 //! # Errors / cost
 //! See [`WindowConfig`].
 
-use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
+use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{heading, speed};
 use super::{
@@ -162,13 +162,13 @@ impl AdaptiveDwa {
     }
 
     /// The terms of the evaluation before normalisation.
-    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [TermValue; 3] {
         let dist_m = rollout.distance_m;
         let (of_heading, of_speed) = self.factors(dist_m);
         [
-            Value { raw: rollout.heading, factor: of_heading },
-            Value::of(dist_m),
-            Value { raw: speed::raw(velocity), factor: of_speed },
+            TermValue { raw: rollout.heading, factor: of_heading },
+            TermValue::of(dist_m),
+            TermValue { raw: speed::raw(velocity), factor: of_speed },
         ]
     }
 }
@@ -236,7 +236,7 @@ mod tests {
         let terms = planner.terms(Velocity::new(0.5, 0.0), &rollout);
         let half_pi = std::f64::consts::FRAC_PI_2;
         assert!((terms[0].raw - half_pi).abs() < 1e-12 && (terms[0].factor - 2.0).abs() < 1e-12);
-        assert_eq!(terms[1], Value::of(2.0));
+        assert_eq!(terms[1], TermValue::of(2.0));
         assert!(terms[2].raw == 0.5 && (terms[2].factor - 5.0 / 6.0).abs() < 1e-12);
     }
 

@@ -18,7 +18,7 @@
 //! # Errors / cost
 //! See [`WindowConfig`].
 
-use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
+use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, heading, speed};
 use super::{
@@ -148,11 +148,11 @@ impl Dwa {
     }
 
     /// The terms of eq. (9) before normalisation.
-    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [TermValue; 3] {
         [
-            Value::of(rollout.heading),
-            Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
-            Value::of(speed::raw(velocity)),
+            TermValue::of(rollout.heading),
+            TermValue::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
+            TermValue::of(speed::raw(velocity)),
         ]
     }
 }

@@ -25,7 +25,7 @@
 //! # Errors / cost
 //! See [`WindowConfig`]. In addition, the occupied cells of the regions are counted once in each cycle.
 
-use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
+use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, speed};
 use super::{
@@ -254,11 +254,11 @@ impl KeyPointDwa {
     }
 
     /// The terms of eq. (11) before normalisation.
-    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [Value; 3] {
+    fn terms(&self, velocity: Velocity, rollout: &Rollout) -> [TermValue; 3] {
         [
-            Value::of(rollout.heading),
-            Value::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
-            Value::of(speed::raw(velocity)),
+            TermValue::of(rollout.heading),
+            TermValue::of(distance::raw(rollout.distance_m, self.distance_cap_m)),
+            TermValue::of(speed::raw(velocity)),
         ]
     }
 }

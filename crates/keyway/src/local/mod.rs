@@ -56,7 +56,10 @@ pub use adaptive_dwa::{AdaptiveDwa, AdaptiveDwaConfig};
 pub use config::LocalConfig;
 pub use decision::{Decision, Evaluation, NoCommand, Rejection, Rejections, Share, Shares};
 pub use dwa::{Dwa, DwaConfig, Weights};
-pub use dynamic_window::{Admissible, DistanceAt, Prediction, WindowConfig};
+pub use dynamic_window::{
+    Admissible, DistanceAt, DynamicWindow, Prediction, Rollout, Term, TermValue, Weighing,
+    WindowConfig,
+};
 pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy};
 pub use follower::{Follower, FollowerConfig};
 pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};

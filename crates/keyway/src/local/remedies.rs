@@ -64,19 +64,15 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
 /// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at least a cycle;
 /// no scene where it would touch something before.
 fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
-    let Robot { limits, cycle_s, footprint, .. } = robot;
-    let (mut standing, mut duration_s) = (*scene, 0.0);
-    let mut is_free = true;
-    loop {
-        let (from, to) = (standing.velocity, limits.braked(standing.velocity, *cycle_s));
-        standing.pose = standing.pose.after_ramp(from, to, *cycle_s);
-        standing.velocity = to;
-        duration_s += cycle_s;
-        is_free &= from == Velocity::ZERO || footprint.is_free(standing.pose, scene.obstacles);
-        if to == Velocity::ZERO {
-            return (is_free.then_some(standing), duration_s);
-        }
+    let braking = robot.limits.braked(scene.velocity, robot.cycle_s);
+    let (mut standing, mut duration_s, mut is_free) = (*scene, 0.0, true);
+    for motion in robot.motion_to_stop(scene.pose, scene.velocity, braking) {
+        (standing.pose, standing.velocity) = (motion.end, motion.to);
+        duration_s += robot.cycle_s;
+        is_free &=
+            motion.from == Velocity::ZERO || robot.footprint.is_free(motion.end, scene.obstacles);
     }
+    (is_free.then_some(standing), duration_s)
 }
 
 fn turn(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Remedy {

@@ -9,29 +9,32 @@ use std::borrow::Cow;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::local) struct Candidate<const TERMS: usize> {
     pub(in crate::local) velocity: Velocity,
-    pub(in crate::local) values: [Value; TERMS],
+    pub(in crate::local) values: [TermValue; TERMS],
 }
 
-/// What one term says of a candidate.
+/// The value of a term for one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::local) struct Value {
+pub struct TermValue {
     /// In the term's own unit, at least 0.
-    pub(in crate::local) raw: f64,
-    /// By which the term's weight is multiplied for this candidate.
-    pub(in crate::local) factor: f64,
+    pub raw: f64,
+    /// Factor of the term's weight for this candidate: 1 as a rule.
+    pub factor: f64,
 }
 
-/// One term of an evaluation.
+/// A term of an evaluation: its name in reports and its weight. Nav2 calls it a critic.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::local) struct Term {
+pub struct Term {
     name: &'static str,
     weight: f64,
     is_cost: bool,
 }
 
-/// The terms of an evaluation, in the order of [`Candidate::values`].
+/// The terms of an evaluation, in the order in which their values are given.
+///
+/// A candidate's score is the sum over the terms of weight times factor times raw value, each
+/// divided by the sum of that term's raw values over all candidates \[You2021, eq. (10)\].
 #[derive(Clone, Copy, Debug)]
-pub(in crate::local) struct Weighing<const TERMS: usize>(pub(in crate::local) [Term; TERMS]);
+pub struct Weighing<const TERMS: usize>(pub [Term; TERMS]);
 
 /// The best candidate and its score, and that of the second best.
 #[derive(Clone, Debug)]
@@ -41,21 +44,21 @@ pub(super) struct Ranking {
     pub(super) runner_up: Option<Shares>,
 }
 
-impl Value {
-    /// Weighted as all others.
-    pub(in crate::local) const fn of(raw: f64) -> Self {
+impl TermValue {
+    /// A value that counts by the term's weight alone.
+    pub const fn of(raw: f64) -> Self {
         Self { raw, factor: 1.0 }
     }
 }
 
 impl Term {
     /// A term of which more is better.
-    pub(in crate::local) const fn of(name: &'static str, weight: f64) -> Self {
+    pub const fn of(name: &'static str, weight: f64) -> Self {
         Self { name, weight, is_cost: false }
     }
 
-    /// A term of which less is better: what counts is how far below the largest of all candidates it is.
-    pub(in crate::local) const fn cost(name: &'static str, weight: f64) -> Self {
+    /// A term of which less is better: it counts by how far it is below the largest of all candidates.
+    pub const fn cost(name: &'static str, weight: f64) -> Self {
         Self { name, weight, is_cost: true }
     }
 }
@@ -125,7 +128,7 @@ impl<const TERMS: usize> Weighing<TERMS> {
 
     fn weighted(&self, candidate: &Candidate<TERMS>, scales: &[Scale; TERMS]) -> [f64; TERMS] {
         std::array::from_fn(|i| {
-            let (Term { weight, is_cost, .. }, Value { raw, factor }) =
+            let (Term { weight, is_cost, .. }, TermValue { raw, factor }) =
                 (self.0[i], candidate.values[i]);
             let Scale { sum, largest } = scales[i];
             let value = if is_cost { largest - raw } else { raw };
@@ -149,7 +152,7 @@ mod tests {
     use super::*;
 
     fn candidate<const TERMS: usize>(v: f64, raw: [f64; TERMS]) -> Candidate<TERMS> {
-        Candidate { velocity: Velocity::new(v, 0.0), values: raw.map(Value::of) }
+        Candidate { velocity: Velocity::new(v, 0.0), values: raw.map(TermValue::of) }
     }
 
     #[test]

@@ -13,7 +13,7 @@
 use super::roller::{RollMemory, Roller};
 use super::rollout::{Prediction, Rollout};
 use super::window::Lattice;
-use super::{CONTACT, Candidate, DynamicWindow, RULES, Value, Weighing, WindowConfig};
+use super::{CONTACT, Candidate, DynamicWindow, RULES, TermValue, Weighing, WindowConfig};
 use crate::geometry::{Point, Pose, Velocity};
 use crate::local::remedies::{self, Remediable};
 use crate::local::{Explanation, Fate, JudgedCandidate, Scene};
@@ -27,12 +27,13 @@ const POSES: u32 = 10;
 const CONTACT_S: f64 = 1e-3;
 
 impl DynamicWindow {
-    /// What [`Self::decide`] does with the same scene, candidate by candidate.
-    pub(in crate::local) fn explain<const TERMS: usize>(
+    /// The reasons for what [`Self::decide`] does with the same scene, candidate by candidate. Costs many
+    /// times as much as the decision.
+    pub fn explain<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
         weighing: &Weighing<TERMS>,
-        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
+        terms: impl Fn(Velocity, &Rollout) -> [TermValue; TERMS],
     ) -> Explanation {
         let mut shrunk = Vec::new();
         let mut judge = Judge::new(self, scene, &mut shrunk);

@@ -59,10 +59,10 @@ mod stretch;
 mod window;
 
 pub use config::WindowConfig;
-pub use rollout::{Admissible, DistanceAt, Prediction};
+pub use evaluation::{Term, TermValue, Weighing};
+pub use rollout::{Admissible, DistanceAt, Prediction, Rollout};
 
-pub(super) use evaluation::{Candidate, Term, Value, Weighing};
-pub(super) use rollout::Rollout;
+use evaluation::Candidate;
 
 use super::{Decision, Evaluation, MoverRule, NoCommand, Rejections, Scene, Scratch};
 use crate::ConfigError;
@@ -76,9 +76,11 @@ use roller::{RollMemory, Roller};
 use rollouts::Rollouts;
 use std::sync::Arc;
 use window::{Lattice, Window};
-/// The dynamic window of a robot.
+
+/// The dynamic window of a robot: all that planners with one have in common but the terms of their
+/// evaluation. The example `own_evaluation_term` is a planner with a term of its own.
 #[derive(Clone, Debug)]
-pub(super) struct DynamicWindow {
+pub struct DynamicWindow {
     config: WindowConfig,
     robot: Arc<Robot>,
 }
@@ -129,10 +131,7 @@ impl DynamicWindow {
     /// When a value of the robot or the config cannot be used, or the two do not fit together (a
     /// horizon too short to stop within it, or steps too small for one cycle); the error names the
     /// field.
-    pub(super) fn new(
-        config: WindowConfig,
-        robot: impl Into<Arc<Robot>>,
-    ) -> Result<Self, ConfigError> {
+    pub fn new(config: WindowConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let robot = robot.into();
         robot.validate().map_err(|error| error.within("robot"))?;
         Self::check(&config, &robot).map_err(|error| error.within("window"))?;
@@ -185,18 +184,22 @@ impl DynamicWindow {
     }
 
     /// The robot that it drives.
-    pub(super) fn robot(&self) -> &Robot {
+    pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The best of the velocities that can be reached and are admissible, by the values that `terms` gives each of
-    /// them and its rollout.
-    pub(super) fn decide<const TERMS: usize>(
+    /// The best of the velocities that can be reached and are admissible, by the values that `terms`
+    /// gives each of them and its rollout, in the order of `weighing`. Of equal ones it is the
+    /// slowest, and of these the one farthest to the right.
+    ///
+    /// # Errors
+    /// When no velocity is admissible; the error holds the velocity with which the robot brakes.
+    pub fn decide<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
         scratch: &mut Scratch,
         weighing: &Weighing<TERMS>,
-        terms: impl Fn(Velocity, &Rollout) -> [Value; TERMS],
+        terms: impl Fn(Velocity, &Rollout) -> [TermValue; TERMS],
     ) -> Result<Decision, NoCommand> {
         let Work { lattice, rolling, shrunk } = scratch.part();
         self.fill(lattice, scene);

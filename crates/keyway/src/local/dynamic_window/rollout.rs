@@ -41,13 +41,16 @@ pub enum Admissible {
     Rollout,
 }
 
-/// A predicted trajectory.
+/// The predicted trajectory of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::local) struct Rollout {
-    /// The pose that is compared with the guide point.
-    pub(in crate::local) judged: Pose,
-    /// How well the robot looks at the guide point there ([`raw`](crate::local::terms::heading::raw)).
-    pub(in crate::local) heading: f64,
-    /// Distance of the footprint to the nearest obstacle \[m\], up to the cap.
-    pub(in crate::local) distance_m: f64,
+#[non_exhaustive]
+pub struct Rollout {
+    /// Pose after [`judged_s`](crate::local::WindowConfig::judged_s), which is compared with the guide
+    /// point.
+    pub judged: Pose,
+    /// Pi less the absolute bearing of the guide point from there \[rad\].
+    pub heading: f64,
+    /// Distance of the footprint to the nearest obstacle \[m\], up to
+    /// [`distance_cap_m`](crate::local::WindowConfig::distance_cap_m).
+    pub distance_m: f64,
 }

@@ -308,7 +308,7 @@ fn a_warm_cycle_allocates_nothing() {
                 remaining_m: f64::INFINITY,
             };
             window
-                .decide(&scene, &mut scratch, &weighing, |velocity, _| [Value::of(velocity.v)])
+                .decide(&scene, &mut scratch, &weighing, |velocity, _| [TermValue::of(velocity.v)])
                 .is_ok()
         };
         decide(0.4);

@@ -187,7 +187,7 @@ fn touches_nothing(
         let command = match decide(&dwa, &at) {
             Ok(decision) => {
                 let window = Window::of(robot, velocity, f64::INFINITY, true);
-                let Velocity { v, omega } = decision.command;
+                let Velocity { v, omega, .. } = decision.command;
                 prop_assert!(v >= window.slowest.v && v <= window.fastest.v);
                 prop_assert!(omega >= window.slowest.omega && omega <= window.fastest.omega);
                 decision.command

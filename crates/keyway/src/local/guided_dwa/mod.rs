@@ -44,7 +44,7 @@ mod route_nodes;
 
 pub use detour::DetourConfig;
 
-use super::dynamic_window::{DynamicWindow, Rollout, Term, Value, Weighing};
+use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::heading;
 use super::{
@@ -53,7 +53,7 @@ use super::{
 };
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
-use crate::robot::Robot;
+use crate::robot::{Ramp, Robot};
 use detour::{AllCovered, GuidePoints};
 use obstacle::Cluster;
 use serde::{Deserialize, Serialize};
@@ -200,9 +200,13 @@ impl GuidedDwa {
         self.window.decide(scene, scratch, &self.weighing, terms)
     }
 
-    fn terms(scene: &Scene<'_>, rollout: &Rollout) -> [Value; 3] {
+    fn terms(scene: &Scene<'_>, rollout: &Rollout) -> [TermValue; 3] {
         let Rollout { judged, heading, distance_m } = *rollout;
-        [Value::of(heading), Value::of(judged.point().distance(scene.guide)), Value::of(distance_m)]
+        [
+            TermValue::of(heading),
+            TermValue::of(judged.point().distance(scene.guide)),
+            TermValue::of(distance_m),
+        ]
     }
 
     /// Step 7: along the route.
@@ -224,28 +228,21 @@ impl GuidedDwa {
     /// brakes along its arc. From a pose with a room of half of what any part of it moves to the next such pose, all
     /// poses between them are free as well.
     fn can_stop_after(&self, scene: &Scene<'_>, command: Velocity) -> bool {
-        let Robot { footprint, limits, cycle_s, .. } = self.robot();
+        let Robot { footprint, cycle_s, .. } = self.robot();
         let (clearance, (core, _)) = (scene.obstacles.clearance(), footprint.core());
         let has_room = |pose: Pose, room_m: f64| {
             // Looked for farther than needed: what is cut off at the reach is rounded.
             footprint.distance_m(pose, &clearance, 2.0 * room_m) >= room_m
                 && footprint.to_border_m(pose, &clearance) >= room_m
         };
-        let (mut pose, mut velocity) = (scene.pose, scene.velocity);
-        let mut next = limits.reached(velocity, command, *cycle_s);
-        loop {
-            let driven_m = velocity.v.abs().max(next.v.abs()) * cycle_s;
-            let turned_rad = velocity.omega.abs().max(next.omega.abs()) * cycle_s;
+        let is_free = |motion: Ramp| {
+            let Ramp { start, from, to, end } = motion;
+            let driven_m = from.v.abs().max(to.v.abs()) * cycle_s;
+            let turned_rad = from.omega.abs().max(to.omega.abs()) * cycle_s;
             let room_m = self.safety_margin_m + 0.5 * core.moves_m(driven_m, turned_rad);
-            let end = pose.after_ramp(velocity, next, *cycle_s);
-            if !has_room(pose, room_m) || !has_room(end, room_m) {
-                return false;
-            }
-            if next == Velocity::ZERO {
-                return true;
-            }
-            (pose, velocity, next) = (end, next, limits.braked(next, *cycle_s));
-        }
+            has_room(start, room_m) && has_room(end, room_m)
+        };
+        self.robot().motion_to_stop(scene.pose, scene.velocity, command).all(is_free)
     }
 
     /// Nothing behind the obstacle is free: brake, and let the caller plan a new route.

@@ -160,7 +160,7 @@ impl Judge<'_> {
 
     /// Whether the robot could brake along its arc from a state without touching anything: the stop rule will ask for it.
     pub(super) fn can_stop(&self, from: &State) -> bool {
-        let Velocity { v, omega } = from.velocity;
+        let Velocity { v, omega, .. } = from.velocity;
         let Limits { deceleration_mps2, angular_deceleration_radps2, .. } = *self.limits;
         let stop_s = (v.abs() / deceleration_mps2).max(omega.abs() / angular_deceleration_radps2);
         // Speed and turn rate fall in proportion: half of each on the mean.

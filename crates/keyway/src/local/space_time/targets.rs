@@ -27,7 +27,7 @@ impl Targets {
     /// on the spot: on them a polygon gets away from a wall.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
-        let Velocity { v, omega } = state.velocity;
+        let Velocity { v, omega, .. } = state.velocity;
         let reached = |v, omega| limits.reached(state.velocity, Velocity::new(v, omega), stretch_s);
         let speed = |wanted_mps: f64| reached(wanted_mps, omega).v;
         let rate = |wanted_radps: f64| reached(v, wanted_radps).omega;

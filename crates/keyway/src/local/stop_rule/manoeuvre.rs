@@ -240,7 +240,7 @@ impl<'a> Manoeuvres<'a> {
     /// for nothing else: otherwise it could not turn away from a wall that the noise seems to lead to. If it is no
     /// noise, it is the end of a manoeuvre that was admissible.
     fn from(&self, first: Velocity) -> Velocity {
-        let Velocity { v, omega } = self.around.velocity;
+        let Velocity { v, omega, .. } = self.around.velocity;
         let is_standing = self.robot.stands(self.around.velocity);
         let unless_noise =
             |now: f64, asked: f64| if is_standing && asked == 0.0 { 0.0 } else { now };

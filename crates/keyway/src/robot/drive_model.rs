@@ -1,0 +1,291 @@
+//! The drive model: how a robot moves, brakes and stops. A differential drive, the only one so far.
+//!
+//! Everything that predicts a robot asks here: local planners, the stop rule, recoveries, the
+//! simulator's motors. Another drive is another answer to the same questions.
+
+use super::{Limits, Robot};
+use crate::ConfigError;
+use crate::geometry::{Pose, Velocity};
+use crate::given::Given;
+
+/// The motion of one cycle, in which the velocity changes linearly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ramp {
+    /// Pose at its beginning.
+    pub start: Pose,
+    /// Velocity at its beginning.
+    pub from: Velocity,
+    /// Velocity at its end.
+    pub to: Velocity,
+    /// Pose at its end.
+    pub end: Pose,
+}
+
+impl Robot {
+    /// The motion of a robot that is given a command and brakes from the next cycle on, cycle by
+    /// cycle, until it stands: at least one cycle. Braking it stays on its arc.
+    pub fn motion_to_stop(
+        &self,
+        pose: Pose,
+        velocity: Velocity,
+        command: Velocity,
+    ) -> impl Iterator<Item = Ramp> + '_ {
+        let first = self.ramp(pose, velocity, command);
+        std::iter::successors(Some(first), |last| {
+            let stands = last.to == Velocity::ZERO;
+            let braked = || self.limits.braked(last.to, self.cycle_s);
+            (!stands).then(|| self.ramp(last.end, last.to, braked()))
+        })
+    }
+
+    /// The motion of the next cycle when a command is given.
+    pub fn ramp(&self, pose: Pose, from: Velocity, command: Velocity) -> Ramp {
+        let to = self.limits.reached(from, command, self.cycle_s);
+        Ramp { start: pose, from, to, end: pose.after_ramp(from, to, self.cycle_s) }
+    }
+
+    /// True if it stands: what its odometry shows then is noise.
+    pub(crate) fn stands(&self, velocity: Velocity) -> bool {
+        let (limits, cycle_s) = (&self.limits, self.cycle_s);
+        let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
+        velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
+    }
+
+    /// The longest from a scan until it stands, when it then backs up straight for one more cycle, as fast as it can, and brakes \[s\].
+    pub(crate) fn backing_s(&self) -> f64 {
+        let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
+        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
+    }
+}
+
+/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although their quotient
+/// is rounded to less.
+pub fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
+    let count = duration_s / cycle_s;
+    let nearest = count.round();
+    if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {
+        return (nearest as usize, 0.0);
+    }
+    (count.floor() as usize, count - count.floor())
+}
+
+impl Limits {
+    /// The velocity within the limits that is nearest to another one, component by component; 0 for
+    /// what is not a number.
+    pub fn clamped(&self, velocity: Velocity) -> Velocity {
+        let known = |value: f64| if value.is_nan() { 0.0 } else { value };
+        Velocity::new(
+            known(velocity.v).clamp(self.v_min_mps, self.v_max_mps),
+            known(velocity.omega).clamp(-self.omega_max_radps, self.omega_max_radps),
+        )
+    }
+
+    /// The velocity after `duration_s` when `command` is requested: each component moves towards
+    /// the command as far as its limits and accelerations allow.
+    pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
+        let Velocity { v, omega, .. } = self.clamped(command);
+        Velocity::new(
+            approach(from.v, v, self.acceleration_mps2, self.deceleration_mps2, duration_s),
+            approach(
+                from.omega,
+                omega,
+                self.angular_acceleration_radps2,
+                self.angular_deceleration_radps2,
+                duration_s,
+            ),
+        )
+    }
+
+    /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
+    /// `cycle_s`, but at most a hundredth of its full speed.
+    pub fn standing_mps(&self, cycle_s: f64) -> f64 {
+        (0.1 * self.deceleration_mps2 * cycle_s).min(0.01 * self.v_max_mps)
+    }
+
+    /// The longest that a robot may take to stop \[s\].
+    const LONGEST_STOP_S: f64 = 60.0;
+
+    /// Refuses brakes that are too weak: all that looks ahead looks as far as the robot needs to stop.
+    pub(super) fn check_stopping(&self) -> Result<(), ConfigError> {
+        let checks = [
+            ("limits.deceleration_mps2", self.deceleration_mps2, self.v_max_mps, "v_max_mps"),
+            ("limits.deceleration_mps2", self.deceleration_mps2, -self.v_min_mps, "v_min_mps"),
+            (
+                "limits.angular_deceleration_radps2",
+                self.angular_deceleration_radps2,
+                self.omega_max_radps,
+                "omega_max_radps",
+            ),
+        ];
+        let weak = checks
+            .into_iter()
+            .find(|(_, brakes, fastest, _)| fastest / brakes > Self::LONGEST_STOP_S * (1.0 + 1e-9));
+        let Some((field, brakes, fastest, fastest_name)) = weak else { return Ok(()) };
+        // Rounded up, so that what the message says can be used.
+        let least = Given((fastest / Self::LONGEST_STOP_S * 1e6).ceil() / 1e6);
+        let expected =
+            format!("at least {least}, to stop from limits.{fastest_name} within a minute");
+        Err(ConfigError::must_be(field, &expected, brakes))
+    }
+
+    /// Time to stop from full speed and full turn rate \[s\].
+    pub fn stop_s(&self) -> f64 {
+        (self.v_max_mps.max(-self.v_min_mps) / self.deceleration_mps2)
+            .max(self.omega_max_radps / self.angular_deceleration_radps2)
+    }
+
+    /// Way to stop from full speed \[m\].
+    pub fn stop_m(&self) -> f64 {
+        self.v_max_mps * self.v_max_mps / (2.0 * self.deceleration_mps2)
+    }
+
+    /// The way on which the robot brakes to a stop in whole cycles ([`Self::braked`]) is never longer than what it covers in
+    /// this time at the velocity from which it brakes: half of the time to stop and half of a cycle \[s\].
+    ///
+    /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with g(t) = max(0, 1 - t / T)
+    /// and the time to stop T; in between it changes linearly. Speed and turn rate fall in proportion, so the robot stays
+    /// on its arc and covers of it what u covers in the time
+    /// S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c (g(c) + g(2 c) + ...).
+    /// As g falls, c g(k c) is at most the integral of g over the k-th cycle, so S <= c / 2 + T / 2. Both terms are
+    /// needed: a robot that could stop at once still needs a cycle, in which it drives half as far as at u.
+    pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
+        0.5 * (self.stop_s() + cycle_s)
+    }
+
+    /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its beginning, to stand
+    /// within `within_m` of there, driving straight and braking in whole cycles \[m/s\]; 0 where none is small enough.
+    ///
+    /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <= f < 1, braking covers
+    /// b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c / 2. Solved for n and f.
+    pub fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
+        let shed_mps = self.deceleration_mps2 * cycle_s;
+        // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
+        let left = (2.0 * within_m / cycle_s - from_mps.abs()) / shed_mps;
+        if left == f64::INFINITY {
+            return left;
+        }
+        let left = left.max(0.0);
+        let whole = (0.5 * ((1.0 + 4.0 * left).sqrt() - 1.0)).floor();
+        let part = (left - whole * whole - whole) / (2.0 * whole + 2.0);
+        shed_mps * (whole + part)
+    }
+
+    /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
+    /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
+    pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {
+        let stop_s = (from.v.abs() / self.deceleration_mps2)
+            .max(from.omega.abs() / self.angular_deceleration_radps2);
+        // The last step of an even number of them ends at rest, not a rounding error before it.
+        if stop_s <= duration_s * (1.0 + 1e-9) {
+            return Velocity::ZERO;
+        }
+        let kept = 1.0 - duration_s / stop_s;
+        Velocity::new(from.v * kept, from.omega * kept)
+    }
+}
+
+/// `from` moved towards `to`; speeding up and slowing down have limits of their own.
+fn approach(from: f64, to: f64, acceleration: f64, deceleration: f64, duration_s: f64) -> f64 {
+    let slower = to.abs() < from.abs() || to * from < 0.0;
+    let step = if slower { deceleration } else { acceleration } * duration_s;
+    from + (to - from).clamp(-step, step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_no_motion() {
+        let robot = Robot::small();
+        assert!(robot.stands(Velocity::new(0.004, 0.02)));
+        assert!(!robot.stands(Velocity::new(0.006, 0.0)));
+        assert!(!robot.stands(Velocity::new(0.0, 0.04)));
+    }
+
+    #[test]
+    fn velocity_follows_the_command_within_the_limits() {
+        let limits = Robot::small().limits;
+        let from = Velocity::new(0.3, -0.2);
+        let reached = limits.reached(from, Velocity::new(9.0, 0.05), 0.1);
+        assert!((reached.v - 0.35).abs() < 1e-12 && (reached.omega - 0.05).abs() < 1e-12);
+        let stopped = limits.reached(Velocity::new(0.02, 0.0), Velocity::ZERO, 0.1);
+        assert_eq!(stopped, Velocity::ZERO);
+    }
+
+    #[test]
+    fn braking_in_whole_cycles_needs_half_the_time_to_stop_and_half_a_cycle() {
+        for (deceleration_mps2, cycle_s) in
+            [(0.5, 0.1), (0.47, 0.3), (5.0, 0.5), (30.0, 0.1), (1.1, 0.4)]
+        {
+            let limits = Limits {
+                deceleration_mps2,
+                angular_deceleration_radps2: 1e9,
+                ..Robot::small().limits
+            };
+            let (mut v, mut driven_m) = (limits.v_max_mps, 0.0);
+            while v > 0.0 {
+                let slower = limits.braked(Velocity::new(v, 0.0), cycle_s).v;
+                driven_m += 0.5 * (v + slower) * cycle_s;
+                v = slower;
+            }
+            let within_s = limits.brakes_within_s(cycle_s);
+            let needed_s = driven_m / limits.v_max_mps;
+            assert!(needed_s <= within_s, "{needed_s} {within_s}");
+            // Not by much: c (n - 1/2 - n (n - 1) c / (2 T)) with n whole cycles.
+            let stop_s = limits.stop_s();
+            let n = (stop_s / cycle_s - 1e-9).ceil();
+            let exact_s = cycle_s * (n - 0.5 - n * (n - 1.0) * cycle_s / (2.0 * stop_s));
+            assert!((needed_s - exact_s).abs() < 1e-9, "{needed_s} {exact_s}");
+        }
+    }
+
+    /// How far a robot drives in a cycle that takes it from one speed to another, and then until it stands \[m\].
+    fn driven_m(limits: &Limits, from_mps: f64, to_mps: f64, cycle_s: f64) -> f64 {
+        let (mut v, mut driven_m) = (to_mps, 0.5 * (from_mps + to_mps) * cycle_s);
+        while v > 0.0 {
+            let slower = limits.braked(Velocity::new(v, 0.0), cycle_s).v;
+            driven_m += 0.5 * (v + slower) * cycle_s;
+            v = slower;
+        }
+        driven_m
+    }
+
+    #[test]
+    fn the_fastest_speed_that_still_stops_uses_up_the_way() {
+        let limits = Robot::small().limits;
+        for cycle_s in [0.02, 0.1, 0.37, 1.0, 5.0] {
+            for (from_mps, within_m) in
+                [(0.0, 0.1), (0.3, 0.4), (0.5, 2.0), (0.1, 0.3), (0.0, 1e-6)]
+            {
+                let v = limits.stoppable_mps(from_mps, within_m, cycle_s);
+                let least_m = driven_m(&limits, from_mps, 0.0, cycle_s);
+                let expected_m = within_m.max(least_m);
+                let needed_m = driven_m(&limits, from_mps, v, cycle_s);
+                assert!(
+                    (needed_m - expected_m).abs() < 1e-9,
+                    "{cycle_s} {from_mps} {within_m}: {v}"
+                );
+            }
+        }
+        assert_eq!(limits.stoppable_mps(0.2, f64::INFINITY, 0.1), f64::INFINITY);
+        assert_eq!(limits.stoppable_mps(0.2, -1.0, 0.1), 0.0);
+    }
+
+    #[test]
+    fn braking_stays_on_the_arc() {
+        let limits = Robot::small().limits;
+        // 0.4 m/s needs 0.8 s, 0.6 rad/s only 0.2 s: the speed decides.
+        let braked = limits.braked(Velocity::new(0.4, 0.6), 0.1);
+        assert!((braked.v - 0.35).abs() < 1e-12 && (braked.omega - 0.525).abs() < 1e-12);
+        // 0.1 m/s needs 0.2 s, 1.2 rad/s 0.4 s: the turn rate decides.
+        let turning = limits.braked(Velocity::new(0.1, -1.2), 0.1);
+        assert!((turning.v - 0.075).abs() < 1e-12 && (turning.omega + 0.9).abs() < 1e-12);
+        assert_eq!(limits.braked(Velocity::new(0.05, 0.0), 0.1), Velocity::ZERO);
+        let mut velocity = Velocity::new(0.5, 0.09);
+        for _ in 0..10 {
+            velocity = limits.braked(velocity, 0.1);
+        }
+        assert_eq!(velocity, Velocity::ZERO);
+    }
+}
