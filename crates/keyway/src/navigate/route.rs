@@ -7,8 +7,8 @@ use crate::ConfigError;
 use crate::geometry::{Point, Pose, degrees};
 use crate::given::{Computed, Given};
 use crate::map::{
-    Cell, CellState, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid, SearchMap,
-    Separation,
+    Cell, CellState, CellWindow, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid,
+    SearchMap, Separation,
 };
 use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::{Footprint, Robot};
@@ -352,12 +352,10 @@ fn free_cells(discs: &[Disc], map: &SearchMap) -> Vec<Cell> {
     for disc in discs {
         let centre = frame.grid_from_world(disc.centre);
         let reach = disc.radius_m / frame.resolution_m();
-        let span = |at: f64| (at - reach).floor() as i32..=(at + reach).floor() as i32;
-        let within = span(centre.y).flat_map(|y| span(centre.x).map(move |x| Cell::new(x, y)));
+        let within = CellWindow::around(frame, disc.centre, disc.radius_m).cells();
         cells.extend(within.filter(|&cell| {
             let middle = Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5);
-            let is_inside = middle.distance(centre) <= reach && frame.contains(cell);
-            is_inside && !obstacles.get(cell)
+            middle.distance(centre) <= reach && !obstacles.get(cell)
         }));
     }
     cells.sort_unstable();

@@ -2,7 +2,7 @@
 
 use super::{Hit, Mover, ProjectedScan, Tracker};
 use crate::geometry::{Point, Square};
-use crate::map::{BitGrid, Cell, CellState, Edit, GridFrame, OccupancyGrid};
+use crate::map::{BitGrid, Cell, CellState, CellWindow, Edit, GridFrame, OccupancyGrid};
 use std::collections::HashMap;
 
 /// Cells in which scans have met something that the known map does not have.
@@ -115,16 +115,10 @@ impl SensedLayer {
         }
         let centre = frame.grid_from_world(mover.centre);
         let reach = mover.radius_m / frame.resolution_m();
-        let span = |at: f64, most: u32| {
-            let last = most as i32 - 1;
-            ((at - reach).floor().max(0.0) as i32)..=((at + reach).floor() as i32).min(last)
-        };
-        for y in span(centre.y, frame.height()) {
-            for x in span(centre.x, frame.width()) {
-                let square = Square { corner: Point::new(f64::from(x), f64::from(y)) };
-                if square.distance_sq_to_point(centre) <= reach * reach {
-                    self.clear(Cell::new(x, y));
-                }
+        for cell in CellWindow::around(frame, mover.centre, mover.radius_m).cells() {
+            let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
+            if square.distance_sq_to_point(centre) <= reach * reach {
+                self.clear(cell);
             }
         }
     }

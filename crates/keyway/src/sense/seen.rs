@@ -2,9 +2,9 @@
 
 use super::ProjectedScan;
 use super::spread::{Spread, Walls};
-use crate::geometry::{Point, Pose};
+use crate::geometry::Pose;
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
-use crate::robot::Robot;
+use crate::robot::{Footprint, Robot};
 use std::f64::consts::SQRT_2;
 
 /// The cells in which nothing stands, as far as a robot has looked: see [`SeenGround`].
@@ -55,7 +55,7 @@ pub enum SeenWanted {
 pub struct SeenGround {
     /// By anything that stands.
     seen: BitGrid,
-    robot: Robot,
+    footprint: Footprint,
     /// As far as cells are looked at from the robot \[m\].
     reach_m: f64,
     looks_ahead: bool,
@@ -117,7 +117,8 @@ impl SeenGround {
         let ahead_m = if looks_ahead { robot.looks_ahead_m() + cells_m } else { 0.0 };
         let behind_m = walkers.as_ref().map_or(back_m, |walkers| walkers.reach_m);
         let reach_m = if backs_up { ahead_m.max(behind_m) } else { ahead_m };
-        Some(Self { seen, robot: robot.clone(), reach_m, looks_ahead, backs_up, walkers })
+        let footprint = robot.footprint.clone();
+        Some(Self { seen, footprint, reach_m, looks_ahead, backs_up, walkers })
     }
 
     /// Cells that have been seen; behind the robot, where somebody walks, those of them that are
@@ -140,26 +141,21 @@ impl SeenGround {
         elapsed_s: f64,
     ) {
         let pose = scan.pose();
-        let window = window(frame, pose, self.reach_m);
+        let window = CellWindow::around(frame, pose.point(), self.reach_m);
         if let Some(walkers) = &mut self.walkers {
             walkers.walk((frame, walls), pose, elapsed_s);
         }
-        for y in window.low.y..=window.high.y {
-            for x in window.low.x..=window.high.x {
-                let cell = Cell::new(x, y);
-                let walkers = self.walkers.as_mut().filter(|walkers| walkers.window.contains(cell));
-                if self.seen.get(cell)
-                    && walkers.as_ref().is_none_or(|walkers| walkers.left.get(cell))
-                {
-                    continue;
-                }
-                let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                let place = frame.world_from_grid(centre);
-                let covers = || self.robot.footprint.covers(pose.body_from_world(place));
-                if covers() || scan.sees_through(place) {
-                    self.seen.set(cell, true);
-                    walkers.map(|walkers| walkers.left.set(cell, true));
-                }
+        for cell in window.cells() {
+            let walkers = self.walkers.as_mut().filter(|walkers| walkers.window.contains(cell));
+            if self.seen.get(cell) && walkers.as_ref().is_none_or(|walkers| walkers.left.get(cell))
+            {
+                continue;
+            }
+            let place = frame.world_from_cell(cell);
+            let covers = || self.footprint.covers(pose.body_from_world(place));
+            if covers() || scan.sees_through(place) {
+                self.seen.set(cell, true);
+                walkers.map(|walkers| walkers.left.set(cell, true));
             }
         }
         if let Some(walkers) = &mut self.walkers {
@@ -168,23 +164,10 @@ impl SeenGround {
     }
 }
 
-/// The cells within `reach_m` of the robot along the axes of the grid; for a pose that is not
-/// finite some at the border.
-fn window(frame: &GridFrame, pose: Pose, reach_m: f64) -> CellWindow {
-    let centre = frame.grid_from_world(pose.point());
-    let reach = reach_m / frame.resolution_m();
-    let low = |at: f64| (at - reach).floor().max(0.0) as i32;
-    let high = |at: f64, count: u32| ((at + reach).floor() as i32).min(count as i32 - 1);
-    CellWindow {
-        low: Cell::new(low(centre.x), low(centre.y)),
-        high: Cell::new(high(centre.x, frame.width()), high(centre.y, frame.height())),
-    }
-}
-
 impl Walkers {
     /// What was seen may be walked on meanwhile.
     fn walk(&mut self, (frame, walls): (&GridFrame, Walls<'_>), pose: Pose, elapsed_s: f64) {
-        let window = window(frame, pose, self.reach_m);
+        let window = CellWindow::around(frame, pose.point(), self.reach_m);
         for y in self.window.low.y..=self.window.high.y {
             let is_inside = window.low.y <= y && y <= window.high.y;
             let last = if is_inside { window.high.x } else { -1 };

@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::Polyline;
+use crate::geometry::{Point, Polyline};
 use crate::sense::Scan;
 use crate::sense::test_scan::{projected, scan_among};
 use proptest::prelude::*;

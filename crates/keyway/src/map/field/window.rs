@@ -1,6 +1,7 @@
 //! Rectangles of cells.
 
-use crate::map::Cell;
+use crate::geometry::Point;
+use crate::map::{Cell, GridFrame};
 
 /// A rectangle of cells, both corners included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,25 @@ pub struct CellWindow {
 }
 
 impl CellWindow {
+    /// The cells of a grid that are within a distance of a place along its axes; for a place that is
+    /// not finite some at the border.
+    pub fn around(frame: &GridFrame, place: Point, reach_m: f64) -> Self {
+        let centre = frame.grid_from_world(place);
+        let reach = reach_m / frame.resolution_m();
+        let low = |at: f64| (at - reach).floor().max(0.0) as i32;
+        let high = |at: f64, count: u32| ((at + reach).floor() as i32).min(count as i32 - 1);
+        Self {
+            low: Cell::new(low(centre.x), low(centre.y)),
+            high: Cell::new(high(centre.x, frame.width()), high(centre.y, frame.height())),
+        }
+    }
+
+    /// All cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
+        let Self { low, high } = *self;
+        (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| Cell::new(x, y)))
+    }
+
     /// True for a cell of the window.
     pub const fn contains(&self, cell: Cell) -> bool {
         self.low.x <= cell.x
