@@ -7,6 +7,7 @@ use keyway::local::{
     AdaptiveDwaConfig, DwaConfig, GuidedDwaConfig, KeyPointDwaConfig, LocalConfig,
 };
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
 use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
@@ -81,6 +82,27 @@ fn driven(episode: &Episode) -> Option<EpisodeReport> {
     // Ends without room are refused.
     let report = run_episode(episode).ok()?;
     (report.run.as_ref()?.cycles > 0).then_some(report)
+}
+
+/// Between two blocks 1.2 m apart, past a disc that is on no map: whatever drives keeps the margin.
+#[test]
+fn the_safety_margin_of_a_robot_is_kept() {
+    let clearance_m = |safety_margin_m, stack: &str| {
+        let robot = Robot { safety_margin_m, ..robot(false, false, 0.0) };
+        let map = room(&[(14, 9), (14, 16)]);
+        let mut episode =
+            Episode::new(map, robot.clone(), Point::new(1.0, 2.6), Point::new(5.0, 2.6));
+        episode.stack = Stack::by_name(stack, &robot).unwrap();
+        episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.6), 0.1)];
+        let report = run_episode(&episode).unwrap();
+        assert_eq!(report.outcome, EpisodeOutcome::Reached, "{stack} {safety_margin_m:?}");
+        report.run.unwrap().min_clearance_m.unwrap()
+    };
+    for stack in ["keyway", "key-point-fusion", "s1-ref14"] {
+        assert!(clearance_m(None, stack) < 0.15, "{stack}");
+        let kept_m = clearance_m(Some(0.15), stack);
+        assert!(kept_m > 0.15 - 1e-6, "{stack}: {kept_m}");
+    }
 }
 
 proptest! {

@@ -94,7 +94,7 @@ impl ConfigError {
     ///
     /// # Errors
     /// When it is not; the error names the path.
-    pub fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
+    pub(crate) fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
         if (0.0..=1e9).contains(&value) {
             return Ok(());
         }

@@ -132,9 +132,10 @@ fn any_robot() -> impl Strategy<Value = Robot> {
     ];
     let rates = (between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4));
     let speeds = (between(1e-4, 100.0), between(1e-4, 100.0), 0.0..=1.0f64);
-    let cycles = (between(1e-3, 10.0), 0.0..=10.0f64);
+    let margins = prop_oneof![Just(None), between(1e-4, 10.0).prop_map(Some)];
+    let cycles = (between(1e-3, 10.0), 0.0..=10.0f64, margins);
     (footprint, cycles, speeds, rates).prop_map(
-        |(footprint, (cycle_s, actuation_delay_s), speeds, rates)| {
+        |(footprint, (cycle_s, actuation_delay_s, safety_margin_m), speeds, rates)| {
             let limits = Limits {
                 v_min_mps: -speeds.2 * speeds.0,
                 v_max_mps: speeds.0,
@@ -145,7 +146,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 angular_deceleration_radps2: rates.3,
             };
             let sensor = RangeSensor::new(90, 360.0, 5.0);
-            Robot { footprint, cycle_s, actuation_delay_s, limits, sensor }
+            Robot { footprint, cycle_s, actuation_delay_s, safety_margin_m, limits, sensor }
         },
     )
 }

@@ -107,8 +107,8 @@ pub struct EpisodeRules {
     pub time_limit_s: Option<f64>,
     /// See [`RunRules::stuck_window_s`] \[s\].
     pub stuck_window_s: f64,
-    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: 0.1 m, or a twentieth of the distance that
-    /// a slow robot drives in `stuck_window_s`.
+    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: what its controller takes for
+    /// progress in that time ([`Progress::step_m`](keyway::navigate::Progress::step_m)).
     pub stuck_progress_m: Option<f64>,
 }
 

@@ -6,7 +6,7 @@ use crate::sim::{Circle, Disturbances, Mover, RunRules, StandingPolygon, World};
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, Cell, Clearance, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
-use keyway::navigate::{FittedStack, Goal, NavigateError, Stack, touches};
+use keyway::navigate::{FittedStack, Goal, NavigateError, Progress, Stack, touches};
 use keyway::plan::{Plan, PlanError};
 use keyway::robot::Robot;
 use keyway::route::Route;
@@ -106,9 +106,8 @@ impl Task<'_> {
             stuck_window_s,
             stuck_progress_m,
         } = *self.rules;
-        let v_max_mps = self.robot.limits.v_max_mps;
-        let usual_s = 60.0 + 4.0 * length_m / v_max_mps;
-        let usual_m = RunRules::default().stuck_progress_m.min(0.05 * v_max_mps * stuck_window_s);
+        let usual_s = 60.0 + 4.0 * length_m / self.robot.limits.v_max_mps;
+        let usual_m = Progress::step_m(self.robot, stuck_window_s);
         RunRules {
             goal_tolerance_m: goal_tolerance_m.unwrap_or(self.stack.controller.goal_tolerance_m),
             arrival,

@@ -1,6 +1,7 @@
 //! Rules that end a run without contact.
 
 use keyway::ConfigError;
+use keyway::navigate::Progress;
 use serde::{Deserialize, Serialize};
 
 /// Rules that end a run.
@@ -39,7 +40,7 @@ impl Default for RunRules {
             arrival: Arrival::Passing,
             time_limit_s: 300.0,
             stuck_window_s: 20.0,
-            stuck_progress_m: 0.1,
+            stuck_progress_m: 0.05,
         }
     }
 }
@@ -63,23 +64,22 @@ pub(super) fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
     (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64
 }
 
-/// Shortest remaining path so far, and its time.
-pub(super) struct Progress {
+/// Watches whether a robot gets on.
+pub(super) struct StuckWatch {
     step_m: f64,
     window_cycles: u64,
-    /// Remaining length that must be undercut. A new route may be longer than the last: then
-    /// progress is measured on the new one.
-    reference_m: f64,
+    progress: Progress,
+    /// The cycle of the last progress.
     since_cycle: u64,
     route: Option<u32>,
 }
 
-impl Progress {
+impl StuckWatch {
     pub(super) fn new(rules: &RunRules, cycle_s: f64) -> Self {
         Self {
             step_m: rules.stuck_progress_m,
             window_cycles: cycles_within(rules.stuck_window_s, cycle_s),
-            reference_m: f64::INFINITY,
+            progress: Progress::NEW,
             since_cycle: 0,
             route: None,
         }
@@ -88,13 +88,11 @@ impl Progress {
     /// True if a robot with `remaining_m` to go on the route of this number is stuck.
     pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
         if remaining_m.is_finite() {
-            if self.route != Some(route) {
-                let is_first = self.route.replace(route).is_none();
-                self.reference_m =
-                    if is_first { remaining_m } else { self.reference_m.max(remaining_m) };
+            if self.route.replace(route).is_some_and(|before| before != route) {
+                self.progress.take_another_way(remaining_m);
             }
-            if remaining_m <= self.reference_m - self.step_m {
-                (self.reference_m, self.since_cycle) = (remaining_m, cycle);
+            if self.progress.has_come_on(remaining_m, self.step_m) {
+                self.since_cycle = cycle;
             }
         }
         cycle - self.since_cycle >= self.window_cycles

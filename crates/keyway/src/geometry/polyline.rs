@@ -61,7 +61,7 @@ impl Polyline {
     /// The arc length of the point that is nearest to `position`, among those from arc length `from_m` on and at
     /// most `window_m` farther. So a robot that follows a line never goes back along it, and does not
     /// leap where the line comes near itself. `from_m` for a line without segments.
-    pub fn nearest_along(&self, position: Point, from_m: f64, window_m: f64) -> f64 {
+    pub(crate) fn nearest_along(&self, position: Point, from_m: f64, window_m: f64) -> f64 {
         let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
         for segment in self.segments() {
             let length_m = segment.length();

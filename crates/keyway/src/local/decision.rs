@@ -68,7 +68,7 @@ impl Rejections {
     pub const MOST: usize = 8;
 
     /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`] are left out.
-    pub fn none_by(rules: &[(&'static str, &'static str)]) -> Self {
+    pub(crate) fn none_by(rules: &[(&'static str, &'static str)]) -> Self {
         let rejection = |&(rule, because): &(&'static str, &'static str)| Rejection {
             rule: Cow::Borrowed(rule),
             because: Cow::Borrowed(because),

@@ -36,7 +36,7 @@ pub enum Misfit {
 impl Misfit {
     /// The first one along a path; none where a robot of this footprint can drive it, turning on the spot at its corners.
     /// Costs a few look-ups per stretch in the open.
-    pub fn first_along(
+    pub(crate) fn first_along(
         path: &Polyline,
         footprint: &Footprint,
         obstacles: &DistanceField,

@@ -59,8 +59,8 @@ pub struct ControllerConfig {
     pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
-    /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5 cm, or by a tenth of what
-    /// a slow robot drives in that time.
+    /// A recovery begins when the remaining way has not become shorter for this long \[s\]
+    /// ([`Progress::step_m`](super::Progress::step_m)).
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
     /// beginning. Where `turn` is among them, a robot that is not round also turns before it drives where it could not.
@@ -191,11 +191,6 @@ impl ControllerConfig {
             return Err(ConfigError::new("go_around", reason));
         }
         Ok(())
-    }
-
-    /// What counts as progress within [`Self::no_progress_s`] for a robot of this top speed \[m\].
-    pub(super) fn progress_m(&self, v_max_mps: f64) -> f64 {
-        (0.1 * v_max_mps * self.no_progress_s).min(0.05)
     }
 
     /// What tells movers apart, if anything does.

@@ -1,5 +1,6 @@
 //! What is watched while a robot drives: its progress, and the rest of its route.
 
+use super::Progress;
 use crate::geometry::{Point, Polyline, Segment, Square};
 use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
 
@@ -14,8 +15,7 @@ pub(super) struct Watch {
     pub(super) no_progress_s: f64,
     /// How long the robot has waited for something that moves \[s\].
     mover_s: f64,
-    /// The shortest remaining way so far \[m\].
-    shortest_m: f64,
+    progress: Progress,
 }
 
 impl Watch {
@@ -24,7 +24,7 @@ impl Watch {
         blocked_s: 0.0,
         no_progress_s: 0.0,
         mover_s: 0.0,
-        shortest_m: f64::INFINITY,
+        progress: Progress::NEW,
     };
 
     /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot waits for something that
@@ -37,14 +37,13 @@ impl Watch {
         cycle_s: f64,
     ) {
         self.route_s += cycle_s;
-        let has_come_on = remaining_m < self.shortest_m - progress_m;
+        let has_come_on = self.progress.has_come_on(remaining_m, progress_m);
         if self.mover_s < waits_s && !has_come_on {
             self.mover_s += cycle_s;
             return;
         }
         self.blocked_s = if is_blocked { self.blocked_s + cycle_s } else { 0.0 };
         if has_come_on {
-            self.shortest_m = remaining_m;
             (self.no_progress_s, self.mover_s) = (0.0, 0.0);
         } else {
             self.no_progress_s += cycle_s;

@@ -98,7 +98,7 @@ impl Limits {
 
     /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
     /// `cycle_s`, but at most a hundredth of its full speed.
-    pub fn standing_mps(&self, cycle_s: f64) -> f64 {
+    pub(crate) fn standing_mps(&self, cycle_s: f64) -> f64 {
         (0.1 * self.deceleration_mps2 * cycle_s).min(0.01 * self.v_max_mps)
     }
 
@@ -157,7 +157,7 @@ impl Limits {
     ///
     /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <= f < 1, braking covers
     /// b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c / 2. Solved for n and f.
-    pub fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
+    pub(crate) fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
         let shed_mps = self.deceleration_mps2 * cycle_s;
         // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
         let left = (2.0 * within_m / cycle_s - from_mps.abs()) / shed_mps;

@@ -218,7 +218,7 @@ impl Footprint {
     }
 
     /// Its reach ahead of the centre of rotation \[m\].
-    pub fn foremost_m(&self) -> f64 {
+    pub(crate) fn foremost_m(&self) -> f64 {
         match self {
             Self::Circle(circle) => circle.radius_m(),
             Self::Polygon(polygon) => {

@@ -26,6 +26,11 @@ pub struct Robot {
     /// acts, and simulated motors are as late.
     #[serde(default)]
     pub actuation_delay_s: f64,
+    /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from 0.0001
+    /// to 10; `None`: a tenth of what the robot drives in a cycle at full speed. Routes, the
+    /// parameters of stacks for a robot and the stop rule follow from it ([`Self::safety_margin_m`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub safety_margin_m: Option<f64>,
     /// Velocity and acceleration limits.
     pub limits: Limits,
     /// The range sensor.
@@ -73,6 +78,7 @@ impl Robot {
             footprint: bundled(Footprint::circle(0.18)),
             cycle_s: 0.1,
             actuation_delay_s: 0.0,
+            safety_margin_m: None,
             limits: Limits {
                 v_min_mps: 0.0,
                 v_max_mps: 0.5,
@@ -94,6 +100,7 @@ impl Robot {
             footprint: bundled(Footprint::rectangle(0.508, 0.430)),
             cycle_s: 0.05,
             actuation_delay_s: 0.0,
+            safety_margin_m: None,
             limits: Limits {
                 v_min_mps: -0.5,
                 v_max_mps: 2.0,
@@ -114,6 +121,7 @@ impl Robot {
             footprint: bundled(Footprint::circle(0.0)),
             cycle_s: 0.1,
             actuation_delay_s: 0.0,
+            safety_margin_m: None,
             limits: Limits {
                 v_min_mps: 0.0,
                 v_max_mps: 1.0,
@@ -141,6 +149,12 @@ impl Robot {
         let checks = [
             ("cycle_s", self.cycle_s, 1e-3..=10.0, "a time from 0.001 to 10 s"),
             ("actuation_delay_s", self.actuation_delay_s, 0.0..=10.0, "a time from 0 to 10 s"),
+            (
+                "safety_margin_m",
+                self.safety_margin_m.unwrap_or(1.0),
+                1e-4..=10.0,
+                "a length from 0.0001 to 10 m",
+            ),
             ("limits.v_max_mps", v_max_mps, speeds.clone(), speed),
             (
                 "limits.v_min_mps",
@@ -177,15 +191,17 @@ fn bundled(footprint: Result<Footprint, FootprintError>) -> Footprint {
 
 impl Robot {
     /// The distance that routes keep from obstacles where they can: the circumscribed radius, with
-    /// which the robot can turn on the spot anywhere, and a cycle of driving at full speed \[m\].
+    /// which the robot can turn on the spot anywhere, and a cycle of driving at full speed, or the
+    /// safety margin where that is more \[m\].
     pub fn preferred_clearance_m(&self) -> f64 {
-        self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * self.cycle_s
+        let cycle_m = self.limits.v_max_mps * self.cycle_s;
+        self.footprint.circumscribed_radius_m() + cycle_m.max(self.safety_margin_m())
     }
 
-    /// What is kept from obstacles in addition to the footprint: a tenth of what the robot drives in a
-    /// cycle at full speed \[m\].
+    /// The safety margin: that of the robot, or a tenth of what it drives in a cycle at full speed
+    /// \[m\].
     pub fn safety_margin_m(&self) -> f64 {
-        0.1 * self.limits.v_max_mps * self.cycle_s
+        self.safety_margin_m.unwrap_or(0.1 * self.limits.v_max_mps * self.cycle_s)
     }
 
     /// What is farther away than this hardly matters in one cycle: as far as any part of the robot comes at

@@ -189,7 +189,7 @@ impl ProjectedScan {
     }
 
     /// True if the beams to both sides of a place go on beyond it.
-    pub fn sees_through(&self, place: Point) -> bool {
+    pub(crate) fn sees_through(&self, place: Point) -> bool {
         let away_m = place.distance(self.pose.point());
         if away_m.is_nan() || away_m > self.range_max_m {
             return false;

@@ -4,7 +4,7 @@ use super::{Entrant, Touched};
 use crate::sim::cycle_motion::CycleMotion;
 use crate::sim::disturbances::{Actuation, Localisation, Sensing, Source};
 use crate::sim::lidar::Beams;
-use crate::sim::rules::{Arrival, Progress, cycles_within};
+use crate::sim::rules::{Arrival, StuckWatch, cycles_within};
 use crate::sim::social_force::Body;
 use crate::sim::sweep::{MoverSweep, Moving, PairSweep, StandingSweep};
 use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
@@ -34,7 +34,7 @@ pub(super) struct Drive<'a> {
     pub(super) actuation: Option<Actuation>,
     localisation: Option<Localisation>,
     samples: Vec<Sample>,
-    pub(super) progress: Progress,
+    pub(super) progress: StuckWatch,
     /// Motion in the current cycle.
     pub(super) motion: CycleMotion,
     /// Object touched in the current cycle.
@@ -81,7 +81,7 @@ impl<'a> Drive<'a> {
             actuation,
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![Sample { t_s: 0.0, pose, velocity }],
-            progress: Progress::new(&rules, cycle_s),
+            progress: StuckWatch::new(&rules, cycle_s),
             motion: CycleMotion::standing(pose, cycle_s),
             touched: None,
             outcome: None,

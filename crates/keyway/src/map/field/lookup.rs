@@ -20,19 +20,12 @@ impl DistanceField {
 
     /// The square of a cell's distance, in half cells: exact. [`Self::limit_half_cells_sq`] where no
     /// obstacle lies within reach; `None` outside the map.
-    pub fn half_cells_sq(&self, cell: Cell) -> Option<u32> {
+    pub(crate) fn half_cells_sq(&self, cell: Cell) -> Option<u32> {
         self.frame.contains(cell).then(|| self.half_cells_sq[self.index(cell)] as u32)
     }
 
-    /// The squared distances of row `y` in half cells, from left to right.
-    ///
-    /// # Panics
-    /// When the map has no such row.
-    pub fn row_half_cells_sq(&self, y: u32) -> impl ExactSizeIterator<Item = u32> + '_ {
-        self.half_cells_sq[self.row(y as i32)].iter().map(|&value| value as u32)
-    }
-
-    /// The same in memory; `None` where the map has no such row.
+    /// The squared distances of row `y` in half cells, from left to right, in memory; `None` where the
+    /// map has no such row.
     pub(crate) fn row_squares(&self, y: i32) -> Option<&[i32]> {
         let is_there = (0..self.frame.height() as i32).contains(&y);
         is_there.then(|| &self.half_cells_sq[self.row(y)])

@@ -26,7 +26,8 @@ fn brute_force(obstacles: &BitGrid, to: DistanceTo, limit_sq: u32) -> Vec<u32> {
 }
 
 fn values(field: &DistanceField) -> Vec<u32> {
-    (0..field.frame().height()).flat_map(|y| field.row_half_cells_sq(y)).collect()
+    let rows = (0..field.frame().height() as i32).map(|y| field.row_squares(y).unwrap());
+    rows.flatten().map(|&value| value as u32).collect()
 }
 
 /// Random grids of all shapes, from empty over scattered to full, some with blocks.

@@ -79,7 +79,7 @@ impl Neighbourhoods {
 
 impl LayerConfig {
     /// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
-    pub const MAX_REACH_CELLS: f64 = 100_000.0;
+    pub(crate) const MAX_REACH_CELLS: f64 = 100_000.0;
     /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add two
     /// such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;

@@ -1,0 +1,65 @@
+//! Progress along a way: what is left of it becomes shorter. One rule for controllers and judges.
+
+use crate::robot::Robot;
+
+/// The shortest remaining way so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    shortest_m: f64,
+}
+
+impl Progress {
+    /// Nothing is known of the way yet: whatever comes first is progress.
+    pub const NEW: Self = Self { shortest_m: f64::INFINITY };
+
+    /// The largest step that is asked for \[m\].
+    const LARGEST_STEP_M: f64 = 0.05;
+
+    /// The part of what it drives in the time that a slow robot has to come on.
+    const SLOW_PART: f64 = 0.1;
+
+    /// By how much a robot has to come on within a time \[m\]: 5 cm, or a tenth of what a slow robot
+    /// drives in that time.
+    pub fn step_m(robot: &Robot, within_s: f64) -> f64 {
+        (Self::SLOW_PART * robot.limits.v_max_mps * within_s).min(Self::LARGEST_STEP_M)
+    }
+
+    /// True if the way has become shorter by the step since the last time that this was true.
+    pub fn has_come_on(&mut self, remaining_m: f64, step_m: f64) -> bool {
+        let has_come_on = remaining_m <= self.shortest_m - step_m;
+        if has_come_on {
+            self.shortest_m = remaining_m;
+        }
+        has_come_on
+    }
+
+    /// The robot takes another way. Where that is longer, progress is measured on it.
+    pub const fn take_another_way(&mut self, remaining_m: f64) {
+        self.shortest_m = self.shortest_m.max(remaining_m);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_by_hand() {
+        // 0.5 m/s for 3 s are 1.5 m; at 0.01 m/s they are 3 cm.
+        let mut robot = Robot::small();
+        assert_eq!(Progress::step_m(&robot, 3.0), 0.05);
+        robot.limits.v_max_mps = 0.01;
+        assert!((Progress::step_m(&robot, 3.0) - 0.003).abs() < 1e-15);
+    }
+
+    #[test]
+    fn progress_is_a_way_that_becomes_shorter() {
+        let mut progress = Progress::NEW;
+        let come_on = [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_come_on(m, 0.05));
+        assert_eq!(come_on, [true, false, true, false, false, true]);
+        progress.take_another_way(3.0);
+        assert!(!progress.has_come_on(4.88, 0.05), "a shorter way is none by itself");
+        progress.take_another_way(7.0);
+        assert!(progress.has_come_on(6.95, 0.05) && !progress.has_come_on(6.95, 0.05));
+    }
+}
