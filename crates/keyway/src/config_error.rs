@@ -16,6 +16,7 @@ use thiserror::Error;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{path} {reason}")]
+#[non_exhaustive]
 pub struct ConfigError {
     /// The field, as a path from the config that was checked: `weights.heading` of a local planner,
     /// `local.weights.heading` of a stack.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// A path at one arc length. The fields' names are the keys of the JSON form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct PathSample {
     /// Arc length from the beginning of the path \[m\].
     pub s_m: f64,

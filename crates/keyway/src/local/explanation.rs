@@ -57,6 +57,7 @@ pub enum Fate {
 
 /// A change that may let the robot drive, and whether it does: it was made, and decided again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Remedy {
     /// What was changed, and by how much. Where it does not help: by how much at most.
     #[serde(flatten)]

@@ -10,6 +10,7 @@ use crate::given::Given;
 
 /// The motion of one cycle, in which the velocity changes linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Ramp {
     /// Pose at its beginning.
     pub start: Pose,

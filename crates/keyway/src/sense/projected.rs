@@ -30,6 +30,7 @@ struct Beam {
 
 /// The end of a beam at something.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Hit {
     /// Where, in the world frame \[m\].
     pub point: Point,

@@ -10,6 +10,7 @@ use std::f64::consts::{FRAC_PI_8, TAU};
 
 /// The smallest distance of a curve from the obstacles lies between these.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ClearanceBounds {
     /// The curve is nowhere nearer than this \[m\].
     pub at_least_m: f64,

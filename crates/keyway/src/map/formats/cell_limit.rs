@@ -13,6 +13,7 @@ pub const DEFAULT_MAX_CELLS: u64 = 1 << 29;
     "a map of {width} x {height} cells is larger than the limit of {max_cells} cells; if it is meant \
      to be so large, raise the limit"
 )]
+#[non_exhaustive]
 pub struct TooManyCells {
     /// Columns of the map.
     pub width: u64,

@@ -15,6 +15,7 @@ const SHOWN: usize = 40;
 
 /// One line of a `.scen` file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Scenario {
     /// Its line in the file, from 1.
     pub line: usize,

@@ -7,6 +7,7 @@ use thiserror::Error;
 #[error(
     "line {line} is not UTF-8 text (byte {column} of the line is {byte:#04x}); save the file as UTF-8"
 )]
+#[non_exhaustive]
 pub struct TextError {
     /// Line, from 1.
     pub line: usize,
