@@ -31,7 +31,7 @@ const KEYWAY: Layers = &[
 
 /// A world in time.
 const SIM: Layers =
-    &[&["worlds", "sim"], &["metrics"], &["report"], &["episode"], &["scene_files"]];
+    &[&["parallel", "worlds"], &["sim"], &["metrics"], &["report"], &["episode"], &["scene_files"]];
 
 /// All crates.
 const CRATES: [&str; 6] =

@@ -9,14 +9,13 @@
 //! | [`results`] | folders of results, and journals |
 //! | [`table`] | rows as text, LaTeX and CSV |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
-//! | [`parallel`], [`progress`] | work on several threads; its progress |
+//! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
 
 pub mod batch;
 pub mod bench;
 pub mod claims;
 pub mod compare;
 pub mod measure;
-pub mod parallel;
 pub mod progress;
 pub mod results;
 pub mod significance;

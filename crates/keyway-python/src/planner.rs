@@ -11,11 +11,10 @@ use keyway::geometry::Point;
 use keyway::navigate::Stack;
 use keyway::route::{Route, RouteQuery};
 use keyway::search::IfUnreachable;
-use pyo3::exceptions::PyRuntimeError;
+use keyway_sim::parallel::{in_parallel, processors};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Plans many paths on one map: its layers, its planner and its smoother are made once.
 ///
@@ -180,7 +179,7 @@ fn planned_many(
     let queries: Vec<RouteQuery> =
         starts.iter().zip(&goals).map(|(&start, &goal)| RouteQuery::new(start, goal)).collect();
     let ready = Arc::clone(ready);
-    let results = watched(py, progress, move |watch| all_routes(&ready, &queries, jobs, watch))??;
+    let results = watched(py, progress, move |watch| all_routes(&ready, &queries, jobs, watch))?;
     let plan = |result| match result {
         Ok((ready, route)) => Ok(Bound::new(py, Plan::new(ready, route))?.into_any()),
         Err(error) => {
@@ -217,39 +216,21 @@ fn all_routes(
     queries: &[RouteQuery],
     jobs: Option<usize>,
     watch: &Watch,
-) -> PyResult<Vec<PlannedRoute>> {
-    let cores = keyway_lab::parallel::processors();
-    let jobs = jobs.unwrap_or(cores).min(queries.len()).min(1024);
-    let next = AtomicUsize::new(0);
-    let work = || {
-        let mut done = Vec::new();
-        while let Some((index, query)) = {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            queries.get(index).map(|query| (index, query)).filter(|_| !watch.is_stopped())
-        } {
-            let around = ready.around(&[query.start, query.goal], watch);
-            let route = around.and_then(|ready| {
-                let route = ready.route(query).map_err(|error| ready.plain_why(&error, query))?;
-                Ok((ready, route))
-            });
-            done.push((index, route));
-            watch.advance(queries.len() as u64);
+) -> Vec<PlannedRoute> {
+    let jobs = jobs.unwrap_or_else(processors).min(1024);
+    let plan = |query: &RouteQuery| {
+        if watch.is_stopped() {
+            return None;
         }
-        done
+        let around = ready.around(&[query.start, query.goal], watch);
+        let route = around.and_then(|ready| {
+            let route = ready.route(query).map_err(|error| ready.plain_why(&error, query))?;
+            Ok((ready, route))
+        });
+        watch.advance(queries.len() as u64);
+        Some(route)
     };
-    let mut all: Vec<(usize, PlannedRoute)> = std::thread::scope(|scope| {
-        let start = |_| std::thread::Builder::new().spawn_scoped(scope, work);
-        // Where no more threads can be had, fewer do the same.
-        let threads: Vec<_> = (0..jobs).map_while(|job| start(job).ok()).collect();
-        let own = if threads.is_empty() { work() } else { Vec::new() };
-        let joined = threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default());
-        joined.chain(own).collect()
-    });
-    if all.len() < queries.len() && !watch.is_stopped() {
-        return Err(PyRuntimeError::new_err("the work has ended without a result"));
-    }
-    all.sort_by_key(|(index, _)| *index);
-    Ok(all.into_iter().map(|(_, route)| route).collect())
+    in_parallel(queries, jobs, plan).into_iter().flatten().collect()
 }
 
 /// Plans a path on a map, from one position to another [m], and smooths it.

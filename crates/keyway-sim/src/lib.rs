@@ -9,12 +9,14 @@
 //! | report | [`report`] | a route or a run -> what JSON reports say of it |
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //! | files | `scene_files` | a text -> an episode or a team |
+//! | threads | [`parallel`] | items -> results, in their order |
 //!
 //! Everything is deterministic: equal inputs and seeds give equal bytes. No function prints or
 //! reads a clock.
 
 pub mod episode;
 pub mod metrics;
+pub mod parallel;
 pub mod report;
 #[cfg(feature = "formats")]
 pub mod scene_files;

@@ -3,9 +3,8 @@
 use super::Animation;
 use crate::map_picture::{Layout, MapPicture};
 use crate::raster::DrawError;
+use keyway_sim::parallel::{in_parallel, processors};
 use resvg::tiny_skia::Pixmap;
-use std::num::NonZero;
-use std::thread;
 
 /// How long the result is shown \[1/100 s\].
 const RESULT_CS: u16 = 200;
@@ -82,23 +81,10 @@ fn in_order(
     draw: impl Fn(usize) -> Result<Pixmap, DrawError> + Sync,
     mut take: impl FnMut(Result<Pixmap, DrawError>) -> Result<(), DrawError>,
 ) -> Result<(), DrawError> {
-    let workers = thread::available_parallelism().map_or(1, NonZero::get);
-    for first in (0..count).step_by(workers) {
-        let batch = first..(first + workers).min(count);
-        let drawn: Vec<_> = thread::scope(|scope| {
-            let threads: Vec<_> = batch
-                .map(|i| {
-                    scope.spawn({
-                        let draw = &draw;
-                        move || draw(i)
-                    })
-                })
-                .collect();
-            threads.into_iter().map(thread::ScopedJoinHandle::join).collect()
-        });
-        for picture in drawn {
-            take(picture.unwrap_or_else(|panic| std::panic::resume_unwind(panic)))?;
-        }
+    let workers = processors();
+    let numbers: Vec<usize> = (0..count).collect();
+    for batch in numbers.chunks(workers) {
+        in_parallel(batch, workers, |&i| draw(i)).into_iter().try_for_each(&mut take)?;
     }
     Ok(())
 }

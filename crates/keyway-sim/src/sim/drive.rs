@@ -3,6 +3,7 @@
 use super::fleet::{Entrant, Fleet};
 use super::participant::{Action, Control, Participant};
 use super::{Run, World};
+use crate::parallel::for_each;
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::given::Given;
@@ -120,22 +121,8 @@ impl Asked<'_, '_> {
 
 /// Calls the controllers. All decide on the same state, so their order does not matter.
 fn decide_all(asked: &mut [Asked<'_, '_>], fleet: &Fleet<'_>, threads: usize) {
-    if threads <= 1 || asked.len() <= 1 {
-        for asked in asked {
-            asked.decide(fleet);
-        }
-        return;
-    }
-    let share = asked.len().div_ceil(threads);
-    std::thread::scope(|scope| {
-        for part in asked.chunks_mut(share) {
-            scope.spawn(|| {
-                for asked in part {
-                    asked.decide(fleet);
-                }
-            });
-        }
-    });
+    let threads = threads.min(asked.len());
+    for_each(asked, threads, |asked| asked.decide(fleet));
 }
 
 /// Checks all arguments. With several participants, a path begins with the participant.

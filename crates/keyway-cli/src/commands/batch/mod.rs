@@ -24,8 +24,8 @@ use keyway_lab::batch::{
     AgainstFirst, Record, StackSummary, against_first, against_first_table, summaries,
     summary_table,
 };
-use keyway_lab::parallel::processors;
 use keyway_lab::results::{Journal, OutDir};
+use keyway_sim::parallel::processors;
 use part::Part;
 use plan::Planned;
 use result_files::{fill, known, names, write_files};

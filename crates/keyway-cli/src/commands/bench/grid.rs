@@ -12,7 +12,7 @@ use keyway::robot::Robot;
 use keyway_lab::bench::{
     FileResult, GridRequest, GridRow, Mistake, grid_table, mistakes_note, totals,
 };
-use keyway_lab::parallel::in_parallel;
+use keyway_sim::parallel::in_parallel;
 use serde::Serialize;
 
 #[derive(Serialize)]

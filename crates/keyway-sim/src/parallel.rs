@@ -1,0 +1,87 @@
+//! Work spread over threads: the one way in which simulations, experiments and pictures do it.
+//!
+//! Results never depend on the number of threads: items do not see each other, and results come in
+//! the order of the items.
+
+use std::sync::{Mutex, PoisonError};
+use std::thread::Builder;
+
+/// Number of threads that this computer runs at the same time.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Works on every item, on at most this many threads. A free thread takes the next item, in their
+/// order. Where fewer threads can be had, fewer do the same.
+///
+/// # Panics
+/// When the work does.
+pub fn for_each<T: Send>(
+    items: impl IntoIterator<Item = T, IntoIter: Send>,
+    jobs: usize,
+    work: impl Fn(T) + Sync,
+) {
+    let items = Mutex::new(items.into_iter());
+    // A poisoned lock still holds the items that nobody has taken.
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let all = || {
+        while let Some(item) = next() {
+            work(item);
+        }
+    };
+    std::thread::scope(|scope| {
+        let _ = (1..jobs).find(|_| Builder::new().spawn_scoped(scope, all).is_err());
+        all();
+    });
+}
+
+/// Maps every item with at most this many threads, and returns the results in the order of the
+/// items.
+///
+/// # Panics
+/// When the work does.
+pub fn in_parallel<T: Sync, R: Send>(
+    items: &[T],
+    jobs: usize,
+    work: impl Fn(&T) -> R + Sync,
+) -> Vec<R> {
+    let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
+    let places = items.iter().zip(&mut results);
+    for_each(places, jobs.min(items.len()), |(item, result)| *result = Some(work(item)));
+    // Each item has been worked on: otherwise the work has panicked, and so has the scope.
+    results.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    #[test]
+    fn results_come_in_order_on_any_number_of_threads() {
+        let items: Vec<u64> = (0..100).collect();
+        let expected: Vec<u64> = items.iter().map(|item| item * item).collect();
+        for jobs in [0, 1, 2, 7, 200] {
+            assert_eq!(in_parallel(&items, jobs, |item| item * item), expected, "{jobs}");
+        }
+        assert!(in_parallel(&[0; 0], 3, |_| 1).is_empty());
+    }
+
+    #[test]
+    fn every_item_is_worked_on_once() {
+        let mut items = vec![0; 1000];
+        for_each(&mut items, 4, |item| *item += 1);
+        assert!(items.iter().all(|&item| item == 1));
+    }
+
+    #[test]
+    fn a_panic_is_not_lost() {
+        let seen = AtomicUsize::new(0);
+        let work = |item: &u32| {
+            seen.fetch_add(1, Ordering::Relaxed);
+            assert_ne!(*item, 3);
+        };
+        let panicked = std::panic::catch_unwind(|| in_parallel(&[1, 2, 3, 4, 5], 2, work));
+        assert!(panicked.is_err() && seen.load(Ordering::Relaxed) >= 3);
+    }
+}
