@@ -48,8 +48,7 @@ fn has_a_number_that_is_none(explanation: &Explanation) -> bool {
 
 /// Drives a few cycles, towards the obstacle and around it.
 fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> {
-    let mut controller =
-        Controller::new(&hall(), &stack.fit(robot).unwrap(), START, Point::new(8.5, 1.5))?;
+    let mut controller = Controller::new(&hall(), &stack.fit(robot)?, START, Point::new(8.5, 1.5))?;
     let mut pose = Pose::new(START.x, START.y, 0.3);
     let mut velocity = Velocity::ZERO;
     for _ in 0..3 {
