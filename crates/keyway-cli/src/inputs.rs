@@ -2,13 +2,14 @@
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
-use keyway::file_system::{check_writable, read_file};
+use keyway::file_system::check_writable;
 use keyway::files::{ConfigFileError, did_you_mean, find_robot, find_stack};
 use keyway::geometry::Point;
-use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader, text_from_bytes};
+use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader};
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Robot};
+use keyway_lab::map_radius::RadiusBeyondMap;
 use keyway_sim::report::MapSource;
 use keyway_sim::scene_files::{SceneFileError, read_disturbances};
 use keyway_sim::sim::Disturbances;
@@ -43,11 +44,8 @@ pub(crate) fn source_of(loaded: &LoadedMap, placement: Option<ImagePlacement>) -
 
 /// The text of a file of at most this many bytes.
 pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
-    let blame = |message: String| CliError::new(Kind::Input, message).field(field);
-    let bytes = read_file(path, limit_bytes).map_err(|error| blame(error.to_string()))?;
-    let text =
-        text_from_bytes(&bytes).map_err(|error| blame(format!("{}: {error}", path.display())))?;
-    Ok(text.to_owned())
+    keyway_lab::text_file::read_text(path, limit_bytes)
+        .map_err(|error| CliError::new(Kind::Input, error).field(field))
 }
 
 /// Refuses a radius for which no cell can be free: half of the map's shorter side or more.
@@ -56,18 +54,8 @@ pub(crate) fn refuse_a_radius_beyond_the_map(
     frame: &GridFrame,
     field: &str,
 ) -> Result<(), CliError> {
-    let [width_m, height_m] =
-        [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());
-    let is_too_large = 2.0 * radius_m > width_m.min(height_m) * (1.0 + 1e-9);
-    if !is_too_large {
-        return Ok(());
-    }
-    let radius_m = if radius_m < 1e9 { format!("{radius_m}") } else { format!("{radius_m:e}") };
-    let message = format!(
-        "a radius of {radius_m} m leaves no cell free on this map of {width_m:.3} x {height_m:.3} m; lengths are \
-         in metres, not in millimetres"
-    );
-    Err(CliError::new(Kind::Config, message).field(field))
+    RadiusBeyondMap::check(radius_m, frame)
+        .map_err(|error| CliError::new(Kind::Config, error).field(field))
 }
 
 /// A bundled robot, or one from a file, relative to `folder`.
@@ -105,7 +93,7 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
 }
 
 /// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the option.
-fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
+pub(crate) fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
     let error = error.into();
     let cannot_be_read = matches!(
         error,

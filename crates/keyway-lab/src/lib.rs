@@ -3,20 +3,25 @@
 //! | module | content |
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
-//! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files |
+//! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files, and on growing maps |
 //! | [`batch`] | many runs, and summaries by stack |
 //! | [`claims`] | claims of papers, measured again |
+//! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
 //! | [`results`] | folders of results, and journals |
 //! | [`table`] | rows as text, LaTeX and CSV |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
 //! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
+//! | [`text_file`], [`map_radius`] | text within limits; radii that a map has room for |
 
 pub mod batch;
 pub mod bench;
 pub mod claims;
 pub mod compare;
+pub mod map_radius;
 pub mod measure;
 pub mod progress;
 pub mod results;
+pub mod scenes;
 pub mod significance;
 pub mod table;
+pub mod text_file;

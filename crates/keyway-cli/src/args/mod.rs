@@ -9,10 +9,7 @@ mod terms;
 mod values;
 
 use batch::SCENE_EXAMPLES;
-pub(crate) use batch::{
-    BarnArgs, BatchArgs, BatchCli, BatchCommand, DynabarnArgs, Keep, MergeArgs, PairsArgs,
-    PapersArgs, SceneCommand,
-};
+pub(crate) use batch::{BatchArgs, BatchCli, BatchCommand, Keep, MergeArgs, SceneCommand};
 use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};
 pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};

@@ -4,23 +4,30 @@
 //! So a planner runs on caches that are warm with its own data, as in real use, and what disturbs
 //! the machine for a while disturbs all planners alike. For each query the fastest of its rounds
 //! counts.
+//!
+//! A [`ScaleRequest`] measures time and memory against the size of a map instead.
 
 mod contender;
+mod grid_file;
 mod grid_table;
 mod mistakes;
 mod raw_map;
+mod scale;
 mod tally;
 
+pub use grid_file::{GridFile, GridFileError};
 pub use grid_table::grid_table;
 pub use mistakes::{Mistake, mistakes_note};
 pub use raw_map::RawMap;
+pub use scale::{
+    ScaleCurve, ScaleCurves, ScaleError, ScaleReport, ScaleRequest, ScaleRow, ScaleTask,
+    scale_table,
+};
 pub use tally::{Answer, GridRow};
 
 use crate::progress::Progress;
 use contender::Contender;
 use keyway::ConfigError;
-use keyway::map::OccupancyGrid;
-use keyway::map::formats::Scenario;
 use keyway::navigate::Stack;
 use keyway::plan::PlanError;
 use std::time::Duration;
@@ -34,20 +41,6 @@ pub struct GridRequest<'a> {
     pub stacks: &'a [Stack],
     /// Every query is answered this many times; the fastest time counts.
     pub repeat: u64,
-}
-
-/// A scenario file with its map.
-pub struct GridFile {
-    /// Its name in the list of mistakes.
-    pub name: String,
-    /// Name of the map.
-    pub map_name: String,
-    /// The map.
-    pub grid: OccupancyGrid,
-    /// The same map as the judge of paths reads it.
-    pub raw: RawMap,
-    /// The queries.
-    pub scenarios: Vec<Scenario>,
 }
 
 /// All that came of a scenario file.

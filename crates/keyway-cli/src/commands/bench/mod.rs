@@ -3,15 +3,21 @@
 mod grid;
 mod grid_file;
 mod scale;
-mod scale_run;
 
 use super::Done;
 use crate::args::BenchCommand;
-use crate::error::CliError;
+use crate::error::{CliError, Kind};
+use keyway::ConfigError;
 
 pub(crate) fn run(command: &BenchCommand) -> Result<Done, CliError> {
     match command {
         BenchCommand::Grid(args) => grid::run(args),
         BenchCommand::Scale(args) => scale::run(args),
     }
+}
+
+/// Layers that cannot be made.
+fn unusable_map(error: ConfigError) -> CliError {
+    let error = error.within("map");
+    CliError::new(Kind::Config, &error).field(error.path.as_str())
 }

@@ -1,18 +1,16 @@
-//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals and of the papers' maps, and the schema of scene
-//! files.
+//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals and of the
+//! papers' maps, and the schema of scene files.
 
-mod barn;
-mod dynabarn;
-mod pairs;
-mod papers;
-mod rows;
 mod schema;
 
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
 use crate::error::{CliError, Kind};
+use crate::inputs::bad_file;
 use crate::out_dir::prepare;
-use keyway_sim::scene_files::SceneFile;
+use keyway_lab::scenes::{
+    BarnRequest, DynabarnRequest, NamedScene, PairsRequest, PapersRequest, ScenesError,
+};
 use serde::Serialize;
 use std::path::Path;
 
@@ -24,27 +22,41 @@ struct SceneReport {
     files: Vec<String>,
 }
 
-/// A scene and the name of its file.
-struct Named {
-    file: String,
-    scene: SceneFile,
-}
-
 pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
     match command {
-        SceneCommand::Barn(args) => write(&args.out, &barn::scenes(args)?, args.format),
-        SceneCommand::Pairs(args) => write(&args.out, &pairs::scenes(args)?, args.format),
-        SceneCommand::Papers(args) => write(&args.out, &papers::scenes(args)?, args.format),
-        SceneCommand::Dynabarn(args) => write(&args.out, &dynabarn::scenes(args)?, args.format),
+        SceneCommand::Barn(args) => {
+            let (cylinders, summary) = (args.cylinders.clone(), args.summary.clone());
+            let request = BarnRequest { cylinders, summary, is_known: args.known };
+            write(&args.out, &request.scenes()?, args.format)
+        }
+        SceneCommand::Pairs(args) => {
+            let request = PairsRequest {
+                pairs: args.pairs.clone(),
+                robot: args.robot.clone(),
+                unknown: args.unknown,
+                moving: args.moving,
+                folder: args.out.clone(),
+            };
+            write(&args.out, &request.scenes()?, args.format)
+        }
+        SceneCommand::Papers(args) => {
+            let request = PapersRequest { names: args.names.clone(), count: args.count };
+            write(&args.out, &request.scenes()?, args.format)
+        }
+        SceneCommand::Dynabarn(args) => {
+            let (key_frames, worlds) = (args.key_frames.clone(), args.worlds.clone());
+            let request = DynabarnRequest { key_frames, worlds };
+            write(&args.out, &request.scenes()?, args.format)
+        }
         SceneCommand::Schema => schema::print(),
     }
 }
 
 /// Writes all scenes, or none where one of them may not be written.
-fn write(folder: &Path, scenes: &[Named], format: Format) -> Result<Done, CliError> {
+fn write(folder: &Path, scenes: &[NamedScene], format: Format) -> Result<Done, CliError> {
     let names: Vec<&str> = scenes.iter().map(|named| named.file.as_str()).collect();
     let mut out = prepare(folder, &names)?;
-    for Named { file, scene } in scenes {
+    for NamedScene { file, scene } in scenes {
         // A scene is plain data with string keys: this cannot fail.
         let text = toml::to_string(scene).unwrap_or_default();
         out.write(file, text.as_bytes())?;
@@ -61,11 +73,31 @@ fn write(folder: &Path, scenes: &[Named], format: Format) -> Result<Done, CliErr
     Ok(Done::Success)
 }
 
-/// Refuses a file in which there is nothing.
-fn unless_empty<T>(rows: &[T], path: &Path, field: &str) -> Result<(), CliError> {
-    if rows.is_empty() {
-        let message = format!("{}: there is no line below the header", path.display());
-        return Err(CliError::new(Kind::Input, message).field(field));
+impl From<ScenesError> for CliError {
+    fn from(error: ScenesError) -> Self {
+        let argument = error.field().map(argument);
+        let kind = match error {
+            ScenesError::Robot(error) => return bad_file(error, "--robot"),
+            ScenesError::NoReconstruction { .. } | ScenesError::TooFew { .. } => Kind::Usage,
+            ScenesError::Baseline(_) | ScenesError::Reconstruction(_) => Kind::Config,
+            _ => Kind::Input,
+        };
+        Self { field: argument.map(str::to_owned), ..Self::new(kind, error) }
     }
-    Ok(())
+}
+
+/// The argument that fills a field of a request.
+fn argument(field: &'static str) -> &'static str {
+    match field {
+        "cylinders" => "CYLINDERS.csv",
+        "summary" => "--summary",
+        "key_frames" => "KEYFRAMES.csv",
+        "worlds" => "--worlds",
+        "pairs" => "PAIRS.csv",
+        "robot" => "--robot",
+        "folder" => "--out",
+        "names" => "NAME",
+        "count" => "--count",
+        field => field,
+    }
 }

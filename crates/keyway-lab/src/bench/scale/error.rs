@@ -1,0 +1,45 @@
+//! Errors of a measurement.
+
+use crate::map_radius::RadiusBeyondMap;
+use keyway::ConfigError;
+use keyway::map::FrameError;
+use keyway::plan::PlanError;
+use thiserror::Error;
+
+/// Reason why a planner cannot be measured on a tiled map.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ScaleError {
+    /// The map cannot be tiled to this side.
+    #[error(transparent)]
+    Side(FrameError),
+    /// The radius that the caller chose leaves no cell free.
+    #[error(transparent)]
+    Radius(RadiusBeyondMap),
+    /// The clearance of the layers leaves no cell free.
+    #[error(transparent)]
+    Clearance(RadiusBeyondMap),
+    /// The layers cannot be made.
+    #[error(transparent)]
+    Map(ConfigError),
+    /// The planner cannot be used.
+    #[error(transparent)]
+    Planner(PlanError),
+    /// There is nowhere to plan.
+    #[error("no cell of the map is free")]
+    NoFreeCell {
+        /// True if the map has unknown cells, and they count as obstacles.
+        is_unknown_blocked: bool,
+    },
+    /// The largest component ends within one tile, so no way would grow with the side.
+    #[error(
+        "the tiles of this map do not connect, as no free cell of its largest room is at its border"
+    )]
+    Apart,
+    /// The planner refuses the query.
+    #[error(transparent)]
+    Refused(PlanError),
+    /// The observer stopped the measurement.
+    #[error("stopped before the end")]
+    Stopped,
+}

@@ -1,0 +1,127 @@
+//! Worlds of BARN \[Perille2020\]: a robot crosses a field of cylinders that it does not know.
+//!
+//! As in the challenge, the Jackal starts at (-2.25, 3) and faces upwards. The goal is 10 m ahead.
+//! The robot reaches it within 1 m, and has 100 s. Its map is empty. The best time is that of the
+//! reference path at 2 m/s.
+//!
+//! If the cylinders are known, the map has them: the cells whose centres they hold. These cells
+//! then stand in the world instead of the cylinders.
+
+use super::table::{rows, some_rows};
+use super::{NamedScene, ScenesError};
+use keyway::geometry::Point;
+use keyway_sim::episode::Start;
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneRules, UnknownCircle, UnknownObstacle};
+use keyway_sim::sim::Arrival;
+use keyway_sim::worlds::{Discs, GeneratedMap, Pattern};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
+use std::path::PathBuf;
+
+const START: Point = Point::new(-2.25, 3.0);
+const START_HEADING_RAD: f64 = FRAC_PI_2;
+const GOAL: Point = Point::new(-2.25, 13.0);
+
+/// The lower left corner of the map and its side \[m\]: the middle of the way is the middle of the
+/// map, and the map has what stands beside the course.
+const MAP_CORNER: Point = Point::new(-12.25, -2.0);
+const MAP_SIDE_M: f64 = 20.0;
+const CELL_M: f64 = 0.05;
+
+const RULES: SceneRules = SceneRules {
+    goal_tolerance_m: Some(1.0),
+    arrival: Some(Arrival::Passing),
+    time_limit_s: Some(100.0),
+    stuck_window_s: None,
+    reference_time_s: None,
+};
+
+/// Worlds of BARN to make scenes of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BarnRequest {
+    /// Table of the cylinders: CSV with the columns `world`, `x`, `y` and `radius` \[m\].
+    pub cylinders: PathBuf,
+    /// Table of the best times: CSV with the columns `world` and `optimal_time_s` \[s\]; `None`:
+    /// the scenes have no reference time.
+    pub summary: Option<PathBuf>,
+    /// True if the map shows the cylinders.
+    pub is_known: bool,
+}
+
+#[derive(Deserialize)]
+struct Cylinder {
+    world: u32,
+    x: f64,
+    y: f64,
+    radius: f64,
+}
+
+#[derive(Deserialize)]
+struct Summary {
+    world: u32,
+    optimal_time_s: f64,
+}
+
+impl BarnRequest {
+    /// Returns a scene for each world, in the order of their numbers.
+    ///
+    /// # Errors
+    /// When a table cannot be used, or the cylinders of a world make no scene.
+    pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
+        let cylinders: Vec<Cylinder> =
+            some_rows(&self.cylinders).map_err(ScenesError::of_table("cylinders"))?;
+        let mut worlds: BTreeMap<u32, Vec<UnknownCircle>> = BTreeMap::new();
+        for Cylinder { world, x, y, radius } in cylinders {
+            let circle = UnknownCircle { position: Point::new(x, y), radius_m: radius };
+            worlds.entry(world).or_default().push(circle);
+        }
+        let best_s = self.best_times_s()?;
+        let scene = |(world, cylinders)| {
+            named(world, cylinders, self.is_known, best_s.get(&world).copied())
+                .map_err(|reason| ScenesError::Cylinders { world, reason })
+        };
+        worlds.into_iter().map(scene).collect()
+    }
+
+    /// Returns the best times by the numbers of their worlds.
+    fn best_times_s(&self) -> Result<BTreeMap<u32, f64>, ScenesError> {
+        let Some(path) = &self.summary else { return Ok(BTreeMap::new()) };
+        let rows: Vec<Summary> = rows(path).map_err(ScenesError::of_table("summary"))?;
+        Ok(rows.into_iter().map(|row| (row.world, row.optimal_time_s)).collect())
+    }
+}
+
+fn named(
+    world: u32,
+    cylinders: Vec<UnknownCircle>,
+    is_known: bool,
+    reference_time_s: Option<f64>,
+) -> Result<NamedScene, SceneError> {
+    let empty = GeneratedMap::empty(MAP_SIDE_M, MAP_SIDE_M, CELL_M);
+    let mut map = GeneratedMap { origin: MAP_CORNER, ..empty };
+    let mut unknown = cylinders;
+    if is_known {
+        let disc = |circle: &UnknownCircle| [circle.position.x, circle.position.y, circle.radius_m];
+        map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
+        // A cylinder near an end is an obstacle, too.
+        map.free_ends_m = 0.0;
+        unknown.clear();
+    }
+    let known = if is_known { ", known" } else { "" };
+    let scene = SceneFile {
+        description: Some(format!("BARN, world {world}{known}")),
+        world: Some(map),
+        robot: "jackal".to_owned(),
+        rules: SceneRules { reference_time_s, ..RULES },
+        unknown: unknown.into_iter().map(UnknownObstacle::from).collect(),
+        ..SceneFile::new(
+            Start { position: START, heading_rad: Some(START_HEADING_RAD) },
+            GOAL.into(),
+        )
+    };
+    scene.validate()?;
+    // A batch of several benchmarks distinguishes its scenes by the names of their files.
+    let name = if is_known { "barn_known" } else { "barn" };
+    Ok(NamedScene { file: format!("{name}_{world:03}.toml"), scene })
+}

@@ -1,0 +1,29 @@
+//! Scenes of the field's benchmarks, of tables of starts and goals, and of the papers' maps.
+//!
+//! Each request reads the published files that it names, and gives scenes with the names of their
+//! files. Nothing is written.
+
+mod barn;
+mod dynabarn;
+mod error;
+mod pairs;
+mod papers;
+mod table;
+
+pub use barn::BarnRequest;
+pub use dynabarn::DynabarnRequest;
+pub use error::ScenesError;
+pub use pairs::PairsRequest;
+pub use papers::PapersRequest;
+pub use table::TableError;
+
+use keyway_sim::scene_files::SceneFile;
+
+/// A scene with the name of its file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedScene {
+    /// Name of the file, such as `barn_007.toml`.
+    pub file: String,
+    /// The scene.
+    pub scene: SceneFile,
+}

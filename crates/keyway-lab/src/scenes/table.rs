@@ -1,0 +1,98 @@
+//! Lines of a CSV file, by the names of its columns.
+
+use crate::text_file::{TextFileError, read_text};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Largest file that is read \[bytes\]: more than any benchmark's file.
+const LARGEST_BYTES: u64 = 256 << 20;
+
+/// Error of a table.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    File(#[from] TextFileError),
+    /// A line does not have the columns, or a value cannot be used.
+    #[error("{}: {}{reason}", path.display(), line.map_or_else(String::new, |n| format!("line {n}: ")))]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1; `None` if the reader cannot say which one.
+        line: Option<u64>,
+        /// Description of the error, with the name of the column.
+        reason: String,
+    },
+    /// The table has a header only.
+    #[error("{}: there is no line below the header", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Reads all lines below the header, and ignores columns that `T` does not have.
+pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableError> {
+    let text = read_text(path, LARGEST_BYTES)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let blame = |error: csv::Error| TableError::Line {
+        path: path.to_owned(),
+        line: error.position().map(csv::Position::line),
+        reason: match error.kind() {
+            csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+            _ => error.to_string(),
+        },
+    };
+    reader.deserialize().collect::<Result<_, _>>().map_err(blame)
+}
+
+/// Reads all lines below the header, and refuses a table without any.
+pub(super) fn some_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableError> {
+    let rows = rows(path)?;
+    if rows.is_empty() {
+        return Err(TableError::Empty { path: path.to_owned() });
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Debug, PartialEq, Deserialize)]
+    struct Row {
+        world: u32,
+        x: f64,
+    }
+
+    fn read(text: &[u8]) -> Result<Vec<Row>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, text).unwrap();
+        let shown =
+            |error: TableError| error.to_string().replace(&folder.path().display().to_string(), "");
+        some_rows(&path).map_err(shown)
+    }
+
+    #[test]
+    fn columns_are_found_by_their_names() {
+        let rows = read(b"\xef\xbb\xbfx, note ,world\n 1.5 ,a,7\n-2,b,8\n").unwrap();
+        assert_eq!(rows, [Row { world: 7, x: 1.5 }, Row { world: 8, x: -2.0 }]);
+    }
+
+    #[test]
+    fn errors_name_file_line_and_column() {
+        for (text, expected) in [
+            (&b"world,y\n7,1\n"[..], "/a.csv: line 2: missing field `x`"),
+            (b"world,x\n7,1\n8,wide\n", "/a.csv: line 3: field 1: invalid float literal"),
+            (b"world,x\n", "/a.csv: there is no line below the header"),
+            (b"world,x\n7,\xff\n", "/a.csv: line 2 is not UTF-8 text (byte 3 of the line is 0xff)"),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}
