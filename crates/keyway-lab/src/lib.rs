@@ -6,6 +6,7 @@
 //! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files, and on growing maps |
 //! | [`batch`] | many runs, and summaries by stack |
 //! | [`claims`] | claims of papers, measured again |
+//! | [`reproduce`] | all claims with their verdicts: measurements, tables and a page |
 //! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
 //! | [`results`] | folders of results, and journals |
 //! | [`table`] | rows as text, LaTeX and CSV |
@@ -20,6 +21,7 @@ pub mod compare;
 pub mod map_radius;
 pub mod measure;
 pub mod progress;
+pub mod reproduce;
 pub mod results;
 pub mod scenes;
 pub mod significance;

@@ -1,13 +1,11 @@
 //! Pictures of experiments: what the methods do on one map, and how values are spread over all maps.
 
-use super::figures::Figure;
-use super::measure::Measured;
+use super::figures::made;
 use super::stage::Stage;
-use super::words::made;
-use crate::args::ReproduceArgs;
 use crate::error::{CliError, Kind};
 use keyway_draw::{BoxGroup, BoxPlot, Svg, box_plot};
 use keyway_lab::claims::{Driven, How, MapRow, Method, Outcome, Part};
+use keyway_lab::reproduce::{Measured, PageFigure, ReproduceRequest};
 use keyway_sim::metrics::statistics::Sample;
 
 /// The names of all pictures that there may be of an experiment.
@@ -20,11 +18,11 @@ pub(super) fn names_of_experiment(name: &str) -> [String; 6] {
 pub(super) fn of_experiment(
     measured: &Measured,
     claim: &str,
-    args: &ReproduceArgs,
-) -> Result<Vec<Figure>, CliError> {
+    request: &ReproduceRequest,
+) -> Result<Vec<PageFigure>, CliError> {
     let experiment = measured.experiment;
     let rows = &measured.family.rows;
-    let made = made(args, claim);
+    let made = made(request, claim);
     let seed = rows.first().and_then(|row| row.seed).filter(|_| experiment.scene.is_none());
     let on = experiment.scene.as_ref().map_or_else(
         || format!("the map of seed {}", seed.unwrap_or_default()),
@@ -40,7 +38,9 @@ pub(super) fn of_experiment(
     });
     let all = shown.unwrap_or_default().into_iter().chain(boxes);
     let figures = names_of_experiment(experiment.name).into_iter().zip(all);
-    Ok(figures.filter_map(|(file, svg)| Some(Figure { file, svg: svg? })).collect())
+    Ok(figures
+        .filter_map(|(file, svg)| Some(PageFigure { file, svg: svg?.into_string() }))
+        .collect())
 }
 
 const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";

@@ -1,15 +1,21 @@
 //! Pictures of claims: bars with intervals.
 
-use super::words::{made, measured, name, published, published_of, words};
-use crate::args::ReproduceArgs;
 use keyway_draw::{IntervalChart, IntervalRow, Svg, interval_chart};
-use keyway_lab::claims::{Claim, ClaimReport, FamilyFigure, Figure as ClaimFigure, Measure, Scale};
+use keyway_lab::claims::{Claim, ClaimReport, FamilyFigure, Figure, Measure, Scale};
+use keyway_lab::reproduce::{
+    PageFigure, ReproduceRequest, measure_name, measured_text, published_of, published_text,
+    statement,
+};
+use keyway_sim::report::Inputs;
 
-/// A picture in a file of its own.
-pub(super) struct Figure {
-    /// Its file in the folder.
-    pub(super) file: String,
-    pub(super) svg: Svg,
+/// The version and the command that make a picture again; `what` is what is to be measured.
+pub(super) fn made(request: &ReproduceRequest, what: &str) -> String {
+    let ReproduceRequest { maps, seed, has_times, .. } = request;
+    let times = if *has_times { "" } else { " --no-times" };
+    let version = Inputs::VERSION;
+    format!(
+        "Keyway {version}: keyway reproduce {what} --maps {maps} --seed {seed}{times} --out DIR."
+    )
 }
 
 /// What stands over one axis.
@@ -32,7 +38,7 @@ impl Axis {
         }
     }
 
-    fn of_claim(figure: &ClaimFigure) -> Self {
+    fn of_claim(figure: &Figure) -> Self {
         Self::new(figure.measure, figure.scale(), figure.than().is_none())
     }
 
@@ -43,7 +49,7 @@ impl Axis {
     fn file(self, id: &str) -> String {
         let kind = match self {
             Self::Change => "change".to_owned(),
-            Self::Difference(measure) => name(measure).replace(' ', "_"),
+            Self::Difference(measure) => measure_name(measure).replace(' ', "_"),
             Self::Kept => "kept".to_owned(),
         };
         format!("figures/{id}.{kind}.svg")
@@ -68,7 +74,7 @@ impl Axis {
 /// Such as `clearance [m]`.
 pub(super) fn with_unit(measure: Measure) -> String {
     let unit = if measure.unit().is_empty() { "1" } else { measure.unit() };
-    format!("{} [{unit}]", name(measure))
+    format!("{} [{unit}]", measure_name(measure))
 }
 
 /// Each once, in their order.
@@ -89,24 +95,31 @@ pub(super) fn names_of_claim(claim: &Claim) -> impl Iterator<Item = String> + us
 }
 
 /// A picture for each axis; none where nothing was measured.
-pub(super) fn of_claim(claim: &ClaimReport, args: &ReproduceArgs) -> Vec<Figure> {
+pub(super) fn of_claim(claim: &ClaimReport, request: &ReproduceRequest) -> Vec<PageFigure> {
     let figure = |axis: Axis| {
         let all = claim.family.figures.iter();
         let own: Vec<&FamilyFigure> = all.filter(|figure| Axis::of(figure) == axis).collect();
         let is_measured = own.iter().any(|figure| figure.mean.is_some());
-        is_measured
-            .then(|| Figure { file: axis.file(claim.id), svg: chart(claim, axis, &own, args) })
+        is_measured.then(|| PageFigure {
+            file: axis.file(claim.id),
+            svg: chart(claim, axis, &own, request).into_string(),
+        })
     };
     let axes = distinct(claim.family.figures.iter().map(Axis::of));
     axes.into_iter().filter_map(figure).collect()
 }
 
-fn chart(claim: &ClaimReport, axis: Axis, figures: &[&FamilyFigure], args: &ReproduceArgs) -> Svg {
+fn chart(
+    claim: &ClaimReport,
+    axis: Axis,
+    figures: &[&FamilyFigure],
+    request: &ReproduceRequest,
+) -> Svg {
     let bars: Vec<Bar<'_>> = figures
         .iter()
         .map(|figure| Bar {
             figure,
-            name: words(figure),
+            name: statement(figure),
             reference: published_of(claim, figure).and_then(|published| published.effect),
             note: note(claim, figure),
         })
@@ -116,7 +129,7 @@ fn chart(claim: &ClaimReport, axis: Axis, figures: &[&FamilyFigure], args: &Repr
     let caption = format!(
         "Bars: {}; whiskers: its 95 % interval; {diamonds}n: maps. {}",
         axis.bars(),
-        made(args, claim.id)
+        made(request, claim.id)
     );
     let ends = (axis == Axis::Kept).then_some((0.0, 100.0));
     draw(&bars, ends, &axis.label(), &caption)
@@ -128,7 +141,7 @@ fn note(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     match published_of(claim, figure) {
         _ if figure.than.is_none() => String::new(),
         None => maps,
-        Some(_) => format!("published {}, {maps}", published(claim, figure)),
+        Some(_) => format!("published {}, {maps}", published_text(claim, figure)),
     }
 }
 
@@ -159,7 +172,7 @@ impl Bar<'_> {
 /// Bars with their numbers beside them. Shares and relative changes are in percent.
 pub(super) fn draw(bars: &[Bar<'_>], ends: Option<(f64, f64)>, label: &str, caption: &str) -> Svg {
     let note = |Bar { figure, note, .. }: &Bar<'_>| {
-        format!("{}\n{note}", measured(figure)).replace('-', "\u{2212}")
+        format!("{}\n{note}", measured_text(figure)).replace('-', "\u{2212}")
     };
     let notes: Vec<String> = bars.iter().map(note).collect();
     let rows: Vec<IntervalRow<'_>> =

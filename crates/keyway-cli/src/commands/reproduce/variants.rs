@@ -1,11 +1,9 @@
 //! Pictures of ablations: bars where parts are left out, curves where a parameter has other values.
 
-use super::figures::{Bar, Figure, axis_scale, draw, with_unit};
-use super::measure::Measured;
-use super::words::{made, name};
-use crate::args::ReproduceArgs;
+use super::figures::{Bar, axis_scale, draw, made, with_unit};
 use keyway_draw::{ChartPoint, PointPanels, PointSeries, Svg, point_panels};
 use keyway_lab::claims::{Ablation, AblationReport, Claim, FamilyFigure, Measure, Scale};
+use keyway_lab::reproduce::{PageFigure, ReproduceRequest, measure_name};
 
 /// The names of all pictures that there may be of it.
 pub(super) fn names(ablation: &Ablation) -> Vec<String> {
@@ -13,35 +11,15 @@ pub(super) fn names(ablation: &Ablation) -> Vec<String> {
 }
 
 fn file(experiment: &str, measure: Measure) -> String {
-    format!("figures/{experiment}.{}.svg", name(measure).replace(' ', "_"))
-}
-
-/// What was measured of each ablation; none of the others is asked for.
-pub(super) fn reports(
-    ablations: &[&'static Ablation],
-    measured: &[Measured],
-    times: bool,
-) -> Vec<AblationReport> {
-    let report = |ablation: &&'static Ablation| {
-        let name = ablation.experiment.name;
-        let one = measured.iter().find(|one| one.experiment.name == name)?;
-        Some(ablation.report(&one.family, times))
-    };
-    ablations.iter().filter_map(report).collect()
+    format!("figures/{experiment}.{}.svg", measure_name(measure).replace(' ', "_"))
 }
 
 /// A picture of each measure.
-pub(super) fn figures(report: &AblationReport, args: &ReproduceArgs) -> Vec<Figure> {
-    let mut measures: Vec<Measure> = Vec::new();
-    for figure in &report.figures {
-        if !measures.contains(&figure.measure) {
-            measures.push(figure.measure);
-        }
-    }
-    measures.into_iter().map(|measure| figure(report, measure, args)).collect()
+pub(super) fn figures(report: &AblationReport, request: &ReproduceRequest) -> Vec<PageFigure> {
+    report.measures().into_iter().map(|measure| figure(report, measure, request)).collect()
 }
 
-fn figure(report: &AblationReport, measure: Measure, args: &ReproduceArgs) -> Figure {
+fn figure(report: &AblationReport, measure: Measure, request: &ReproduceRequest) -> PageFigure {
     let own: Vec<&FamilyFigure> =
         report.figures.iter().filter(|figure| figure.measure == measure).collect();
     // Ablations are asked for with the claims of their paper.
@@ -49,20 +27,20 @@ fn figure(report: &AblationReport, measure: Measure, args: &ReproduceArgs) -> Fi
     let caption = format!(
         "{}: {}, change from \"{}\": mean over those of {} maps on which both have it, and its 95 % interval. {}",
         report.about,
-        name(measure),
+        measure_name(measure),
         report.base,
         report.maps,
-        made(args, &format!("{claim} --ablations"))
+        made(request, &format!("{claim} --ablations"))
     );
     let label = match own.first().map(|figure| figure.scale) {
         Some(Scale::Absolute) => format!("change of {}", with_unit(measure)),
-        _ => format!("change of {} [%]", name(measure)),
+        _ => format!("change of {} [%]", measure_name(measure)),
     };
     let svg = match report.parameter {
         Some(parameter) => curve(report, (&own, parameter), &label, &caption),
         None => bars(&own, &label, &caption),
     };
-    Figure { file: file(report.experiment, measure), svg }
+    PageFigure { file: file(report.experiment, measure), svg: svg.into_string() }
 }
 
 fn bars(figures: &[&FamilyFigure], label: &str, caption: &str) -> Svg {

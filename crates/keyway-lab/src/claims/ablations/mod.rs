@@ -97,6 +97,19 @@ impl Ablation {
     }
 }
 
+impl AblationReport {
+    /// Returns the measures of the figures, each once, in their order.
+    pub fn measures(&self) -> Vec<Measure> {
+        let mut measures = Vec::new();
+        for measure in self.figures.iter().map(|figure| figure.measure) {
+            if !measures.contains(&measure) {
+                measures.push(measure);
+            }
+        }
+        measures
+    }
+}
+
 /// Maps of another experiment, with other methods.
 const fn on_maps_of(
     name: &'static str,

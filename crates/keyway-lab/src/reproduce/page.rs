@@ -1,25 +1,47 @@
 //! The report as one page that needs nothing beside it: tables, and all pictures within.
 
-use super::figure_rows::reconstructed_of;
-use super::figures::Figure;
-use super::words::{measured, published, words};
-use super::{ReproduceReport, VERDICT_RULE};
-use keyway_draw::Svg;
-use keyway_lab::claims::{
+use super::report::{ReproduceReport, VERDICT_RULE};
+use super::words::{
+    NONE, change_text, measure_name, measured_text, published_text, reconstructed_of, statement,
+};
+use crate::claims::{
     AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
     ReconstructedReport,
 };
+use crate::table::number;
 use keyway_sim::report::Inputs;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Pictures of claims and of experiments, in the order of these.
-pub(super) struct Pictures {
-    pub(super) claims: Vec<Vec<Figure>>,
-    pub(super) experiments: Vec<Vec<Figure>>,
-    pub(super) ablations: Vec<Vec<Figure>>,
+/// A picture in a file of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PageFigure {
+    /// Its file in the folder.
+    pub file: String,
+    /// The picture as SVG. It goes into the page as it is.
+    pub svg: String,
 }
 
-/// Printable, legible without colours; nothing is loaded from elsewhere.
+/// Parts of the page that are not in the report.
+pub struct PageParts {
+    /// Pictures of each claim of the report.
+    pub claims: Vec<Vec<PageFigure>>,
+    /// Pictures of each experiment of the report.
+    pub experiments: Vec<Vec<PageFigure>>,
+    /// Pictures of each ablation of the report.
+    pub ablations: Vec<Vec<PageFigure>>,
+    /// Returns the command that measures the claim of an id again.
+    pub command: fn(&str) -> String,
+}
+
+impl PageParts {
+    /// Returns all pictures in the order of the page.
+    pub fn figures(&self) -> impl Iterator<Item = &PageFigure> {
+        let all = self.claims.iter().chain(&self.experiments).chain(&self.ablations);
+        all.flatten()
+    }
+}
+
+/// Style of the page: it can be printed, is legible without colours, and loads nothing.
 const STYLE: &str = "\
 body{font:15px/1.45 'DejaVu Sans',Verdana,Arial,sans-serif;color:#222;max-width:62em;margin:2em auto;padding:0 1em}\
 h1,h2,h3{line-height:1.2}h2{margin-top:2.2em;border-bottom:1px solid #999}\
@@ -34,7 +56,7 @@ svg{max-width:100%;height:auto}a{color:#0057a0}\
 h2{margin-top:1.6em}h2,section>p{break-after:avoid;break-inside:avoid}tr{break-inside:avoid}figure{margin:.8em 0}svg{max-height:16cm}\
 a{color:inherit;text-decoration:none}}";
 
-pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
+pub(super) fn page(report: &ReproduceReport, parts: &PageParts) -> String {
     let times = if report.times { "with times" } else { "without times" };
     let markup = html! {
         (DOCTYPE)
@@ -53,13 +75,13 @@ pub(super) fn page(report: &ReproduceReport, pictures: &Pictures) -> String {
                 }
                 p { (VERDICT_RULE) }
                 (headline(&report.claims))
-                @for (claim, figures) in report.claims.iter().zip(&pictures.claims) {
-                    (claim_section(claim, figures))
+                @for (claim, figures) in report.claims.iter().zip(&parts.claims) {
+                    (claim_section(claim, figures, parts.command))
                 }
-                @for (experiment, figures) in report.experiments.iter().zip(&pictures.experiments) {
+                @for (experiment, figures) in report.experiments.iter().zip(&parts.experiments) {
                     (experiment_section(experiment, figures))
                 }
-                @for (ablation, figures) in report.ablations.iter().zip(&pictures.ablations) {
+                @for (ablation, figures) in report.ablations.iter().zip(&parts.ablations) {
                     (ablation_section(ablation, figures))
                 }
             }
@@ -81,9 +103,9 @@ fn headline(claims: &[ClaimReport]) -> Markup {
                 td { (claim.statement) }
                 @match claim.family.figures.first() {
                     Some(figure) => {
-                        td { (words(figure)) }
-                        td.number { (published(claim, figure)) }
-                        td { (measured(figure)) }
+                        td { (statement(figure)) }
+                        td.number { (published_text(claim, figure)) }
+                        td { (measured_text(figure)) }
                     }
                     None => { td {} td {} td {} }
                 }
@@ -93,7 +115,11 @@ fn headline(claims: &[ClaimReport]) -> Markup {
     }
 }
 
-fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
+fn claim_section(
+    claim: &ClaimReport,
+    figures: &[PageFigure],
+    command: fn(&str) -> String,
+) -> Markup {
     let experiment = claim.family.experiment;
     html! {
         section {
@@ -107,7 +133,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                 ". Experiment " a href={ "#" (experiment) } { (experiment) } ", "
                 (claim.family.maps) " maps, " (claim.family.left_out) " left out. Code: "
                 code { (claim.source) } ". Command: "
-                code { "keyway reproduce " (claim.id) " --out DIR" } "."
+                code { (command(claim.id)) } "."
                 @if let Some(scene) = &claim.scene { " Scene: " code { (scene.file) } "." }
             }
             @if let Some(found) = &claim.reconstructed { (reconstruction(claim.id, found)) }
@@ -118,11 +144,11 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
                     th { "on the scene" } th { "on maps that fit" }
                 } }
                 tbody { @for figure in &claim.family.figures { tr {
-                    td { (words(figure)) }
-                    td.number { (published(claim, figure)) }
-                    td.number { (measured(figure)) }
+                    td { (statement(figure)) }
+                    td.number { (published_text(claim, figure)) }
+                    td.number { (measured_text(figure)) }
                     td.number { (on_scene(claim, figure)) }
-                    td.number { (reconstructed_of(claim, figure).map_or("-".to_owned(), measured)) }
+                    td.number { (reconstructed_of(claim, figure).map_or(NONE.to_owned(), measured_text)) }
                 } } }
             } }
             (pictures(figures))
@@ -130,7 +156,7 @@ fn claim_section(claim: &ClaimReport, figures: &[Figure]) -> Markup {
     }
 }
 
-/// What is published of the baselines, and how many maps have it.
+/// Published figures of the baselines, and the number of maps that have them.
 fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     let baselines = Claim::named(id)
         .first()
@@ -146,19 +172,19 @@ fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     }
 }
 
-/// The change there, or the value that is to keep a bound.
+/// The change on the scene, or the value that is to keep a bound.
 fn on_scene(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
     let same =
         all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than));
     let shown = same.and_then(|scene| match figure.than {
-        Some(_) => scene.effect.map(|effect| super::words::change(figure, effect)),
+        Some(_) => scene.effect.map(|effect| change_text(figure, effect)),
         None => scene.new.map(|value| format!("{value:.3} {}", figure.unit).trim_end().to_owned()),
     });
-    shown.unwrap_or_else(|| "-".to_owned())
+    shown.unwrap_or_else(|| NONE.to_owned())
 }
 
-fn experiment_section(experiment: &ExperimentReport, figures: &[Figure]) -> Markup {
+fn experiment_section(experiment: &ExperimentReport, figures: &[PageFigure]) -> Markup {
     let ExperimentReport { experiment: name, about, maps, left_out, methods } = experiment;
     html! {
         section {
@@ -178,7 +204,7 @@ fn experiment_section(experiment: &ExperimentReport, figures: &[Figure]) -> Mark
 }
 
 /// Each variant with its change from the method as published.
-fn ablation_section(ablation: &AblationReport, figures: &[Figure]) -> Markup {
+fn ablation_section(ablation: &AblationReport, figures: &[PageFigure]) -> Markup {
     let AblationReport { experiment: name, about, base, maps, left_out, .. } = ablation;
     html! {
         section {
@@ -191,8 +217,8 @@ fn ablation_section(ablation: &AblationReport, figures: &[Figure]) -> Markup {
                 thead { tr { th { "variant" } th { "quantity" } th { "change" } th { "maps" } } }
                 tbody { @for figure in &ablation.figures { tr {
                     td { (figure.of) }
-                    td { (super::words::name(figure.measure)) }
-                    td.number { (measured(figure)) }
+                    td { (measure_name(figure.measure)) }
+                    td.number { (measured_text(figure)) }
                     td.number { (figure.pairs) }
                 } } }
             }
@@ -217,24 +243,20 @@ fn method_row(method: &MethodReport) -> Markup {
             td { (method.method) }
             td.number { (method.succeeded) }
             @for (value, scale, decimals) in cells {
-                td.number { (keyway_lab::table::number(value.map(|value| value * scale), decimals)) }
+                td.number { (number(value.map(|value| value * scale), decimals)) }
             }
         }
     }
 }
 
-fn pictures(figures: &[Figure]) -> Markup {
+fn pictures(figures: &[PageFigure]) -> Markup {
     html! {
         @for figure in figures {
             figure {
-                (inline(&figure.svg))
+                // It was escaped when it was drawn.
+                (PreEscaped(figure.svg.as_str()))
                 figcaption { "File: " code { (figure.file) } "." }
             }
         }
     }
-}
-
-/// A picture was escaped when it was drawn.
-fn inline(svg: &Svg) -> PreEscaped<&str> {
-    PreEscaped(svg.as_str())
 }

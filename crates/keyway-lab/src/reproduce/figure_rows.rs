@@ -1,7 +1,7 @@
 //! The figures of all claims as lines of a table.
 
-use super::words::published_of;
-use keyway_lab::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
+use super::words::{published_of, reconstructed_of};
+use crate::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
 use serde::Serialize;
 
 /// A line of `claims.csv`.
@@ -38,7 +38,7 @@ pub(super) struct FigureRow {
     verdict: Verdict,
 }
 
-/// A claim that was not measured has a single line.
+/// Returns a line for each figure. A claim that was not measured has a single line.
 pub(super) fn figure_rows(claims: &[ClaimReport]) -> Vec<FigureRow> {
     let of_claim = |claim: &ClaimReport| -> Vec<FigureRow> {
         let figures = &claim.family.figures;
@@ -52,15 +52,6 @@ pub(super) fn figure_rows(claims: &[ClaimReport]) -> Vec<FigureRow> {
 
 fn scene_of<'a>(claim: &'a ClaimReport, figure: &FamilyFigure) -> Option<&'a SceneFigure> {
     let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
-    all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than))
-}
-
-/// The same figure on the maps that fit what is published.
-pub(super) fn reconstructed_of<'a>(
-    claim: &'a ClaimReport,
-    figure: &FamilyFigure,
-) -> Option<&'a FamilyFigure> {
-    let mut all = claim.reconstructed.iter().flat_map(|found| &found.figures);
     all.find(|it| (it.measure, it.of, it.than) == (figure.measure, figure.of, figure.than))
 }
 

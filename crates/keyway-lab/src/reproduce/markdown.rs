@@ -1,15 +1,12 @@
 //! The tables of the documentation: `tables.md`.
 
-use super::ReproduceReport;
-use super::figure_rows::reconstructed_of;
-use super::words::{name, published_of, words_of};
-use keyway_lab::claims::{
-    AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Scale, Verdict,
-};
+use super::report::ReproduceReport;
+use super::words::{COARSE, NONE, measure_name, reconstructed_of, statement_with};
+use crate::claims::{AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Verdict};
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// All tables, each below a heading.
+/// Returns all tables, each below a heading.
 pub(super) fn markdown(report: &ReproduceReport) -> String {
     let ReproduceReport { claims, experiments, ablations, .. } = report;
     let mut text = format!("# Tables\n\n{}\n\n", counted(claims));
@@ -52,7 +49,7 @@ fn counted(claims: &[ClaimReport]) -> String {
     )
 }
 
-/// The columns of `numbers` are aligned to the right.
+/// Returns a table whose columns of `numbers` are aligned to the right.
 fn table(header: &[&str], numbers: Range<usize>, rows: Vec<Vec<String>>) -> String {
     let rule = |i: usize| if numbers.contains(&i) { "--:|" } else { "---|" };
     let rule: String = (0..header.len()).map(rule).collect();
@@ -61,16 +58,16 @@ fn table(header: &[&str], numbers: Range<usize>, rows: Vec<Vec<String>>) -> Stri
     format!("| {} |\n|{rule}\n{rows}", header.join(" | "))
 }
 
-/// Each claim with its first figure that no clock measures.
+/// Returns each claim with its first figure that no clock measures.
 fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
     let row = |claim: &ClaimReport| {
         let figures = &claim.family.figures;
         let figure = figures.iter().find(|it| !it.measure.is_timed()).or(figures.first());
-        let measured = figure.map_or("-".to_owned(), |figure| {
+        let measured = figure.map_or(NONE.to_owned(), |figure| {
             let kept = if figure.than.is_none() { "as claimed on " } else { "" };
-            format!("{}: {kept}{}", name(figure.measure), measured(figure))
+            format!("{}: {kept}{}", measure_name(figure.measure), measured(figure))
         });
-        let published = figure.map_or("-".to_owned(), |figure| published(claim, figure));
+        let published = figure.map_or(NONE.to_owned(), |figure| published(claim, figure));
         let id = format!("[{}](papers/{}.md)", claim.id, claim.paper.to_lowercase());
         vec![id, claim.statement.to_owned(), published, measured, claim.verdict.to_string()]
     };
@@ -84,9 +81,9 @@ fn figures(claim: &ClaimReport) -> Vec<Vec<String>> {
             0 => [claim.id.to_owned(), format!("**{}**", claim.verdict)],
             _ => [String::new(), String::new()],
         };
-        let fitting = reconstructed_of(claim, figure).map_or("-".to_owned(), measured);
+        let fitting = reconstructed_of(claim, figure).map_or(NONE.to_owned(), measured);
         let of_method = |method: &str| format!("`{method}`");
-        let words = words_of(figure, &of_method);
+        let words = statement_with(figure, &of_method);
         vec![id, words, published(claim, figure), measured(figure), fitting, verdict]
     };
     claim.family.figures.iter().enumerate().map(row).collect()
@@ -108,15 +105,10 @@ fn about(one: &AblationReport) -> String {
     format!("{about}: change from \"{base}\" on {maps} maps.")
 }
 
-/// A line for each variant, a column for each quantity.
+/// Returns a line for each variant, a column for each quantity.
 fn ablation(one: &AblationReport) -> String {
-    let mut measures = Vec::new();
-    for measure in one.figures.iter().map(|figure| figure.measure) {
-        if !measures.contains(&measure) {
-            measures.push(measure);
-        }
-    }
-    let names: Vec<String> = measures.iter().map(|&measure| name(measure)).collect();
+    let measures = one.measures();
+    let names: Vec<String> = measures.iter().map(|&measure| measure_name(measure)).collect();
     let header: Vec<&str> =
         std::iter::once("variant").chain(names.iter().map(String::as_str)).collect();
     // The measures of a variant follow each other.
@@ -129,32 +121,9 @@ fn ablation(one: &AblationReport) -> String {
 }
 
 fn published(claim: &ClaimReport, figure: &FamilyFigure) -> String {
-    let effect = published_of(claim, figure).and_then(|published| published.effect);
-    effect.map_or_else(|| "-".to_owned(), |effect| with_unit(figure, &number(figure, effect)))
+    COARSE.published(claim, figure)
 }
 
-/// The mean change and its interval; of a bound, on how many maps it is kept.
 fn measured(figure: &FamilyFigure) -> String {
-    let (Some(mean), Some(low), Some(high)) = (figure.mean, figure.ci95_low, figure.ci95_high)
-    else {
-        return "-".to_owned();
-    };
-    if figure.than.is_none() {
-        let kept = (mean * figure.pairs as f64).round();
-        return format!("{kept} of {} maps", figure.pairs);
-    }
-    let [mean, low, high] = [mean, low, high].map(|effect| number(figure, effect));
-    format!("{} ({low} to {high})", with_unit(figure, &mean))
-}
-
-fn with_unit(figure: &FamilyFigure, number: &str) -> String {
-    let unit = if figure.scale == Scale::Relative { "%" } else { figure.unit };
-    format!("{number} {unit}").trim_end().to_owned()
-}
-
-fn number(figure: &FamilyFigure, effect: f64) -> String {
-    match figure.scale {
-        Scale::Relative => format!("{:+.1}", effect * 100.0),
-        Scale::Absolute => format!("{effect:+.2}"),
-    }
+    COARSE.measured(figure)
 }

@@ -1,8 +1,9 @@
-//! What every method did on every map, as lines of a table.
+//! Results of every method on every map, as lines of a table.
 
-use super::known::{Group, Line};
+use super::kept::{MapGroup, MapLine};
 use super::measure::Measured;
-use keyway_lab::claims::{Experiment, Outcome};
+use super::report::Measurements;
+use crate::claims::{Experiment, Outcome};
 use keyway_sim::episode::EpisodeOutcome;
 use serde::Serialize;
 
@@ -10,10 +11,10 @@ use serde::Serialize;
 #[derive(Default, Serialize)]
 pub(super) struct MethodRow {
     experiment: &'static str,
-    group: Option<Group>,
+    group: Option<MapGroup>,
     /// Empty for the scene.
     seed: Option<u64>,
-    /// Whether the map counts.
+    /// True if the map counts.
     counts: bool,
     method: &'static str,
     succeeded: bool,
@@ -40,16 +41,16 @@ pub(super) struct MethodRow {
     total_search_s: Option<f64>,
 }
 
-/// The scene of each experiment first, then the maps that fit, then its family.
-pub(super) fn map_rows(measured: &[Measured]) -> Vec<MethodRow> {
+/// Returns the scene of each experiment first, then the maps that fit, then its family.
+pub(super) fn map_rows(measurements: &Measurements) -> Vec<MethodRow> {
     let of_one = |one: &Measured| -> Vec<MethodRow> {
         one.lines.iter().flat_map(|line| method_rows(one.experiment, line)).collect()
     };
-    measured.iter().flat_map(of_one).collect()
+    measurements.all().flat_map(of_one).collect()
 }
 
-fn method_rows(experiment: &'static Experiment, line: &Line) -> impl Iterator<Item = MethodRow> {
-    let Line { group, row, .. } = line;
+fn method_rows(experiment: &'static Experiment, line: &MapLine) -> impl Iterator<Item = MethodRow> {
+    let MapLine { group, row, .. } = line;
     let methods = experiment.methods.iter().zip(&row.outcomes);
     methods.map(move |(method, outcome)| MethodRow {
         experiment: experiment.name,
