@@ -17,7 +17,6 @@ mod out_file;
 mod pictures;
 mod progress;
 mod report_text;
-mod smoothing_targets;
 mod stdout;
 mod team_pictures;
 

@@ -8,14 +8,16 @@
 //! | [`claims`] | claims of papers, measured again |
 //! | [`reproduce`] | all claims with their verdicts: measurements, tables and a page |
 //! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
+//! | [`catalogue`] | everything that has a name, with its parameters and its uses in the papers |
 //! | [`results`] | folders of results, and journals |
-//! | [`table`] | rows as text, LaTeX and CSV |
+//! | [`table`], [`run_tables`] | rows as text, LaTeX and CSV; routes and runs as tables |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
 //! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
 //! | [`text_file`], [`map_radius`] | text within limits; radii that a map has room for |
 
 pub mod batch;
 pub mod bench;
+pub mod catalogue;
 pub mod claims;
 pub mod compare;
 pub mod map_radius;
@@ -23,6 +25,7 @@ pub mod measure;
 pub mod progress;
 pub mod reproduce;
 pub mod results;
+pub mod run_tables;
 pub mod scenes;
 pub mod significance;
 pub mod table;

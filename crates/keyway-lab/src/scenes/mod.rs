@@ -1,13 +1,14 @@
 //! Scenes of the field's benchmarks, of tables of starts and goals, and of the papers' maps.
 //!
 //! Each request reads the published files that it names, and gives scenes with the names of their
-//! files. Nothing is written.
+//! files. Nothing is written. [`scene_schema`] describes the fields of all scene files.
 
 mod barn;
 mod dynabarn;
 mod error;
 mod pairs;
 mod papers;
+mod schema;
 mod table;
 
 pub use barn::BarnRequest;
@@ -15,6 +16,7 @@ pub use dynabarn::DynabarnRequest;
 pub use error::ScenesError;
 pub use pairs::PairsRequest;
 pub use papers::PapersRequest;
+pub use schema::scene_schema;
 pub use table::TableError;
 
 use keyway_sim::scene_files::SceneFile;

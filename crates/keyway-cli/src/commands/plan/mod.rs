@@ -2,7 +2,6 @@
 
 mod curve;
 mod result_files;
-mod table;
 
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
@@ -11,7 +10,6 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{layers, load_map, position, sized_robot, source_of};
 use crate::pictures::{PlanGoals, PlanPicture};
 use crate::report_text::WithFiles;
-use crate::smoothing_targets::SmoothingTargets;
 use crate::stdout::print_files;
 use curve::Curve;
 use keyway::geometry::{Path, Point};
@@ -23,8 +21,8 @@ use keyway::route::{NoPath, Route, why_no_room};
 use keyway::search::{IfUnreachable, Recording, Workspace};
 use keyway::smooth::{Smoother, SmootherConfig};
 use keyway_lab::measure::wall_clock;
+use keyway_lab::run_tables::{SmoothingTargets, route_table};
 use keyway_sim::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, RouteRequest};
-use table::table;
 use toml::Table;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
@@ -89,7 +87,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         Format::Table => {
             let (clearance_m, cell_m) = (map.config().clearance_m, map.frame().resolution_m());
             let targets = SmoothingTargets::new(&stack.smoother, clearance_m, cell_m);
-            super::print(&table(&report, targets))?;
+            super::print(&route_table(&report, targets))?;
             print_files(&files)?;
         }
     }

@@ -1,8 +1,6 @@
 //! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals and of the
 //! papers' maps, and the schema of scene files.
 
-mod schema;
-
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
 use crate::error::{CliError, Kind};
@@ -10,6 +8,7 @@ use crate::inputs::bad_file;
 use crate::out_dir::prepare;
 use keyway_lab::scenes::{
     BarnRequest, DynabarnRequest, NamedScene, PairsRequest, PapersRequest, ScenesError,
+    scene_schema,
 };
 use serde::Serialize;
 use std::path::Path;
@@ -48,7 +47,10 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
             let request = DynabarnRequest { key_frames, worlds };
             write(&args.out, &request.scenes()?, args.format)
         }
-        SceneCommand::Schema => schema::print(),
+        SceneCommand::Schema => {
+            crate::json::print(&scene_schema())?;
+            Ok(Done::Success)
+        }
     }
 }
 

@@ -1,21 +1,14 @@
-//! The JSON schema of scene files, `keyway.scene.file/2`: what fields there are, for editors and for programs that write scenes.
+//! JSON schema of scene files: their fields, for editors and for programs that write scenes.
 //!
-//! It is made from the type that reads scenes, and its descriptions are the documentation of that type.
+//! It is made from the type that reads scenes. Its descriptions are the documentation of that type.
 
-use crate::commands::Done;
-use crate::commands::list::plain;
-use crate::error::CliError;
+use crate::catalogue::plain;
 use keyway_sim::scene_files::SceneFile;
 use schemars::schema_for;
 use serde_json::Value;
 
-pub(super) fn print() -> Result<Done, CliError> {
-    crate::json::print(&document())?;
-    Ok(Done::Success)
-}
-
-/// The schema under the name and the version of the format.
-fn document() -> Value {
+/// Returns the JSON schema of scene files, with the name and the version of their format.
+pub fn scene_schema() -> Value {
     let mut schema = schema_for!(SceneFile);
     schema.insert("title".to_owned(), format!("keyway.scene.file/{}", SceneFile::VERSION).into());
     let mut document = schema.to_value();
@@ -23,7 +16,7 @@ fn document() -> Value {
     document
 }
 
-/// Descriptions are for people who write scenes, not for those who read the documentation of the code.
+/// Rewrites descriptions for people who write scenes, who do not read the code.
 fn describe_plainly(node: &mut Value) {
     match node {
         Value::Object(members) => {
@@ -39,7 +32,7 @@ fn describe_plainly(node: &mut Value) {
     }
 }
 
-/// Without the example in Rust, and a field that has no value is not there.
+/// Returns a description without its example in Rust. In a file, a field without a value is absent.
 fn in_files(description: &str) -> String {
     let text = description.split("```").next().unwrap_or_default();
     plain(text.trim_end()).replace("  ", " ").replace("`None`", "absent")

@@ -1,11 +1,10 @@
-//! A stack or a robot as a file: TOML, with what every value is above it.
+//! A stack or a robot as a file: TOML, with a description above every value.
 
-use super::parameters::Parameter;
-use super::value_text;
-use keyway_lab::table::paragraph;
+use super::parameters::{Parameter, value_text};
+use crate::table::paragraph;
 use serde::Serialize;
 
-/// The file; `head` says what it holds.
+/// Returns the file; `head` is the description of its content.
 pub(super) fn file(value: &impl Serialize, head: &str, parameters: &[Parameter]) -> String {
     // Both are plain data with string keys: this cannot fail.
     let toml = toml::to_string(value).unwrap_or_default();
@@ -32,7 +31,7 @@ fn about(parameter: &Parameter) -> String {
     description + &published.unwrap_or_default()
 }
 
-/// A text as comments.
+/// Returns a text as comments.
 fn comment(text: &str) -> String {
     let mut lines = paragraph(text).replace('\n', "\n# ");
     lines.insert_str(0, "# ");

@@ -1,32 +1,48 @@
-//! Everything that has a name.
+//! Everything that has a name: planners, smoothers, guides, local planners, stacks and robots, with
+//! their parameters and their uses in the papers.
 
-use super::file::file;
-use super::parameters::{Parameter, parameters, plain, summary_of};
-use super::published::{Published, of_local, of_part, of_stack};
+mod file;
+mod parameters;
+mod published;
+
+pub(crate) use parameters::plain;
+pub use parameters::{Parameter, value_text};
+pub use published::{PublishedSetup, PublishedUse};
+
+use file::file;
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
 use keyway::navigate::{ControllerConfig, Stack};
 use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::smooth::SmootherConfig;
+use parameters::{parameters, summary_of};
+use published::{of_local, of_part, of_stack};
 use schemars::schema_for;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// What a name stands for.
+/// Kind of a named part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum EntryKind {
+pub enum EntryKind {
+    /// A global planner.
     Planner,
+    /// A smoother of paths.
     Smoother,
+    /// A guide of a local planner.
     Guide,
+    /// A local planner.
     LocalPlanner,
+    /// A stack of all of these.
     Stack,
+    /// A robot.
     Robot,
 }
 
 impl EntryKind {
-    pub(super) const fn name(self) -> &'static str {
+    /// Name for people.
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Planner => "planner",
             Self::Smoother => "smoother",
@@ -37,29 +53,40 @@ impl EntryKind {
         }
     }
 
-    /// Whether defaults are derived for a robot.
-    pub(super) const fn depends_on_robot(self) -> bool {
+    /// True if defaults are derived for a robot.
+    pub const fn depends_on_robot(self) -> bool {
         matches!(self, Self::Guide | Self::LocalPlanner | Self::Stack)
     }
 }
 
-/// Something with a name.
-#[derive(Debug, Serialize)]
-pub(super) struct Entry {
-    pub(super) kind: EntryKind,
-    pub(super) name: &'static str,
-    pub(super) summary: String,
-    /// `None` where they were not asked for.
-    pub(super) parameters: Option<Vec<Parameter>>,
-    /// How the papers use it; `None` where it was not asked for.
-    pub(super) published: Option<Vec<Published>>,
-    /// A stack or a robot as a file; `None` for everything else.
-    #[serde(skip)]
-    pub(super) file: Option<String>,
+/// A named part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Its kind.
+    pub kind: EntryKind,
+    /// Its name.
+    pub name: &'static str,
+    /// Description in one sentence.
+    pub summary: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Its uses in the papers.
+    pub published: Vec<PublishedUse>,
+    /// Text of a stack or a robot as a file; `None` for everything else.
+    pub file: Option<String>,
 }
 
-/// All entries with their parameters: defaults are for `robot`. Stacks may have the values of their papers instead.
-pub(super) fn catalogue(robot: &Robot, as_published: bool) -> Vec<Entry> {
+/// Values that stacks have in a catalogue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StackValues {
+    /// Defaults, derived for the robot.
+    ForRobot,
+    /// Values of the paper, if anybody published the stack; otherwise the defaults.
+    AsPublished,
+}
+
+/// Returns all entries, with defaults for a robot.
+pub fn catalogue(robot: &Robot, values: StackValues) -> Vec<Entry> {
     let planners = PlannerConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(PlannerConfig).to_value();
         let config = PlannerConfig::by_name(name);
@@ -87,7 +114,10 @@ pub(super) fn catalogue(robot: &Robot, as_published: bool) -> Vec<Entry> {
         alternative(EntryKind::LocalPlanner, name, "local", &schema, &value(config), &paper)
     });
     let stacks = Stack::NAMES.iter().filter_map(|&name| {
-        let published = Stack::published_by_name(name).filter(|_| as_published);
+        let published = match values {
+            StackValues::ForRobot => None,
+            StackValues::AsPublished => Stack::published_by_name(name),
+        };
         Some(stack_entry(name, &published.or_else(|| Stack::by_name(name, robot))?))
     });
     let robots =
@@ -99,7 +129,7 @@ fn value(config: impl Serialize) -> Value {
     serde_json::to_value(config).unwrap_or_default()
 }
 
-/// What a paper says: its values without those that it leaves to the reader.
+/// Returns the values of a paper, without those that it leaves to the reader.
 fn published(config: impl Serialize, readings: &[&str]) -> Value {
     let mut paper = value(config);
     for reading in readings {
@@ -113,17 +143,17 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
     paper
 }
 
-/// The values of a local planner's paper, where there is one.
+/// Returns the values of a local planner's paper; null without one.
 fn paper_local(local: &LocalConfig) -> Value {
     published(local.as_published(), local.readings())
 }
 
-/// The same for a guide.
+/// Returns the values of a guide's paper; null without one.
 fn paper_guide(guide: &GuideConfig) -> Value {
     published(guide.as_published(), guide.readings())
 }
 
-/// One of several alternatives; its parameters are listed by their path in a stack.
+/// Returns one of several alternatives; its parameters have their paths in a stack.
 fn alternative(
     kind: EntryKind,
     name: &'static str,
@@ -138,8 +168,8 @@ fn alternative(
         EntryKind::LocalPlanner => of_local(name),
         EntryKind::Guide | EntryKind::Stack | EntryKind::Robot => Vec::new(),
     };
-    let parameters = Some(parameters(path, schema, config, paper));
-    Entry { kind, name, summary, parameters, published: Some(published), file: None }
+    let parameters = parameters(path, schema, config, paper);
+    Entry { kind, name, summary, parameters, published, file: None }
 }
 
 fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
@@ -149,11 +179,11 @@ fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
     let paper = Stack::published_by_name(name).map_or(Value::Null, |stack| paper_stack(&stack));
     let parameters = parameters("", &schema, &value(stack), &paper);
     let file = Some(file(stack, &format!("{name}: {summary}"), &parameters));
-    let (parameters, published) = (Some(parameters), Some(of_stack(name)));
+    let published = of_stack(name).into_iter().collect();
     Entry { kind: EntryKind::Stack, name, summary, parameters, published, file }
 }
 
-/// The values of a published stack in those of its parts that have a paper.
+/// Returns the values of a published stack in those of its parts that have a paper.
 fn paper_stack(stack: &Stack) -> Value {
     let Stack { planner, smoother, guide, local, .. } = stack;
     json!({
@@ -173,6 +203,5 @@ fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
     ));
     let parameters = parameters("", &schema, &value(robot), &Value::Null);
     let file = Some(file(robot, &format!("{name}: {summary}"), &parameters));
-    let (parameters, published) = (Some(parameters), Some(Vec::new()));
-    Entry { kind: EntryKind::Robot, name, summary, parameters, published, file }
+    Entry { kind: EntryKind::Robot, name, summary, parameters, published: Vec::new(), file }
 }

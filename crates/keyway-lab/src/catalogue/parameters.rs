@@ -1,25 +1,28 @@
-//! The parameters of a config, from its schema (which has the doc comments) and its values.
+//! Parameters of a config, from its values and from its schema, which has the doc comments.
 
 use serde::Serialize;
 use serde_json::Value;
 
-/// One parameter.
-#[derive(Debug, Serialize)]
-pub(super) struct Parameter {
-    /// As `--set` takes it (for a robot: its place in a robot file).
-    pub(super) path: String,
-    pub(super) unit: Option<&'static str>,
-    pub(super) default: Value,
-    /// As published.
-    pub(super) paper: Option<Value>,
-    /// The values that there are, for one that is not a number, a text or a switch.
-    pub(super) choices: Option<Vec<String>>,
-    pub(super) description: String,
+/// A parameter of a part.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Path in a stack such as `planner.corners`; of a robot, its place in a robot file.
+    pub path: String,
+    /// Unit; `None` for a number, a text or a switch.
+    pub unit: Option<&'static str>,
+    /// Value that is used if no other is given.
+    pub default: Value,
+    /// Published value; `None` if the paper has none.
+    pub paper: Option<Value>,
+    /// Possible values; `None` for a number, a text or a switch.
+    pub choices: Option<Vec<String>>,
+    /// Description for people.
+    pub description: String,
 }
 
 impl Parameter {
-    /// What it is, and the values that there are, where the description names none.
-    pub(super) fn description_with_choices(&self) -> String {
+    /// Returns the description, with the possible values if it names none.
+    pub fn description_with_choices(&self) -> String {
         match &self.choices {
             Some(choices) if !self.description.contains('`') => {
                 format!("{} {}", self.description, choices.join(" | "))
@@ -42,7 +45,7 @@ const UNITS: [(&str, &str); 9] = [
     ("_s", "s"),
 ];
 
-/// All parameters in `config`, whose schema is the `root` of a document.
+/// Returns all parameters in `config`, whose schema is the `root` of a document.
 pub(super) fn parameters(
     path: &str,
     root: &Value,
@@ -54,14 +57,14 @@ pub(super) fn parameters(
     found
 }
 
-/// What the schema says about the alternative of this name.
+/// Returns the description of the alternative of this name.
 pub(super) fn summary_of(root: &Value, name: &str) -> String {
     let node = Node { root, schema: root }.alternative(name);
     plain(node.schema["description"].as_str().unwrap_or_default())
 }
 
-/// Doc comments are Markdown with links into the code; people read text.
-pub(in crate::commands) fn plain(doc: &str) -> String {
+/// Returns a doc comment, which is Markdown with links into the code, as text for people.
+pub(crate) fn plain(doc: &str) -> String {
     let text = doc.replace('\n', " ").replace("[`Self::", "`").replace("[`", "`");
     let text = text.replace("`]", "`").replace("\\[", "[").replace("\\]", "]");
     text.replace('²', "2")
@@ -75,7 +78,8 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// What a `$ref` refers to, or the place itself; of a value that may be absent, that of a present one.
+    /// Returns the place that a `$ref` refers to, or the place itself; of a value that may be
+    /// absent, that of a present one.
     fn resolved(self) -> Self {
         let mut present = self.schema["anyOf"].as_array().into_iter().flatten();
         let reference = present.find(|one| !one["$ref"].is_null()).unwrap_or(self.schema);
@@ -84,7 +88,7 @@ impl Node<'_> {
         Self { schema, ..self }
     }
 
-    /// Of several alternatives the one that a value takes: by its name, or by its only field.
+    /// Returns the alternative that a value takes: by its name, or by its only field.
     fn taken_by(self, value: &Value) -> Self {
         if let Some(name) = value["name"].as_str() {
             return self.alternative(name);
@@ -95,7 +99,7 @@ impl Node<'_> {
         Self { schema: all.find(has_field).unwrap_or(self.schema), ..self }
     }
 
-    /// The one with this name, of several alternatives.
+    /// Returns the alternative of this name.
     fn alternative(self, name: &str) -> Self {
         let all = self.schema["oneOf"].as_array().into_iter().flatten();
         let mut named = all.filter(|one| one["properties"]["name"]["const"] == name);
@@ -142,6 +146,18 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
             description: plain(description),
             path,
         });
+    }
+}
+
+/// Text of a value, with enough digits for people.
+pub fn value_text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().unwrap_or_default();
+            format!("{}", (number * 1e6).round() / 1e6)
+        }
+        other => other.to_string(),
     }
 }
 

@@ -1,29 +1,30 @@
-//! What a smoother is to keep, to say what it could not.
+//! Targets of a smoother, for texts about those that it missed.
 
 use keyway::smooth::{SmootherConfig, WhySharp};
 use std::fmt::{Display, Formatter, Result};
 
-/// The distance that a smoothed path should keep, and how its bends are limited.
+/// Distance that a smoothed path should keep, and the limit of its bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SmoothingTargets {
+pub struct SmoothingTargets {
     /// Radius that the path should keep clear \[m\].
     clearance_m: f64,
     /// The smoother's own safe distance \[m\].
     safe_m: f64,
-    /// Whether the user sets the turning limit; otherwise it is part of the smoother.
+    /// True if the user sets the turning limit; otherwise it is part of the smoother.
     has_turning_limit: bool,
 }
 
 impl SmoothingTargets {
-    /// On a map with cells of this side.
-    pub(crate) fn new(smoother: &SmootherConfig, clearance_m: f64, cell_m: f64) -> Self {
+    /// Returns the targets of a smoother for a path that should keep `clearance_m`, on a map with
+    /// cells of this side \[m\].
+    pub fn new(smoother: &SmootherConfig, clearance_m: f64, cell_m: f64) -> Self {
         let safe_m = smoother.safe_distance_m(cell_m);
         let has_turning_limit = smoother.has_turning_limit();
         Self { clearance_m, safe_m, has_turning_limit }
     }
 
-    /// Why a corner stayed sharp.
-    pub(crate) const fn why_sharp(&self, why: WhySharp) -> &'static str {
+    /// Text of the reason why a corner stayed sharp.
+    pub(super) const fn why_sharp(&self, why: WhySharp) -> &'static str {
         match why {
             WhySharp::Clearance => "bends come too near to an obstacle",
             WhySharp::Reversal => "the path turns back",
@@ -37,7 +38,7 @@ impl SmoothingTargets {
 }
 
 impl Display for SmoothingTargets {
-    /// The larger distance of the two.
+    /// Writes the larger one of the two distances.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         if self.safe_m > self.clearance_m {
             write!(f, "the smoother's safe distance of {:.3} m", self.safe_m)

@@ -1,12 +1,13 @@
-//! What a plan gave, for people.
+//! Table of a route.
 
-use crate::report_text::{lowered, not_kept, smoothed_facts};
-use crate::smoothing_targets::SmoothingTargets;
+use super::path_facts::{lowered, not_kept, smoothed_facts};
+use super::smoothing_targets::SmoothingTargets;
+use crate::table::{facts, number, quantity, rows};
 use keyway::search::SideStatistics;
-use keyway_lab::table::{facts, number, quantity, rows};
 use keyway_sim::report::{GoalPart, PlanPart, ReachedGoal, RouteReport};
 
-pub(super) fn table(report: &RouteReport, targets: SmoothingTargets) -> String {
+/// Table of a route for the terminal.
+pub fn route_table(report: &RouteReport, targets: SmoothingTargets) -> String {
     let PlanPart { outcome, planner, search, .. } = &report.plan;
     let plan = &report.plan;
     let both = |count: fn(&SideStatistics) -> u64| match search.backward {
@@ -53,7 +54,7 @@ pub(super) fn table(report: &RouteReport, targets: SmoothingTargets) -> String {
     [Some(facts(rows)), goals].into_iter().flatten().collect::<Vec<_>>().join("\n\n")
 }
 
-/// One row for each goal, nearest first.
+/// Returns a row for each goal, the nearest first.
 fn goals_table(goals: &[GoalPart]) -> String {
     let row = |part: &GoalPart| {
         vec![
