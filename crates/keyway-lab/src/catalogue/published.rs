@@ -151,11 +151,9 @@ mod tests {
         tree["window"]["distance_at"] = "end".into();
         tree["distance_term_cap_m"] = 1.0.into();
         assert_eq!(tree.try_into::<DwaConfig>().unwrap(), DwaConfig::SAMPLE);
-        let set = ["local.window.distance_at=end", "local.distance_term_cap_m=1.0"];
-        assert_eq!(
-            of_local("dwa").pop().unwrap().setup,
-            PublishedSetup::Drive { stack: "dwa-to-goal", set: &set }
-        );
+        let set = &["local.window.distance_at=end", "local.distance_term_cap_m=1.0"];
+        let expected = PublishedSetup::Drive { stack: "dwa-to-goal", set };
+        assert_eq!(of_local("dwa").pop().unwrap().setup, expected);
     }
 
     #[test]

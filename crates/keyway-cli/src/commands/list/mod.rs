@@ -28,7 +28,7 @@ struct Listed<'a> {
     summary: &'a str,
     /// `None` where they were not asked for.
     parameters: Option<&'a [Parameter]>,
-    /// How the papers use it; `None` where it was not asked for.
+    /// Its uses in the papers; `None` where they were not asked for.
     published: Option<Vec<Published>>,
 }
 
@@ -37,7 +37,7 @@ struct Listed<'a> {
 struct Published {
     source: &'static str,
     method: &'static str,
-    /// The options of `keyway plan` (of a local planner or a stack: `keyway navigate`) that make it.
+    /// Options of `keyway plan`; of a local planner or a stack, of `keyway navigate`.
     options: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Pictures of experiments: what the methods do on one map, and how values are spread over all maps.
+//! Pictures of experiments: the methods on one map, and the spread of values over all maps.
 
 use super::figures::made;
 use super::stage::Stage;
@@ -49,7 +49,7 @@ const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthes
 struct Spread {
     label: &'static str,
     what: &'static str,
-    /// Whether a method may have it.
+    /// True if a method may have it.
     is_of: fn(&Method) -> bool,
     value: fn(&Outcome) -> Option<f64>,
 }

@@ -8,7 +8,7 @@ use keyway_lab::reproduce::{
 };
 use keyway_sim::report::Inputs;
 
-/// The version and the command that make a picture again; `what` is what is to be measured.
+/// The version and the command that make a picture again; `what` are the words that it measures.
 pub(super) fn made(request: &ReproduceRequest, what: &str) -> String {
     let ReproduceRequest { maps, seed, has_times, .. } = request;
     let times = if *has_times { "" } else { " --no-times" };
@@ -18,14 +18,14 @@ pub(super) fn made(request: &ReproduceRequest, what: &str) -> String {
     )
 }
 
-/// What stands over one axis.
+/// Quantity along one axis.
 #[derive(Clone, Copy, PartialEq)]
 enum Axis {
     /// Relative changes.
     Change,
     /// Differences of a quantity, in its unit.
     Difference(Measure),
-    /// On how many maps something is so.
+    /// Share of the maps on which something is so.
     Kept,
 }
 
@@ -135,7 +135,7 @@ fn chart(
     draw(&bars, ends, &axis.label(), &caption)
 }
 
-/// What was published, if anything was, and the number of maps, where that is not said.
+/// The published change, if there is one, and the number of maps, unless the bar says it.
 fn note(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let maps = format!("n = {}", figure.pairs);
     match published_of(claim, figure) {
@@ -149,9 +149,9 @@ fn note(claim: &ClaimReport, figure: &FamilyFigure) -> String {
 pub(super) struct Bar<'a> {
     pub(super) figure: &'a FamilyFigure,
     pub(super) name: String,
-    /// What was published, as the figure has it.
+    /// The published change, on the scale of the figure.
     pub(super) reference: Option<f64>,
-    /// What is to be said below its numbers.
+    /// Text below its numbers.
     pub(super) note: String,
 }
 

@@ -1,4 +1,4 @@
-//! What all methods of an experiment do on one map, as pictures.
+//! The results of all methods of an experiment on one map, as pictures.
 
 use keyway::geometry::{Polyline, Velocity};
 use keyway_draw::layers::{
@@ -14,21 +14,21 @@ use keyway_sim::sim::Outcome;
 
 /// A run of which parts are compared, below these parts.
 const WAY: LineStyle = LineStyle { color: Rgb(0x88, 0x88, 0x88), width_px: 1.0, dashes: "" };
-/// How wide the parts are \[px\].
+/// Width of the parts \[px\].
 const PART_PX: f64 = 2.6;
 
-/// A map, and what is said of it.
+/// A map, with the texts about it.
 pub(super) struct Stage<'a> {
     experiment: &'a Experiment,
     place: &'a Place,
-    /// Which map it is.
+    /// Name of the map.
     on: &'a str,
-    /// How the pictures were made.
+    /// The command that makes the pictures again.
     made: &'a str,
     actors: Vec<Actor<'a>>,
 }
 
-/// What a picture shows of a method.
+/// The part of a method in a picture.
 struct Actor<'a> {
     name: &'static str,
     shown: &'a Shown,
@@ -73,7 +73,7 @@ impl<'a> Stage<'a> {
         self.panels(&self.caption("Paths and ways driven", |_| true), panels)
     }
 
-    /// What searches did; nothing without any.
+    /// Searches; nothing without any.
     pub(super) fn searches(&self) -> Option<Svg> {
         let actors = self.actors.iter();
         let panels = actors.filter_map(|actor| Some((actor.title(), actor.search_layers()?)));
@@ -169,7 +169,7 @@ impl<'a> Actor<'a> {
         self.ending(self.name)
     }
 
-    /// A name with the length of the path or way, and what became of a run that did not reach its goal.
+    /// A name with the length of the path or way, and the end of a run that missed its goal.
     fn ending(&self, name: &str) -> String {
         let end = match self.shown.run.as_ref().map(|run| run.outcome) {
             None | Some(Outcome::Reached) => "",

@@ -28,8 +28,8 @@ pub struct ScaleRequest<'a> {
     pub stacks: &'a [Stack],
     /// Sides of the square maps \[cells\].
     pub sides_cells: &'a [u32],
-    /// Radius of the robot \[m\], if the caller chose it apart from the layers. A radius that leaves
-    /// no cell free is refused.
+    /// Radius of the robot \[m\], if the caller chose it apart from the layers. A radius that
+    /// leaves no cell free is refused.
     pub radius_m: Option<f64>,
 }
 
