@@ -27,11 +27,11 @@ pub use terminal::{claims_notes, claims_table};
 pub use words::{measure_name, measured_text, published_of, published_text, statement};
 
 use crate::claims::{Ablation, Claim, Experiment};
-use crate::parallel::processors;
 use crate::progress::Progress;
 use crate::results::{Journal, OutDir};
 use files::LINES;
 use kept::KeptLines;
+use keyway_sim::parallel::processors;
 use measure::Work;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
