@@ -2,7 +2,9 @@
 
 mod meant;
 mod overlay;
+mod parameter_layers;
 mod read;
+mod robot_size;
 mod stack;
 mod stack_base;
 mod toml_messages;
@@ -10,9 +12,15 @@ mod toml_text;
 
 pub use meant::did_you_mean;
 pub use overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
-pub use read::{
-    ConfigFileError, MAX_TOML_BYTES, config_text, find_robot, read_robot, robot_from_bytes,
+pub use parameter_layers::{
+    Assignment, AssignmentError, FieldValue, LayerError, LayerFault, ParameterFile, ParameterLayer,
+    ParameterLayers,
 };
+pub use read::{
+    ConfigFileError, MAX_TOML_BYTES, config_text, find_robot, read_parameters, read_robot,
+    robot_from_bytes,
+};
+pub use robot_size::{RadiusBeyondMap, RobotLayersError, RobotSize, StartingValues};
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use stack_base::{ParameterError, StackBase};
 use toml_messages::in_plain_words;

@@ -1,6 +1,6 @@
 //! Robot files, from a path or from memory.
 
-use super::{TomlError, did_you_mean, from_toml};
+use super::{ParameterFile, TomlError, did_you_mean, from_toml};
 use crate::ConfigError;
 use crate::file_system::{ReadError, read_file};
 use crate::map::formats::{TextError, text_from_bytes};
@@ -145,6 +145,18 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileEr
         Ok(()) => Ok(robot),
         Err(reason) => Err(ConfigFileError::Robot { path: path(), reason }),
     }
+}
+
+/// Reads a file of parameters: any part of a stack. Its values are checked when they are laid over a
+/// stack ([`ParameterLayers::over`](super::ParameterLayers::over)).
+///
+/// # Errors
+/// When the file cannot be read, or is not TOML.
+pub fn read_parameters(path: &Path) -> Result<ParameterFile, ConfigFileError> {
+    let bytes = read_file(path, MAX_TOML_BYTES)?;
+    let table = from_toml(config_text(path, &bytes)?)
+        .map_err(|reason| ConfigFileError::Toml { path: path.to_owned(), reason })?;
+    Ok(ParameterFile { name: path.display().to_string(), table })
 }
 
 /// What a robot file need not have.

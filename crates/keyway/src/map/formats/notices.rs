@@ -167,8 +167,7 @@ impl fmt::Display for MapWarning {
             ),
             Self::Resolution { path } => write!(
                 f,
-                "{}: an image does not say how large its cells are, so 1 m is assumed; set it with \
-                 --resolution, or use the map's YAML file",
+                "{}: an image does not say how large its cells are, so 1 m is assumed",
                 path.display()
             ),
         }
@@ -215,14 +214,9 @@ impl MapLoss {
 impl fmt::Display for MapLoss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Resolution(side_m) => write!(
-                f,
-                "the resolution of {side_m} m is not kept; read the file with --resolution {side_m}"
-            ),
+            Self::Resolution(side_m) => write!(f, "the resolution of {side_m} m is not kept"),
             Self::Origin(Pose { x, y, theta }) => {
-                let yaw = degrees(*theta);
-                write!(f, "the origin ({x}, {y}) m, {yaw} deg is not kept; ")?;
-                write!(f, "read the file with --origin {x},{y},{yaw}")
+                write!(f, "the origin ({x}, {y}) m, {} deg is not kept", degrees(*theta))
             }
             Self::Unknown(1) => write!(f, "1 unknown cell became occupied"),
             Self::Unknown(count) => write!(f, "{count} unknown cells became occupied"),
