@@ -1,40 +1,12 @@
 //! Commands for other programs: words of a command line -> what `--format json` prints.
 
-use crate::args::{BatchCli, Cli, Command, CompareArgs};
+use crate::args::{BatchCli, Cli, Command};
 use crate::commands;
 use crate::error::{CliError, Kind};
 use crate::progress::Watcher;
 use clap::Parser;
-use keyway::map::OccupancyGrid;
 use serde_json::Value;
 use std::ffi::OsString;
-
-/// What a comparison gave.
-#[derive(Clone, Debug)]
-pub struct Comparison {
-    /// `keyway.compare/1`.
-    pub report: Value,
-    /// The table of all rows as LaTeX.
-    pub latex: String,
-    /// Names of the columns of the same table.
-    pub header: Vec<&'static str>,
-    /// Its cells, row by row.
-    pub cells: Vec<Vec<String>>,
-}
-
-/// `keyway compare` on a map in memory. `words` are the options, without the map; nothing is written or printed.
-///
-/// # Errors
-/// As the program; when the watcher stops it.
-pub fn compare(
-    grid: OccupancyGrid,
-    words: &[OsString],
-    watcher: &dyn Watcher,
-) -> Result<Comparison, CliError> {
-    let Command::Compare(args) = parsed(&["compare", "map"], words)? else { return Err(other()) };
-    let args = CompareArgs { out: None, ..args };
-    commands::compare::comparison(grid, &args, watcher)
-}
 
 /// `keyway batch`, or `keyway batch merge` where that is the first word; gives `keyway.batch/1`. Writes all files and prints
 /// nothing. A batch that is stopped goes on where it was when it is started again.

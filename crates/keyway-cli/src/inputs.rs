@@ -3,13 +3,15 @@
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
 use keyway::file_system::check_writable;
-use keyway::files::{ConfigFileError, did_you_mean, find_robot, find_stack};
+use keyway::files::{
+    ConfigFileError, RadiusBeyondMap, RobotLayersError, RobotSize, did_you_mean, find_robot,
+    find_stack,
+};
 use keyway::geometry::Point;
-use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader};
+use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader, MapWarning};
 use keyway::map::{Cell, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
-use keyway::robot::{Footprint, Robot};
-use keyway_lab::map_radius::RadiusBeyondMap;
+use keyway::robot::{Footprint, FootprintError, Robot};
 use keyway_sim::report::MapSource;
 use keyway_sim::scene_files::{SceneFileError, read_disturbances};
 use keyway_sim::sim::Disturbances;
@@ -23,7 +25,15 @@ pub(crate) const PAPER_ROBOT: &str = "paper";
 
 pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, CliError> {
     let loaded = reader.read(path).map_err(|error| map_error(&error))?;
-    loaded.warnings.iter().for_each(crate::stdout::warn);
+    for warning in &loaded.warnings {
+        let advice = match warning {
+            MapWarning::Resolution { .. } => {
+                "; set it with --resolution, or use the map's YAML file"
+            }
+            _ => "",
+        };
+        crate::stdout::warn(format_args!("{warning}{advice}"));
+    }
     Ok(loaded)
 }
 
@@ -136,36 +146,42 @@ pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError>
     check_writable(out).map_err(|error| blame(error.to_string()))
 }
 
-/// The robot that is named, with the radius that is asked for; `None` for a point.
-pub(crate) fn sized_robot(size: &SizeArgs) -> Result<Option<Robot>, CliError> {
+/// The size of the robot that is named, with the radius that is asked for.
+pub(crate) fn robot_size(size: &SizeArgs) -> Result<RobotSize, CliError> {
     let robot = size.robot.as_deref().map(|name| robot(name, Path::new(""))).transpose()?;
-    robot.map(|robot| with_radius(robot, size.radius)).transpose()
+    RobotSize::new(robot, size.radius).map_err(|error| bad_radius(&error))
 }
 
 /// The layers of a map. An error names the option whose value is wrong.
 pub(crate) fn layers(
     grid: &OccupancyGrid,
     config: LayerConfig,
-    size: &SizeArgs,
+    size: &RobotSize,
 ) -> Result<SearchMap, CliError> {
-    if let Some(radius_m) = size.radius {
-        refuse_a_radius_beyond_the_map(radius_m, grid.frame(), "--radius")?;
-    }
-    let map = SearchMap::new(grid, config).map_err(|error| {
-        let error = error.within("map");
-        CliError::new(Kind::Config, &error).field(error.path.as_str())
-    })?;
-    refuse_a_radius_beyond_the_map(map.config().clearance_m, map.frame(), "map.clearance_m")?;
-    Ok(map)
+    size.layers(grid, config).map_err(|error| bad_layers(&error))
+}
+
+/// Names the option whose value keeps a map from having layers.
+pub(crate) fn bad_layers(error: &RobotLayersError) -> CliError {
+    let field = match error {
+        RobotLayersError::Radius(_) => "--radius",
+        RobotLayersError::Config(error) => &error.path,
+        _ => "map.clearance_m",
+    };
+    CliError::new(Kind::Config, error).field(field)
 }
 
 /// The same robot as a disc of another radius.
 pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, CliError> {
     let Some(radius_m) = radius_m else { return Ok(robot) };
-    let footprint = Footprint::circle(radius_m)
-        .map_err(|error| format!("{error}; lengths are in metres, not in millimetres"))
-        .map_err(|message| CliError::new(Kind::Config, message).field("--radius"))?;
+    let footprint = Footprint::circle(radius_m).map_err(|error| bad_radius(&error))?;
     Ok(Robot { footprint, ..robot })
+}
+
+/// Says why no robot can have the radius that is asked for.
+pub(crate) fn bad_radius(error: &FootprintError) -> CliError {
+    let message = format!("{error}; lengths are in metres, not in millimetres");
+    CliError::new(Kind::Config, message).field("--radius")
 }
 
 /// A position in metres: as given, or the centre of the cell that was given.

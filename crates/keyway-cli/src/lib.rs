@@ -1,8 +1,7 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 //!
-//! A library as well, for bindings to other languages: [`run`] is the program, and [`compare`] and [`batch`] are two of its
-//! commands that answer with their reports. They take the words of a command line, so that there is one parser, one set of names
-//! and one set of messages.
+//! A library as well, for bindings to other languages: [`run`] is the program, and [`batch`] is one of
+//! its commands that answers with its report. It takes the words of a command line.
 
 mod args;
 mod commands;
@@ -24,7 +23,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use clap::error::ErrorKind;
 use commands::Done;
-pub use embedded::{Comparison, batch, compare};
+pub use embedded::batch;
 pub use error::CliError;
 pub use progress::Watcher;
 

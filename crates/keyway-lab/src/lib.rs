@@ -13,14 +13,14 @@
 //! | [`table`], [`run_tables`] | rows as text, LaTeX and CSV; routes and runs as tables |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
 //! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
-//! | [`text_file`], [`map_radius`] | text within limits; radii that a map has room for |
+//! | [`text_file`] | text within limits |
 
 pub mod batch;
 pub mod bench;
 pub mod catalogue;
 pub mod claims;
 pub mod compare;
-pub mod map_radius;
+mod corner_rule;
 pub mod measure;
 pub mod progress;
 pub mod reproduce;

@@ -1,14 +1,19 @@
 //! Comparing planners and smoothers.
 
 use crate::arrays::{Json, JsonRows, json};
-use crate::errors::bad_value;
+use crate::errors::{bad_value, why_without_path};
 use crate::map::Map;
 use crate::parameters::Parameters;
 use crate::values::Listed;
-use crate::watched::{Progress, watched};
+use crate::watched::{Progress, Watch, watched};
+use keyway::files::{Assignment, ParameterLayers, StartingValues};
 use keyway::map::OccupancyGrid;
+use keyway::map::formats::{LoadedMap, MapFormat, digest};
+use keyway::plan::PlanError;
 use keyway_cli::CliError;
+use keyway_lab::compare::{CompareError, CompareRequest, Comparison as Checked, QueryChoice};
 use pyo3::prelude::*;
+use serde_json::Value;
 use std::ffi::OsString;
 
 /// What a comparison gave: a row for each planner with each smoother.
@@ -22,7 +27,11 @@ use std::ffi::OsString;
 /// ['jps', 'theta-star']
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Comparison {
-    inner: keyway_cli::Comparison,
+    report: Value,
+    latex: String,
+    /// Names of the columns of the same table, and its cells row by row.
+    header: Vec<&'static str>,
+    cells: Vec<Vec<String>>,
 }
 
 #[pymethods]
@@ -30,13 +39,13 @@ impl Comparison {
     /// The rows as dictionaries, with the names of the columns of `table.csv` in `docs/JSON.md`.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<JsonRows> {
-        Ok(JsonRows(pythonize::pythonize(py, &self.inner.report["rows"])?.unbind()))
+        Ok(JsonRows(pythonize::pythonize(py, &self.report["rows"])?.unbind()))
     }
 
     /// The whole report, `keyway.compare/1` of `docs/JSON.md`: also every query, and the tests of each row against the first.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<Json> {
-        json(py, &self.inner.report)
+        json(py, &self.report)
     }
 
     /// The table as LaTeX, as a paper would print it.
@@ -46,7 +55,7 @@ impl Comparison {
     /// >>> "tabular" in keyway.compare(grid, planners=["jps"], times=False).to_latex()
     /// True
     fn to_latex(&self) -> &str {
-        &self.inner.latex
+        &self.latex
     }
 
     /// The rows as a `pandas.DataFrame`; pandas has to be installed.
@@ -55,7 +64,7 @@ impl Comparison {
     }
 
     fn __len__(&self) -> usize {
-        self.inner.report["rows"].as_array().map_or(0, Vec::len)
+        self.report["rows"].as_array().map_or(0, Vec::len)
     }
 
     fn __repr__(&self) -> String {
@@ -67,9 +76,9 @@ impl Comparison {
             let cell = |cell| format!("<{tag}>{}</{tag}>", html_text(cell));
             format!("<tr>{}</tr>\n", cells.map(cell).collect::<Vec<_>>().concat())
         };
-        let header = line(&mut self.inner.header.iter().copied(), "th");
+        let header = line(&mut self.header.iter().copied(), "th");
         let row = |row: &Vec<String>| line(&mut row.iter().map(String::as_str), "td");
-        let rows: String = self.inner.cells.iter().map(row).collect();
+        let rows: String = self.cells.iter().map(row).collect();
         format!("<table>\n<thead>\n{header}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n")
     }
 }
@@ -108,24 +117,55 @@ pub(crate) fn compare(
     times: bool,
     progress: Option<Progress>,
 ) -> PyResult<Comparison> {
-    let mut words = Words::default();
-    words.list("--planners", planners);
-    words.list("--smoothers", smoothers);
-    words.list("--columns", columns);
-    words.option("--queries", Some(queries));
-    words.option("--seed", Some(seed));
-    words.option("--repeat", Some(repeat));
-    words.option("--radius", radius);
-    words.option("--robot", robot);
-    for assignment in parameters.unwrap_or_default().assignments() {
-        words.option("--set", Some(assignment));
-    }
-    words.flag("--as-published", as_published);
-    words.flag("--no-times", !times);
+    let parameters = ParameterLayers {
+        assignments: Assignment::all_of(&parameters.unwrap_or_default().0),
+        ..ParameterLayers::default()
+    };
+    let count = usize::try_from(queries).unwrap_or(usize::MAX);
+    let request = CompareRequest {
+        planners: names("planners", planners)?,
+        smoothers: names("smoothers", smoothers)?,
+        columns: names("columns", columns)?,
+        queries: QueryChoice::Random { count, seed },
+        repeat,
+        radius_m: radius,
+        robot,
+        parameters,
+        values: StartingValues::published_if(as_published),
+        has_times: times,
+        why: why_without_path,
+        ..CompareRequest::new(vec!["map".into()])
+    };
     let grid = OccupancyGrid::clone(&grid.grid);
-    let compare = move |watch: &crate::watched::Watch| keyway_cli::compare(grid, &words.0, watch);
-    let inner = watched(py, progress.as_ref(), compare)?.map_err(|error| refused(&error))?;
-    Ok(Comparison { inner })
+    watched(py, progress.as_ref(), move |watch| compared(grid, request, watch))?
+}
+
+/// Names of a list; without a list those that are usual.
+fn names(argument: &str, list: Option<Listed<String>>) -> PyResult<Vec<String>> {
+    match list {
+        Some(Listed(names)) if names.is_empty() => {
+            Err(bad_value(format!("{argument}: expected at least one name")))
+        }
+        list => Ok(list.map(|Listed(names)| names).unwrap_or_default()),
+    }
+}
+
+fn compared(grid: OccupancyGrid, request: CompareRequest, watch: &Watch) -> PyResult<Comparison> {
+    let checked: Checked = request.check().map_err(bad_value)?;
+    let (digest, format) = (digest(&grid), MapFormat::Ros);
+    let loaded = LoadedMap { grid, format, digest, sources: Vec::new(), warnings: Vec::new() };
+    let map = checked.queried(0, loaded).map_err(bad_value)?;
+    let map = checked.on(map, watch).map_err(|error| match error {
+        CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {
+            bad_value(format!("{error}; planners=[\"all\"] leaves such planners out"))
+        }
+        error => bad_value(error),
+    })?;
+    let report = checked.report(&[map], None);
+    let latex = checked.columns().latex(&report.rows);
+    let (header, cells, _) = checked.columns().table(&report.rows);
+    let report = serde_json::to_value(&report).map_err(bad_value)?;
+    Ok(Comparison { report, latex, header, cells })
 }
 
 /// A text in which no character means anything to HTML.
@@ -145,12 +185,6 @@ impl Words {
     pub(crate) fn option(&mut self, option: &str, value: Option<impl ToString>) {
         if let Some(value) = value {
             self.0.push(format!("{option}={}", value.to_string()).into());
-        }
-    }
-
-    pub(crate) fn flag(&mut self, flag: &str, is_set: bool) {
-        if is_set {
-            self.0.push(flag.into());
         }
     }
 }

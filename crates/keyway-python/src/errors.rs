@@ -3,6 +3,7 @@
 use keyway::file_system::ReadError;
 use keyway::files::{ConfigFileError, ParameterError};
 use keyway::map::formats::MapFileError;
+use keyway::map::{BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::{Advice, PlanError};
 use keyway_sim::scene_files::{SceneError, SceneFileError};
@@ -38,6 +39,27 @@ pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
 /// A value that cannot be used.
 pub(crate) fn bad_value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// Why there is no path in a comparison, and the parameter that helps.
+pub(crate) fn why_without_path(error: &PlanError) -> String {
+    let advice = match error {
+        PlanError::Blocked {
+            by: BlockedBy::Unknown | BlockedBy::Clearance { nearest: Hindrance::Unknown { .. }, .. },
+            ..
+        } => "; with the parameter `map.unknown` set to free, paths may lead through unknown space"
+            .to_owned(),
+        PlanError::Blocked {
+            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
+            ..
+        } => "; to lift it within 1 m of start and goal, set the parameter `map.free_ends_m` to 1"
+            .to_owned(),
+        error => error.advice().map_or_else(String::new, |advice| {
+            let Advice { purpose, planner, parameter, value } = advice;
+            format!("; {purpose}, set the parameter `{planner}.{parameter}` to {value}")
+        }),
+    };
+    format!("{error}{advice}")
 }
 
 /// Why there is no plan, in the words of the library, and the setting that helps.

@@ -7,7 +7,7 @@ use crate::ready::{PlannerCache, PlannerParts};
 use crate::values::{Grid, Numbers, Positions, point_text};
 use keyway::geometry::Pose;
 use keyway::map::formats::{
-    DEFAULT_MAX_CELLS, ImagePlacement, MapReader, TooManyCells, digest, write_map,
+    DEFAULT_MAX_CELLS, ImagePlacement, MapReader, MapWarning, TooManyCells, digest, write_map,
 };
 use keyway::map::{
     BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyGrid, OccupancyThresholds,
@@ -190,7 +190,13 @@ impl Map {
             }
         })?;
         for warning in &loaded.warnings {
-            warn(py, &warning.to_string())?;
+            let advice = match warning {
+                MapWarning::Resolution { .. } => {
+                    "; set it with `resolution`, or use the map's YAML file"
+                }
+                _ => "",
+            };
+            warn(py, &format!("{warning}{advice}"))?;
         }
         let source = MapSource { placement: placement.map(Into::into), ..MapSource::from(&loaded) };
         Ok(Self::new(loaded.grid, source))

@@ -92,22 +92,6 @@ fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Val
 }
 
 impl Parameters {
-    /// As `path=value`, a word for each.
-    pub(crate) fn assignments(&self) -> Vec<String> {
-        fn walk(table: &Table, path: &str, out: &mut Vec<String>) {
-            for (key, value) in table {
-                let here = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                match value {
-                    Value::Table(inner) => walk(inner, &here, out),
-                    value => out.push(format!("{here}={value}")),
-                }
-            }
-        }
-        let mut out = Vec::new();
-        walk(&self.0, "", &mut out);
-        out
-    }
-
     /// Laid over a stack.
     pub(crate) fn over(&self, base: StackBase<'_>) -> PyResult<Stack> {
         base.with(&self.0).map_err(|error| parameter_error(&error))

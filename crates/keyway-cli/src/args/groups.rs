@@ -1,7 +1,8 @@
 //! Options that several commands share.
 
-use super::values::{Assignment, PoseArg, radius, resolution, whole};
+use super::values::{PoseArg, radius, resolution, whole};
 use clap::{Args, ValueEnum};
+use keyway::files::Assignment;
 use keyway::geometry::Pose;
 use keyway::map::MAX_CELLS;
 use keyway::map::formats::{DEFAULT_MAX_CELLS, ImagePlacement, MapReader};
@@ -27,8 +28,7 @@ impl ConfigArgs {
     /// The same as words of a command line.
     pub(crate) fn words(&self) -> Vec<OsString> {
         let config = self.config.iter().flat_map(|file| ["--config".into(), file.into()]);
-        let to_set = |Assignment { path, value }: &Assignment| format!("{path}={value}");
-        let set = self.set.iter().flat_map(|set| ["--set".into(), to_set(set).into()]);
+        let set = self.set.iter().flat_map(|set| ["--set".into(), set.to_string().into()]);
         let unknown = self.unknown.iter().flat_map(|it| ["--unknown".into(), it.name().into()]);
         config.chain(set).chain(unknown).collect()
     }

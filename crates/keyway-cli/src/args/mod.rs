@@ -18,11 +18,12 @@ pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::Shard;
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, Assignment, CircleArg, CurveFile, CurveFormat, MovingArg,
-    PictureFile, PoseArg, PositionArg,
+    AnimationFile, AnimationFormat, CircleArg, CurveFile, CurveFormat, MovingArg, PictureFile,
+    PoseArg, PositionArg,
 };
 
 use clap::{Args, Parser, Subcommand};
+use keyway_lab::compare::CompareRequest;
 use std::path::PathBuf;
 use values::{positive_length, radius, whole};
 
@@ -333,7 +334,8 @@ pub(crate) struct CompareArgs {
     /// Number of queries on each map: those of a scenario file, evenly spread; otherwise random
     /// ones between connected cells [default: 10, or all of a file]
     #[arg(long, allow_negative_numbers = true)]
-    #[arg(value_name = "N", value_parser = whole::<usize, 1, 1_000_000>, conflicts_with = "pairs")]
+    #[arg(value_name = "N", conflicts_with = "pairs")]
+    #[arg(value_parser = whole::<usize, 1, { CompareRequest::MOST_QUERIES as u64 }>)]
     pub(crate) queries: Option<usize>,
     /// Seed of the random queries
     #[arg(long, allow_negative_numbers = true)]
@@ -344,7 +346,7 @@ pub(crate) struct CompareArgs {
     /// each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
-    #[arg(value_parser = whole::<u64, 1, 1000>)]
+    #[arg(value_parser = whole::<u64, 1, { CompareRequest::MOST_REPEATS }>)]
     pub(crate) repeat: u64,
     /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever
     /// the robot

@@ -78,13 +78,6 @@ impl FromStr for Shard {
     }
 }
 
-/// `PATH=VALUE`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Assignment {
-    pub(crate) path: String,
-    pub(crate) value: String,
-}
-
 /// A picture to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PictureFile {
@@ -198,19 +191,6 @@ impl FromStr for MovingArg {
         // A mistake is one of the argument.
         moving.mover(moving.points.clone()).map_err(|error| error.to_string())?;
         Ok(moving)
-    }
-}
-
-impl FromStr for Assignment {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once('=') {
-            Some((path, value)) if !path.trim().is_empty() => {
-                Ok(Self { path: path.trim().to_owned(), value: value.trim().to_owned() })
-            }
-            _ => Err("expected PATH=VALUE, such as map.unknown=free".to_owned()),
-        }
     }
 }
 
@@ -363,13 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn assignments_and_pictures() {
-        let assignment: Assignment = "planner.corners = allow".parse().unwrap();
-        assert_eq!(
-            (assignment.path.as_str(), assignment.value.as_str()),
-            ("planner.corners", "allow")
-        );
-        assert!("planner".parse::<Assignment>().is_err() && "=1".parse::<Assignment>().is_err());
+    fn pictures_and_other_files() {
         assert!("a.PNG".parse::<PictureFile>().unwrap().is_png);
         let gif: AnimationFile = "a.Gif".parse().unwrap();
         assert_eq!(gif.format, AnimationFormat::Gif);

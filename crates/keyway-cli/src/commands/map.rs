@@ -8,7 +8,7 @@ use crate::out_dir::warn_of_others;
 use crate::stdout::print_files;
 use crate::stdout::warn;
 use keyway::file_system::read_file;
-use keyway::geometry::Pose;
+use keyway::geometry::{Pose, degrees};
 use keyway::map::formats::{
     ImageKind, LoadedMap, MAX_MAP_BYTES, MapFormat, MapLoss, MapReader, RosMap, ros_map_image,
     write_map,
@@ -119,7 +119,7 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         .map_err(|error| CliError::new(Kind::Output, error).field("OUT"))?;
     let losses = MapLoss::of(&loaded.grid, format);
     for loss in &losses {
-        warn(format_args!("{}: {loss}", args.out.display()));
+        warn(format_args!("{}: {loss}{}", args.out.display(), option_of(loss)));
     }
     let as_written = MapReader { placement: None, ..args.map.place.reader() };
     let written = as_written
@@ -131,6 +131,17 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     let report = MapReport { lost, files, ..report(&args.out, &written) };
     show(&report, args.format)?;
     Ok(Done::Success)
+}
+
+/// The option with which a file is read that does not keep a part of a map.
+fn option_of(loss: &MapLoss) -> String {
+    match loss {
+        MapLoss::Resolution(side_m) => format!("; read the file with --resolution {side_m}"),
+        MapLoss::Origin(Pose { x, y, theta }) => {
+            format!("; read the file with --origin {x},{y},{}", degrees(*theta))
+        }
+        _ => String::new(),
+    }
 }
 
 /// Refuses to replace an image that nothing named: neither the command line nor the YAML file that

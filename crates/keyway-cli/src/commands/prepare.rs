@@ -2,16 +2,15 @@
 
 use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
-use crate::config::{resolve, size_option};
+use crate::config::resolve;
 use crate::error::{CliError, Kind};
-use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, sized_robot};
+use crate::inputs::{layers, load_map, refuse_to_replace_a_source, refuse_unwritable, robot_size};
 use crate::stdout::print_files;
 use indicatif::{ProgressBar, ProgressStyle};
 use keyway::files::StackBase;
 use keyway::map::{LayerConfig, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{Preparation, PrepareProgress, Prepared};
-use keyway::robot::Robot;
 use keyway_lab::table::{facts, quantity};
 use serde::Serialize;
 use std::io::IsTerminal;
@@ -35,20 +34,19 @@ struct PrepareReport {
 }
 
 pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
-    let robot = sized_robot(&args.size)?;
-    let size = size_option(&args.size, robot.as_ref());
-    let robot = robot.unwrap_or_else(Robot::small);
+    let size = robot_size(&args.size)?;
+    let robot = size.robot_or_small();
     let config = resolve(
         StackBase::for_robot(&Stack::for_plans(&robot), &robot),
         &args.config,
-        [size],
+        [size.clearance()],
         &[],
     )?
     .map;
     let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;
-    let map = layers(&loaded.grid, config.clone(), &args.size)?;
+    let map = layers(&loaded.grid, config.clone(), &size)?;
     let begin = Instant::now();
     let prepared = prepare(&map)?;
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;

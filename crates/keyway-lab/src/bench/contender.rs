@@ -4,9 +4,10 @@ use super::GridError;
 use super::mistakes::Mistake;
 use super::raw_map::RawMap;
 use super::tally::{Answer, GridRow, PathFound, row};
+use crate::corner_rule::corner_rule;
 use crate::measure::{Times, timed};
 use keyway::map::formats::Scenario;
-use keyway::map::{Connectivity, OccupancyGrid, SearchMap};
+use keyway::map::{OccupancyGrid, SearchMap};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError};
 use keyway::search::{CornerRule, Query, Workspace};
@@ -84,10 +85,7 @@ impl<'a> Contender<'a> {
     }
 
     fn corners(&self) -> CornerRule {
-        match self.planner.connectivity() {
-            Connectivity::Four => CornerRule::Forbid,
-            Connectivity::Eight => CornerRule::Allow,
-        }
+        corner_rule(&*self.planner)
     }
 
     /// A length that no legal path of the planner is below.

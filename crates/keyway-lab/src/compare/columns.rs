@@ -2,15 +2,16 @@
 
 use super::Compared;
 use super::row::CompareRow;
-use crate::table::{number, percent, range, rows};
+use crate::table::{latex_table, number, percent, range, rows};
 use keyway::files::did_you_mean;
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
 use thiserror::Error;
 
 /// One column of the table.
+#[derive(Debug)]
 struct Column {
-    /// Name of the column in `--columns`.
+    /// Name of the column in a request.
     id: &'static str,
     /// Header in LaTeX, which has all columns.
     name: &'static str,
@@ -69,7 +70,7 @@ const COLUMNS: [Column; 14] = [
 
 /// A text column, like the names.
 const CORNERS: &str = "corners";
-/// Columns that `--no-times` leaves out.
+/// Columns of times.
 const TIMES: [&str; 2] = ["plan", "smooth"];
 
 const fn always(
@@ -123,6 +124,7 @@ pub enum ColumnError {
 }
 
 /// Columns of the tables of a comparison.
+#[derive(Debug)]
 pub struct ChosenColumns {
     /// Requested columns; `None` for the usual ones.
     asked: Option<Vec<&'static Column>>,
@@ -166,6 +168,12 @@ impl ChosenColumns {
         let lines = rows.iter().map(cells).collect();
         let words = 3 + columns[3..].iter().take_while(|column| column.id == CORNERS).count();
         (columns.iter().map(|column| column.name).collect(), lines, words)
+    }
+
+    /// The table of all rows as LaTeX.
+    pub fn latex(&self, rows: &[CompareRow]) -> String {
+        let (header, lines, words) = self.table(rows);
+        latex_table(&header, &lines, words)
     }
 
     /// The table of a map, as wide as a terminal unless columns were requested: not all columns.

@@ -3,9 +3,11 @@
 //! The planners take turns, round by round. For each query, the fastest round of each planner
 //! counts. Smoothers follow the planner whose lines they smooth.
 
+use super::choice::Choice;
 use super::ends::Ends;
 use super::left_out::LeftOut;
-use super::{CompareError, CompareRequest};
+use super::{CompareError, Comparison};
+use crate::corner_rule::corner_rule;
 use crate::measure::{StageTimer, Times, timed};
 use crate::progress::Progress;
 use keyway::geometry::{PlannedLine, Polyline};
@@ -87,28 +89,30 @@ pub struct Contest {
 
 pub(super) fn compete(
     map: &SearchMap,
-    request: &CompareRequest,
+    comparison: &Comparison,
     queries: &[Ends],
     progress: &dyn Progress,
 ) -> Result<Contest, CompareError> {
-    let smoothers = &request.smoothers;
+    let Choice { planners, smoothers, leaves_out_unfit, .. } = &comparison.choice;
     for connectivity in [Connectivity::Four, Connectivity::Eight] {
         map.components(connectivity);
     }
     let (mut contenders, mut left_out) = (Vec::new(), Vec::new());
-    for planner in &request.planners {
+    for planner in planners {
         match Contender::prepare(planner, smoothers.len(), map) {
             Ok(contender) => contenders.push(contender),
-            Err(error) if request.leaves_out_unfit && LeftOut::is_for(&error) => {
+            Err(error) if *leaves_out_unfit && LeftOut::is_for(&error) => {
                 left_out.push(LeftOut::new(planner.name(), &error));
             }
-            Err(error) => return Err(CompareError::Planner { name: planner.name(), error }),
+            Err(error) => {
+                return Err(CompareError::Planner { name: planner.name(), error: in_stack(error) });
+            }
         }
     }
-    progress.expect(request.repeat as usize * contenders.len() * queries.len());
-    for _ in 0..request.repeat {
+    progress.expect(comparison.repeat as usize * contenders.len() * queries.len());
+    for _ in 0..comparison.repeat {
         for contender in &mut contenders {
-            contender.plan_all(map, queries, (request.why, progress))?;
+            contender.plan_all(map, queries, (comparison.why, progress))?;
             contender.smooth_all(map, smoothers)?;
         }
     }
@@ -191,10 +195,7 @@ impl Contender {
     }
 
     fn corners(&self) -> CornerRule {
-        match self.planner.connectivity() {
-            Connectivity::Four => CornerRule::Forbid,
-            Connectivity::Eight => CornerRule::Allow,
-        }
+        corner_rule(&*self.planner)
     }
 
     /// Plans all queries: the first round keeps the answers, later rounds keep faster times.
@@ -236,7 +237,8 @@ impl Contender {
     ) -> Result<(), CompareError> {
         let clearance_m = map.config().clearance_m;
         for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
-            let smoother = config.build().map_err(CompareError::Smoother)?;
+            let smoother =
+                config.build().map_err(|error| CompareError::Smoother(error.within("smoother")))?;
             // The planned line is measured and checked, too, but that is not smoothing.
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
@@ -298,6 +300,14 @@ impl Planned {
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
         Answer { outcome, reason, plan: Some(self.times), relaxed: self.relaxed, found }
+    }
+}
+
+/// Names the field of a wrong config as that of a stack.
+fn in_stack(error: PlanError) -> PlanError {
+    match error {
+        PlanError::Config(error) => PlanError::Config(error.within("planner")),
+        error => error,
     }
 }
 

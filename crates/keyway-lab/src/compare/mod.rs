@@ -1,15 +1,23 @@
 //! Comparison of planners and smoothers on the same queries, and with the shortest lines.
 //!
-//! A [`CompareRequest`] describes the comparison. It gives a [`Compared`] for each map, and a
-//! [`CompareReport`] for all of them.
+//! A [`CompareRequest`] describes the comparison. Checked, it is a [`Comparison`], which gives a
+//! [`Compared`] for each map, and a [`CompareReport`] for all of them.
 
 mod against_first;
+mod checked;
+mod choice;
 mod columns;
 mod contest;
 mod ends;
+mod files;
 mod left_out;
 mod lowered;
+mod map_names;
+mod pairs;
+mod queries;
 mod report;
+mod request;
+mod request_error;
 mod row;
 mod unsolved;
 
@@ -17,40 +25,42 @@ pub use against_first::{AgainstFirst, against_first_note};
 pub use columns::{ChosenColumns, ColumnError};
 pub use contest::{Answer, Contest, Entry, Found, Oracle};
 pub use ends::Ends;
+pub use files::CompareFiles;
 pub use left_out::{LeftOut, left_out_note};
 pub use lowered::lowered_note;
+pub use map_names::{AmbiguousMap, SameMap};
+pub use pairs::{PairsError, PairsFault};
+pub use queries::{QueryChoice, QueryError};
 pub use report::{CompareReport, QueryRow, QuerySource, SCHEMA, query_rows};
+pub use request::CompareRequest;
+pub use request_error::{CompareRequestError, NamesError};
 pub use row::CompareRow;
 pub use unsolved::{Unsolved, unsolved_note};
 
 use crate::progress::Progress;
+use choice::Choice;
 use contest::compete;
 use keyway::ConfigError;
+use keyway::files::RobotLayersError;
 use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, LayerConfig, SearchMap};
-use keyway::plan::{PlanError, PlannerConfig};
-use keyway::smooth::SmootherConfig;
+use keyway::map::{Cell, SearchMap};
+use keyway::plan::PlanError;
+use keyway_sim::report::PlacementInput;
+use map_names::MapNames;
 use row::{compared, most_different, row};
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Planners and smoothers to compare, each planner with every smoother.
-#[derive(Clone, Debug)]
-pub struct CompareRequest {
-    /// Layers of the maps.
-    pub map: LayerConfig,
-    /// The planners.
-    pub planners: Vec<PlannerConfig>,
-    /// True if planners that cannot plan on a map are left out there; otherwise they are an error.
-    pub leaves_out_unfit: bool,
-    /// The smoothers.
-    pub smoothers: Vec<SmootherConfig>,
-    /// Rounds in which every query is answered, the planners in turns; the fastest time of each
-    /// counts.
-    pub repeat: u64,
-    /// True if times are measured; they differ from run to run.
-    pub has_times: bool,
-    /// Text for a query without a path, with advice for the reader.
-    pub why: fn(&PlanError) -> String,
+/// A comparison that was requested and checked.
+#[derive(Debug)]
+pub struct Comparison {
+    names: MapNames,
+    choice: Choice,
+    queries: QueryChoice,
+    repeat: u64,
+    has_times: bool,
+    columns: ChosenColumns,
+    why: fn(&PlanError) -> String,
 }
 
 /// A map with its queries.
@@ -78,6 +88,23 @@ pub struct Compared {
     pub counts: Vec<bool>,
 }
 
+/// Reason why nothing can be compared on a map.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum QueriedError {
+    /// The map has no layers for the robot.
+    #[error("{}: {error}", map.display())]
+    Layers {
+        /// The map.
+        map: PathBuf,
+        /// Fault of the radius or of the config.
+        error: RobotLayersError,
+    },
+    /// The map has no queries.
+    #[error(transparent)]
+    Queries(#[from] QueryError),
+}
+
 /// Reason why planners and smoothers cannot be compared.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -87,10 +114,10 @@ pub enum CompareError {
     Planner {
         /// Name of the planner.
         name: &'static str,
-        /// Error of the planner.
+        /// Error of the planner; the field of a config error is that of a stack.
         error: PlanError,
     },
-    /// A smoother cannot be used.
+    /// A smoother cannot be used; the field is that of a stack.
     #[error(transparent)]
     Smoother(ConfigError),
     /// A query is not valid.
@@ -102,17 +129,45 @@ pub enum CompareError {
 }
 
 impl Queried {
-    /// Combines a map of a unique name with its layers and its queries. Where the layers ask for
-    /// it, the constraints that keep paths away from obstacles are lifted around the ends of all
-    /// queries alike.
-    pub fn new(name: String, loaded: LoadedMap, mut map: SearchMap, queries: Vec<Ends>) -> Self {
+    /// Combines a map with its layers and its queries. Where the layers ask for it, the constraints
+    /// that keep paths away from obstacles are lifted around the ends of all queries alike.
+    fn new(name: String, loaded: LoadedMap, mut map: SearchMap, queries: Vec<Ends>) -> Self {
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
         map.free_ends(&ends);
         Self { name, loaded, map, queries }
     }
 }
 
-impl CompareRequest {
+impl Comparison {
+    /// Unique names of the maps: the shortest ends of their paths that differ.
+    pub fn map_names(&self) -> Vec<String> {
+        self.names.all()
+    }
+
+    /// The columns of tables.
+    pub const fn columns(&self) -> &ChosenColumns {
+        &self.columns
+    }
+
+    /// The file of the queries; `None` for random ones.
+    pub fn query_file(&self) -> Option<&Path> {
+        self.queries.file()
+    }
+
+    /// Returns the map of this index with its layers and its queries.
+    ///
+    /// # Errors
+    /// When the map has no room for the robot, or there are no queries on it.
+    pub fn queried(&self, index: usize, loaded: LoadedMap) -> Result<Queried, QueriedError> {
+        let map = self.choice.size.layers(&loaded.grid, self.choice.map.clone());
+        let map = map.map_err(|error| QueriedError::Layers {
+            map: self.names.path(index).to_owned(),
+            error,
+        })?;
+        let queries = self.queries.on((&self.names, index), &map)?;
+        Ok(Queried::new(self.names.name(index).to_owned(), loaded, map, queries))
+    }
+
     /// Answers all queries on a map.
     ///
     /// # Errors
@@ -124,6 +179,12 @@ impl CompareRequest {
         let contest = if self.has_times { contest } else { contest.without_times() };
         let counts = compared(&contest.entries);
         Ok(Compared { name, loaded, map, queries, contest, counts })
+    }
+
+    /// Returns the report of the results on all maps; `placement` is where maps lie that do not say
+    /// it themselves.
+    pub fn report(&self, maps: &[Compared], placement: Option<PlacementInput>) -> CompareReport {
+        CompareReport::new(self, maps, placement)
     }
 }
 

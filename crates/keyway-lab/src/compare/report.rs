@@ -5,7 +5,7 @@ use super::contest::{Answer, Entry, Found, Oracle};
 use super::left_out::LeftOut;
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
-use super::{CompareRequest, Compared};
+use super::{Compared, Comparison};
 use keyway::geometry::{Point, Polyline};
 use keyway::search::CornerRule;
 use keyway_sim::report::{PlacementInput, PlanOutcome};
@@ -78,16 +78,16 @@ struct Shortest {
 }
 
 impl CompareReport {
-    /// Returns the report of the results on some maps, whose files are at `paths`.
-    pub fn new(
-        request: &CompareRequest,
-        (paths, maps): (&[String], &[Compared]),
-        queries: QuerySource,
+    /// Returns the report of the results on all maps.
+    pub(super) fn new(
+        comparison: &Comparison,
+        maps: &[Compared],
         placement: Option<PlacementInput>,
     ) -> Self {
-        let map_part = |(path, map): (&String, &Compared)| MapPart {
+        let paths = (0..maps.len()).map(|map| comparison.names.path(map).display().to_string());
+        let map_part = |(path, map): (String, &Compared)| MapPart {
             name: map.name.clone(),
-            map: path.clone(),
+            map: path,
             map_digest: map.loaded.digest.clone(),
             left_out: map.contest.left_out.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
@@ -98,14 +98,14 @@ impl CompareReport {
             version: env!("CARGO_PKG_VERSION"),
             rows: maps.iter().flat_map(Compared::rows).collect(),
             against_first: maps.iter().flat_map(against_first).collect(),
-            maps: paths.iter().zip(maps).map(map_part).collect(),
-            queries,
-            repeat: request.repeat,
+            maps: paths.zip(maps).map(map_part).collect(),
+            queries: comparison.queries.source(),
+            repeat: comparison.repeat,
             placement,
             config: json!({
-                "map": request.map,
-                "planners": request.planners,
-                "smoothers": request.smoothers,
+                "map": comparison.choice.map,
+                "planners": comparison.choice.planners,
+                "smoothers": comparison.choice.smoothers,
             }),
             files: Vec::new(),
         }

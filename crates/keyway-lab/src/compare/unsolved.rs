@@ -37,8 +37,9 @@ pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
     all
 }
 
-/// Text below the table; `None` when all queries are solved. `file` is the file of the queries.
-pub fn unsolved_note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
+/// Text below the table; `None` when all queries are solved. `file` is the file of the queries;
+/// `elsewhere` says where all unsolved queries are, where the text has only some of them.
+pub fn unsolved_note(maps: &[Compared], file: Option<&Path>, elsewhere: &str) -> Option<String> {
     let of_map = |map: &Compared| -> Vec<String> {
         (0..map.queries.len()).flat_map(|query| lines(map, query, file)).collect()
     };
@@ -46,9 +47,7 @@ pub fn unsolved_note(maps: &[Compared], file: Option<&Path>) -> Option<String> {
     let more = all.len().saturating_sub(LINES);
     all.truncate(LINES);
     if more > 0 {
-        all.push(format!(
-            "and {more} more; `--format json` and queries.csv of `--out` have them all"
-        ));
+        all.push(format!("and {more} more; {elsewhere}"));
     }
     (!all.is_empty()).then(|| format!("\nNot solved:\n  {}", all.join("\n  ")))
 }

@@ -73,6 +73,15 @@ impl FieldValue {
     pub fn new(field: &'static str, path: &'static str, value: impl Into<Value>) -> Self {
         Self { field, path, value: value.into() }
     }
+
+    /// The same for a value that need not be given.
+    pub fn if_given(
+        field: &'static str,
+        path: &'static str,
+        value: Option<impl Into<Value>>,
+    ) -> Option<Self> {
+        value.map(|value| Self::new(field, path, value))
+    }
 }
 
 /// Assignment of a value to one parameter, such as `map.unknown=free`.

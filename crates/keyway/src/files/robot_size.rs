@@ -37,6 +37,13 @@ pub enum StartingValues {
     AsPublished,
 }
 
+impl StartingValues {
+    /// The values of papers if they are asked for, otherwise those for the size.
+    pub const fn published_if(is_asked: bool) -> Self {
+        if is_asked { Self::AsPublished } else { Self::ForSize }
+    }
+}
+
 impl RobotSize {
     /// Size of a robot, which becomes a disc where a radius \[m\] is given; or of a radius only.
     ///

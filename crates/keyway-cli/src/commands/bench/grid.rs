@@ -3,10 +3,10 @@
 use super::grid_file::bench_file;
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
 use crate::commands::{Done, print};
-use crate::config::{FieldOption, resolve};
+use crate::config::resolve;
 use crate::error::CliError;
 use crate::progress::Progress;
-use keyway::files::StackBase;
+use keyway::files::{FieldValue, StackBase};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_lab::bench::{
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
 /// The parameters of every planner that was named.
 fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
-        let planner = FieldOption::new("--planner", "planner.name", planner.cloned());
+        let planner = FieldValue::if_given("planner", "planner.name", planner.cloned());
         let robot = Robot::small();
         resolve(
             StackBase::for_robot(&Stack::for_plans(&robot), &robot),

@@ -3,16 +3,15 @@
 use super::unusable_map;
 use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
 use crate::commands::{Done, THROUGH_UNKNOWN, print, unusable_planner};
-use crate::config::{FieldOption, resolve, size_option};
+use crate::config::resolve;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, sized_robot};
+use crate::inputs::{load_map, robot_size};
 use crate::out_dir::prepare;
 use crate::pictures::png;
 use crate::progress::{Progress, Watched};
 use crate::stdout::print_files;
-use keyway::files::StackBase;
+use keyway::files::{FieldValue, StackBase};
 use keyway::navigate::Stack;
-use keyway::robot::Robot;
 use keyway_draw::{LogChart, LogLine, LogPanel, Svg, log_chart};
 use keyway_lab::bench::{
     ScaleCurves, ScaleError, ScaleReport, ScaleRequest, ScaleRow, ScaleTask, scale_table,
@@ -73,14 +72,13 @@ fn write(report: &mut ScaleReport, mut out: OutDir) -> Result<(), CliError> {
 }
 
 fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {
-    let planner = FieldOption::new("--planner", "planner.name", Some(planner.to_owned()));
-    let robot = sized_robot(&args.size)?;
-    let size = size_option(&args.size, robot.as_ref());
-    let robot = robot.unwrap_or_else(Robot::small);
+    let planner = FieldValue::new("planner", "planner.name", planner);
+    let size = robot_size(&args.size)?;
+    let robot = size.robot_or_small();
     resolve(
         StackBase::for_robot(&Stack::for_plans(&robot), &robot),
         &args.config,
-        [planner, size],
+        [Some(planner), size.clearance()],
         &args.planner,
     )
 }

@@ -1,13 +1,13 @@
 //! The episode that arguments or a scene file describe.
 
 use crate::args::{CircleArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
-use crate::config::{FieldOption, resolve};
+use crate::config::resolve;
 use crate::error::{CliError, Kind};
 use crate::inputs::{
     DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
-use keyway::files::StackBase;
+use keyway::files::{FieldValue, StackBase};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
@@ -227,10 +227,10 @@ fn given_stack(
         (None, in_scene) => (in_scene.unwrap_or(Stack::DEFAULT), folder),
     };
     let parts = [
-        FieldOption::new("--planner", "planner.name", planner.clone()),
-        FieldOption::new("--smoother", "smoother.name", smoother.clone()),
-        FieldOption::new("--guide", "guide.name", guide.clone()),
-        FieldOption::new("--local", "local.name", local.clone()),
+        FieldValue::if_given("planner", "planner.name", planner.clone()),
+        FieldValue::if_given("smoother", "smoother.name", smoother.clone()),
+        FieldValue::if_given("guide", "guide.name", guide.clone()),
+        FieldValue::if_given("local", "local.name", local.clone()),
     ];
     let guarded = |stack: Stack| stack.safe_if(args.safe || safe_in_scene, robot);
     if *as_published {

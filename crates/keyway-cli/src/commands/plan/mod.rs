@@ -5,18 +5,18 @@ mod result_files;
 
 use super::{Done, THROUGH_UNKNOWN, build_planner, build_smoother, end_flag, remedy, why};
 use crate::args::{Format, PlanArgs, PositionArg};
-use crate::config::{FieldOption, plan_base, resolve, size_option};
+use crate::config::given_parameters;
 use crate::error::{CliError, Kind};
-use crate::inputs::{layers, load_map, position, sized_robot, source_of};
+use crate::inputs::{layers, load_map, position, robot_size, source_of};
 use crate::pictures::{PlanGoals, PlanPicture};
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use curve::Curve;
+use keyway::files::{FieldValue, RobotSize, StartingValues};
 use keyway::geometry::{Path, Point};
 use keyway::map::{Cell, SearchMap, Separation};
 use keyway::navigate::Stack;
 use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Prepared};
-use keyway::robot::Robot;
 use keyway::route::{NoPath, Route, why_no_room};
 use keyway::search::{IfUnreachable, Recording, Workspace};
 use keyway::smooth::{Smoother, SmootherConfig};
@@ -26,12 +26,12 @@ use keyway_sim::report::{PlanOutcome, PlanPart, RouteAnswer, RouteFailure, Route
 use toml::Table;
 
 pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
-    let robot = sized_robot(&args.size)?;
-    let stack = resolve_stack(args, robot.as_ref())?;
+    let size = robot_size(&args.size)?;
+    let stack = resolve_stack(args, &size)?;
     let loaded = load_map(&args.map.path, &args.map.place.reader())?;
     result_files::check(args, &loaded)?;
-    let curve = Curve::from_args(args, robot.as_ref());
-    let mut map = layers(&loaded.grid, stack.map.clone(), &args.size)?;
+    let curve = Curve::from_args(args, size.robot());
+    let mut map = layers(&loaded.grid, stack.map.clone(), &size)?;
     let ends = ends(args, &map)?;
     let all_ends = std::iter::once(ends.start).chain(ends.goals.iter().copied());
     let all_cells: Vec<Cell> = all_ends.map(|end| map.frame().cell_near(end)).collect();
@@ -64,8 +64,11 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Done, CliError> {
         Recording::default()
     };
     let source = source_of(&loaded, args.map.place.placement());
-    let report =
-        with_remedy(answer.clone(), &stack.planner).report(request.inputs(source, robot, &stack));
+    let report = with_remedy(answer.clone(), &stack.planner).report(request.inputs(
+        source,
+        size.robot().cloned(),
+        &stack,
+    ));
     let route = answer.route.as_ref();
     let line = route.map(|route| route.line.polyline());
     let goals = PlanGoals::new(&ends.goals, answer.goal, route.is_some(), map.frame());
@@ -104,21 +107,18 @@ fn driven_path(route: &Route, is_smoothed: bool) -> Path {
     }
 }
 
-fn resolve_stack(args: &PlanArgs, robot: Option<&Robot>) -> Result<Stack, CliError> {
+fn resolve_stack(args: &PlanArgs, size: &RobotSize) -> Result<Stack, CliError> {
     let options = [
-        FieldOption::new("--planner", "planner.name", args.planner.clone()),
-        FieldOption::new(
-            "--prepared",
+        FieldValue::if_given("planner", "planner.name", args.planner.clone()),
+        FieldValue::if_given(
+            "prepared",
             "planner.name",
             args.prepared.as_ref().map(|_| Prepared::NAME),
         ),
-        FieldOption::new("--smoother", "smoother.name", args.smoother.clone()),
-        size_option(&args.size, robot),
+        FieldValue::if_given("smoother", "smoother.name", args.smoother.clone()),
     ];
-    let robot = robot.cloned().unwrap_or_else(Robot::small);
-    let stack = Stack::for_plans(&robot);
-    let base = plan_base(&stack, &robot, &args.size, args.as_published);
-    resolve(base, &args.config, options, &[])
+    let values = StartingValues::published_if(args.as_published);
+    Ok(size.plan_stack(values, &given_parameters(&args.config, options)?, &[])?)
 }
 
 /// Positions in metres; at least one goal.

@@ -1,6 +1,6 @@
 //! Errors of a measurement.
 
-use crate::map_radius::RadiusBeyondMap;
+use keyway::files::RadiusBeyondMap;
 use keyway::ConfigError;
 use keyway::map::FrameError;
 use keyway::plan::PlanError;

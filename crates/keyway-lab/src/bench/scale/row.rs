@@ -1,7 +1,7 @@
 //! One planner on one tiled map.
 
 use super::{ScaleError, ScaleRequest, ScaleTask};
-use crate::map_radius::RadiusBeyondMap;
+use keyway::files::RadiusBeyondMap;
 use crate::measure::timed;
 use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::plan::{Plan, PlanError};

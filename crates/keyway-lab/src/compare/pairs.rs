@@ -1,18 +1,92 @@
 //! Files of pairs: a start and a goal in each line.
 
-use super::names::MapNames;
+use super::ends::Ends;
+use super::map_names::{AmbiguousMap, MapNames};
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
-use keyway_lab::compare::Ends;
+use keyway::plan::PathEnd;
+use thiserror::Error;
 
 /// Columns that every file of pairs has, in the order of a file without a header.
 const COORDINATES: [&str; 4] = ["start_x", "start_y", "goal_x", "goal_y"];
-/// The column that says which map a line is for.
+/// The column with the map of a line.
 const MAP: &str = "map";
 const EXPECTED: &str =
     "expected start_x,start_y,goal_x,goal_y in metres, in any order, and `map` where it is needed";
 
-/// The beginning of a word, for an error message.
+/// Fault in a file of pairs, and its line.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("line {line}: {fault}")]
+pub struct PairsError {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// Fault of the line.
+    pub fault: PairsFault,
+}
+
+/// Fault in a line of a file of pairs.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum PairsFault {
+    /// No column has this name.
+    #[error("`{name}` is not a column of pairs, {EXPECTED}")]
+    UnknownColumn {
+        /// The name, shortened.
+        name: String,
+    },
+    /// A column is there twice.
+    #[error("the column `{name}` is given twice, {EXPECTED}")]
+    RepeatedColumn {
+        /// Name of the second column, shortened.
+        name: String,
+    },
+    /// A column is not there.
+    #[error("the column `{name}` is missing, {EXPECTED}")]
+    MissingColumn {
+        /// Name of the column.
+        name: &'static str,
+    },
+    /// A line has too few or too many values.
+    #[error("{count} values, but {expected} columns; {EXPECTED}")]
+    Count {
+        /// Number of values.
+        count: usize,
+        /// Number of columns.
+        expected: usize,
+    },
+    /// A coordinate is not a finite number.
+    #[error("the {column} is `{got}`, expected a number")]
+    Number {
+        /// Name of the column.
+        column: &'static str,
+        /// The value, shortened.
+        got: String,
+    },
+    /// A position is not on the map.
+    #[error("the {end} ({x}, {y}) is outside the map")]
+    Outside {
+        /// The end of the path.
+        end: PathEnd,
+        /// Its x as written, shortened.
+        x: String,
+        /// Its y as written, shortened.
+        y: String,
+    },
+    /// A line is for several maps.
+    #[error(transparent)]
+    Ambiguous(#[from] AmbiguousMap),
+    /// No line is for the map.
+    #[error("the column `map` names {map} in no line")]
+    NoneOfMap {
+        /// Name of the map.
+        map: String,
+    },
+    /// The file has no pair.
+    #[error("there is no pair, {EXPECTED}")]
+    Empty,
+}
+
+/// Returns the beginning of a word, for errors.
 fn shown(word: &str) -> String {
     let visible =
         |letter: char| if letter.is_control() { char::REPLACEMENT_CHARACTER } else { letter };
@@ -20,7 +94,7 @@ fn shown(word: &str) -> String {
     if word.chars().nth(40).is_some() { short + "..." } else { short }
 }
 
-/// Where in a line the values are.
+/// Places of the values in a line.
 struct Columns {
     /// For each of [`COORDINATES`].
     coordinates: [usize; 4],
@@ -32,22 +106,22 @@ impl Columns {
     /// For a file without a header.
     const USUAL: Self = Self { coordinates: [0, 1, 2, 3], map: None, count: 4 };
 
-    /// By their names, which may end in the unit: `start_x` or `start_x_m`.
-    fn of_header(header: &str) -> Result<Self, String> {
+    /// Finds the columns by their names, which may end in the unit: `start_x` or `start_x_m`.
+    fn of_header(header: &str) -> Result<Self, PairsFault> {
         let names: Vec<&str> = header.split(',').map(str::trim).collect();
         let bare: Vec<&str> =
             names.iter().map(|name| name.strip_suffix("_m").unwrap_or(name)).collect();
         let is_known = |i: &usize| COORDINATES.contains(&bare[*i]) || names[*i] == MAP;
         let is_repeated = |i: &usize| bare[..*i].contains(&bare[*i]);
         if let Some(i) = (0..names.len()).find(|i| !is_known(i)) {
-            return Err(format!("`{}` is not a column of pairs, {EXPECTED}", shown(names[i])));
+            return Err(PairsFault::UnknownColumn { name: shown(names[i]) });
         }
         if let Some(i) = (0..names.len()).find(is_repeated) {
-            return Err(format!("the column `{}` is given twice, {EXPECTED}", shown(names[i])));
+            return Err(PairsFault::RepeatedColumn { name: shown(names[i]) });
         }
-        let place = |wanted: &str| {
+        let place = |wanted: &'static str| {
             let place = bare.iter().position(|name| *name == wanted);
-            place.ok_or_else(|| format!("the column `{wanted}` is missing, {EXPECTED}"))
+            place.ok_or(PairsFault::MissingColumn { name: wanted })
         };
         let [a, b, c, d] = COORDINATES.map(place);
         let map = names.iter().position(|name| *name == MAP);
@@ -61,65 +135,59 @@ impl Columns {
     }
 
     /// Start and goal of a line.
-    fn ends(&self, fields: &[&str], frame: &GridFrame) -> Result<(Point, Point), String> {
+    fn ends(&self, fields: &[&str], frame: &GridFrame) -> Result<(Point, Point), PairsFault> {
         if fields.len() != self.count {
-            let (count, expected) = (fields.len(), self.count);
-            return Err(format!("{count} values, but {expected} columns; {EXPECTED}"));
+            return Err(PairsFault::Count { count: fields.len(), expected: self.count });
         }
         let number = |column: usize| match fields[column].parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!(
-                "the {} is `{}`, expected a number",
-                self.name(column),
-                shown(fields[column])
-            )),
+            _ => Err(PairsFault::Number { column: self.name(column), got: shown(fields[column]) }),
         };
-        let place = |what: &str, x: usize, y: usize| {
+        let place = |end: PathEnd, x: usize, y: usize| {
             let point = Point::new(number(x)?, number(y)?);
             let [x, y] = [x, y].map(|column| shown(fields[column]));
-            let outside = || format!("the {what} ({x}, {y}) is outside the map");
+            let outside = || PairsFault::Outside { end, x, y };
             frame.cell_from_world(point).map(|_| point).ok_or_else(outside)
         };
         let [start_x, start_y, goal_x, goal_y] = self.coordinates;
-        Ok((place("start", start_x, start_y)?, place("goal", goal_x, goal_y)?))
+        Ok((place(PathEnd::Start, start_x, start_y)?, place(PathEnd::Goal, goal_x, goal_y)?))
     }
 }
 
-/// One query in each line. The first line may be a header, which names the columns; without one they are
-/// [`COORDINATES`]. With a column `map`, only lines of this map count ([`MapNames::named`]). Empty lines, and
-/// those that begin with `#`, are left out. Errors come with their line, from 1.
+/// Returns the queries on a map, one in each line. The first line may be a header, which names the
+/// columns; without one they are [`COORDINATES`]. With a column `map`, only lines of this map count
+/// ([`MapNames::named`]). Empty lines, and those that begin with `#`, are left out.
 pub(super) fn ends_of_pairs(
     text: &str,
     (names, map): (&MapNames, usize),
     frame: &GridFrame,
-) -> Result<Vec<Ends>, (usize, String)> {
+) -> Result<Vec<Ends>, PairsError> {
+    let at = |line: usize| move |fault: PairsFault| PairsError { line, fault };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let lines = text.lines().map(str::trim).enumerate().map(|(i, line)| (i + 1, line));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
     let is_header = |line: &str| line.split(',').all(|word| word.trim().parse::<f64>().is_err());
     let columns = match lines.next_if(|(_, line)| is_header(line)) {
-        Some((number, header)) => {
-            Columns::of_header(header).map_err(|message| (number, message))?
-        }
+        Some((number, header)) => Columns::of_header(header).map_err(at(number))?,
         None => Columns::USUAL,
     };
     let mut all = Vec::new();
     for (number, line) in lines {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
         let of = columns.map.and_then(|column| fields.get(column)).map(|name| names.named(name));
-        let of = of.transpose().map_err(|message| (number, message))?;
+        let of = of.transpose().map_err(|error| at(number)(error.into()))?;
         if of.is_none_or(|of| of == Some(map)) {
-            let ends = columns.ends(&fields, frame).map_err(|message| (number, message))?;
+            let ends = columns.ends(&fields, frame).map_err(at(number))?;
             all.extend(Ends::of_points(frame, ends, number));
         }
     }
     if !all.is_empty() {
         return Ok(all);
     }
-    Err(match columns.map {
-        Some(_) => (1, format!("the column `map` names {} in no line", names.name(map))),
-        None => (1, format!("there is no pair, {EXPECTED}")),
-    })
+    Err(at(1)(match columns.map {
+        Some(_) => PairsFault::NoneOfMap { map: names.name(map).to_owned() },
+        None => PairsFault::Empty,
+    }))
 }
 
 #[cfg(test)]
@@ -133,7 +201,7 @@ mod tests {
         GridFrame::new(8, 4, 0.5, Pose::new(-1.0, 0.0, 0.0)).unwrap()
     }
 
-    fn ends_of_map(text: &str, map: &str) -> Result<Vec<Ends>, (usize, String)> {
+    fn ends_of_map(text: &str, map: &str) -> Result<Vec<Ends>, PairsError> {
         let names = MapNames::new(&[PathBuf::from(map)]).unwrap();
         ends_of_pairs(text, (&names, 0), &frame())
     }
@@ -190,8 +258,9 @@ mod tests {
             ("H,goal_x_m\n0,0,1,1,2", 1, "the column `goal_x_m` is given twice"),
         ] {
             let text = text.replace('H', HEADER);
-            let (number, message) = ends_of_map(&text, "a.map").unwrap_err();
-            assert!(number == line && message.contains(part), "{text}: {number} {message}");
+            let error = ends_of_map(&text, "a.map").unwrap_err();
+            let message = error.to_string();
+            assert!(error.line == line && message.contains(part), "{text}: {message}");
         }
     }
 
@@ -219,7 +288,8 @@ mod tests {
         };
         let lines = "x/map.yaml,0,0,0,0\ny/map,0,0,1,1\nx/map,0,0,1,1";
         assert_eq!((of(lines, 0), of(lines, 1)), (Ok(2), Ok(1)));
-        let (line, message) = of("x/map,0,0,0,0\nmap,0,0,0,0", 0).unwrap_err();
-        assert!(line == 3 && message.contains("write x/map.yaml or y/map.yaml"), "{message}");
+        let error = of("x/map,0,0,0,0\nmap,0,0,0,0", 0).unwrap_err();
+        let expected = "line 3: `map` names several maps; write x/map.yaml or y/map.yaml";
+        assert_eq!(error.to_string(), expected);
     }
 }

@@ -1,34 +1,52 @@
-//! A name of its own for every map: many maps are called `map.yaml`.
+//! Unique names of maps: many maps are called `map.yaml`.
 
-use crate::error::{CliError, Kind};
 use std::path::{Component, Path, PathBuf};
+use thiserror::Error;
 
-/// The maps of a comparison and what each is called.
-#[derive(Debug)]
+/// The maps of a comparison with their names.
+#[derive(Clone, Debug)]
 pub(super) struct MapNames(Vec<MapName>);
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct MapName {
     /// The shortest end of the path that no other map has.
     name: String,
-    /// As on the command line.
+    /// Path as given.
     given: PathBuf,
-    /// From the root, without `.` and `..`.
+    /// Path from the root, without `.` and `..`.
     whole: PathBuf,
+}
+
+/// Two paths of one map.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{} and {} are the same map; name it once", first.display(), second.display())]
+pub struct SameMap {
+    /// First path.
+    pub first: PathBuf,
+    /// Second path.
+    pub second: PathBuf,
+}
+
+/// Text that names several maps.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("`{text}` names several maps; write {}", names.join(" or "))]
+pub struct AmbiguousMap {
+    /// The text.
+    pub text: String,
+    /// Names of the maps.
+    pub names: Vec<String>,
 }
 
 impl MapNames {
     /// Refuses a file that is named twice, however it is spelled.
-    pub(super) fn new(maps: &[PathBuf]) -> Result<Self, CliError> {
-        // A file that is not there is for the reader of maps to refuse.
+    pub(super) fn new(maps: &[PathBuf]) -> Result<Self, SameMap> {
+        // The reader of maps refuses a file that is not there.
         let files: Vec<Option<PathBuf>> = maps.iter().map(|map| map.canonicalize().ok()).collect();
         let earlier = |i: usize| files[..i].iter().position(|file| *file == files[i]);
         let twice =
             |i: usize| files[i].is_some().then(|| earlier(i)).flatten().map(|first| (first, i));
-        if let Some((first, i)) = (0..maps.len()).find_map(twice) {
-            let (first, second) = (maps[first].display(), maps[i].display());
-            let message = format!("{first} and {second} are the same map; name it once");
-            return Err(CliError::new(Kind::Usage, message).field("MAP"));
+        if let Some((first, second)) = (0..maps.len()).find_map(twice) {
+            return Err(SameMap { first: maps[first].clone(), second: maps[second].clone() });
         }
         let wholes: Vec<PathBuf> = maps.iter().map(|map| whole(map)).collect();
         let all = maps.iter().enumerate().map(|(i, map)| MapName {
@@ -51,12 +69,12 @@ impl MapNames {
         self.0.iter().map(|map| map.name.clone()).collect()
     }
 
-    /// The map that a text names: by its name or its path, or else by the end of its path, with the
-    /// file's extension or without.
+    /// Returns the map that a text names by its name or its path, or else by the end of its path,
+    /// with the file's extension or without; `None` if it names none.
     ///
     /// # Errors
-    /// When it names several. `Ok(None)` means that it names none of them.
-    pub(super) fn named(&self, text: &str) -> Result<Option<usize>, String> {
+    /// When the text names several maps.
+    pub(super) fn named(&self, text: &str) -> Result<Option<usize>, AmbiguousMap> {
         let text = Path::new(text.strip_prefix("./").unwrap_or(text));
         // Every path ends with the empty one.
         if text.file_name().is_none() {
@@ -77,16 +95,15 @@ impl MapNames {
             [] => Ok(None),
             [map] => Ok(Some(map)),
             _ => {
-                let names: Vec<&str> = named.iter().map(|&map| self.name(map)).collect();
-                let (text, names) = (text.display(), names.join(" or "));
-                Err(format!("`{text}` names several maps; write {names}"))
+                let names = named.iter().map(|&map| self.name(map).to_owned()).collect();
+                Err(AmbiguousMap { text: text.display().to_string(), names })
             }
         }
     }
 }
 
-/// A path from the root. One with `..` is that of the folder in which it ends: what comes before may be
-/// a link.
+/// Returns the path from the root. A path with `..` becomes that of the folder in which it ends,
+/// because what comes before may be a link.
 fn whole(map: &Path) -> PathBuf {
     let absolute = std::path::absolute(map).unwrap_or_else(|_| map.to_owned());
     if !absolute.components().any(|part| part == Component::ParentDir) {
@@ -99,7 +116,7 @@ fn whole(map: &Path) -> PathBuf {
     }
 }
 
-/// The fewest last parts of a path that are not those of another one, joined by `/`.
+/// Returns the fewest last parts of a path that no other path ends with, joined by `/`.
 fn shortest_end(paths: &[PathBuf], of: usize) -> String {
     let parts = |path: &Path| -> Vec<String> {
         path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()
@@ -113,30 +130,6 @@ fn shortest_end(paths: &[PathBuf], of: usize) -> String {
     let end = own[own.len().saturating_sub(count)..].join("/");
     // The root is a part, too, and joined to the next one.
     end.strip_prefix("//").map_or_else(|| end.clone(), |rest| format!("/{rest}"))
-}
-
-/// Names of files for pictures of maps, without an extension: each map's name without its own, folders
-/// joined by `-`, with a number where that is taken.
-pub(super) fn picture_stems(names: &[String]) -> Vec<String> {
-    let mut stems: Vec<String> = Vec::new();
-    for name in names {
-        let stem = file_name_of(name);
-        // Some file systems do not tell `A` from `a`.
-        let is_free = |stem: &String| !stems.iter().any(|one| one.eq_ignore_ascii_case(stem));
-        let numbered = (2..).map(|number| format!("{stem}-{number}"));
-        // There is always another number.
-        stems.extend(std::iter::once(stem.clone()).chain(numbered).find(is_free));
-    }
-    stems
-}
-
-fn file_name_of(name: &str) -> String {
-    let stem = Path::new(name).with_extension("");
-    let is_safe = |letter: char| !letter.is_control() && !r#"\:*?"<>|"#.contains(letter);
-    let letters = stem.to_string_lossy();
-    let letters = letters.trim_matches('/').chars();
-    let safe = letters.map(|letter| if is_safe(letter) { letter } else { '_' });
-    safe.map(|letter| if letter == '/' { '-' } else { letter }).collect()
 }
 
 #[cfg(test)]
@@ -184,26 +177,17 @@ mod tests {
             ),
             ("map", Err("`map` names several maps; write office/map.yaml or house/map.yaml")),
         ] {
-            assert_eq!(maps.named(text), map.map_err(str::to_owned), "{text}");
+            assert_eq!(
+                maps.named(text).map_err(|error| error.to_string()),
+                map.map_err(str::to_owned),
+                "{text}"
+            );
         }
-        // What stands on the command line names that map.
+        // A path as given names its map.
         let maps = names(&["map.yaml", "house/map.yaml"]);
         assert_eq!(
             (maps.named("map.yaml"), maps.named("house/map.yaml")),
             (Ok(Some(0)), Ok(Some(1)))
         );
-    }
-
-    #[test]
-    fn names_of_pictures() {
-        let stems = |names: &[&str]| {
-            picture_stems(&names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>())
-        };
-        assert_eq!(stems(&["a.map", "a.yaml", "a-2.png"]), ["a", "a-2", "a-2-2"]);
-        assert_eq!(
-            stems(&["x/map.yaml", "y/map.yaml", "x-map.map"]),
-            ["x-map", "y-map", "x-map-2"]
-        );
-        assert_eq!(stems(&["A.map", "a.png", "/b:c\n.map"]), ["A", "a-2", "b_c_"]);
     }
 }

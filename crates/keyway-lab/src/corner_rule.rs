@@ -1,0 +1,14 @@
+//! The corner rule of a planner.
+
+use keyway::map::Connectivity;
+use keyway::plan::GlobalPlanner;
+use keyway::search::CornerRule;
+
+/// Returns the corner rule that the reach of a planner shows: only planners that cut corners reach
+/// cells over a corner.
+pub(crate) fn corner_rule(planner: &dyn GlobalPlanner) -> CornerRule {
+    match planner.connectivity() {
+        Connectivity::Four => CornerRule::Forbid,
+        Connectivity::Eight => CornerRule::Allow,
+    }
+}
