@@ -51,6 +51,8 @@ mod tests {
     use super::*;
     use crate::compare::QueryChoice;
     use keyway::files::{Assignment, FieldValue, ParameterFile};
+    use keyway::plan::PlannerConfig;
+    use keyway::smooth::SmootherConfig;
 
     fn names(names: &[&str]) -> Vec<String> {
         names.iter().map(|&name| name.to_owned()).collect()
@@ -70,9 +72,9 @@ mod tests {
     fn what_is_compared_without_names() {
         let compared = |change: &dyn Fn(&mut CompareRequest)| {
             let choice = request(change).check().unwrap().choice;
-            let planners = choice.planners.iter().map(|one| one.name());
+            let planners = choice.planners.iter().map(PlannerConfig::name);
             planners
-                .chain(choice.smoothers.iter().map(|one| one.name()))
+                .chain(choice.smoothers.iter().map(SmootherConfig::name))
                 .collect::<Vec<_>>()
                 .join(" ")
         };
