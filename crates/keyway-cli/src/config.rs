@@ -9,7 +9,7 @@ use keyway::files::{
 use keyway::navigate::Stack;
 use std::path::Path;
 
-/// The layers that `--config`, options and `--set` stand for. Each option has the name of its field.
+/// The layers that `--config`, options and `--set` stand for. An option has the name of its field.
 pub(crate) fn given_parameters(
     args: &ConfigArgs,
     options: impl IntoIterator<Item = Option<FieldValue>>,

@@ -133,7 +133,7 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Returns the stack with both. It passes over the own parameters of all other `compared` names.
+    /// Returns the stack with both; parameters of other `compared` names are passed over.
     fn stack(&self, compared: &[String]) -> Result<Stack, CompareRequestError> {
         let parameters = &self.request.parameters;
         let name = |field, path, name: Option<&String>| {

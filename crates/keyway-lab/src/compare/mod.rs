@@ -154,10 +154,13 @@ impl Comparison {
         self.queries.file()
     }
 
-    /// Returns the map of this index with its layers and its queries.
+    /// Returns the map of this index in the request with its layers and its queries.
     ///
     /// # Errors
     /// When the map has no room for the robot, or there are no queries on it.
+    ///
+    /// # Panics
+    /// If the request has no map of this index.
     pub fn queried(&self, index: usize, loaded: LoadedMap) -> Result<Queried, QueriedError> {
         let map = self.choice.size.layers(&loaded.grid, self.choice.map.clone());
         let map = map.map_err(|error| QueriedError::Layers {

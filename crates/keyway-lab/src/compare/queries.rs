@@ -193,7 +193,7 @@ fn ends_of_scenarios(path: &Path, map: &Path, frame: &GridFrame) -> Result<Vec<E
     Ok(scenarios.iter().map(ends).collect())
 }
 
-/// Returns this many of the items, evenly spread and with the first one; all items without a number.
+/// Returns this many of the items, evenly spread and with the first one; all without a number.
 fn spread<T>(all: Vec<T>, count: Option<usize>) -> Vec<T> {
     let total = all.len();
     let Some(count) = count.filter(|&count| count < total) else { return all };

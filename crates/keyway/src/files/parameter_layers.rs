@@ -34,8 +34,9 @@ use toml::{Table, Value};
 /// assert_eq!(layers.over(base, &[])?.planner.name(), "hsta");
 /// let other = ParameterLayers { fields: Vec::new(), ..layers };
 /// let error = other.over(base, &[]).unwrap_err();
+/// assert_eq!(error.path, "hsta.l1_constraint");
 /// let reason = "hsta.l1_constraint: hsta is not used here; jps is";
-/// assert_eq!((error.path.as_str(), error.fault.to_string().as_str()), ("hsta.l1_constraint", reason));
+/// assert_eq!(error.fault.to_string(), reason);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,7 +58,8 @@ pub struct ParameterFile {
     pub table: Table,
 }
 
-/// Value for one field of a stack that a caller asks for under a name of its own, such as `planner`.
+/// Value for one field of a stack that a caller asks for under a name of its own, such as
+/// `planner`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldValue {
     /// Name of the caller's field, for errors.
@@ -74,7 +76,7 @@ impl FieldValue {
         Self { field, path, value: value.into() }
     }
 
-    /// The same for a value that need not be given.
+    /// The same for an optional value.
     pub fn if_given(
         field: &'static str,
         path: &'static str,
