@@ -1,77 +1,17 @@
-//! JSON for programs that people can read, too: one line per member, lists of numbers on one line.
+//! JSON reports on the standard output.
 
 use crate::error::CliError;
+pub(crate) use keyway_lab::results::json_text as to_string;
 use serde::Serialize;
 use serde_json::Value;
-use std::fmt::Write as _;
 
-/// The text of a report, with a line break at its end.
-pub(crate) fn to_string(report: &impl Serialize) -> String {
-    let mut text = String::new();
-    write_value(&value(report), 0, &mut text);
-    text.push('\n');
-    text
-}
-
-/// The same as a value.
+/// A report as a value.
 pub(crate) fn value(report: &impl Serialize) -> Value {
-    // Reports are plain data with string keys: this cannot fail.
+    // Reports are plain data with string keys, so this cannot fail.
     serde_json::to_value(report).unwrap_or_default()
 }
 
 /// Prints a report.
 pub(crate) fn print(report: &impl Serialize) -> Result<(), CliError> {
     crate::stdout::print(&to_string(report))
-}
-
-fn write_value(value: &Value, depth: usize, text: &mut String) {
-    match value {
-        Value::Object(members) if !members.is_empty() => {
-            write_block('{', '}', members.iter(), depth, text, |(key, value), text| {
-                let _ = write!(text, "{}: ", Value::from(key.as_str()));
-                write_value(value, depth + 1, text);
-            });
-        }
-        Value::Array(items) if items.iter().any(|item| item.is_array() || item.is_object()) => {
-            write_block('[', ']', items.iter(), depth, text, |item, text| {
-                write_value(item, depth + 1, text);
-            });
-        }
-        // Numbers, strings, and lists of them.
-        scalar => {
-            let _ = write!(text, "{scalar}");
-        }
-    }
-}
-
-fn write_block<T>(
-    open: char,
-    close: char,
-    items: impl Iterator<Item = T>,
-    depth: usize,
-    text: &mut String,
-    mut write_item: impl FnMut(T, &mut String),
-) {
-    text.push(open);
-    for (i, item) in items.enumerate() {
-        text.push_str(if i == 0 { "\n" } else { ",\n" });
-        text.push_str(&"  ".repeat(depth + 1));
-        write_item(item, text);
-    }
-    let _ = write!(text, "\n{}{close}", "  ".repeat(depth));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn layout() {
-        let value = json!({"a": 1.5, "b": {}, "c": [[1, 2], [3, 4]], "d": {"e": [], "f": null}});
-        let expected = "{\n  \"a\": 1.5,\n  \"b\": {},\n  \"c\": [\n    [1,2],\n    [3,4]\n  ],\n  \
-                        \"d\": {\n    \"e\": [],\n    \"f\": null\n  }\n}\n";
-        assert_eq!(to_string(&value), expected);
-        assert_eq!(serde_json::from_str::<Value>(&to_string(&value)).unwrap(), value);
-    }
 }

@@ -5,6 +5,7 @@ mod error;
 mod folder;
 mod journal;
 mod json_lines;
+mod json_text;
 mod lock;
 mod manifest;
 
@@ -12,5 +13,6 @@ pub use error::ResultsError;
 pub use folder::{OutDir, check_folder};
 pub use journal::{Entry, JOURNAL_NAME, Journal};
 pub use json_lines::{LinesError, entries, read_lines};
+pub use json_text::json_text;
 pub use lock::OutputLock;
 pub use manifest::{ManifestError, digest};
