@@ -39,7 +39,7 @@ pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, Cli
 
 /// The same, with the option that allows more cells, where that is what keeps a map from being
 /// read.
-fn map_error(error: &MapFileError) -> CliError {
+pub(crate) fn map_error(error: &MapFileError) -> CliError {
     let error = match error.too_many_cells() {
         Some(found) => format!("{error} with --max-cells {}", found.needed()),
         None => error.to_string(),

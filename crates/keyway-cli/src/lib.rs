@@ -1,13 +1,12 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 //!
-//! A library as well, for bindings to other languages: [`run`] is the program, and [`batch`] is one of
-//! its commands that answers with its report. It takes the words of a command line.
+//! A library as well, for bindings to other languages: [`run`] is the program, and [`BatchPlots`] draws
+//! the results of a batch.
 
 mod args;
 mod commands;
 mod config;
 mod drive_pictures;
-mod embedded;
 mod error;
 mod inputs;
 mod json;
@@ -23,7 +22,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use clap::error::ErrorKind;
 use commands::Done;
-pub use embedded::batch;
+pub use commands::batch::BatchPlots;
 pub use error::CliError;
 pub use progress::Watcher;
 

@@ -17,7 +17,7 @@ use keyway_draw::{
 use keyway_sim::sim::{Circle, StandingPolygon};
 
 /// Pixels of a PNG per unit of its picture.
-const PNG_SCALE: f64 = 2.0;
+pub(crate) const PNG_SCALE: f64 = 2.0;
 
 /// A map, the search for a path on it, and the path.
 pub(crate) struct PlanPicture<'a> {

@@ -2,8 +2,10 @@
 
 use crate::error::{CliError, Kind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt::Display;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
@@ -11,11 +13,6 @@ use std::time::Duration;
 pub trait Watcher: Sync {
     /// This much was done, of what is known to be done; true stops the work as soon as that is possible.
     fn is_stopped_at(&self, done: u64, expected: u64) -> bool;
-
-    /// Something is usually a mistake. Unless somebody wants to say so, the standard error does.
-    fn warned(&self, warning: &str) {
-        crate::stdout::warn(warning);
-    }
 }
 
 /// The bar on the terminal is enough.
@@ -102,6 +99,27 @@ impl keyway_lab::progress::Progress for Watched<'_> {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         }
+    }
+}
+
+/// The runs of a batch: a bar from the moment at which it is known how many are to be made.
+#[derive(Default)]
+pub(crate) struct RunBar(OnceLock<Progress>);
+
+impl keyway_lab::progress::Progress for RunBar {
+    fn expect(&self, answers: usize) {
+        self.0.get_or_init(|| Progress::over_runs(answers));
+    }
+
+    fn answered(&self) -> ControlFlow<()> {
+        if let Some(progress) = self.0.get() {
+            progress.answered();
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn warned(&self, warning: &dyn Display) {
+        crate::stdout::warn(warning);
     }
 }
 

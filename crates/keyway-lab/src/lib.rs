@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
 //! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files, and on growing maps |
-//! | [`batch`] | many runs, and summaries by stack |
+//! | [`batch`] | many runs, in parts and on several threads, and summaries by stack |
+//! | [`replay`] | recorded runs, made again |
 //! | [`claims`] | claims of papers, measured again |
 //! | [`reproduce`] | all claims with their verdicts: measurements, tables and a page |
 //! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
@@ -23,6 +24,7 @@ pub mod compare;
 mod corner_rule;
 pub mod measure;
 pub mod progress;
+pub mod replay;
 pub mod reproduce;
 pub mod results;
 pub mod run_tables;

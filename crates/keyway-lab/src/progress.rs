@@ -1,5 +1,6 @@
 //! Progress of long work.
 
+use std::fmt::Display;
 use std::ops::ControlFlow;
 
 /// Observer of work that yields many answers. `()` ignores them.
@@ -9,6 +10,9 @@ pub trait Progress: Sync {
 
     /// Reports one more answer; `Break` stops the work as soon as possible.
     fn answered(&self) -> ControlFlow<()>;
+
+    /// Reports a likely mistake in what the work was given; the work goes on.
+    fn warned(&self, _warning: &dyn Display) {}
 }
 
 impl Progress for () {

@@ -1,21 +1,24 @@
 //! Batches of simulated runs.
 
 use crate::arrays::{Json, json};
-use crate::comparison::{Words, refused};
 use crate::errors::bad_value;
 use crate::values::Listed;
-use crate::watched::{Progress, watched_to_its_end};
+use crate::watched::{Progress, Watch, watched_to_its_end};
+use keyway_cli::BatchPlots;
+use keyway_lab::batch::{BatchError, BatchReport, BatchRequest, Keep, MergeRequest, Shard};
 use pyo3::prelude::*;
-use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for byte, into the folder `out`.
+/// Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for
+/// byte, into the folder `out`.
 ///
-/// `scenes` are scene files and folders of them; `stacks` names or files, or `["all"]`; `seeds` how many seeds each scene is driven
-/// with. `shard=(i, n)` makes the i-th of n parts only; `keyway.merge` puts parts together. `jobs` is the number of threads.
-/// `keep` says of which runs to store a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-/// files. With `safe` the stop rule is behind every stack. Runs that the folder holds are not made again: whoever stops a batch goes on where it was. `progress(done, expected)`
-/// is called meanwhile.
+/// `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`. `seeds` is
+/// the number of seeds with which each scene is driven. `shard=(i, n)` makes only the i-th of n parts;
+/// `keyway.merge` puts parts together. `jobs` is the number of threads. `keep` chooses the runs whose
+/// full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
+/// files. With `safe` the stop rule stands behind every stack. Runs that the folder holds are not made
+/// again, so a batch that was stopped goes on where it was. `progress(done, expected)` is called
+/// meanwhile.
 ///
 /// Gives the report `keyway.batch/1` of `docs/JSON.md`.
 ///
@@ -32,30 +35,42 @@ pub(crate) fn batch(
     out: PathBuf,
     stacks: Option<Listed<String>>,
     seeds: u64,
-    jobs: Option<u64>,
-    shard: Option<(u64, u64)>,
+    jobs: Option<usize>,
+    shard: Option<(usize, usize)>,
     keep: Option<String>,
     robot: Option<String>,
     disturbances: Option<PathBuf>,
     safe: bool,
     progress: Option<Progress>,
 ) -> PyResult<Json> {
-    let mut words = Words::default();
-    words.list("--stacks", stacks);
-    words.option("--seeds", Some(seeds));
-    words.option("--jobs", jobs);
-    words.option("--shard", shard.map(|(part, parts)| format!("{part}/{parts}")));
-    words.option("--keep", keep);
-    words.option("--robot", robot);
-    words.0.extend(safe.then(|| "--safe".into()));
-    words.0.extend(path_option("--disturbances", disturbances));
-    words.0.extend(path_option("--out", Some(out)));
-    words.0.push("--".into());
-    words.0.extend(scenes.0.into_iter().map(OsString::from));
-    run(py, words, progress)
+    let stacks = stacks.map_or(Ok(Vec::new()), |Listed(stacks)| match stacks.len() {
+        0 => Err(bad_value("stacks: expected at least one stack")),
+        _ => Ok(stacks),
+    })?;
+    let shard = shard.map(|(part, parts)| Shard::new(part, parts)).transpose();
+    let request = BatchRequest {
+        stacks,
+        seeds,
+        jobs,
+        shard: shard.map_err(bad_value)?,
+        keep: keep.map_or(Ok(Keep::None), |keep| choice(&keep))?,
+        robot,
+        disturbances,
+        safe,
+        ..BatchRequest::new(scenes.0, out)
+    };
+    run(py, progress, move |watch| request.drive(&BatchPlots, watch))
 }
 
-/// Puts together what `keyway.batch` has made in other folders, such as the parts of one batch; nothing is driven.
+fn choice(keep: &str) -> PyResult<Keep> {
+    Keep::by_name(keep).ok_or_else(|| {
+        let names = Keep::NAMES.join(", ");
+        bad_value(format!("keep: expected one of {names}, got `{keep}`"))
+    })
+}
+
+/// Puts together what `keyway.batch` has made in other folders, such as the parts of one batch. Nothing
+/// is driven.
 ///
 /// >>> import keyway
 /// >>> keyway.merge([], out="unused")
@@ -66,24 +81,14 @@ pub(crate) fn merge(py: Python<'_>, parts: Listed<PathBuf>, out: PathBuf) -> PyR
     if parts.0.is_empty() {
         return Err(bad_value("parts: expected at least one folder"));
     }
-    let mut words = Words(vec!["merge".into()]);
-    words.0.extend(path_option("--out", Some(out)));
-    words.0.push("--".into());
-    words.0.extend(parts.0.into_iter().map(OsString::from));
-    run(py, words, None)
+    let request = MergeRequest { parts: parts.0, out };
+    run(py, None, move |watch| request.merge(&BatchPlots, watch))
 }
 
-fn path_option(option: &str, path: Option<PathBuf>) -> impl Iterator<Item = OsString> {
-    path.into_iter().map(move |path| {
-        let mut word = OsString::from(format!("{option}="));
-        word.push(path);
-        word
-    })
-}
-
-fn run(py: Python<'_>, words: Words, progress: Option<Progress>) -> PyResult<Json> {
-    let batch = move |watch: &crate::watched::Watch| keyway_cli::batch(&words.0, watch);
-    let report =
-        watched_to_its_end(py, progress.as_ref(), batch)?.map_err(|error| refused(&error))?;
-    json(py, &report)
+fn run(
+    py: Python<'_>,
+    progress: Option<Progress>,
+    work: impl FnOnce(&Watch) -> Result<BatchReport, BatchError> + Send + 'static,
+) -> PyResult<Json> {
+    json(py, &watched_to_its_end(py, progress.as_ref(), work)?.map_err(bad_value)?)
 }

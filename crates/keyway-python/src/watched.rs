@@ -5,6 +5,7 @@ use keyway_cli::Watcher;
 use keyway_sim::episode::EpisodeObserver;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use std::fmt::Display;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -98,9 +99,20 @@ impl Watcher for Watch {
         self.expected.store(expected, Ordering::Relaxed);
         self.is_stopped()
     }
+}
 
-    fn warned(&self, warning: &str) {
-        self.warnings().push(warning.to_owned());
+impl keyway_lab::progress::Progress for Watch {
+    fn expect(&self, answers: usize) {
+        self.expected.fetch_add(answers as u64, Ordering::Relaxed);
+    }
+
+    fn answered(&self) -> ControlFlow<()> {
+        self.done.fetch_add(1, Ordering::Relaxed);
+        if self.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn warned(&self, warning: &dyn Display) {
+        self.warnings().push(warning.to_string());
     }
 }
 

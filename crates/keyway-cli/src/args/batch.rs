@@ -1,10 +1,11 @@
 //! Arguments of `keyway batch` and `keyway scene`.
 
 use super::groups::Format;
-use super::values::{Shard, whole};
+use super::values::{shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
 use keyway::map::MAX_CELLS;
 use keyway::map::formats::DEFAULT_MAX_CELLS;
+use keyway_lab::batch::{BatchRequest, Shard};
 use std::path::PathBuf;
 
 pub(super) const SCENE_EXAMPLES: &str = "\
@@ -85,8 +86,9 @@ pub(crate) struct BatchArgs {
     pub(crate) disturbances: Option<PathBuf>,
     /// How many seeds each scene is driven with: its own, and the numbers that follow
     #[arg(long, allow_negative_numbers = true)]
-    #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u32, 1, 1_000_000>)]
-    pub(crate) seeds: u32,
+    #[arg(value_name = "N", default_value_t = 1)]
+    #[arg(value_parser = whole::<u64, { *BatchRequest::SEEDS.start() }, { *BatchRequest::SEEDS.end() }>)]
+    pub(crate) seeds: u64,
     /// Runs at the same time [default: as many as there are processors]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
@@ -95,7 +97,7 @@ pub(crate) struct BatchArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Make the I-th of N parts of the runs only; `keyway batch merge` puts the parts together
-    #[arg(long, value_name = "I/N")]
+    #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
     /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
     #[arg(long, value_enum, default_value_t)]

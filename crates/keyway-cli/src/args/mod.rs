@@ -16,7 +16,6 @@ pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unkn
 pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
-pub(crate) use values::Shard;
 pub(crate) use values::{
     AnimationFile, AnimationFormat, CircleArg, CurveFile, CurveFormat, MovingArg, PictureFile,
     PoseArg, PositionArg,

@@ -3,6 +3,7 @@
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway::map::GridFrame;
+use keyway_lab::batch::Shard;
 use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -39,43 +40,6 @@ enum Pace {
     Velocity(Point),
     /// From point to point and back to the first, at a speed \[m/s\].
     Round(f64),
-}
-
-/// `I/N`: the I-th of N parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Shard {
-    /// From 1.
-    pub(crate) number: usize,
-    pub(crate) of: usize,
-}
-
-impl Shard {
-    /// No batch has more parts.
-    pub(crate) const MOST: usize = 10_000;
-
-    /// Whether the part holds the run of this index.
-    pub(crate) const fn holds(self, index: usize) -> bool {
-        index % self.of == self.number - 1
-    }
-}
-
-impl FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = text.split_once('/').and_then(|(number, of)| {
-            Some((number.parse::<usize>().ok()?, of.parse::<usize>().ok()?))
-        });
-        match numbers {
-            Some((number, of)) if (1..=of).contains(&number) && of <= Self::MOST => {
-                Ok(Self { number, of })
-            }
-            _ => Err(format!(
-                "expected I/N, such as 1/4: the first of four parts, of at most {}",
-                Self::MOST
-            )),
-        }
-    }
 }
 
 /// A picture to be written.
@@ -219,6 +183,17 @@ impl FromStr for CurveFile {
         let formats = [("csv", CurveFormat::Csv), ("json", CurveFormat::Json)];
         by_extension(text, formats).map(|(path, format)| Self { path, format })
     }
+}
+
+/// `I/N`: the I-th of N parts.
+pub(super) fn shard(text: &str) -> Result<Shard, String> {
+    let numbers = text
+        .split_once('/')
+        .and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+    numbers.and_then(|(number, of)| Shard::new(number, of).ok()).ok_or_else(|| {
+        let most = Shard::MOST;
+        format!("expected I/N, such as 1/4: the first of four parts, of at most {most}")
+    })
 }
 
 /// A length greater than 0.

@@ -1,18 +1,17 @@
 //! Plots of what the runs of a batch say together.
 
-use crate::error::CliError;
-use crate::pictures::png;
+use crate::pictures::PNG_SCALE;
 use keyway_draw::{
     BoxGroup, BoxPlot, ChartPoint, PointPanels, PointSeries, Svg, box_plot, point_panels,
 };
-use keyway_lab::batch::Record;
-use keyway_lab::batch::Row;
+use keyway_lab::batch::{PictureFile, Pictures, Record, Row};
 use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 use keyway_sim::report::Inputs;
+use std::error::Error;
 
-/// In a folder of their own. Each as SVG and PNG.
-pub(super) const NAMES: [&str; 8] = [
+/// The files, in a folder of their own: each plot as SVG and as PNG.
+const NAMES: [&str; 8] = [
     "plots/time.svg",
     "plots/time.png",
     "plots/clearance.svg",
@@ -23,22 +22,32 @@ pub(super) const NAMES: [&str; 8] = [
     "plots/length_time.png",
 ];
 
-/// The names and contents of the files. A plot that would be empty is left out.
-pub(super) fn plots(
-    records: &[Record],
-    stacks: &[&str],
-) -> Result<Vec<(&'static str, Vec<u8>)>, CliError> {
-    let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
-    let runs = Runs { names: short_names(stacks), by_stack, count: records.len() };
-    let pictures = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
-    let mut files = Vec::new();
-    for (names, svg) in NAMES.chunks(2).zip(pictures) {
-        if let (Some(svg), [svg_name, png_name]) = (svg, names) {
-            files.push((*svg_name, svg.as_str().as_bytes().to_vec()));
-            files.push((*png_name, png(&svg)?));
-        }
+/// Plots of the results of a batch. A plot that would be empty is left out.
+#[derive(Clone, Copy, Debug)]
+pub struct BatchPlots;
+
+impl Pictures for BatchPlots {
+    fn names(&self) -> Vec<&'static str> {
+        NAMES.to_vec()
     }
-    Ok(files)
+
+    fn draw(
+        &self,
+        records: &[Record],
+        stacks: &[&str],
+    ) -> Result<Vec<PictureFile>, Box<dyn Error + Send + Sync>> {
+        let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
+        let runs = Runs { names: short_names(stacks), by_stack, count: records.len() };
+        let plots = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
+        let mut files = Vec::new();
+        for (names, svg) in NAMES.chunks(2).zip(plots) {
+            if let (Some(svg), &[svg_name, png_name]) = (svg, names) {
+                files.push(PictureFile { name: svg_name, bytes: svg.as_str().into() });
+                files.push(PictureFile { name: png_name, bytes: svg.to_png(PNG_SCALE)? });
+            }
+        }
+        Ok(files)
+    }
 }
 
 fn runs_of<'a>(records: &'a [Record], stack: &str) -> Vec<&'a Row> {

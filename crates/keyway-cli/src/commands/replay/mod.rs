@@ -1,16 +1,15 @@
 //! `keyway replay`: records of runs -> the same runs, made again, as `keyway navigate` shows them.
 
-mod difference;
-mod record;
+mod refused;
 
 use super::navigate::{drive, prepared, table, team, wanted, write_all};
 use super::{Done, print};
 use crate::args::{DriveFileArgs, Format, ReplayArgs};
 use crate::error::{CliError, Kind};
+use crate::progress::RunBar;
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
-use record::Recorded;
-pub(super) use record::RunRecord;
+use keyway_lab::replay::{RecordedRun, ReplayRequest};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
@@ -46,27 +45,32 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
 
 /// Makes a run again; what is to be said of it is printed, or given for the report.
 fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
-    let record = RunRecord::read(path)?;
-    let (recorded, sources) = record.recorded(path, args)?;
+    let request = ReplayRequest {
+        record: path.to_owned(),
+        map_dir: args.map_dir.clone(),
+        max_cells: args.limit.max_cells,
+    };
+    let replay = request.read(&RunBar::default())?;
+    let sources = &replay.sources;
     let name = path.file_stem().unwrap_or_default();
     let out = args.files.out.as_ref().map(|folder| folder.join(name));
     let files = DriveFileArgs { out, ..args.files.clone() };
-    match recorded {
-        Recorded::One(episode) => {
-            let out = prepared(&files, &sources)?;
-            let driven = drive(&episode, wanted(&files))?;
-            record.check(path, &driven.report)?;
-            let files = write_all(&files, &episode, &driven, out)?;
+    match &replay.run {
+        RecordedRun::One(episode) => {
+            let out = prepared(&files, sources)?;
+            let driven = drive(episode, wanted(&files))?;
+            replay.check(&driven.report)?;
+            let files = write_all(&files, episode, &driven, out)?;
             shown(args, path, WithFiles { report: &driven.report, files: &files }, || {
-                table(&episode, &driven)
+                table(episode, &driven)
             })
         }
-        Recorded::Several(team) => {
+        RecordedRun::Several(team) => {
             team::refuse_what_is_for_one(&files)?;
-            let out = prepared(&files, &sources)?;
-            let report = team::drive(&team)?;
-            record.check_team(path, &report)?;
-            let files = team::write_all(&files, &team, &report, out)?;
+            let out = prepared(&files, sources)?;
+            let report = team::drive(team)?;
+            replay.check_team(&report)?;
+            let files = team::write_all(&files, team, &report, out)?;
             let shown_report = WithFiles { report: &report, files: &files };
             shown(args, path, shown_report, || team::table(&report))
         }

@@ -1,24 +1,46 @@
-//! In what a run differs from its record.
+//! Differences between a run and its record.
 
 use keyway_sim::episode::EpisodeReport;
 use serde_json::Value;
 use thiserror::Error;
 
 /// The first difference between two runs.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum Difference {
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Difference {
+    /// The runs ended otherwise.
     #[error("its outcome was {recorded} and is {made} now")]
-    Outcome { recorded: String, made: String },
+    Outcome {
+        /// Outcome in the record.
+        recorded: String,
+        /// Outcome of the new run.
+        made: String,
+    },
+    /// One run is longer than the other.
     #[error(
         "its trajectory had {recorded} rows and has {made} now; those that both have are the same"
     )]
-    Length { recorded: usize, made: usize },
+    Length {
+        /// Rows in the record.
+        recorded: usize,
+        /// Rows of the new run.
+        made: usize,
+    },
+    /// The robot was elsewhere, or moved otherwise.
     #[error("row {row} of its trajectory was {recorded} and is {made} now")]
-    Row { row: usize, recorded: String, made: String },
+    Row {
+        /// The row, from 0.
+        row: usize,
+        /// Its numbers in the record.
+        recorded: String,
+        /// Its numbers in the new run.
+        made: String,
+    },
 }
 
 impl Difference {
-    /// Outcome and trajectory, byte for byte: these are the run, everything else in a report follows from them.
+    /// Compares outcome and trajectory, byte for byte: these are the run, and everything else in a
+    /// report follows from them.
     pub(super) fn between(recorded: &Value, made: &EpisodeReport) -> Option<Self> {
         let outcome = recorded["outcome"].as_str().unwrap_or("missing");
         if outcome != made.outcome.name() {

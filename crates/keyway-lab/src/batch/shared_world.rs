@@ -1,21 +1,22 @@
 //! The world of a scene and a seed: it is made once for all stacks that drive in it.
 //!
-//! Making it takes time where the map is generated or obstacles are random. Runs in the same world follow each other, and the last one that
-//! waits for it takes it away: however long a batch is, there are no more worlds than runs under way, and one.
+//! Making it takes time where the map is generated or obstacles are random. Runs in the same world
+//! follow each other, and the last one that waits for it takes it away. So however long a batch is,
+//! there is at most one world more than there are runs under way.
 
 use keyway_sim::episode::Team;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A world that is made when the first run asks for it.
 pub(super) struct SharedWorld {
-    /// In the order in which worlds are driven.
+    /// Place in the order in which worlds are driven.
     pub(super) number: usize,
     state: Mutex<State>,
 }
 
 #[derive(Default)]
 struct State {
-    /// Runs that will ask for it.
+    /// Number of runs that will ask for it.
     waiting: usize,
     made: Option<Arc<Team>>,
 }
@@ -25,12 +26,12 @@ impl SharedWorld {
         Self { number, state: Mutex::default() }
     }
 
-    /// One more run will ask for it.
+    /// Announces one more run that will ask for it.
     pub(super) fn expect_run(&self) {
         self.state().waiting += 1;
     }
 
-    /// The world, with the stacks of whoever made it. Who asks while it is made waits.
+    /// Returns the world, with the stacks of the run that made it. A run that asks meanwhile waits.
     pub(super) fn take<E>(&self, make: impl FnOnce() -> Result<Team, E>) -> Result<Arc<Team>, E> {
         let mut state = self.state();
         state.waiting = state.waiting.saturating_sub(1);
@@ -41,7 +42,7 @@ impl SharedWorld {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // Whoever died left nothing half done: a world is there, or it is made again.
+        // A thread that died left nothing half done: a world is there, or it is made again.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

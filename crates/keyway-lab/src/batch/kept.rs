@@ -1,46 +1,39 @@
-//! The full records of runs, which `keyway replay` reads: a file for each in the folder `records`.
+//! The full records of runs, which can be replayed: a file for each in the folder `records`.
 //!
-//! A record is written before the line of its run in the journal. So of a run that is known, the record is there, unless it
-//! was not asked for then: such a run is made again.
+//! A record is written before the line of its run in the journal. So the record of a known run is
+//! there, unless it was not asked for then: such a run is made again.
 
-use crate::args::Keep;
-use crate::commands::replay::RunRecord;
-use crate::error::{CliError, Kind};
-use keyway::file_system::{read_file, system_error_in_words, write_atomically};
-use keyway_lab::batch::Record;
-use keyway_lab::batch::RunId;
-use keyway_lab::results::digest;
-use keyway_sim::episode::EpisodeOutcome;
+use super::{BatchError, Keep, PartsError, Record, RunId};
+use crate::replay::RunRecord;
+use crate::results::{ResultsError, digest, json_text};
+use keyway::file_system::{WriteError, read_file, write_atomically};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// The folder of records, and what it is to hold.
+/// The folder of records, and the choice of what it holds.
 pub(super) struct Kept {
     folder: PathBuf,
     keep: Keep,
 }
 
 impl Kept {
-    /// Its name in the folder of the results.
+    /// Name of the folder in the folder of the results.
     const FOLDER: &str = "records";
 
-    /// In the folder of the results. Refuses to replace what is not a record.
+    /// Refuses to replace what is not a record in a folder of results.
     pub(super) fn prepare<'a>(
         out: &Path,
         keep: Keep,
         runs: impl Iterator<Item = RunId<'a>>,
-    ) -> Result<Self, CliError> {
+    ) -> Result<Self, BatchError> {
         let kept = Self { folder: out.join(Self::FOLDER), keep };
         if keep != Keep::None {
             let mut paths = runs.map(|run| kept.path(run));
             if let Some(path) = paths.find(|path| path.exists() && !begins(path, None)) {
-                return Err(refused(
-                    &path,
-                    "it is in the way, and no record of a run; move it away",
-                ));
+                return Err(BatchError::RecordInTheWay { path });
             }
         }
         Ok(kept)
@@ -50,53 +43,48 @@ impl Kept {
         &self.folder
     }
 
-    /// Whether the record of a run that ended so is to be kept.
-    pub(super) fn wants(&self, outcome: EpisodeOutcome) -> bool {
-        match self.keep {
-            Keep::None => false,
-            Keep::Failures => outcome != EpisodeOutcome::Reached,
-            Keep::All => true,
-        }
+    /// True if the record of a finished run is to be kept.
+    pub(super) fn wants(&self, run: &Record) -> bool {
+        self.keep.wants(run.run.outcome)
     }
 
-    /// Whether a run is known, but not its record.
+    /// True if a run is known, but not the record of it that is to be kept.
     pub(super) fn lacks(&self, run: RunId<'_>, known: &Record) -> bool {
-        self.wants(known.run.outcome) && !self.has(run)
+        self.wants(known) && !self.has(run)
     }
 
-    pub(super) fn has(&self, run: RunId<'_>) -> bool {
+    fn has(&self, run: RunId<'_>) -> bool {
         begins(&self.path(run), Some(run.digest))
     }
 
-    /// How many of the runs have a record.
+    /// Counts the runs that have a record.
     pub(super) fn count<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) -> usize {
         if self.folder.is_dir() { runs.filter(|&run| self.has(run)).count() } else { 0 }
     }
 
-    /// Writes the record of a run that has ended.
-    pub(super) fn write(&self, run: RunId<'_>, record: &RunRecord) -> Result<(), CliError> {
-        self.write_text(run, crate::json::to_string(record).as_bytes())
+    /// Writes the record of a finished run.
+    pub(super) fn write(&self, run: RunId<'_>, record: &RunRecord) -> Result<(), ResultsError> {
+        self.write_text(run, json_text(record).as_bytes())
     }
 
-    fn write_text(&self, run: RunId<'_>, text: &[u8]) -> Result<(), CliError> {
-        let made = fs::create_dir_all(&self.folder);
-        made.map_err(|error| refused(&self.folder, &system_error_in_words(&error)))?;
-        write_atomically(&self.path(run), text)
-            .map_err(|error| CliError::new(Kind::Output, error).field("--out"))
+    fn write_text(&self, run: RunId<'_>, text: &[u8]) -> Result<(), ResultsError> {
+        fs::create_dir_all(&self.folder).map_err(|reason| {
+            ResultsError::System(WriteError { path: self.folder.clone(), reason })
+        })?;
+        Ok(write_atomically(&self.path(run), text)?)
     }
 
-    /// Takes over the record that another folder of results has of a run.
-    pub(super) fn take_over(&self, run: RunId<'_>, other: &Path) -> Result<(), CliError> {
+    /// Copies the record that another folder of results has of a run.
+    pub(super) fn take_over(&self, run: RunId<'_>, other: &Path) -> Result<(), BatchError> {
         let path = other.join(Self::FOLDER).join(file_name(run));
         if !begins(&path, Some(run.digest)) || self.has(run) {
             return Ok(());
         }
-        let text = read_file(&path, RunRecord::MAX_BYTES)
-            .map_err(|error| CliError::new(Kind::Input, error).field("DIR"))?;
-        self.write_text(run, &text)
+        let text = read_file(&path, RunRecord::MAX_BYTES).map_err(PartsError::Read)?;
+        Ok(self.write_text(run, &text)?)
     }
 
-    /// Removes records of runs that are none of the results, or not any more.
+    /// Removes records of runs that are not, or no longer, among the results.
     pub(super) fn remove_others<'a>(&self, runs: impl Iterator<Item = RunId<'a>>) {
         let Ok(entries) = fs::read_dir(&self.folder) else { return };
         let own: HashMap<OsString, &str> =
@@ -107,7 +95,7 @@ impl Kept {
         };
         let paths = entries.flatten().map(|entry| entry.path()).filter(is_other);
         for path in paths.filter(|path| begins(path, None)) {
-            // Whoever removed it before did the same.
+            // Another program that removed it before did the same.
             let _ = fs::remove_file(path);
         }
     }
@@ -117,11 +105,11 @@ impl Kept {
     }
 }
 
-/// Longer names are no file names everywhere.
+/// Longer names are not file names everywhere.
 const LONGEST: usize = 180;
 
-/// `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` stand for themselves, everything else as in a web address: no two runs
-/// have the same name.
+/// `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` stand for themselves, everything else as
+/// in a web address, so no two runs have the same name.
 fn file_name(run: RunId<'_>) -> String {
     let name = format!("{}.{}.{}", safe(run.scene), safe(run.stack), run.seed);
     if name.len() <= LONGEST {
@@ -139,7 +127,8 @@ fn safe(name: &str) -> String {
     name.bytes().map(letter).collect()
 }
 
-/// Whether a file is a record, of this digest where one is given. It was written as a whole, so its first lines say it.
+/// True if a file is a record, of this digest where one is given. A record is written as a whole,
+/// so its first lines say it.
 fn begins(path: &Path, digest: Option<&str>) -> bool {
     let head = RunRecord::head(digest);
     let mut found = vec![0; head.len()];
@@ -147,10 +136,6 @@ fn begins(path: &Path, digest: Option<&str>) -> bool {
     is_file
         && File::open(path).is_ok_and(|mut file| file.read_exact(&mut found).is_ok())
         && found == head.as_bytes()
-}
-
-fn refused(path: &Path, what: &str) -> CliError {
-    CliError::new(Kind::Output, format!("{}: {what}", path.display())).field("--out")
 }
 
 #[cfg(test)]

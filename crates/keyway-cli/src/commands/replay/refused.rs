@@ -1,0 +1,22 @@
+//! Errors of records, in the words of the command line.
+
+use crate::error::{CliError, Kind};
+use crate::inputs::map_error;
+use keyway_lab::replay::ReplayError;
+
+impl From<ReplayError> for CliError {
+    fn from(error: ReplayError) -> Self {
+        let message = match error {
+            ReplayError::Map(error) => map_error(&error).message,
+            ReplayError::OtherMap { .. } => {
+                format!("{error}; --map-dir names a folder that has the map as it was")
+            }
+            ReplayError::Content { path, reason } => format!(
+                "{}: this is not a record of a run, as `keyway batch --keep` stores it: {reason}",
+                path.display()
+            ),
+            error => error.to_string(),
+        };
+        Self::new(Kind::Input, message).field("RECORD.json")
+    }
+}

@@ -1,0 +1,124 @@
+//! The runs of a batch, made several at a time.
+
+use super::earlier::known;
+use super::kept::Kept;
+use super::output::Output;
+use super::planned::{Planned, PlannedBatch};
+use super::{BatchError, BatchReport, BatchRequest, Pictures, Record};
+use crate::parallel::processors;
+use crate::progress::Progress;
+use crate::results::Journal;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+impl BatchRequest {
+    /// Makes the runs that the folder of the results does not hold yet, and writes all files.
+    ///
+    /// Each finished run is in the journal of the folder at once. So a batch that was stopped or
+    /// killed goes on where it was when it is driven again.
+    ///
+    /// # Errors
+    /// When the request, a file that it names or a run cannot be used, a result cannot be written,
+    /// or the observer stops the batch. A goal that is not reached is a result.
+    pub fn drive(
+        &self,
+        pictures: &dyn Pictures,
+        progress: &dyn Progress,
+    ) -> Result<BatchReport, BatchError> {
+        self.check()?;
+        let PlannedBatch { runs, part } = PlannedBatch::new(self, progress)?;
+        let out = Output::prepare(&self.out, pictures, progress)?;
+        let mut journal = Journal::<Record>::open(&out.folder)?;
+        let mut records = vec![None; runs.len()];
+        fill(&runs, &mut records, known(&out.folder)?);
+        fill(&runs, &mut records, journal.take());
+        let kept = Kept::prepare(&self.out, self.keep, runs.iter().map(Planned::id))?;
+        for (run, record) in runs.iter().zip(&mut records) {
+            record.take_if(|record| kept.lacks(run.id(), record));
+        }
+        let missing = Missing { runs: &runs, kept: &kept, jobs: self.jobs };
+        missing.drive(&mut records, &mut journal, progress)?;
+        let records: Vec<Record> = records.into_iter().flatten().collect();
+        let report = out.finish(&records, part.as_ref(), &kept)?;
+        journal.remove();
+        Ok(report)
+    }
+}
+
+/// Puts records to the runs that they are of.
+fn fill(runs: &[Planned], records: &mut [Option<Record>], held: impl IntoIterator<Item = Record>) {
+    let held: HashMap<String, Record> =
+        held.into_iter().map(|record| (record.run.digest.clone(), record)).collect();
+    for (planned, record) in runs.iter().zip(records) {
+        let Some(found) = held.get(planned.id().digest) else { continue };
+        let is_same = found.run.id() == planned.id();
+        if record.is_none() && is_same {
+            *record = Some(found.clone());
+        }
+    }
+}
+
+/// Runs of which some are to be made.
+struct Missing<'a> {
+    runs: &'a [Planned],
+    kept: &'a Kept,
+    jobs: Option<usize>,
+}
+
+impl Missing<'_> {
+    /// Makes the runs without a record, several at a time. Each is in the journal as soon as it is
+    /// finished.
+    fn drive(
+        &self,
+        records: &mut [Option<Record>],
+        journal: &mut Journal<Record>,
+        progress: &dyn Progress,
+    ) -> Result<(), BatchError> {
+        let mut missing: Vec<usize> =
+            (0..self.runs.len()).filter(|&i| records[i].is_none()).collect();
+        missing.sort_by_key(|&i| self.runs[i].world.number);
+        for &i in &missing {
+            self.runs[i].world.expect_run();
+        }
+        let jobs = self.jobs.unwrap_or_else(processors).min(missing.len());
+        progress.expect(missing.len());
+        let next = AtomicUsize::new(0);
+        let (sender, receiver) = mpsc::channel();
+        thread::scope(|scope| {
+            for _ in 0..jobs {
+                let (sender, next, missing) = (sender.clone(), &next, &missing);
+                scope.spawn(move || {
+                    while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                        // Nobody listens any more after an error.
+                        if sender.send((index, self.drive_one(index))).is_err() {
+                            return;
+                        }
+                    }
+                });
+            }
+            drop(sender);
+            for (index, record) in receiver {
+                let record = record?;
+                journal.append(&record)?;
+                records[index] = Some(record);
+                if progress.answered().is_break() {
+                    return Err(BatchError::Stopped);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Makes a run, and keeps its full record if it is to be kept.
+    fn drive_one(&self, index: usize) -> Result<Record, BatchError> {
+        let planned = &self.runs[index];
+        let driven = planned.drive()?;
+        let record = driven.record();
+        if self.kept.wants(&record) {
+            self.kept.write(planned.id(), &driven.full_record())?;
+        }
+        Ok(record)
+    }
+}

@@ -1,0 +1,152 @@
+//! Errors of batches.
+
+use super::PartsError;
+use super::limits::SEEDS;
+use crate::results::ResultsError;
+use keyway::file_system::system_error_in_words;
+use keyway::files::ConfigFileError;
+use keyway::map::formats::MapFileError;
+use keyway_sim::episode::TeamError;
+use keyway_sim::scene_files::{SceneError, SceneFileError};
+use std::error::Error;
+use std::io;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Reason why a batch cannot be driven, or batches cannot be put together.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BatchError {
+    /// `scenes` is empty.
+    #[error("scenes must name at least one scene")]
+    NoScenes,
+    /// `parts` is empty.
+    #[error("parts must name at least one folder")]
+    NoParts,
+    /// `out` is empty.
+    #[error("out must name a folder")]
+    NoOut,
+    /// `seeds` is out of range.
+    #[error("seeds must be a whole number from {} to {}, got {found}", SEEDS.start(), SEEDS.end())]
+    Seeds {
+        /// Given number.
+        found: u64,
+    },
+    /// `jobs` is 0.
+    #[error("jobs must be at least 1")]
+    NoJobs,
+    /// `stacks` has a stack twice.
+    #[error("the stack `{stack}` is given twice")]
+    StackTwice {
+        /// The stack.
+        stack: String,
+    },
+    /// Two of the `scenes` have the same name.
+    #[error("two scenes are named `{scene}`; give their files other names")]
+    SceneTwice {
+        /// The name.
+        scene: String,
+    },
+    /// A folder of `scenes` cannot be read.
+    #[error("{}: {}", path.display(), system_error_in_words(reason))]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Error of the operating system.
+        reason: io::Error,
+    },
+    /// A folder of `scenes` holds none.
+    #[error("{}: there is no scene (*.toml) in this folder", path.display())]
+    EmptyFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file of `scenes` cannot be used.
+    #[error(transparent)]
+    Scene(SceneFileError),
+    /// A folder of `scenes` holds another file, such as a stack.
+    #[error("{0}; move it to another folder, or name the scenes one by one")]
+    OtherFile(#[source] SceneFileError),
+    /// `disturbances` cannot be used.
+    #[error(transparent)]
+    Disturbances(SceneFileError),
+    /// `robot`, or the robot of a scene, cannot be used.
+    #[error(transparent)]
+    Robot(ConfigFileError),
+    /// One of the `stacks`, or the stack of a scene, cannot be used.
+    #[error(transparent)]
+    Stack(ConfigFileError),
+    /// The map of a scene cannot be read.
+    #[error(transparent)]
+    Map(#[from] MapFileError),
+    /// The world of a scene cannot be made.
+    #[error("{scene}: {reason}")]
+    World {
+        /// The scene.
+        scene: String,
+        /// Error of the world.
+        reason: SceneError,
+    },
+    /// A run cannot be made.
+    #[error("{scene}, {stack}, seed {seed}: {reason}")]
+    Run {
+        /// The scene.
+        scene: String,
+        /// The stack.
+        stack: String,
+        /// The seed.
+        seed: u64,
+        /// Error of the robots.
+        reason: TeamError,
+    },
+    /// A file that is no record stands in `out` where a record is to be written.
+    #[error("{}: it is in the way, and no record of a run; move it away", path.display())]
+    RecordInTheWay {
+        /// The file.
+        path: PathBuf,
+    },
+    /// `out` is one of the `parts`.
+    #[error("{} is one of the folders that are read; choose another", out.display())]
+    OutIsPart {
+        /// The folder.
+        out: PathBuf,
+    },
+    /// The `parts` cannot be put together.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
+    /// Results cannot be written to `out`.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Picture(Box<dyn Error + Send + Sync>),
+    /// The observer stopped the batch.
+    #[error("stopped before the end")]
+    Stopped,
+}
+
+impl BatchError {
+    /// Name of the field of the request that is to blame; `None` where no single field is.
+    pub const fn field(&self) -> Option<&'static str> {
+        match self {
+            Self::NoScenes
+            | Self::SceneTwice { .. }
+            | Self::Folder { .. }
+            | Self::EmptyFolder { .. }
+            | Self::Scene(_)
+            | Self::OtherFile(_)
+            | Self::World { .. } => Some("scenes"),
+            Self::NoParts | Self::Parts(_) => Some("parts"),
+            Self::NoOut
+            | Self::OutIsPart { .. }
+            | Self::RecordInTheWay { .. }
+            | Self::Results(_) => Some("out"),
+            Self::Seeds { .. } => Some("seeds"),
+            Self::NoJobs => Some("jobs"),
+            Self::StackTwice { .. } | Self::Stack(_) => Some("stacks"),
+            Self::Disturbances(_) => Some("disturbances"),
+            Self::Robot(_) => Some("robot"),
+            Self::Map(_) | Self::Run { .. } | Self::Picture(_) | Self::Stopped => None,
+        }
+    }
+}

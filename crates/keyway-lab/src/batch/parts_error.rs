@@ -1,0 +1,139 @@
+//! Errors of results that are to be put together.
+
+use super::Shard;
+use crate::results::LinesError;
+use keyway::file_system::ReadError;
+use keyway::map::formats::TextError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Reason why the results of some folders cannot be put together.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum PartsError {
+    /// The batch of a folder has not ended.
+    #[error(
+        "{}: the batch has not ended; start it again, and it goes on where it was",
+        journal.display()
+    )]
+    NotEnded {
+        /// The journal of the batch.
+        journal: PathBuf,
+    },
+    /// A file of results cannot be read.
+    #[error("{0}{advice}", advice = advice(.0))]
+    Lines(#[source] LinesError),
+    /// The times are not those of the runs.
+    #[error("{}: it has not as many lines as runs.jsonl; make the batch again", times.display())]
+    Times {
+        /// The file of times.
+        times: PathBuf,
+    },
+    /// The times or the robots of a run are missing.
+    #[error(
+        "{}: line {line}: times.jsonl or robots.jsonl lack what belongs to it; make the batch again",
+        runs.display()
+    )]
+    Incomplete {
+        /// The file of runs.
+        runs: PathBuf,
+        /// The line, from 1.
+        line: usize,
+    },
+    /// A file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The description of a part is no text.
+    #[error("{}: {reason}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// The fault.
+        reason: TextError,
+    },
+    /// The description of a part is something else.
+    #[error(
+        "{}: it does not say which part of a batch this is, of at most {} parts",
+        path.display(),
+        Shard::MOST
+    )]
+    NoPart {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Two folders hold the same run: a scene of one name with the same stack and seed.
+    #[error(
+        "the run of {scene} with {stack} and seed {seed} {} {} and {}",
+        if *is_same { "is in both" } else { "was made of different inputs in" },
+        folders[0].display(),
+        folders[1].display()
+    )]
+    RunTwice {
+        /// The scene.
+        scene: String,
+        /// The stack.
+        stack: String,
+        /// The seed.
+        seed: u64,
+        /// True if all inputs are the same.
+        is_same: bool,
+        /// The folders.
+        folders: [PathBuf; 2],
+    },
+    /// The folders do not hold all parts of a batch.
+    #[error(
+        "of the batch of which {} is a part, {} is not among the folders; parts that were made with \
+         other scenes, stacks or seeds are of another batch",
+        folder.display(),
+        shown(missing, *of)
+    )]
+    Missing {
+        /// A part of the batch.
+        folder: PathBuf,
+        /// Numbers of the missing parts, from 1.
+        missing: Vec<usize>,
+        /// Number of parts.
+        of: usize,
+    },
+    /// The parts of a batch were changed.
+    #[error(
+        "{}: the parts are not those that the batch was divided into; make them again",
+        folder.display()
+    )]
+    OtherParts {
+        /// The first part.
+        folder: PathBuf,
+    },
+}
+
+const fn advice(error: &LinesError) -> &'static str {
+    match error {
+        LinesError::Read(_) => "; it is written when a batch has ended",
+        _ => "",
+    }
+}
+
+/// Missing parts that are named.
+const SHOWN: usize = 10;
+
+fn shown(missing: &[usize], of: usize) -> String {
+    let names: Vec<String> = missing.iter().map(|number| format!("{number}/{of}")).collect();
+    // A rest of one takes no more room than the number of the rest.
+    if names.len() < SHOWN + 2 {
+        return names.join(", ");
+    }
+    format!("{} and {} more", names[..SHOWN].join(", "), names.len() - SHOWN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_of_many_missing_parts_are_named() {
+        let missing = |parts: usize| shown(&(1..=parts).collect::<Vec<_>>(), 20);
+        assert_eq!(missing(2), "1/20, 2/20");
+        assert!(missing(11).ends_with("10/20, 11/20"));
+        assert!(missing(12).ends_with("9/20, 10/20 and 2 more"));
+    }
+}

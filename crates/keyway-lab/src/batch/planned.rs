@@ -1,0 +1,208 @@
+//! The runs of a batch, in their order.
+
+use super::part::Part;
+use super::scene::{BatchScene, NamedStack, SceneReader};
+use super::shared_world::SharedWorld;
+use super::{BatchError, BatchRequest, BatchWarning, Record, RunId};
+use crate::measure::wall_clock;
+use crate::progress::Progress;
+use crate::replay::{RecordedInputs, RunRecord};
+use crate::results::digest;
+use keyway_sim::episode::{Team, TeamError, TeamReport, watch_team};
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap};
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// All runs of a request, or those of a part of it.
+pub(super) struct PlannedBatch {
+    /// Scene by scene, for each its stacks, for each stack its seeds.
+    pub(super) runs: Vec<Planned>,
+    /// The part; `None` for a whole batch.
+    pub(super) part: Option<Part>,
+}
+
+/// A run that is to be made.
+pub(super) struct Planned {
+    scene: Arc<BatchScene>,
+    /// Name of the stack, or the path of its file; of robots with different stacks, their names.
+    stack: String,
+    seed: u64,
+    /// Digest of all inputs.
+    digest: String,
+    /// Stack of each robot.
+    stacks: Arc<[NamedStack]>,
+    /// The same for all stacks.
+    pub(super) world: Arc<SharedWorld>,
+}
+
+/// A run that was made.
+pub(super) struct DrivenRun<'a> {
+    planned: &'a Planned,
+    team: Team,
+    report: TeamReport,
+    /// Wall clock \[s\].
+    wall_s: f64,
+}
+
+impl PlannedBatch {
+    /// Reads all scenes, and what they name.
+    pub(super) fn new(request: &BatchRequest, progress: &dyn Progress) -> Result<Self, BatchError> {
+        let mut runs = Vec::new();
+        let mut names = HashSet::new();
+        let mut reader = SceneReader::new(request, progress);
+        let mut world_numbers = 0..;
+        for path in scene_paths(&request.scenes)? {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            if !names.insert(name.clone()) {
+                return Err(BatchError::SceneTwice { scene: name });
+            }
+            let scene = Arc::new(reader.read(&path, name)?);
+            if request.seeds > 1 && !scene.file.is_random() {
+                progress.warned(&BatchWarning::NotRandom { scene: scene.name.clone() });
+            }
+            let worlds = (&mut world_numbers).take(request.seeds as usize);
+            let worlds: Vec<_> = worlds.map(|number| Arc::new(SharedWorld::new(number))).collect();
+            for stacks in scene.stack_names(request) {
+                runs.extend(runs_of(&scene, &stacks, &worlds)?);
+            }
+        }
+        let Some(shard) = request.shard else { return Ok(Self { runs, part: None }) };
+        let part = Part::new(shard, runs.iter().map(Planned::id));
+        let mut index = 0..;
+        runs.retain(|_| index.next().is_some_and(|index| shard.holds(index)));
+        Ok(Self { runs, part: Some(part) })
+    }
+}
+
+/// Returns the runs of a scene with the stacks of its robots: one in each of its worlds, whose
+/// seeds follow each other.
+fn runs_of<'a>(
+    scene: &'a Arc<BatchScene>,
+    stack_names: &[String],
+    worlds: &'a [Arc<SharedWorld>],
+) -> Result<impl Iterator<Item = Planned> + use<'a>, BatchError> {
+    let stacks = scene.stacks(stack_names)?;
+    let (stack, of_stacks) = (label(stack_names), scene.digest_with(&stacks));
+    Ok((0..).zip(worlds).map(move |(number, world)| {
+        let seed = scene.file.seed.wrapping_add(number);
+        Planned {
+            scene: Arc::clone(scene),
+            stack: stack.clone(),
+            seed,
+            digest: digest(format!("{of_stacks} {seed}").as_bytes()),
+            stacks: Arc::clone(&stacks),
+            world: Arc::clone(world),
+        }
+    }))
+}
+
+/// Returns the files, and those of the folders in the order of their names.
+fn scene_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, BatchError> {
+    let mut paths = Vec::new();
+    for path in given {
+        if !path.is_dir() {
+            paths.push(path.clone());
+            continue;
+        }
+        let entries = std::fs::read_dir(path)
+            .map_err(|reason| BatchError::Folder { path: path.clone(), reason })?;
+        let is_scene = |path: &PathBuf| path.extension().is_some_and(|end| end == "toml");
+        let mut inside: Vec<PathBuf> =
+            entries.flatten().map(|entry| entry.path()).filter(is_scene).collect();
+        if inside.is_empty() {
+            return Err(BatchError::EmptyFolder { path: path.clone() });
+        }
+        inside.sort();
+        paths.extend(inside);
+    }
+    Ok(paths)
+}
+
+/// Returns the name of the stacks of all robots together: each different one once.
+fn label(names: &[String]) -> String {
+    let is_new = |i: &usize| !names[..*i].contains(&names[*i]);
+    let different: Vec<&str> = (0..names.len()).filter(is_new).map(|i| names[i].as_str()).collect();
+    different.join("+")
+}
+
+impl Planned {
+    pub(super) fn id(&self) -> RunId<'_> {
+        let Self { scene, stack, seed, digest, .. } = self;
+        RunId { scene: &scene.name, stack, seed: *seed, digest }
+    }
+
+    /// Returns the scene with the seed and the stacks of this run.
+    fn scene_file(&self) -> SceneFile {
+        let mut scene = SceneFile { seed: self.seed, ..self.scene.file.clone() };
+        if scene.robots.is_empty() {
+            scene.stack.clone_from(&self.stack);
+        }
+        for (robot, stack) in scene.robots.iter_mut().zip(&*self.stacks) {
+            robot.stack = Some(stack.name.clone());
+        }
+        scene
+    }
+
+    /// Returns the robots that drive; one robot is a team, too.
+    fn team(&self) -> Result<Team, BatchError> {
+        let world = self.world.take(|| self.made_team()).map_err(|reason| {
+            let scene = self.scene.name.clone();
+            BatchError::World { scene, reason }
+        })?;
+        let mut team = Arc::unwrap_or_clone(world);
+        for (robot, stack) in team.robots.iter_mut().zip(&*self.stacks) {
+            (robot.stack, robot.stack_name) = (stack.config.clone(), stack.name.clone());
+        }
+        Ok(team)
+    }
+
+    /// Makes the team of all stacks, but for their names and parameters.
+    fn made_team(&self) -> Result<Team, SceneError> {
+        let (scene, BatchScene { robots, map, .. }) = (self.scene_file(), &*self.scene);
+        let map = match (map, scene.generated_map()) {
+            (Some(map), _) => SceneMap::clone(map),
+            (None, Some(made)) => made?,
+            (None, None) => unreachable!("a scene has a map or a world"),
+        };
+        let stacks = self.stacks.iter().map(|stack| stack.config.clone());
+        let mut drivers = robots.iter().cloned().zip(stacks);
+        // There are as many as the scene has robots.
+        let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
+        scene.team(map, next)
+    }
+
+    /// Makes the run.
+    pub(super) fn drive(&self) -> Result<DrivenRun<'_>, BatchError> {
+        let team = self.team()?;
+        let clock = wall_clock();
+        let (report, _) = watch_team(&team, Some(&clock), 1, |_| ()).map_err(|error| {
+            let robot = error.robot.filter(|_| team.robots.len() > 1);
+            let RunId { scene, stack, seed, .. } = self.id();
+            let (scene, stack) = (scene.to_owned(), stack.to_owned());
+            BatchError::Run { scene, stack, seed, reason: TeamError { robot, ..error } }
+        })?;
+        Ok(DrivenRun { planned: self, team, report, wall_s: clock() })
+    }
+}
+
+impl DrivenRun<'_> {
+    /// Returns the results.
+    pub(super) fn record(&self) -> Record {
+        let Self { planned, team, report, wall_s } = self;
+        let reference_time_s = planned.scene.file.rules.reference_time_s;
+        Record::of(planned.id(), (team, report), reference_time_s, *wall_s)
+    }
+
+    /// Returns everything that it takes to make the run again.
+    pub(super) fn full_record(&self) -> RunRecord {
+        let Planned { scene, digest, .. } = self.planned;
+        let inputs = RecordedInputs {
+            digest,
+            scene: &scene.name,
+            scene_file: self.planned.scene_file(),
+            folder: &scene.folder,
+        };
+        RunRecord::new(inputs, &self.team, &self.report)
+    }
+}

@@ -1,0 +1,144 @@
+//! Batch that is to be driven.
+
+use super::limits::SEEDS;
+use super::{BatchError, Keep, Shard};
+use keyway::map::formats::DEFAULT_MAX_CELLS;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// Scenes, what drives them, and where the results go.
+///
+/// ```no_run
+/// use keyway_lab::batch::BatchRequest;
+///
+/// let mut request = BatchRequest::new(vec!["scenes".into()], "results".into());
+/// request.stacks = vec!["keyway".to_owned(), "s0-key-point".to_owned()];
+/// request.seeds = 10;
+/// let report = request.drive(&(), &())?;
+/// assert_eq!(report.stacks.len(), 2);
+/// # Ok::<(), keyway_lab::batch::BatchError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BatchRequest {
+    /// Scene files, and folders of them.
+    pub scenes: Vec<PathBuf>,
+    /// Folder for the results. Runs that it holds are not made again.
+    pub out: PathBuf,
+    /// The stacks that drive each scene, all its robots: names, or files relative to the current
+    /// folder; `all` alone names all stacks. Empty: those of the scenes.
+    pub stacks: Vec<String>,
+    /// The robot in the place of all robots: a name, or a file relative to the current folder;
+    /// `None`: those of the scenes.
+    pub robot: Option<String>,
+    /// True if the stop rule stands behind every stack, also where a scene does not ask for it.
+    pub safe: bool,
+    /// File of the disturbances; `None`: those of the scenes.
+    pub disturbances: Option<PathBuf>,
+    /// Number of seeds for each scene: its own seed, and the numbers that follow.
+    pub seeds: u64,
+    /// Number of runs at the same time; `None`: as many as there are processors.
+    pub jobs: Option<usize>,
+    /// The part of the runs that is made; `None`: all runs.
+    pub shard: Option<Shard>,
+    /// The runs whose full records are stored.
+    pub keep: Keep,
+    /// A map of more cells is refused before memory is taken for it.
+    pub max_cells: u64,
+}
+
+/// Results of other batches that are to be put together, and where they go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MergeRequest {
+    /// Folders of results. The parts of a batch must all be there; other batches follow each other.
+    pub parts: Vec<PathBuf>,
+    /// Folder for all results together.
+    pub out: PathBuf,
+}
+
+impl BatchRequest {
+    /// Numbers of seeds that a scene may be driven with.
+    pub const SEEDS: RangeInclusive<u64> = SEEDS;
+
+    /// Returns a request for one run of each scene with everything that the scene names.
+    pub const fn new(scenes: Vec<PathBuf>, out: PathBuf) -> Self {
+        Self {
+            scenes,
+            out,
+            stacks: Vec::new(),
+            robot: None,
+            safe: false,
+            disturbances: None,
+            seeds: 1,
+            jobs: None,
+            shard: None,
+            keep: Keep::None,
+            max_cells: DEFAULT_MAX_CELLS,
+        }
+    }
+
+    /// Checks what can be checked before any file is read.
+    pub(super) fn check(&self) -> Result<(), BatchError> {
+        if self.scenes.is_empty() {
+            return Err(BatchError::NoScenes);
+        }
+        if self.out.as_os_str().is_empty() {
+            return Err(BatchError::NoOut);
+        }
+        if !Self::SEEDS.contains(&self.seeds) {
+            return Err(BatchError::Seeds { found: self.seeds });
+        }
+        if self.jobs == Some(0) {
+            return Err(BatchError::NoJobs);
+        }
+        let is_repeated = |i: &usize| self.stacks[..*i].contains(&self.stacks[*i]);
+        match (0..self.stacks.len()).find(is_repeated) {
+            Some(i) => Err(BatchError::StackTwice { stack: self.stacks[i].clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl MergeRequest {
+    /// Checks what can be checked before any file is read.
+    pub(super) fn check(&self) -> Result<(), BatchError> {
+        if self.parts.is_empty() {
+            return Err(BatchError::NoParts);
+        }
+        if self.out.as_os_str().is_empty() {
+            return Err(BatchError::NoOut);
+        }
+        // Results that are read must not be replaced on the way.
+        let Ok(out) = self.out.canonicalize() else { return Ok(()) };
+        let is_out = |part: &PathBuf| part.canonicalize().is_ok_and(|part| part == out);
+        if self.parts.iter().any(is_out) {
+            return Err(BatchError::OutIsPart { out: self.out.clone() });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_that_cannot_be_is_refused_with_the_name_of_its_field() {
+        let good = BatchRequest::new(vec!["a.toml".into()], "out".into());
+        assert!(good.check().is_ok());
+        let twice = vec!["keyway".to_owned(), "keyway".to_owned()];
+        for (request, field, text) in [
+            (BatchRequest { scenes: Vec::new(), ..good.clone() }, "scenes", "at least one scene"),
+            (BatchRequest { out: PathBuf::new(), ..good.clone() }, "out", "a folder"),
+            (BatchRequest { seeds: 0, ..good.clone() }, "seeds", "from 1 to 1000000, got 0"),
+            (BatchRequest { seeds: 1_000_001, ..good.clone() }, "seeds", "got 1000001"),
+            (BatchRequest { jobs: Some(0), ..good.clone() }, "jobs", "at least 1"),
+            (BatchRequest { stacks: twice, ..good.clone() }, "stacks", "`keyway` is given twice"),
+        ] {
+            let error = request.check().unwrap_err();
+            assert_eq!(error.field(), Some(field), "{error}");
+            assert!(error.to_string().contains(text), "{error}");
+        }
+        let none = MergeRequest { parts: Vec::new(), out: "out".into() };
+        assert_eq!(none.check().unwrap_err().field(), Some("parts"));
+    }
+}

@@ -1,0 +1,111 @@
+//! Errors of records.
+
+use super::Difference;
+use super::record::SCHEMA;
+use keyway::ConfigError;
+use keyway::file_system::ReadError;
+use keyway::map::formats::MapFileError;
+use keyway_sim::report::Inputs;
+use keyway_sim::scene_files::SceneError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Reason why a record cannot be replayed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReplayError {
+    /// The record cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The file is something else.
+    #[error("{}: this is not a record of a run, as a batch stores it: {reason}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Error of its content.
+        reason: serde_json::Error,
+    },
+    /// The record has another form.
+    #[error("{}: its schema is {found}; this program replays {SCHEMA}", path.display())]
+    Schema {
+        /// The record.
+        path: PathBuf,
+        /// Name of its form.
+        found: String,
+    },
+    /// The scene of the record cannot be used.
+    #[error("{}: {reason}", path.display())]
+    Scene {
+        /// The record.
+        path: PathBuf,
+        /// Error of the scene.
+        reason: SceneError,
+    },
+    /// A robot of the record cannot be.
+    #[error("{}: `{}` {}", path.display(), reason.path, reason.reason)]
+    Robot {
+        /// The record.
+        path: PathBuf,
+        /// Error of the robot.
+        reason: ConfigError,
+    },
+    /// The record does not have the robots of its scene.
+    #[error("{}: it must say who drove: {}", path.display(), drivers(*robots))]
+    Drivers {
+        /// The record.
+        path: PathBuf,
+        /// Number of robots that the scene lists; 0 where it has one and no list.
+        robots: usize,
+    },
+    /// The record has neither a map file nor a generated map.
+    #[error("{}: it does not say where its map is", path.display())]
+    NoMap {
+        /// The record.
+        path: PathBuf,
+    },
+    /// The map cannot be read.
+    #[error(transparent)]
+    Map(#[from] MapFileError),
+    /// The map is another one than that of the run.
+    #[error(
+        "{}: the map {} has changed since: its digest was {recorded} and is {found} now",
+        path.display(),
+        map.display()
+    )]
+    OtherMap {
+        /// The record.
+        path: PathBuf,
+        /// The map.
+        map: PathBuf,
+        /// Digest of the map in the record.
+        recorded: String,
+        /// Digest of the map that was read.
+        found: String,
+    },
+    /// The run is another one than the recorded one.
+    #[error(
+        "{}: this program makes another run of it: {}{difference}; it was recorded by keyway \
+         {recorded_by}, this is keyway {}",
+        path.display(),
+        robot.map_or_else(String::new, |index| format!("robot {index}: ")),
+        Inputs::VERSION
+    )]
+    OtherRun {
+        /// The record.
+        path: PathBuf,
+        /// Index of the robot that drove otherwise, where there are several.
+        robot: Option<usize>,
+        /// The first difference.
+        difference: Difference,
+        /// Version of Keyway that recorded the run.
+        recorded_by: String,
+    },
+}
+
+/// The members that say who drove.
+fn drivers(robots: usize) -> String {
+    if robots == 0 {
+        return "`robot` and `config`, as the scene has one robot".to_owned();
+    }
+    format!("`robots`, as many as the scene has, {robots}, and neither `robot` nor `config`")
+}

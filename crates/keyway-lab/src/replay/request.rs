@@ -1,0 +1,130 @@
+//! A record that is to be replayed.
+
+use super::record::{MapFile, RunRecord};
+use super::{Difference, ReplayError};
+use crate::progress::Progress;
+use keyway::map::formats::MapReader;
+use keyway_sim::episode::{Episode, EpisodeReport, Team, TeamReport};
+use keyway_sim::report::MapSource;
+use keyway_sim::scene_files::{SceneError, SceneMap};
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// A record to replay.
+#[derive(Clone, Debug)]
+pub struct ReplayRequest {
+    /// The record.
+    pub record: PathBuf,
+    /// Folder of the map; `None`: the folder in which it was when the run was recorded.
+    pub map_dir: Option<PathBuf>,
+    /// A map of more cells is refused before memory is taken for it.
+    pub max_cells: u64,
+}
+
+/// A recorded run that is to be made again.
+#[derive(Debug)]
+pub struct Replay {
+    /// The run.
+    pub run: RecordedRun,
+    /// The files that were read: the record and its map.
+    pub sources: Vec<PathBuf>,
+    path: PathBuf,
+    /// The results in the record.
+    report: Value,
+}
+
+/// The robots of a recorded run.
+#[derive(Debug)]
+pub enum RecordedRun {
+    /// One robot.
+    One(Episode),
+    /// Several robots.
+    Several(Team),
+}
+
+impl ReplayRequest {
+    /// Reads a record and its map. Likely mistakes in the map are warnings.
+    ///
+    /// # Errors
+    /// When the record or its map cannot be read or used, or the map has changed since.
+    pub fn read(&self, progress: &dyn Progress) -> Result<Replay, ReplayError> {
+        let path = &self.record;
+        let record = RunRecord::read(path)?;
+        let mut sources = vec![path.clone()];
+        let blame = |reason| ReplayError::Scene { path: path.clone(), reason };
+        let scene = &record.scene_file;
+        let map = match (&record.map, scene.generated_map()) {
+            (Some(file), _) => self.map(file, &mut sources, progress)?,
+            (None, Some(map)) => map.map_err(blame)?,
+            (None, None) => return Err(ReplayError::NoMap { path: path.clone() }),
+        };
+        let mut drivers = record.drivers().into_iter().map(|one| (one.robot, one.config));
+        let run = if scene.robots.is_empty()
+            && let Some((robot, stack)) = drivers.next()
+        {
+            RecordedRun::One(scene.episode(map, robot, stack).map_err(blame)?)
+        } else {
+            // There are as many as the scene has robots.
+            let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
+            RecordedRun::Several(scene.team(map, next).map_err(blame)?)
+        };
+        Ok(Replay { run, sources, path: path.clone(), report: record.report })
+    }
+
+    /// Reads the map, which must be as it was.
+    fn map(
+        &self,
+        file: &MapFile,
+        sources: &mut Vec<PathBuf>,
+        progress: &dyn Progress,
+    ) -> Result<SceneMap, ReplayError> {
+        let recorded = PathBuf::from(&file.path);
+        let map = match (&self.map_dir, recorded.file_name()) {
+            (Some(folder), Some(name)) => folder.join(name),
+            _ => recorded,
+        };
+        let reader = MapReader { max_cells: self.max_cells, ..MapReader::default() };
+        let mut loaded = reader.read(&map)?;
+        loaded.warnings.iter().for_each(|warning| progress.warned(warning));
+        if loaded.digest != file.digest {
+            let (path, recorded) = (self.record.clone(), file.digest.clone());
+            return Err(ReplayError::OtherMap { path, map, recorded, found: loaded.digest });
+        }
+        sources.append(&mut loaded.sources);
+        let source = MapSource { name: file.name.clone(), digest: loaded.digest, placement: None };
+        Ok(SceneMap { grid: loaded.grid, source })
+    }
+}
+
+impl Replay {
+    /// Checks that a run of one robot is the recorded one.
+    ///
+    /// # Errors
+    /// Tells the first difference.
+    pub fn check(&self, made: &EpisodeReport) -> Result<(), ReplayError> {
+        self.compare(&self.report, made, None)
+    }
+
+    /// Checks that a run of several robots is the recorded one.
+    ///
+    /// # Errors
+    /// Tells the first difference of the first robot that drove otherwise.
+    pub fn check_team(&self, made: &TeamReport) -> Result<(), ReplayError> {
+        let mut robots = made.robots.iter().enumerate();
+        robots.try_for_each(|(index, made)| {
+            self.compare(&self.report["robots"][index], made, Some(index))
+        })
+    }
+
+    fn compare(
+        &self,
+        recorded: &Value,
+        made: &EpisodeReport,
+        robot: Option<usize>,
+    ) -> Result<(), ReplayError> {
+        let Some(difference) = Difference::between(recorded, made) else { return Ok(()) };
+        let recorded_by = recorded.pointer("/inputs/version").and_then(Value::as_str);
+        let recorded_by = recorded_by.unwrap_or("of an unknown version").to_owned();
+        Err(ReplayError::OtherRun { path: self.path.clone(), robot, difference, recorded_by })
+    }
+}
