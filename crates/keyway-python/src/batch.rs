@@ -9,16 +9,16 @@ use keyway_lab::batch::{BatchError, BatchReport, BatchRequest, Keep, MergeReques
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for
-/// byte, into the folder `out`.
+/// Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
+/// for byte, into the folder `out`.
 ///
-/// `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`. `seeds` is
-/// the number of seeds with which each scene is driven. `shard=(i, n)` makes only the i-th of n parts;
-/// `keyway.merge` puts parts together. `jobs` is the number of threads. `keep` chooses the runs whose
-/// full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-/// files. With `safe` the stop rule stands behind every stack. Runs that the folder holds are not made
-/// again, so a batch that was stopped goes on where it was. `progress(done, expected)` is called
-/// meanwhile.
+/// `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`.
+/// `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
+/// i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
+/// chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
+/// `disturbances` are names or files. With `safe` the stop rule stands behind every stack. Runs
+/// that the folder holds are not made again, so a batch that was stopped goes on where it was.
+/// `progress(done, expected)` is called meanwhile.
 ///
 /// Gives the report `keyway.batch/1` of `docs/JSON.md`.
 ///
@@ -43,13 +43,12 @@ pub(crate) fn batch(
     safe: bool,
     progress: Option<Progress>,
 ) -> PyResult<Json> {
-    let stacks = stacks.map_or(Ok(Vec::new()), |Listed(stacks)| match stacks.len() {
-        0 => Err(bad_value("stacks: expected at least one stack")),
-        _ => Ok(stacks),
-    })?;
+    if stacks.as_ref().is_some_and(|Listed(stacks)| stacks.is_empty()) {
+        return Err(bad_value("stacks: expected at least one stack"));
+    }
     let shard = shard.map(|(part, parts)| Shard::new(part, parts)).transpose();
     let request = BatchRequest {
-        stacks,
+        stacks: stacks.map(|Listed(stacks)| stacks).unwrap_or_default(),
         seeds,
         jobs,
         shard: shard.map_err(bad_value)?,
@@ -69,8 +68,8 @@ fn choice(keep: &str) -> PyResult<Keep> {
     })
 }
 
-/// Puts together what `keyway.batch` has made in other folders, such as the parts of one batch. Nothing
-/// is driven.
+/// Puts together what `keyway.batch` has made in other folders, such as the parts of one batch.
+/// Nothing is driven.
 ///
 /// >>> import keyway
 /// >>> keyway.merge([], out="unused")

@@ -8,6 +8,9 @@ use keyway::map::formats::DEFAULT_MAX_CELLS;
 use keyway_lab::batch::{BatchRequest, Shard};
 use std::path::PathBuf;
 
+const LEAST_SEEDS: u64 = *BatchRequest::SEEDS.start();
+const MOST_SEEDS: u64 = *BatchRequest::SEEDS.end();
+
 pub(super) const SCENE_EXAMPLES: &str = "\
 Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn
@@ -87,7 +90,7 @@ pub(crate) struct BatchArgs {
     /// How many seeds each scene is driven with: its own, and the numbers that follow
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
-    #[arg(value_parser = whole::<u64, { *BatchRequest::SEEDS.start() }, { *BatchRequest::SEEDS.end() }>)]
+    #[arg(value_parser = whole::<u64, LEAST_SEEDS, MOST_SEEDS>)]
     pub(crate) seeds: u64,
     /// Runs at the same time [default: as many as there are processors]
     #[arg(long, allow_negative_numbers = true)]

@@ -122,3 +122,7 @@ impl Missing<'_> {
         Ok(record)
     }
 }
+
+#[cfg(test)]
+#[path = "drive_tests.rs"]
+mod tests;

@@ -5,7 +5,7 @@
 //!
 //! A run is a pure function of its scene, its stack and its seed; where several robots drive in a
 //! scene, it is a function of all of them. Each finished run is appended to a journal at once, with
-//! a digest of all inputs, from which later batches take it. So a batch may be killed at any moment,
+//! a digest of all inputs, by which later batches find it. So a batch may be killed at any moment,
 //! extended, or made in parts: only the missing runs are made. At the end the results are written
 //! in the order of the runs, and the journal is removed. Measured times are in a file of their own.
 //! Everything else is the same, byte for byte, however often a batch was killed, and on any number

@@ -31,7 +31,8 @@ pub enum PartsError {
     },
     /// The times or the robots of a run are missing.
     #[error(
-        "{}: line {line}: times.jsonl or robots.jsonl lack what belongs to it; make the batch again",
+        "{}: line {line}: times.jsonl or robots.jsonl lack what belongs to it; make the batch \
+         again",
         runs.display()
     )]
     Incomplete {
@@ -82,8 +83,8 @@ pub enum PartsError {
     },
     /// The folders do not hold all parts of a batch.
     #[error(
-        "of the batch of which {} is a part, {} is not among the folders; parts that were made with \
-         other scenes, stacks or seeds are of another batch",
+        "of the batch of which {} is a part, {} is not among the folders; parts that were made \
+         with other scenes, stacks or seeds are of another batch",
         folder.display(),
         shown(missing, *of)
     )]

@@ -1,7 +1,6 @@
 //! Errors of records.
 
-use super::Difference;
-use super::record::SCHEMA;
+use super::{Difference, SCHEMA};
 use keyway::ConfigError;
 use keyway::file_system::ReadError;
 use keyway::map::formats::MapFileError;

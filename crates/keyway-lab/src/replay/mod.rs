@@ -13,3 +13,6 @@ pub use difference::Difference;
 pub use error::ReplayError;
 pub(crate) use record::{RecordedInputs, RunRecord};
 pub use request::{RecordedRun, Replay, ReplayRequest};
+
+/// Name and version of the form of a record.
+const SCHEMA: &str = "keyway.record/1";

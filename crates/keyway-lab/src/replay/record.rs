@@ -1,6 +1,6 @@
 //! `keyway.record/1`: a run with everything that it takes to make it again.
 
-use super::ReplayError;
+use super::{ReplayError, SCHEMA};
 use keyway::file_system::read_file;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
@@ -10,9 +10,6 @@ use keyway_sim::scene_files::SceneFile;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::{Path, absolute};
-
-/// Name and version of the form.
-pub(super) const SCHEMA: &str = "keyway.record/1";
 
 /// A run of a batch.
 #[derive(Debug, Serialize, Deserialize)]

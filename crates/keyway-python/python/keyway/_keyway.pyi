@@ -661,16 +661,16 @@ class Step:
 
 def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, safe: bool = False, progress: Progress | None = None) -> dict[str, Any]:
     """
-    Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte for
-    byte, into the folder `out`.
+    Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
+    for byte, into the folder `out`.
 
-    `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`. `seeds` is
-    the number of seeds with which each scene is driven. `shard=(i, n)` makes only the i-th of n parts;
-    `keyway.merge` puts parts together. `jobs` is the number of threads. `keep` chooses the runs whose
-    full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-    files. With `safe` the stop rule stands behind every stack. Runs that the folder holds are not made
-    again, so a batch that was stopped goes on where it was. `progress(done, expected)` is called
-    meanwhile.
+    `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`.
+    `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
+    i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
+    chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
+    `disturbances` are names or files. With `safe` the stop rule stands behind every stack. Runs
+    that the folder holds are not made again, so a batch that was stopped goes on where it was.
+    `progress(done, expected)` is called meanwhile.
 
     Gives the report `keyway.batch/1` of `docs/JSON.md`.
 
@@ -701,8 +701,8 @@ def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequenc
 
 def merge(parts: Sequence[str | PathLike[str]], out: str | PathLike[str]) -> dict[str, Any]:
     """
-    Puts together what `keyway.batch` has made in other folders, such as the parts of one batch. Nothing
-    is driven.
+    Puts together what `keyway.batch` has made in other folders, such as the parts of one batch.
+    Nothing is driven.
 
     >>> import keyway
     >>> keyway.merge([], out="unused")
