@@ -26,7 +26,7 @@ pub(crate) enum Kind {
 /// Why a command was refused. Exit code 2.
 #[derive(Debug, Error)]
 #[error("{message}")]
-pub struct CliError {
+pub(crate) struct CliError {
     pub(crate) kind: Kind,
     pub(crate) message: String,
     /// The argument or field that is to blame.

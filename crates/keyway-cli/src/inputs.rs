@@ -52,12 +52,6 @@ pub(crate) fn source_of(loaded: &LoadedMap, placement: Option<ImagePlacement>) -
     MapSource { placement: placement.map(Into::into), ..MapSource::from(loaded) }
 }
 
-/// The text of a file of at most this many bytes.
-pub(crate) fn read_text(path: &Path, limit_bytes: u64, field: &str) -> Result<String, CliError> {
-    keyway_lab::text_file::read_text(path, limit_bytes)
-        .map_err(|error| CliError::new(Kind::Input, error).field(field))
-}
-
 /// Refuses a radius for which no cell can be free: half of the map's shorter side or more.
 pub(crate) fn refuse_a_radius_beyond_the_map(
     radius_m: f64,

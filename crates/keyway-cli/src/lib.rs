@@ -23,8 +23,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use commands::Done;
 pub use commands::batch::BatchPlots;
-pub use error::CliError;
-pub use progress::Watcher;
+use error::CliError;
 
 use std::ffi::OsString;
 

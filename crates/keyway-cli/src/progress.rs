@@ -1,26 +1,13 @@
 //! How far a measurement has come: a bar on a terminal, nothing elsewhere.
 
-use crate::error::{CliError, Kind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use keyway_lab::progress::Progress as LabProgress;
 use std::fmt::Display;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
-
-/// Who wants to know how far work has come, and may stop it.
-pub trait Watcher: Sync {
-    /// This much was done, of what is known to be done; true stops the work as soon as that is possible.
-    fn is_stopped_at(&self, done: u64, expected: u64) -> bool;
-}
-
-/// The bar on the terminal is enough.
-impl Watcher for () {
-    fn is_stopped_at(&self, _: u64, _: u64) -> bool {
-        false
-    }
-}
 
 /// Answers that were given, of those of all files read so far; and files.
 pub(crate) struct Progress {
@@ -59,46 +46,20 @@ impl Progress {
         Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
     }
 
-    pub(crate) fn expect(&self, answers: usize) {
-        self.bar.inc_length(answers as u64);
-    }
-
-    pub(crate) fn answered(&self) {
-        self.bar.inc(1);
-    }
-
-    /// The same where somebody watches; an error when that one stops the work.
-    pub(crate) fn answered_before(&self, watcher: &dyn Watcher) -> Result<(), CliError> {
-        self.answered();
-        let expected = self.bar.length().unwrap_or_default();
-        if watcher.is_stopped_at(self.bar.position(), expected) {
-            return Err(CliError::new(Kind::Usage, "stopped before the end"));
-        }
-        Ok(())
-    }
-
     pub(crate) fn finished_file(&self) {
         let finished = self.finished_files.fetch_add(1, Ordering::Relaxed) + 1;
         self.bar.set_message(format!("{finished}/{} files", self.files));
     }
 }
 
-/// A bar that somebody watches.
-pub(crate) struct Watched<'a> {
-    pub(crate) progress: &'a Progress,
-    pub(crate) watcher: &'a dyn Watcher,
-}
-
-impl keyway_lab::progress::Progress for Watched<'_> {
+impl LabProgress for Progress {
     fn expect(&self, answers: usize) {
-        self.progress.expect(answers);
+        self.bar.inc_length(answers as u64);
     }
 
     fn answered(&self) -> ControlFlow<()> {
-        match self.progress.answered_before(self.watcher) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
+        self.bar.inc(1);
+        ControlFlow::Continue(())
     }
 }
 
@@ -106,16 +67,13 @@ impl keyway_lab::progress::Progress for Watched<'_> {
 #[derive(Default)]
 pub(crate) struct RunBar(OnceLock<Progress>);
 
-impl keyway_lab::progress::Progress for RunBar {
+impl LabProgress for RunBar {
     fn expect(&self, answers: usize) {
         self.0.get_or_init(|| Progress::over_runs(answers));
     }
 
     fn answered(&self) -> ControlFlow<()> {
-        if let Some(progress) = self.0.get() {
-            progress.answered();
-        }
-        ControlFlow::Continue(())
+        self.0.get().map_or(ControlFlow::Continue(()), Progress::answered)
     }
 
     fn warned(&self, warning: &dyn Display) {
@@ -199,7 +157,7 @@ mod tests {
         let target = ProgressDrawTarget::term_like(Box::new(paper.clone()));
         let progress = Progress::over_files_on(target, 2);
         progress.expect(4);
-        progress.answered();
+        assert!(progress.answered().is_continue());
         drop(progress);
         let text = paper.0.lock().unwrap();
         assert!(text.contains("0/4 answers, 0/2 files") && !text.contains("0/0"), "{text}");

@@ -10,11 +10,9 @@ use keyway::files::{Assignment, ParameterLayers, StartingValues};
 use keyway::map::OccupancyGrid;
 use keyway::map::formats::{LoadedMap, MapFormat, digest};
 use keyway::plan::PlanError;
-use keyway_cli::CliError;
 use keyway_lab::compare::{CompareError, CompareRequest, Comparison as Checked, QueryChoice};
 use pyo3::prelude::*;
 use serde_json::Value;
-use std::ffi::OsString;
 
 /// What a comparison gave: a row for each planner with each smoother.
 ///
@@ -171,39 +169,4 @@ fn compared(grid: OccupancyGrid, request: CompareRequest, watch: &Watch) -> PyRe
 /// A text in which no character means anything to HTML.
 fn html_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-/// The words of a command line that say the same.
-#[derive(Default)]
-pub(crate) struct Words(pub(crate) Vec<OsString>);
-
-impl Words {
-    pub(crate) fn list(&mut self, option: &str, values: Option<Listed<String>>) {
-        self.option(option, values.map(|Listed(values)| values.join(",")));
-    }
-
-    pub(crate) fn option(&mut self, option: &str, value: Option<impl ToString>) {
-        if let Some(value) = value {
-            self.0.push(format!("{option}={}", value.to_string()).into());
-        }
-    }
-}
-
-/// Why a command was refused. Its options are named as arguments of Python: `planners`, not `--planners`. Names of files keep
-/// their dashes.
-pub(crate) fn refused(error: &CliError) -> PyErr {
-    let text = error.to_string();
-    let mut words = text.split("--");
-    let mut message = words.next().unwrap_or_default().to_owned();
-    for word in words {
-        let end = word.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(word.len());
-        let (option, rest) = word.split_at(end);
-        if message.ends_with(|before: char| !" `'(".contains(before)) {
-            message.extend(["--", option]);
-        } else {
-            message += &option.replace('-', "_");
-        }
-        message += rest;
-    }
-    bad_value(message)
 }

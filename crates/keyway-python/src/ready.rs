@@ -12,7 +12,6 @@ use keyway::robot::Robot;
 use keyway::route::{Route, RouteQuery, plan_route, why_no_path, why_no_room};
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::Smoother;
-use keyway_cli::Watcher;
 use keyway_sim::report::{RouteFailure, RouteRequest};
 use pyo3::prelude::*;
 use std::ops::ControlFlow::{self, Break, Continue};

@@ -1,7 +1,6 @@
 //! Long calls: the interpreter goes on meanwhile, Ctrl-C stops them, and somebody may watch.
 
 use crate::errors::warn;
-use keyway_cli::Watcher;
 use keyway_sim::episode::EpisodeObserver;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -56,6 +55,13 @@ impl Watch {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// So much of it is done; true stops the work.
+    pub(crate) fn is_stopped_at(&self, done: u64, expected: u64) -> bool {
+        self.done.store(done, Ordering::Relaxed);
+        self.expected.store(expected, Ordering::Relaxed);
+        self.is_stopped()
+    }
+
     pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.load(Ordering::Relaxed)
     }
@@ -93,14 +99,6 @@ impl Watch {
     }
 }
 
-impl Watcher for Watch {
-    fn is_stopped_at(&self, done: u64, expected: u64) -> bool {
-        self.done.store(done, Ordering::Relaxed);
-        self.expected.store(expected, Ordering::Relaxed);
-        self.is_stopped()
-    }
-}
-
 impl keyway_lab::progress::Progress for Watch {
     fn expect(&self, answers: usize) {
         self.expected.fetch_add(answers as u64, Ordering::Relaxed);
@@ -113,17 +111,6 @@ impl keyway_lab::progress::Progress for Watch {
 
     fn warned(&self, warning: &dyn Display) {
         self.warnings().push(warning.to_string());
-    }
-}
-
-impl keyway_lab::progress::Progress for Watch {
-    fn expect(&self, answers: usize) {
-        self.expected.fetch_add(answers as u64, Ordering::Relaxed);
-    }
-
-    fn answered(&self) -> ControlFlow<()> {
-        self.done.fetch_add(1, Ordering::Relaxed);
-        if self.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 

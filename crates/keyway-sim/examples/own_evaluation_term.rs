@@ -70,7 +70,7 @@ fn run(route_weight: f64) -> Result<EpisodeReport, Box<dyn Error>> {
     let mut episode = Episode::new(map, robot.clone(), Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     episode.start = Start { heading_rad: Some(FRAC_PI_2), ..episode.start };
     episode.stack = Stack::key_point_fusion(&robot);
-    episode.stack_name = "near-route".to_owned();
+    "near-route".clone_into(&mut episode.stack_name);
     let planner = Arc::new(NearRoute::new(&robot, route_weight)?);
     Ok(run_with_parts(&episode, |stack| stack.with_local(planner), None, &mut ())?)
 }

@@ -5,7 +5,7 @@ use crate::args::BenchGridArgs;
 use crate::commands::unusable_planner;
 use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, refuse_a_radius_beyond_the_map};
-use crate::progress::{Progress, Watched};
+use crate::progress::Progress;
 use keyway_lab::bench::{FileResult, GridError, GridFile, GridFileError, GridRequest};
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) fn bench_file(
         refuse_a_radius_beyond_the_map(clearance_m, grid.frame(), "map.clearance_m")?;
     }
     let file = GridFile::read(path, &map_path, grid, args.every as usize)?;
-    let result = request.on(&file, &Watched { progress, watcher: &() })?;
+    let result = request.on(&file, progress)?;
     progress.finished_file();
     Ok(result)
 }

@@ -8,7 +8,7 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{load_map, robot_size};
 use crate::out_dir::prepare;
 use crate::pictures::png;
-use crate::progress::{Progress, Watched};
+use crate::progress::Progress;
 use crate::stdout::print_files;
 use keyway::files::{FieldValue, StackBase};
 use keyway::navigate::Stack;
@@ -42,8 +42,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     }
     let out = args.out.as_deref().map(|folder| prepare(folder, &FILES)).transpose()?;
     let progress = Progress::over_runs(0);
-    let watched = Watched { progress: &progress, watcher: &() };
-    let rows = request.run(|task| measure_alone(args, task), &watched)?;
+    let rows = request.run(|task| measure_alone(args, task), &progress)?;
     drop(progress);
     let is_sound = request.is_sound(&rows);
     let mut report = ScaleReport::new(args.map.display().to_string(), loaded.digest, rows);

@@ -9,7 +9,7 @@ use crate::error::CliError;
 use crate::inputs::{load_map, refuse_to_replace_a_source};
 use crate::out_dir::prepare;
 use crate::pictures::png;
-use crate::progress::{Progress, Watched};
+use crate::progress::Progress;
 use crate::stdout::print_files;
 use keyway_lab::compare::{
     CompareFiles, CompareReport, Compared, Comparison, Queried, against_first_note, left_out_note,
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     let queried: Vec<Queried> = (0..args.maps.len()).map(queried).collect::<Result<_, _>>()?;
     let progress = Progress::over_files(args.maps.len());
     let compared = |map: Queried| {
-        let compared = comparison.on(map, &Watched { progress: &progress, watcher: &() })?;
+        let compared = comparison.on(map, &progress)?;
         progress.finished_file();
         Ok::<_, CliError>(compared)
     };

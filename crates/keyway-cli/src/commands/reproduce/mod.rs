@@ -10,7 +10,7 @@ use super::{Done, print};
 use crate::args::{Format, ReproduceArgs};
 use crate::error::{CliError, Kind};
 use crate::out_dir::prepare;
-use crate::progress::{Progress, Watched};
+use crate::progress::Progress;
 use crate::stdout::print_files;
 use experiment_figures::{names_of_experiment, of_experiment};
 use keyway_lab::reproduce::{
@@ -26,8 +26,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Done, CliError> {
     let mut out = prepare(&args.out, &names)?;
     let mut journal = Journal::open(&out)?;
     let progress = Progress::over_maps();
-    let watched = Watched { progress: &progress, watcher: &() };
-    let measurements = reproduction.measure(&out, &mut journal, &watched)?;
+    let measurements = reproduction.measure(&out, &mut journal, &progress)?;
     drop(progress);
     let report = write(&reproduction, &measurements, &mut out)?;
     out.finish()?;

@@ -1,7 +1,7 @@
 //! Errors of a measurement.
 
-use keyway::files::RadiusBeyondMap;
 use keyway::ConfigError;
+use keyway::files::RadiusBeyondMap;
 use keyway::map::FrameError;
 use keyway::plan::PlanError;
 use thiserror::Error;

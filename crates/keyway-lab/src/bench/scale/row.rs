@@ -1,8 +1,8 @@
 //! One planner on one tiled map.
 
 use super::{ScaleError, ScaleRequest, ScaleTask};
-use keyway::files::RadiusBeyondMap;
 use crate::measure::timed;
+use keyway::files::RadiusBeyondMap;
 use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::plan::{Plan, PlanError};
 use keyway::search::{Query, SearchStatistics, Workspace};
