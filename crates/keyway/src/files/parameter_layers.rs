@@ -215,6 +215,23 @@ impl ParameterLayers {
     /// # Errors
     /// Names the layer and the path of the first parameter that cannot be used.
     pub fn over(&self, base: StackBase<'_>, others: &[String]) -> Result<Stack, LayerError> {
+        let stack =
+            if self.is_empty() { base.stack().clone() } else { self.laid_over(base, others)? };
+        stack.check_parameters(base.robot()).map_err(|error| LayerError {
+            layer: None,
+            path: error.path.clone(),
+            fault: LayerFault::Config(error),
+        })?;
+        Ok(stack)
+    }
+
+    /// True if nothing is changed.
+    pub fn is_empty(&self) -> bool {
+        self.file.is_none() && self.fields.is_empty() && self.assignments.is_empty()
+    }
+
+    /// The stack with all layers, whose values are not checked.
+    fn laid_over(&self, base: StackBase<'_>, others: &[String]) -> Result<Stack, LayerError> {
         let named: NamedDefault<'_> = &|path, name| base.part(path, name);
         let mut overlay = Overlay::of(base.stack(), named).map_err(whole)?;
         let mut own = match &self.file {
@@ -234,13 +251,7 @@ impl ParameterLayers {
             overlay.set(path, value.clone()).map_err(refused)?;
         }
         own.into_iter().try_for_each(|one| one.lay_over(&mut overlay, others))?;
-        let stack: Stack = overlay.finish().map_err(whole)?;
-        stack.check_parameters(base.robot()).map_err(|error| LayerError {
-            layer: None,
-            path: error.path.clone(),
-            fault: LayerFault::Config(error),
-        })?;
-        Ok(stack)
+        overlay.finish().map_err(whole)
     }
 }
 

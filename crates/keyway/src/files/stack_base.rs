@@ -89,12 +89,16 @@ impl<'a> StackBase<'a> {
     /// # Errors
     /// Names the first field that cannot be changed so, or whose value cannot be used.
     pub fn with(&self, changes: &Table) -> Result<Stack, ParameterError> {
+        let stack = if changes.is_empty() { self.stack.clone() } else { self.laid_over(changes)? };
+        stack.check_parameters(self.robot)?;
+        Ok(stack)
+    }
+
+    fn laid_over(&self, changes: &Table) -> Result<Stack, OverlayError> {
         let named: NamedDefault<'_> = &|path, name| self.part(path, name);
         let mut overlay = Overlay::of(self.stack, named)?;
         overlay.merge(changes)?;
-        let stack = overlay.finish()?;
-        Stack::check_parameters(&stack, self.robot)?;
-        Ok(stack)
+        overlay.finish()
     }
 
     /// The robot that the stack is for.
