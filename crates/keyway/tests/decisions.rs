@@ -47,7 +47,7 @@ fn warm_decisions_allocate_nothing() {
                 let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);
                 pose = pose.after_ramp(velocity, command, robot.cycle_s);
                 velocity = command;
-                is_on_detour |= memory.detour.is_some();
+                is_on_detour |= memory.detour().is_some();
             }
             (pose.point().distance(path.points()[0]), is_on_detour)
         };

@@ -65,7 +65,7 @@ pub use follower::{Follower, FollowerConfig};
 pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
 pub(crate) use mover_rule::MoverRule;
-pub use planner::{Course, Detour, DriveMemory, LocalPlanner, Scratch};
+pub use planner::{Course, Detour, DriveMemory, LocalPlanner, OwnMemory, Scratch};
 pub use scene::Scene;
 pub use space_time::{SpaceTime, SpaceTimeConfig};
 pub use stop_rule::{Gated, Refusal, RefusalCounts, StopRule, StopRuleConfig, Surroundings};

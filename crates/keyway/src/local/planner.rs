@@ -55,16 +55,56 @@ pub trait LocalPlanner: Debug {
     }
 }
 
-/// What a local planner remembers from one cycle to the next. All but the course begins anew with every route.
+/// The memory of a local planner from one cycle to the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveMemory {
     /// How far along the route the robot has come: arc length from its beginning \[m\].
     pub covered_m: f64,
-    /// The way around something unknown that it is on; `None` on the route.
-    pub detour: Option<Detour>,
-    /// The course that the last command began; `None` for a planner that plans no farther than its command.
-    pub course: Option<Course>,
+    /// The part that only its planner understands.
+    pub own: OwnMemory,
+}
+
+/// The part of a memory that belongs to one kind of planner.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum OwnMemory {
+    /// Nothing: the planner decides anew in every cycle, or is on its route.
+    #[default]
+    Nothing,
+    /// The way around something unknown on which a [`GuidedDwa`](super::GuidedDwa) is.
+    Detour(Detour),
+    /// The course that the last command of a [`SpaceTime`](super::SpaceTime) planner began.
+    Course(Course),
+}
+
+impl DriveMemory {
+    /// The memory at the beginning of another route: a course goes on, a detour does not.
+    #[must_use]
+    pub fn on_another_route(self) -> Self {
+        let own = match self.own {
+            own @ OwnMemory::Course(_) => own,
+            OwnMemory::Nothing | OwnMemory::Detour(_) => OwnMemory::Nothing,
+        };
+        Self { covered_m: 0.0, own }
+    }
+
+    /// The way around something unknown, if the planner is on one.
+    pub const fn detour(&self) -> Option<Detour> {
+        match self.own {
+            OwnMemory::Detour(detour) => Some(detour),
+            OwnMemory::Nothing | OwnMemory::Course(_) => None,
+        }
+    }
+
+    /// The course that the last command began, if the planner plans any farther than its command.
+    pub const fn course(&self) -> Option<&Course> {
+        match &self.own {
+            OwnMemory::Course(course) => Some(course),
+            OwnMemory::Nothing | OwnMemory::Detour(_) => None,
+        }
+    }
 }
 
 /// Velocities at the ends of stretches of the same duration; in between they change linearly.

@@ -142,7 +142,7 @@ fn run(
         };
         let decision = planner.decide(&scene, &mut memory, &mut scratch);
         let wanted = transcription(world, state);
-        tally.back += u32::from(matches!(memory.detour, Some(Detour::Back { .. })));
+        tally.back += u32::from(matches!(memory.detour(), Some(Detour::Back { .. })));
         let at = format!("cycle {cycle} at {state:?} with {memory:?}");
         let ours = decision.as_ref().ok().map(|decision| decision.command);
         compare(ours, &wanted, tally, &at);

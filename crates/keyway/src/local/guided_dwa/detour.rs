@@ -37,7 +37,7 @@ use super::obstacle::{Cluster, Search, Unknown};
 use super::route_nodes::{RouteNode, route_nodes};
 use crate::ConfigError;
 use crate::geometry::{Point, Segment};
-use crate::local::{Detour, DriveMemory, Scene};
+use crate::local::{Detour, DriveMemory, OwnMemory, Scene};
 use crate::map::{Clearance, RayCells};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -115,43 +115,45 @@ impl GuidePoints<'_> {
         cluster: &mut Cluster,
     ) -> Result<Option<Point>, AllCovered> {
         let position = self.scene.pose.point();
-        if let Some(Detour::Back { point, along_m }) = memory.detour {
+        if let Some(Detour::Back { point, along_m }) = memory.detour() {
             let is_reached = position.distance(point) <= self.config.reached_m;
             if !is_reached
                 && self.sensed().of_point(point, self.config.clearance_m) >= self.config.clearance_m
             {
                 return Ok(Some(point));
             }
-            memory.detour = None;
+            memory.own = OwnMemory::Nothing;
             if is_reached {
                 memory.covered_m = along_m;
             }
         }
-        let to_m = match memory.detour {
+        let to_m = match memory.detour() {
             Some(Detour::Behind { rejoin_m, .. }) => rejoin_m,
             _ => memory.covered_m + self.config.look_ahead_m,
         };
         let Some(unknown) = self.first_unknown(memory.covered_m, to_m, cluster) else {
-            if memory.detour.take().is_some() {
+            if memory.detour().is_some() {
+                memory.own = OwnMemory::Nothing;
                 let window_m = to_m - memory.covered_m;
                 memory.covered_m =
                     self.scene.path.nearest_along(position, memory.covered_m, window_m);
             }
             return Ok(None);
         };
-        let from = match memory.detour {
+        let from = match memory.detour() {
             Some(Detour::Behind { from, .. }) => from,
             _ => self.detected_from(memory.covered_m, &unknown),
         };
         let behind = self.behind(from, &unknown, cluster)?;
         if position.distance(behind.point) > self.config.reached_m {
             let Behind { point, rejoin } = behind;
-            memory.detour = Some(Detour::Behind { from, point, rejoin_m: rejoin.along_m });
+            memory.own =
+                OwnMemory::Detour(Detour::Behind { from, point, rejoin_m: rejoin.along_m });
             return Ok(Some(point));
         }
         let back = self.back(&behind);
         memory.covered_m = behind.rejoin.along_m;
-        memory.detour = Some(Detour::Back { point: back.point, along_m: back.along_m });
+        memory.own = OwnMemory::Detour(Detour::Back { point: back.point, along_m: back.along_m });
         Ok(Some(back.point))
     }
 

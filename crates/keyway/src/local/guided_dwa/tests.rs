@@ -1,6 +1,6 @@
 use super::*;
 use crate::geometry::{Point, Polyline};
-use crate::local::Detour;
+use crate::local::{Detour, OwnMemory};
 use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use proptest::prelude::*;
 
@@ -93,14 +93,17 @@ fn the_whole_way_around_on_a_straight_route() {
     memory.covered_m = 2.0;
     // x_j is (3.5, 2.5), so x_ga is at 2 * 8.5 - 3.5; it is a node itself.
     let target = world.target(Pose::new(2.5, 2.5, 0.0), &path, &mut memory);
-    assert_eq!((target, memory.detour), (Some([13.5, 2.5]), behind([3.5, 2.5], [13.5, 2.5], 13.0)));
+    assert_eq!(
+        (target, memory.detour()),
+        (Some([13.5, 2.5]), behind([3.5, 2.5], [13.5, 2.5], 13.0))
+    );
     // On the way there x_j stays.
     assert_eq!(world.target(Pose::new(8.5, 4.5, 0.0), &path, &mut memory), Some([13.5, 2.5]));
     assert_eq!(memory.covered_m, 2.0);
     // In the invalid zone e_gs is 0 and all nodes ahead are in the direction of e_gt: the first one is taken.
     assert_eq!(world.target(Pose::new(13.1, 2.7, 0.0), &path, &mut memory), Some([14.5, 2.5]));
     let back = Detour::Back { point: Point::new(14.5, 2.5), along_m: 14.0 };
-    assert_eq!((memory.detour, memory.covered_m), (Some(back), 13.0));
+    assert_eq!((memory.detour(), memory.covered_m), (Some(back), 13.0));
     assert_eq!(world.target(Pose::new(13.7, 2.7, 0.0), &path, &mut memory), Some([14.5, 2.5]));
     assert_eq!(world.target(Pose::new(14.1, 2.6, 0.0), &path, &mut memory), None);
     assert_eq!(memory, covered(14.0));
@@ -110,7 +113,7 @@ fn the_whole_way_around_on_a_straight_route() {
 fn a_next_node_beside_the_obstacle_is_not_before_it() {
     let (world, path, mut memory) = (hall(&[(8, 2)], &[]), straight(), covered(6.3));
     assert_eq!(world.target(Pose::new(6.8, 2.5, 0.0), &path, &mut memory), Some([10.2, 2.5]));
-    assert_eq!(memory.detour, behind([6.8, 2.5], [10.2, 2.5], 10.0));
+    assert_eq!(memory.detour(), behind([6.8, 2.5], [10.2, 2.5], 10.0));
 }
 
 #[test]
@@ -121,7 +124,7 @@ fn equations_20_and_21_beside_a_bend() {
         let mut memory = covered(3.0);
         let target = world.target(Pose::new(3.5, 2.5, 0.0), &path, &mut memory);
         assert_eq!(
-            (target, memory.detour),
+            (target, memory.detour()),
             (Some([10.5, 2.5]), behind([4.5, 2.5], [10.5, 2.5], 9.0))
         );
         world.target(Pose::new(10.3, 2.5, theta), &path, &mut memory).unwrap()
@@ -143,7 +146,7 @@ fn a_point_behind_that_is_not_free_moves_to_the_route() {
     let path = bend();
     let target = |world: &World| {
         let mut memory = covered(3.0);
-        (world.target(Pose::new(3.5, 2.5, 0.0), &path, &mut memory), memory.detour)
+        (world.target(Pose::new(3.5, 2.5, 0.0), &path, &mut memory), memory.detour())
     };
     // (6.5, 2.5) is the first node at the obstacle; (8.5, 2.5) is 0.5 m from it, (9.5, 2.5) free.
     let moved = (Some([9.5, 2.5]), behind([4.5, 2.5], [9.5, 2.5], 9.0));
@@ -185,10 +188,10 @@ fn every_cycle_sees_where_the_obstacle_is_now() {
     assert_eq!(memory, covered(5.5));
     // The same on the way back, when something comes to stand where the route is to be joined.
     let point = Point::new(14.5, 2.5);
-    let detour = Some(Detour::Back { point, along_m: 14.0 });
-    memory = DriveMemory { covered_m: 13.0, detour, ..DriveMemory::default() };
+    let own = OwnMemory::Detour(Detour::Back { point, along_m: 14.0 });
+    memory = DriveMemory { covered_m: 13.0, own };
     assert_eq!(target(&mut memory, Pose::new(13.5, 2.5, 0.0), &[(14, 2)]), Some([16.5, 2.5]));
-    assert!(matches!(memory.detour, Some(Detour::Behind { .. })));
+    assert!(matches!(memory.detour(), Some(Detour::Behind { .. })));
 }
 
 #[test]

@@ -76,7 +76,7 @@ impl SpaceTime {
         let cycle = Cycle { planner: self, scene, start: &start, judge: &judge };
         let mut rest = Vec::new();
         let extent = (self.config.stretches, self.robot.cycle_s);
-        go_on(&mut rest, memory.course.as_ref(), &start, &judge, extent);
+        go_on(&mut rest, memory.course(), &start, &judge, extent);
         self.search(scene, (&start, &judge), (&mut beam, &mut rest), &mut scratch);
         let mut explanation = Explanation::default();
         explanation.candidates.extend(cycle.course(&beam.best));

@@ -78,8 +78,8 @@ pub use config::SpaceTimeConfig;
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::rear::Rear;
 use super::{
-    Course, Decision, DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, Rejections,
-    Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
+    Course, Decision, DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, OwnMemory,
+    Rejections, Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
 use crate::geometry::{Point, Velocity};
@@ -373,7 +373,8 @@ impl SpaceTime {
         let meeting = self.meeting(around);
         let (start, judge) = self.judge(scene, around, &meeting, beyond_m);
         let extent = (self.config.stretches, self.robot.cycle_s);
-        go_on(rest, memory.course.take().as_ref(), &start, &judge, extent);
+        go_on(rest, memory.course(), &start, &judge, extent);
+        memory.own = OwnMemory::Nothing;
         let tally = self.search(scene, (&start, &judge), (beam, rest), scratch);
         let command = beam.best.first().map(|&first| self.command(scene, first, judge.stretch_s));
         let stands = command.is_some_and(|command| self.robot.stands(command));
@@ -384,7 +385,7 @@ impl SpaceTime {
             return Err(NoCommand { evaluation, fallback });
         };
         let velocities = beam.best.iter().copied().collect();
-        memory.course = Some(Course { stretch_s: judge.stretch_s, velocities });
+        memory.own = OwnMemory::Course(Course { stretch_s: judge.stretch_s, velocities });
         Ok(Decision { command, evaluation })
     }
 }

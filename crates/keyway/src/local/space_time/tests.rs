@@ -269,7 +269,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
 
 /// On which side of the pillar at the middle of the world the course passes; none where it does not come so far.
 fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
-    let course = drive.memory.course.clone()?;
+    let course = drive.memory.course().cloned()?;
     let step_s = 0.05;
     let end_s = course.stretch_s * course.velocities.len() as f64;
     let velocity = |after_s: f64| course.velocity(drive.velocity, after_s);
@@ -439,7 +439,7 @@ proptest! {
         let mut drive = Drive::new(&robot, &world, start, &[[2.0, 2.0], [end.0, end.1]]);
         drive.velocity = Velocity::new(v_mps, 0.0);
         prop_assume!(drive.decide().is_ok());
-        let course = drive.memory.course.clone().unwrap();
+        let course = drive.memory.course().cloned().unwrap();
         let body = robot.footprint.smaller_by(0.05).unwrap();
         let (stretch_s, limits) = (course.stretch_s, &robot.limits);
         let (mut pose, mut velocity) = (start, drive.velocity);

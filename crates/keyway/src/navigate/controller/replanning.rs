@@ -3,7 +3,6 @@
 use super::Controller;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::guide::GuideMemory;
-use crate::local::DriveMemory;
 use crate::navigate::route::turning_clearance_m;
 use crate::navigate::watch::{RestOfRoute, Watch};
 use crate::route::Route;
@@ -132,8 +131,7 @@ impl Controller {
     fn take(&mut self, route: Route) -> Replanned {
         let is_same = self.is_same_way(&route);
         self.guide_memory = GuideMemory::default();
-        let course = self.memory.course.take();
-        self.memory = DriveMemory { course, ..DriveMemory::default() };
+        self.memory = std::mem::take(&mut self.memory).on_another_route();
         (self.route, self.covered_m, self.is_lost) = (route, 0.0, false);
         (self.no_route, self.waited_s) = (None, 0.0);
         if is_same {
