@@ -2,15 +2,17 @@
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Point;
+use keyway::guide::{Carrot, CarrotConfig};
 use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation};
-use keyway::navigate::{Controller, Stack};
-use keyway::plan::{AStar, PathEnd, PlanError};
-use keyway::robot::Robot;
+use keyway::navigate::{Controller, FittedStack, Stack};
+use keyway::plan::{AStar, Dijkstra, PathEnd, PlanError};
+use keyway::robot::{Footprint, Robot};
 use keyway::route::{
     EndRule, NoPath, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path,
 };
 use keyway::search::{IfUnreachable, Workspace};
-use keyway::smooth::Taut;
+use keyway::smooth::{Taut, Unsmoothed};
+use std::sync::Arc;
 
 /// A wall with a gap at its right end, and a closed room.
 const ROOM: [&str; 5] = ["......###", "......#.#", "####..###", ".........", "........."];
@@ -128,4 +130,25 @@ fn a_controller_follows_the_route_of_the_pipeline() {
     let mut workspace = Workspace::default();
     let route = plan_route(&map, &*planner, &*smoother, &query, &mut workspace, &mut ()).unwrap();
     assert_eq!(controller.route(), &route);
+}
+
+/// Each part of a fitted stack can be exchanged.
+#[test]
+fn a_controller_takes_parts_of_ones_own() {
+    let grid = OccupancyGrid::from_ascii(&["..........", "....##....", ".........."]);
+    let robot = Robot { footprint: Footprint::circle(0.1).unwrap(), ..Robot::small() };
+    let fitted = Stack::keyway(&robot).fit(&robot).unwrap();
+    let (start, goal) = (Point::new(0.5, 1.5), Point::new(9.5, 1.5));
+    let route = |stack: &FittedStack| {
+        let controller = Controller::new(&grid, stack, start, goal).unwrap();
+        (controller.route().smoothed.points().len(), controller.guide_points().len())
+    };
+    let (smoothed, _) = route(&fitted);
+    let own = fitted
+        .with_planner(Arc::new(Dijkstra::default()))
+        .with_smoother(Arc::new(Unsmoothed))
+        .with_guide(Arc::new(Carrot::new(CarrotConfig { look_ahead_m: 0.5 }).unwrap()));
+    let (unsmoothed, guide_points) = route(&own);
+    assert!(unsmoothed > smoothed, "{unsmoothed} {smoothed}");
+    assert_eq!(guide_points, 1, "the point moves along");
 }

@@ -39,6 +39,44 @@ use std::fmt::Debug;
 /// Chooses the point that the local planner drives towards.
 ///
 /// A guide is an immutable configuration; what it remembers of a route is [`GuideMemory`].
+///
+/// ```
+/// use keyway::geometry::{Point, Polyline};
+/// use keyway::guide::{Guidance, Guide, GuideMemory, GuideView};
+///
+/// /// Hands out the points of the route, each until the robot is nearer to it than 0.3 m.
+/// #[derive(Debug)]
+/// struct Beads;
+///
+/// impl Guide for Beads {
+///     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance> {
+///         let points = view.path.points();
+///         while memory.passed + 1 < points.len()
+///             && view.position.distance(points[memory.passed]) < 0.3
+///         {
+///             memory.passed += 1;
+///         }
+///         let left = points.get(memory.passed..)?;
+///         let ahead_m = view.position.distance(*left.first()?);
+///         let remaining_m = ahead_m + Polyline::new(left.to_vec()).length_m();
+///         Some(Guidance { point: left[0], remaining_m })
+///     }
+///
+///     fn points(&self, path: &Polyline) -> Vec<Point> {
+///         path.points().to_vec()
+///     }
+/// }
+///
+/// use keyway::map::{Clearance, OccupancyGrid};
+///
+/// let map = OccupancyGrid::from_ascii(&["....", "....", "...."]);
+/// let path = Polyline::new([[0.5, 0.5], [2.5, 0.5], [2.5, 2.5]].map(Point::from).to_vec());
+/// let obstacles = Clearance::new(map.frame(), map.occupied());
+/// let position = Point::new(0.5, 0.5);
+/// let view = GuideView { path: &path, position, obstacles, clearance_m: 0.2 };
+/// let guidance = Beads.guide(&view, &mut GuideMemory::default());
+/// assert_eq!(guidance, Some(Guidance { point: Point::new(2.5, 0.5), remaining_m: 4.0 }));
+/// ```
 pub trait Guide: Debug {
     /// Where to drive now; `None` for a path without points.
     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance>;

@@ -5,13 +5,14 @@ use crate::ConfigError;
 use crate::given::Given;
 use crate::guide::Guide;
 use crate::local::{LocalPlanner, StopRule};
+use crate::plan::GlobalPlanner;
 use crate::robot::Robot;
 use crate::sense::Tracker;
 use crate::smooth::Smoother;
 use std::sync::Arc;
 
 /// A stack whose values are checked and fit a robot. Its parts are built once; clones share them.
-/// Its local planner and its guide can be replaced by others.
+/// Each of them can be exchanged for one of your own.
 ///
 /// ```
 /// use keyway::guide::{Carrot, CarrotConfig};
@@ -30,6 +31,8 @@ use std::sync::Arc;
 pub struct FittedStack {
     pub(super) robot: Arc<Robot>,
     pub(super) stack: Arc<Stack>,
+    /// One of the caller's own, in the place of that of the stack, which is built with the map.
+    pub(super) planner: Option<Arc<dyn GlobalPlanner + Send + Sync>>,
     pub(super) smoother: Arc<dyn Smoother + Send + Sync>,
     pub(super) guide: Arc<dyn Guide + Send + Sync>,
     pub(super) local: Arc<dyn LocalPlanner + Send + Sync>,
@@ -69,6 +72,7 @@ impl Stack {
         let local = self.local.build_for(&robot).map_err(within("local"))?;
         self.controller.check().map_err(within("controller"))?;
         Ok(FittedStack {
+            planner: None,
             smoother: smoother.into(),
             guide: guide.into(),
             local: local.into(),
@@ -134,13 +138,25 @@ impl FittedStack {
         &self.stack
     }
 
-    /// The same with a local planner of one's own, in the place of that of the stack.
+    /// The same with a global planner of your own, in the place of that of the stack.
+    #[must_use]
+    pub fn with_planner(self, planner: Arc<dyn GlobalPlanner + Send + Sync>) -> Self {
+        Self { planner: Some(planner), ..self }
+    }
+
+    /// The same with a smoother of your own, in the place of that of the stack.
+    #[must_use]
+    pub fn with_smoother(self, smoother: Arc<dyn Smoother + Send + Sync>) -> Self {
+        Self { smoother, ..self }
+    }
+
+    /// The same with a local planner of your own, in the place of that of the stack.
     #[must_use]
     pub fn with_local(self, local: Arc<dyn LocalPlanner + Send + Sync>) -> Self {
         Self { local, ..self }
     }
 
-    /// The same with a guide of one's own, in the place of that of the stack.
+    /// The same with a guide of your own, in the place of that of the stack.
     #[must_use]
     pub fn with_guide(self, guide: Arc<dyn Guide + Send + Sync>) -> Self {
         Self { guide, ..self }

@@ -206,7 +206,7 @@ pub(super) fn turning_clearance_m(stack: &Stack, robot: &Robot) -> f64 {
 /// Plans the routes of one robot, on layers that follow what it senses.
 pub(super) struct Router {
     pub(super) layers: Layers,
-    planner: Box<dyn GlobalPlanner + Send + Sync>,
+    planner: Arc<dyn GlobalPlanner + Send + Sync>,
     smoother: Arc<dyn Smoother + Send + Sync>,
     workspace: Workspace,
     radius_m: f64,
@@ -216,10 +216,14 @@ impl Router {
     /// # Errors
     /// When the stack cannot be used.
     pub(super) fn new(known: &OccupancyGrid, fitted: &FittedStack) -> Result<Self, NavigateError> {
-        let FittedStack { stack, robot, smoother, .. } = fitted;
+        let FittedStack { stack, robot, smoother, planner, .. } = fitted;
         let layers = Layers::new(known, stack, robot)?;
+        let planner = match planner {
+            Some(planner) => Arc::clone(planner),
+            None => stack.planner.build(layers.obstacles())?.into(),
+        };
         Ok(Self {
-            planner: stack.planner.build(layers.obstacles())?,
+            planner,
             smoother: Arc::clone(smoother),
             layers,
             workspace: Workspace::default(),

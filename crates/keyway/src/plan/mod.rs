@@ -79,6 +79,7 @@ pub use theta_star::{ThetaStar, ThetaStarConfig};
 
 pub(crate) use ends::check_end;
 use ends::settle_ends;
+use std::fmt::Debug;
 
 use crate::geometry::{PlannedLine, Point};
 use crate::map::{Cell, Connectivity, SearchMap};
@@ -153,7 +154,7 @@ impl std::fmt::Display for Stop {
 /// A planner is an immutable config; the map, the query, the memory and the observer are
 /// arguments. No call allocates once workspace and plan are warm and the map's components are known.
 /// Time is measured by the caller.
-pub trait GlobalPlanner {
+pub trait GlobalPlanner: Debug {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;
 
