@@ -122,7 +122,3 @@ impl Missing<'_> {
         Ok(record)
     }
 }
-
-#[cfg(test)]
-#[path = "drive_tests.rs"]
-mod tests;

@@ -1,12 +1,16 @@
-use super::*;
-use crate::batch::{BatchWarning, Keep, MergeRequest, Shard};
-use crate::replay::{Difference, RecordedRun, ReplayError, ReplayRequest};
+//! Batches that are stopped, made in parts, and replayed.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway_lab::batch::{BatchError, BatchRequest, BatchWarning, Keep, MergeRequest, Shard};
+use keyway_lab::progress::Progress;
+use keyway_lab::replay::{Difference, RecordedRun, ReplayError, ReplayRequest};
 use keyway_sim::episode::{EpisodeOutcome, run_episode};
 use std::fmt::Display;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
 
 /// A short way across a generated room, with noise that depends on the seed.
