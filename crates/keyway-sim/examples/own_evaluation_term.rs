@@ -1,6 +1,6 @@
-//! An evaluation term of your own (Nav2 calls it a critic) for a dynamic window, in a simulated run:
-//! how far a candidate leads away from the route. The robot starts facing aside, and comes back to
-//! its route sooner with the term than without.
+//! An evaluation term of your own (Nav2 calls it a critic) for a dynamic window, in a simulated
+//! run: how far a candidate leads away from the route. The robot starts facing aside, and comes
+//! back to its route sooner with the term than without.
 //!
 //! `cargo run --example own_evaluation_term`
 

@@ -1,4 +1,4 @@
-//! Work spread over threads: the one way in which simulations, experiments and pictures do it.
+//! Work spread over threads, for simulations, experiments and pictures.
 //!
 //! Results never depend on the number of threads: items do not see each other, and results come in
 //! the order of the items.
@@ -30,7 +30,11 @@ pub fn for_each<T: Send>(
         }
     };
     std::thread::scope(|scope| {
-        let _ = (1..jobs).find(|_| Builder::new().spawn_scoped(scope, all).is_err());
+        for _ in 1..jobs {
+            if Builder::new().spawn_scoped(scope, all).is_err() {
+                break;
+            }
+        }
         all();
     });
 }

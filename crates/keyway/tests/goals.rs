@@ -92,6 +92,7 @@ fn planners() -> impl Iterator<Item = PlannerConfig> {
 }
 
 /// Reports which goals were planned to.
+#[derive(Debug)]
 struct Recorded {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     goals: RefCell<Vec<Cell>>,

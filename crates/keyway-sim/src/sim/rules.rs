@@ -89,9 +89,9 @@ impl StuckWatch {
     pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
         if remaining_m.is_finite() {
             if self.route.replace(route).is_some_and(|before| before != route) {
-                self.progress.take_another_way(remaining_m);
+                self.progress.begin_another_way(remaining_m);
             }
-            if self.progress.has_come_on(remaining_m, self.step_m) {
+            if self.progress.has_progressed(remaining_m, self.step_m) {
                 self.since_cycle = cycle;
             }
         }

@@ -1,4 +1,4 @@
-//! What every local planner is: a scene -> the velocity for the next cycle.
+//! Local planners: a scene -> the velocity for the next cycle.
 
 use super::{Decision, Explanation, NoCommand, Scene};
 use crate::geometry::{Point, Velocity};
@@ -9,9 +9,9 @@ use std::fmt::Debug;
 
 /// Decides on a velocity in each control cycle.
 ///
-/// A planner is an immutable configuration. What it remembers from cycle to cycle is [`DriveMemory`], which
-/// anybody can look at, keep and restore; the memory that it works in is [`Scratch`]. So the same scene
-/// and the same memory give the same decision.
+/// A planner is an immutable configuration. What it remembers from cycle to cycle is
+/// [`DriveMemory`], which anybody can look at, keep and restore; the memory that it works in is
+/// [`Scratch`]. So the same scene and the same memory give the same decision.
 ///
 /// ```
 /// use keyway::geometry::Velocity;
@@ -46,8 +46,9 @@ pub trait LocalPlanner: Debug {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand>;
 
-    /// Why it decides as it does: what becomes of each candidate, given the memory from before the decision, and, where
-    /// none drives, what would free the robot. Empty for a planner that does not choose between candidates.
+    /// The reasons for its decision: what becomes of each candidate, given the memory from before the
+    /// decision, and, where none drives, what would free the robot. Empty for a planner that does
+    /// not choose between candidates.
     ///
     /// It costs many times as much as the decision, and allocates.
     fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {
@@ -59,7 +60,7 @@ pub trait LocalPlanner: Debug {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveMemory {
-    /// How far along the route the robot has come: arc length from its beginning \[m\].
+    /// Arc length of the route that the robot has covered \[m\].
     pub covered_m: f64,
     /// The part that only its planner understands.
     pub own: OwnMemory,
@@ -121,7 +122,8 @@ impl Course {
     /// No course has more stretches.
     pub const MOST_STRETCHES: usize = 32;
 
-    /// The velocity at an instant after the beginning, when it began with `first`; after the end, the last one.
+    /// The velocity at an instant after the beginning, when it began with `first`; after the end,
+    /// the last one.
     pub fn velocity(&self, first: Velocity, after_s: f64) -> Velocity {
         let stretches = after_s / self.stretch_s;
         let begun = stretches.max(0.0) as usize;
@@ -142,7 +144,8 @@ pub enum Detour {
         from: Point,
         /// `x_ga`: the point behind it \[m\].
         point: Point,
-        /// Arc length of `x_st`, the node of the route nearest to that point, from the beginning of the route \[m\].
+        /// Arc length of `x_st`, the node of the route nearest to that point, from the beginning of
+        /// the route \[m\].
         rejoin_m: f64,
     },
     /// From there back to the route.
@@ -154,8 +157,8 @@ pub enum Detour {
     },
 }
 
-/// Memory that local planners work in. It holds no result and has no meaning between calls; keeping it
-/// spares allocations. Each planner keeps what it needs under a type of its own.
+/// Memory that local planners work in. It holds no result and has no meaning between calls; keeping
+/// it spares allocations. Each planner keeps what it needs under a type of its own.
 #[derive(Debug, Default)]
 pub struct Scratch {
     parts: Vec<Box<dyn Any + Send>>,

@@ -1,8 +1,9 @@
 //! What would free a robot that cannot drive.
 //!
-//! The [`Change`]s are tried in turn, each alone: it is made, and the planner is asked again. So each answer is the
-//! planner's own. Of turns, the smallest multiple of 15 degrees that helps is given, of the two sides first that of the guide
-//! point; of margins and footprints the least change, found by bisection.
+//! The [`Change`]s are tried in turn, each alone: it is made, and the planner is asked again. So
+//! each answer is the planner's own. Of turns, the smallest multiple of 15 degrees that helps is
+//! given, of the two sides first that of the guide point; of margins and footprints the least
+//! change, found by bisection.
 //!
 //! # Errors / cost
 //! None. Up to 40 decisions.
@@ -61,8 +62,8 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
     remedies
 }
 
-/// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at least a cycle;
-/// no scene where it would touch something before.
+/// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at
+/// least a cycle; no scene where it would touch something before.
 fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
     let braking = robot.limits.braked(scene.velocity, robot.cycle_s);
     let (mut standing, mut duration_s, mut is_free) = (*scene, 0.0, true);
@@ -144,7 +145,8 @@ fn smaller_footprint(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Rem
     Some(Remedy { change, frees: found_m.is_some() })
 }
 
-/// A change up to `most` that helps, such that one that is smaller by `step` does not (where more always helps more).
+/// A change up to `most` that helps, such that one that is smaller by `step` does not (where more
+/// always helps more).
 fn least(most: f64, step: f64, helps: impl Fn(f64) -> bool) -> Option<f64> {
     if !helps(most) {
         return None;

@@ -4,8 +4,9 @@ use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
 use crate::sense::{Disc, Mover, SeenCells};
 
-/// Everything a local planner sees in one control cycle; built by the caller. It is that of the instant at which the
-/// command acts: of now, or [`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s) later.
+/// Everything a local planner sees in one control cycle; built by the caller. It is that of the
+/// instant at which the command acts: of now, or
+/// [`Robot::actuation_delay_s`](crate::robot::Robot::actuation_delay_s) later.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// Distances to the squares of everything that stands, known and sensed.
@@ -16,7 +17,8 @@ pub struct Scene<'a> {
     pub seen: SeenCells<'a>,
     /// Everything that moves, as far as it is known.
     pub movers: &'a [Mover],
-    /// Ground on which movers walk, and around which the route leads since the robot has waited for them; mostly none.
+    /// Ground on which movers walk, and around which the route leads since the robot has waited for
+    /// them; mostly none.
     pub walked: &'a [Disc],
     /// Where the robot is.
     pub pose: Pose,
@@ -26,7 +28,8 @@ pub struct Scene<'a> {
     pub guide: Point,
     /// The smoothed route, from its beginning to the goal.
     pub path: &'a Polyline,
-    /// What is left of the way to the place where the robot is to stop \[m\]; infinite where it need not stop. A local
-    /// planner issues nothing after which the robot could not stop within this way any more.
+    /// What is left of the way to the place where the robot is to stop \[m\]; infinite where it
+    /// need not stop. A local planner issues nothing after which the robot could not stop within
+    /// this way any more.
     pub remaining_m: f64,
 }

@@ -11,8 +11,8 @@ use crate::sense::Tracker;
 use crate::smooth::Smoother;
 use std::sync::Arc;
 
-/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them.
-/// Each of them can be exchanged for one of your own.
+/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them. Its
+/// planner, smoother, guide and local planner can be exchanged for others of your own.
 ///
 /// ```
 /// use keyway::guide::{Carrot, CarrotConfig};
@@ -50,7 +50,7 @@ impl Stack {
         let fitted = self.build(robot)?;
         self.check_room(robot)?;
         self.check_planner()?;
-        self.check_map()?;
+        self.check_free_ends()?;
         Ok(fitted)
     }
 
@@ -117,7 +117,7 @@ impl Stack {
     }
 
     /// Refuses lifted clearances: a route would lead where the footprint does not fit.
-    fn check_map(&self) -> Result<(), ConfigError> {
+    fn check_free_ends(&self) -> Result<(), ConfigError> {
         if self.map.free_ends_m == 0.0 {
             return Ok(());
         }

@@ -1,4 +1,5 @@
-//! Progress along a way: what is left of it becomes shorter. One rule for controllers and judges.
+//! Progress along a way: what is left of it becomes shorter. Controllers and simulated runs ask for
+//! the same steps.
 
 use crate::robot::Robot;
 
@@ -15,26 +16,26 @@ impl Progress {
     /// The largest step that is asked for \[m\].
     const LARGEST_STEP_M: f64 = 0.05;
 
-    /// The part of what it drives in the time that a slow robot has to come on.
+    /// The part of what a slow robot drives in the time by which it has to get closer.
     const SLOW_PART: f64 = 0.1;
 
-    /// By how much a robot has to come on within a time \[m\]: 5 cm, or a tenth of what a slow robot
-    /// drives in that time.
+    /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or a tenth of what a slow
+    /// robot drives in that time.
     pub fn step_m(robot: &Robot, within_s: f64) -> f64 {
         (Self::SLOW_PART * robot.limits.v_max_mps * within_s).min(Self::LARGEST_STEP_M)
     }
 
     /// True if the way has become shorter by the step since the last time that this was true.
-    pub fn has_come_on(&mut self, remaining_m: f64, step_m: f64) -> bool {
-        let has_come_on = remaining_m <= self.shortest_m - step_m;
-        if has_come_on {
+    pub fn has_progressed(&mut self, remaining_m: f64, step_m: f64) -> bool {
+        let has_progressed = remaining_m <= self.shortest_m - step_m;
+        if has_progressed {
             self.shortest_m = remaining_m;
         }
-        has_come_on
+        has_progressed
     }
 
     /// The robot takes another way. Where that is longer, progress is measured on it.
-    pub const fn take_another_way(&mut self, remaining_m: f64) {
+    pub const fn begin_another_way(&mut self, remaining_m: f64) {
         self.shortest_m = self.shortest_m.max(remaining_m);
     }
 }
@@ -55,11 +56,12 @@ mod tests {
     #[test]
     fn progress_is_a_way_that_becomes_shorter() {
         let mut progress = Progress::NEW;
-        let come_on = [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_come_on(m, 0.05));
-        assert_eq!(come_on, [true, false, true, false, false, true]);
-        progress.take_another_way(3.0);
-        assert!(!progress.has_come_on(4.88, 0.05), "a shorter way is none by itself");
-        progress.take_another_way(7.0);
-        assert!(progress.has_come_on(6.95, 0.05) && !progress.has_come_on(6.95, 0.05));
+        let progressed =
+            [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_progressed(m, 0.05));
+        assert_eq!(progressed, [true, false, true, false, false, true]);
+        progress.begin_another_way(3.0);
+        assert!(!progress.has_progressed(4.88, 0.05), "a shorter way is none by itself");
+        progress.begin_another_way(7.0);
+        assert!(progress.has_progressed(6.95, 0.05) && !progress.has_progressed(6.95, 0.05));
     }
 }

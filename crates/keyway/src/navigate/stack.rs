@@ -39,7 +39,8 @@ pub struct Stack {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ControllerConfig {
-    /// The goal is reached where the robot stands within this distance \[m\]; a way-point is passed within it.
+    /// The goal is reached where the robot stands within this distance \[m\]; a way-point is passed
+    /// within it.
     pub goal_tolerance_m: f64,
     /// Where the goal has a heading, it is reached within this angle \[rad\].
     pub goal_yaw_tolerance_rad: f64,
@@ -50,11 +51,12 @@ pub struct ControllerConfig {
     /// start, also in stack files that do not have it.
     #[serde(default)]
     pub start_error_m: f64,
-    /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a place of the
-    /// route that is in sight while the guide point is not.
+    /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a
+    /// place of the route that is in sight while the guide point is not.
     pub watch_route: bool,
-    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once that takes no longer than
-    /// the robot has been held up beside it. Needs `movers`; false in stack files that do not have it.
+    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once
+    /// that takes no longer than the robot has been held up beside it. Needs `movers`; false in
+    /// stack files that do not have it.
     #[serde(default)]
     pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
@@ -62,8 +64,9 @@ pub struct ControllerConfig {
     /// A recovery begins when the remaining way has not become shorter for this long \[s\]
     /// ([`Progress::step_m`](super::Progress::step_m)).
     pub no_progress_s: f64,
-    /// What is tried when the robot gets no farther, one kind after the other until it does; then from the
-    /// beginning. Where `turn` is among them, a robot that is not round also turns before it drives where it could not.
+    /// What is tried when the robot gets no farther, one kind after the other until it does; then
+    /// from the beginning. Where `turn` is among them, a robot that is not round also turns before
+    /// it drives where it could not.
     pub recoveries: Cow<'static, [RecoveryKind]>,
     /// How far `back-up` goes back at most \[m\].
     pub back_up_m: f64,
@@ -73,18 +76,19 @@ pub struct ControllerConfig {
     /// control cycle for long.
     pub replan_budget: u64,
     /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
-    /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for something that moves before it
-    /// counts as getting no farther.
+    /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for
+    /// something that moves before it counts as getting no farther.
     pub longest_wait_s: f64,
     /// Stop while the sensor says nothing for longer than its time-out (`sensor.timeout_s` of the
     /// robot), and before it has said anything. True in stack files that do not have it.
     #[serde(default = "yes")]
     pub stop_when_blind: bool,
-    /// How what moves is told from what stands. Without it everything counts as standing where it was seen last.
+    /// How what moves is told from what stands. Without it everything counts as standing where it
+    /// was seen last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub movers: Option<TrackerConfig>,
-    /// The stop rule, through which every command goes, whoever gave it; it needs `movers`. Without it commands are
-    /// issued as they were decided.
+    /// The stop rule, through which every command goes, whoever gave it; it needs `movers`. Without
+    /// it commands are issued as they were decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe: Option<StopRuleConfig>,
 }
@@ -94,8 +98,8 @@ const fn yes() -> bool {
 }
 
 impl ControllerConfig {
-    /// For \[You2021\], whose robot is a point that plans once and never again: a new route is planned only
-    /// where it would otherwise stand still for ever.
+    /// For \[You2021\], whose robot is a point that plans once and never again: a new route is
+    /// planned only where it would otherwise stand still for ever.
     pub const PAPER: Self = Self {
         goal_tolerance_m: 0.5,
         goal_yaw_tolerance_rad: 0.05,
@@ -175,7 +179,8 @@ impl ControllerConfig {
 }
 
 impl ControllerConfig {
-    /// Checks the values of its own; those of its tracker and its stop rule are checked when they are built.
+    /// Checks the values of its own; those of its tracker and its stop rule are checked when they
+    /// are built.
     pub(super) fn check(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
         ConfigError::unless_positive("goal_yaw_tolerance_rad", self.goal_yaw_tolerance_rad)?;
@@ -199,7 +204,8 @@ impl ControllerConfig {
         tracker.map_err(|error| error.within("movers"))
     }
 
-    /// How fast somebody may walk up behind a robot that does not look there \[m/s\]; 0 without a stop rule.
+    /// How fast somebody may walk up behind a robot that does not look there \[m/s\]; 0 without a
+    /// stop rule.
     pub(super) fn walker_mps(&self) -> f64 {
         self.safe.as_ref().map_or(0.0, |safe| safe.movers.speed_mps)
     }
@@ -240,8 +246,8 @@ impl Stack {
         if safe { self.with_stop_rule(robot) } else { self }
     }
 
-    /// The parameters for plans without driving, unless others are asked for: those of the usual stack, but for a point, and
-    /// not smoothed.
+    /// The parameters for plans without driving, unless others are asked for: those of the usual
+    /// stack, but for a point, and not smoothed.
     pub fn for_plans(robot: &Robot) -> Self {
         let stack = Self::keyway(robot);
         let map = LayerConfig { clearance_m: 0.0, ..stack.map };

@@ -27,8 +27,9 @@ impl Watch {
         progress: Progress::NEW,
     };
 
-    /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot waits for something that
-    /// moves, its time does not count for up to `waits_s`, which is 0 otherwise.
+    /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot
+    /// waits for something that moves, its time does not count for up to `waits_s`, which is 0
+    /// otherwise.
     pub(super) fn note_cycle(
         &mut self,
         [remaining_m, progress_m]: [f64; 2],
@@ -37,7 +38,7 @@ impl Watch {
         cycle_s: f64,
     ) {
         self.route_s += cycle_s;
-        let has_come_on = self.progress.has_come_on(remaining_m, progress_m);
+        let has_come_on = self.progress.has_progressed(remaining_m, progress_m);
         if self.mover_s < waits_s && !has_come_on {
             self.mover_s += cycle_s;
             return;
@@ -60,7 +61,8 @@ pub(super) struct RestOfRoute<'a> {
 }
 
 impl RestOfRoute<'_> {
-    /// Places of the path between the robot and its guide point that are tried in place of the latter.
+    /// Places of the path between the robot and its guide point that are tried in place of the
+    /// latter.
     const STATIONS: u32 = 32;
 
     /// The segments that are not behind the robot; the first one from where it is.
@@ -85,8 +87,8 @@ impl RestOfRoute<'_> {
 
     /// True when one of the cells that have just become occupied comes nearer than `needed_m`.
     ///
-    /// Costs a few operations for each segment, and for each cell where a segment comes near the window of all
-    /// of them.
+    /// Costs a few operations for each segment, and for each cell where a segment comes near the
+    /// window of all of them.
     pub(super) fn is_cut(&self, edits: &[Edit], frame: &GridFrame, needed_m: f64) -> bool {
         let marked = || edits.iter().filter(|edit| edit.state == CellState::Occupied);
         let windows = marked().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
@@ -107,8 +109,9 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// The farthest place of the path, up to `guide_m` along it, to which the straight way from `position` keeps
-    /// `clearance_m`; `None` where there is none farther than `least_m` from there.
+    /// The farthest place of the path, up to `guide_m` along it, to which the straight way from
+    /// `position` keeps `clearance_m`; `None` where there is none farther than `least_m` from
+    /// there.
     pub(super) fn farthest_in_sight(
         &self,
         position: Point,
@@ -125,8 +128,8 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// Whether another path leads the same way: from the robot on, no vertex of either is farther than `apart_m`
-    /// from the other.
+    /// Whether another path leads the same way: from the robot on, no vertex of either is farther
+    /// than `apart_m` from the other.
     pub(super) fn is_same_way(&self, other: &Polyline, apart_m: f64) -> bool {
         let whole = RestOfRoute { path: other, covered_m: 0.0 };
         self.is_along(&whole, apart_m) && whole.is_along(self, apart_m)

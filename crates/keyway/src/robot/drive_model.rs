@@ -1,7 +1,8 @@
 //! The drive model: how a robot moves, brakes and stops. A differential drive, the only one so far.
 //!
-//! Everything that predicts a robot asks here: local planners, the stop rule, recoveries, the
-//! simulator's motors. Another drive is another answer to the same questions.
+//! Here is what velocity a robot reaches in a cycle, how it brakes, when it stands, and its motion
+//! until it does. Another drive is another answer to the same questions. Planners that look at many
+//! motions at once compute places by formulas of their own.
 
 use super::{Limits, Robot};
 use crate::ConfigError;
@@ -52,15 +53,16 @@ impl Robot {
         velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
     }
 
-    /// The longest from a scan until it stands, when it then backs up straight for one more cycle, as fast as it can, and brakes \[s\].
+    /// The longest time from a scan to rest, if the robot backs up at full speed for one more
+    /// cycle \[s\].
     pub(crate) fn backing_s(&self) -> f64 {
         let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
         self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
     }
 }
 
-/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although their quotient
-/// is rounded to less.
+/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although
+/// their quotient is rounded to less.
 pub fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
     let count = duration_s / cycle_s;
     let nearest = count.round();
@@ -106,7 +108,8 @@ impl Limits {
     /// The longest that a robot may take to stop \[s\].
     const LONGEST_STOP_S: f64 = 60.0;
 
-    /// Refuses brakes that are too weak: all that looks ahead looks as far as the robot needs to stop.
+    /// Refuses brakes that are too weak: all that looks ahead looks as far as the robot needs to
+    /// stop.
     pub(super) fn check_stopping(&self) -> Result<(), ConfigError> {
         let checks = [
             ("limits.deceleration_mps2", self.deceleration_mps2, self.v_max_mps, "v_max_mps"),
@@ -140,24 +143,28 @@ impl Limits {
         self.v_max_mps * self.v_max_mps / (2.0 * self.deceleration_mps2)
     }
 
-    /// The way on which the robot brakes to a stop in whole cycles ([`Self::braked`]) is never longer than what it covers in
-    /// this time at the velocity from which it brakes: half of the time to stop and half of a cycle \[s\].
+    /// The way on which the robot brakes to a stop in whole cycles ([`Self::braked`]) is never
+    /// longer than what it covers in this time at the velocity from which it brakes: half of the
+    /// time to stop and half of a cycle \[s\].
     ///
-    /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with g(t) = max(0, 1 - t / T)
-    /// and the time to stop T; in between it changes linearly. Speed and turn rate fall in proportion, so the robot stays
-    /// on its arc and covers of it what u covers in the time
-    /// S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c (g(c) + g(2 c) + ...).
-    /// As g falls, c g(k c) is at most the integral of g over the k-th cycle, so S <= c / 2 + T / 2. Both terms are
-    /// needed: a robot that could stop at once still needs a cycle, in which it drives half as far as at u.
+    /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with
+    /// g(t) = max(0, 1 - t / T) and the time to stop T; in between it changes linearly. Speed and
+    /// turn rate fall in proportion, so the robot stays on its arc and covers of it what u covers
+    /// in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c (g(c) + g(2 c)
+    /// + ...). As g falls, c g(k c) is at most the integral of g over the k-th cycle, so S <= c / 2
+    /// + T / 2. Both terms are needed: a robot that could stop at once still needs a cycle, in
+    /// which it drives half as far as at u.
     pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
         0.5 * (self.stop_s() + cycle_s)
     }
 
-    /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its beginning, to stand
-    /// within `within_m` of there, driving straight and braking in whole cycles \[m/s\]; 0 where none is small enough.
+    /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its
+    /// beginning, to stand within `within_m` of there, driving straight and braking in whole cycles
+    /// \[m/s\]; 0 where none is small enough.
     ///
-    /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <= f < 1, braking covers
-    /// b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c / 2. Solved for n and f.
+    /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <=
+    /// f < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c
+    /// / 2. Solved for n and f.
     pub(crate) fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
         let shed_mps = self.deceleration_mps2 * cycle_s;
         // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
@@ -241,7 +248,8 @@ mod tests {
         }
     }
 
-    /// How far a robot drives in a cycle that takes it from one speed to another, and then until it stands \[m\].
+    /// The way that a robot drives in a cycle that takes it from one speed to another, and then until it
+    /// stands \[m\].
     fn driven_m(limits: &Limits, from_mps: f64, to_mps: f64, cycle_s: f64) -> f64 {
         let (mut v, mut driven_m) = (to_mps, 0.5 * (from_mps + to_mps) * cycle_s);
         while v > 0.0 {

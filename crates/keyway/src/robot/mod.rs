@@ -22,13 +22,14 @@ pub struct Robot {
     pub footprint: Footprint,
     /// Control cycle \[s\]: time between two commands, from 0.001 to 10.
     pub cycle_s: f64,
-    /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant at which its command
-    /// acts, and simulated motors are as late.
+    /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant at
+    /// which its command acts, and simulated motors are as late.
     #[serde(default)]
     pub actuation_delay_s: f64,
-    /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from 0.0001
-    /// to 10; `None`: a tenth of what the robot drives in a cycle at full speed. Routes, the
-    /// parameters of stacks for a robot and the stop rule follow from it ([`Self::safety_margin_m`]).
+    /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from
+    /// 0.0001 to 10; `None`: a tenth of what the robot drives in a cycle at full speed. Routes, the
+    /// parameters of stacks for a robot and the stop rule follow from it
+    /// ([`Self::safety_margin_m`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safety_margin_m: Option<f64>,
     /// Velocity and acceleration limits.
@@ -92,9 +93,10 @@ impl Robot {
         }
     }
 
-    /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270 degrees and
-    /// 30 m. It backs up at 0.5 m/s at most, as its lidar looks ahead. Its velocity controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its
-    /// tyres hold.
+    /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270
+    /// degrees and 30 m. It backs up at 0.5 m/s at most, as its lidar looks ahead. Its velocity
+    /// controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its tyres
+    /// hold.
     pub fn jackal() -> Self {
         Self {
             footprint: bundled(Footprint::rectangle(0.508, 0.430)),
@@ -138,8 +140,9 @@ impl Robot {
     /// Checks every value. A footprint was checked when it was made.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with the values that can. No robot on wheels is near the ends of
-    /// these ranges; beyond them a simulation would take minutes for a second, or numbers would lose their meaning.
+    /// Names the first field that cannot be used, with the values that can. No robot on wheels is
+    /// near the ends of these ranges; beyond them a simulation would take minutes for a second, or
+    /// numbers would lose their meaning.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
         let Limits { acceleration_mps2, deceleration_mps2, .. } = self.limits;
@@ -204,8 +207,8 @@ impl Robot {
         self.safety_margin_m.unwrap_or(0.1 * self.limits.v_max_mps * self.cycle_s)
     }
 
-    /// What is farther away than this hardly matters in one cycle: as far as any part of the robot comes at
-    /// full speed in a cycle and twice the time to stop \[m\].
+    /// What is farther away than this hardly matters in one cycle: as far as any part of the robot
+    /// comes at full speed in a cycle and twice the time to stop \[m\].
     pub fn decision_reach_m(&self) -> f64 {
         let drive_s = self.cycle_s + 2.0 * self.limits.stop_s();
         self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * drive_s

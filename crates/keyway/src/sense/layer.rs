@@ -10,12 +10,12 @@ use std::collections::HashMap;
 /// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
 /// a sensed cell that is cleared goes back to what the known map says, unknown included.
 ///
-/// A cell is cleared when the place in it that a beam has met is seen through: when the beams to both sides of that
-/// place go on beyond it. A beam through another part of the cell says nothing: a cell may be larger than
-/// what stands in it, and is seldom filled by it.
+/// A cell is cleared when the place in it that a beam has met is seen through: when the beams to
+/// both sides of that place go on beyond it. A beam through another part of the cell says nothing:
+/// a cell may be larger than what stands in it, and is seldom filled by it.
 ///
-/// Memory: one bit per cell, and a place for each sensed cell. An update costs a look-up per hit, and one per sensed
-/// cell within the sensor's range.
+/// Memory: one bit per cell, and a place for each sensed cell. An update costs a look-up per hit,
+/// and one per sensed cell within the sensor's range.
 #[derive(Clone, Debug)]
 pub struct SensedLayer {
     sensed: BitGrid,
@@ -51,16 +51,17 @@ impl SensedLayer {
 
     /// Takes in a scan on the `known` map, whose frame is the one given to [`Self::new`].
     ///
-    /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by a beam without a
-    /// hit); then every hit marks its cell, unless the known map already has it
-    /// as occupied or it lies outside the map. So within one scan marks win over clears. A beam
-    /// that says nothing ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a
+    /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by
+    /// a beam without a hit); then every hit marks its cell, unless the known map already has it as
+    /// occupied or it lies outside the map. So within one scan marks win over clears. A beam that
+    /// says nothing ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a
     /// pose that is not finite.
     ///
-    /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked, so movers leave no
-    /// trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the cells under a mover that is seen are
-    /// cleared, and so are those that were marked before it was known to move. Where one is only expected, nothing is
-    /// cleared. Without one everything counts as standing.
+    /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked,
+    /// so movers leave no trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the
+    /// cells under a mover that is seen are cleared, and so are those that were marked before it
+    /// was known to move. Where one is only expected, nothing is cleared. Without one everything
+    /// counts as standing.
     ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,

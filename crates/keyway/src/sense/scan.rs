@@ -93,11 +93,6 @@ impl Scan {
         Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
-    /// True if no beam says anything.
-    pub fn is_silent(&self) -> bool {
-        (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
-    }
-
     /// Refuses bearings that cannot be true, as of angles in degrees.
     ///
     /// # Errors

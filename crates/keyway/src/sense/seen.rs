@@ -30,8 +30,8 @@ pub enum SeenWanted {
     AheadAndBehind,
 }
 
-/// Cells whose centres lie between beams that go on beyond them, or which the robot has covered: nothing stands in them, except
-/// what has been met there as well.
+/// Cells whose centres lie between beams that go on beyond them, or which the robot has covered:
+/// nothing stands in them, except what has been met there as well.
 ///
 /// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would
 ///   be met too late, whether it is beyond the sensor's range, behind a corner, or where no beam
@@ -131,8 +131,8 @@ impl SeenGround {
         }
     }
 
-    /// Takes in a scan made `elapsed_s` after the last one, on the frame given to [`Self::new`], with
-    /// the walls that are known. A pose that is not finite shows nothing.
+    /// Takes in a scan made `elapsed_s` after the last one, on the frame given to [`Self::new`],
+    /// with the walls that are known. A pose that is not finite shows nothing.
     pub fn update(
         &mut self,
         frame: &GridFrame,
@@ -191,8 +191,8 @@ impl Walkers {
 
     /// Cells that somebody may come farther in a time.
     ///
-    /// A place that he covers then is as far from one that he covers now as he walks; and from there a centre that he covers,
-    /// too, is no farther than a cell's diagonal if he is as wide.
+    /// A place that he covers then is as far from one that he covers now as he walks; and from
+    /// there a centre that he covers, too, is no farther than a cell's diagonal if he is as wide.
     fn steps(&self, frame: &GridFrame, duration_s: f64) -> u64 {
         (self.speed_mps * duration_s / frame.resolution_m() + SQRT_2) as u64
     }

@@ -13,10 +13,11 @@ use std::f64::consts::PI;
 pub struct WindowConfig {
     /// How far ahead a candidate is predicted \[s\].
     pub horizon_s: f64,
-    /// When on its way a candidate is compared with the guide point \[s\]: its heading, or how near it is. At most
-    /// the horizon, and with the prediction `arcs` at least a cycle.
+    /// When on its way a candidate is compared with the guide point \[s\]: its heading, or how near
+    /// it is. At most the horizon, and with the prediction `arcs` at least a cycle.
     pub judged_s: f64,
-    /// How far ahead a candidate is compared with what moves \[s\]; never less far than the horizon.
+    /// How far ahead a candidate is compared with what moves \[s\]; never less far than the
+    /// horizon.
     pub movers_s: f64,
     /// Time between two predicted poses \[s\].
     pub prediction_step_s: f64,
@@ -26,7 +27,8 @@ pub struct WindowConfig {
     pub v_step_mps: f64,
     /// Spacing of the candidates' turn rates \[rad/s\].
     pub omega_step_radps: f64,
-    /// Whether a robot that can drive backwards does so to follow its guide. Otherwise only recoveries back up.
+    /// Whether a robot that can drive backwards does so to follow its guide. Otherwise only
+    /// recoveries back up.
     pub backwards: bool,
     /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.
     pub admissible: Admissible,
@@ -57,17 +59,20 @@ impl WindowConfig {
 
     /// Derived from the robot, one rule for all maps:
     ///
-    /// - `horizon_s`: a cycle and the time to stop, or [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s)
-    ///   where that is more: for robots that stop within a cycle;
-    /// - `judged_s`: a cycle and half the time to stop. At full speed the robot drives in it as far as it needs to
-    ///   stand. Compared at the end of the horizon, twice as far ahead, whatever passes the guide point looks away from
-    ///   it, and the robot creeps up to each of them;
+    /// - `horizon_s`: a cycle and the time to stop, or
+    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s) where that is more: for
+    ///   robots that stop within a cycle;
+    /// - `judged_s`: a cycle and half the time to stop. At full speed the robot drives in it as far
+    ///   as it needs to stand. Compared at the end of the horizon, twice as far ahead, whatever
+    ///   passes the guide point looks away from it, and the robot creeps up to each of them;
     /// - `movers_s`: three times the horizon. What moves does not stop where the robot would;
-    /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a tenth of a cycle;
+    /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a
+    ///   tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
     /// - `backwards`: no, as sensors look ahead; the recoveries back up where the robot has been;
     /// - `admissible`: whatever touches nothing, as the way to stop is part of the rollout;
-    /// - `distance_cap_m`: the stopping distance ([`Limits::stop_m`](crate::robot::Limits::stop_m));
+    /// - `distance_cap_m`: the stopping distance
+    ///   ([`Limits::stop_m`](crate::robot::Limits::stop_m));
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;

@@ -1,6 +1,6 @@
-//! What every planner with a dynamic window does: velocities that can be reached within a cycle are rolled out,
-//! those that touch something or could not stop in time are refused, and the rest are ranked by terms that
-//! the planner gives.
+//! What every planner with a dynamic window does: velocities that can be reached within a cycle are
+//! rolled out, those that touch something or could not stop in time are refused, and the rest are
+//! ranked by terms that the planner gives.
 //!
 //! # Source
 //! \[Fox1997\], in the form of \[You2021\]: equations (4) to (8) and (10), tables 2 and 3.
@@ -18,31 +18,35 @@
 //!
 //! # Where this differs from the paper
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
-//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and compares with the guide point earlier.
+//! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and compares with the
+//!   guide point earlier.
 //! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
-//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where contact is
-//!   refused anyway and nothing else can come nearer.
-//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates, too. It ends at the speed
-//!   from which the robot still stops at its goal.
+//! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where
+//!   contact is refused anyway and nothing else can come nearer.
+//! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates,
+//!   too. It ends at the speed from which the robot still stops at its goal.
 //! - The footprint may be a polygon; the paper's robot is a point.
-//! - A candidate that leads into something that moves, where that is told apart, is refused by a rule of its own; `dist` is
-//!   the room to what moves where that is less. (7) is about what stands.
-//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it is round,
-//!   turns towards the guide point.
+//! - A candidate that leads into something that moves, where that is told apart, is refused by a
+//!   rule of its own; `dist` is the room to what moves where that is less. (7) is about what
+//!   stands.
+//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it
+//!   is round, turns towards the guide point.
 //!
 //! # Safety
-//! With [`Prediction::Arcs`] the way on which the robot brakes after a command is part of that command's rollout: a
-//! cycle in which the velocity changes to the candidate, then the candidate's arc. Braking keeps the arc, and of it the
-//! robot covers what it would cover at the unchanged velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s),
-//! whole cycles counted; the horizon is at least a cycle longer. After each command the robot may brake, then, and
-//! what it does when nothing is admissible is just that. By induction over the cycles, among obstacles that stand still
-//! and are seen, a robot that starts free never touches anything.
+//! With [`Prediction::Arcs`] the way on which the robot brakes after a command is part of that
+//! command's rollout: a cycle in which the velocity changes to the candidate, then the candidate's
+//! arc. Braking keeps the arc, and of it the robot covers what it would cover at the unchanged
+//! velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s), whole cycles
+//! counted; the horizon is at least a cycle longer. After each command the robot may brake, then,
+//! and what it does when nothing is admissible is just that. By induction over the cycles, among
+//! obstacles that stand still and are seen, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any candidate, one per turn rate
-//! and pose where nothing is near to it; near obstacles, where the speeds of a turn rate have to be told apart, at most one
-//! exact distance per candidate, pose and near box, and usually a few per candidate.
+//! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any
+//! candidate, one per turn rate and pose where nothing is near to it; near obstacles, where the
+//! speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and
+//! near box, and usually a few per candidate.
 
 mod body;
 mod config;
@@ -188,9 +192,9 @@ impl DynamicWindow {
         &self.robot
     }
 
-    /// The best of the velocities that can be reached and are admissible, by the values that `terms`
-    /// gives each of them and its rollout, in the order of `weighing`. Of equal ones it is the
-    /// slowest, and of these the one farthest to the right.
+    /// The best of the velocities that can be reached and are admissible, by the values that
+    /// `terms` gives each of them and its rollout, in the order of `weighing`. Of equal ones it is
+    /// the slowest, and of these the one farthest to the right.
     ///
     /// # Errors
     /// When no velocity is admissible; the error holds the velocity with which the robot brakes.
@@ -233,7 +237,8 @@ impl DynamicWindow {
         Evaluation { candidates, driving, rejected, ..Evaluation::default() }
     }
 
-    /// The distance that counts of a candidate that touches nothing \[m\], or the rule that refuses it.
+    /// The distance that counts of a candidate that touches nothing \[m\], or the rule that refuses
+    /// it.
     #[inline]
     fn admitted(
         &self,
@@ -282,8 +287,9 @@ impl DynamicWindow {
         Timing::new(prediction, start, self.robot.cycle_s, times_s)
     }
 
-    /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety margin the robot may creep, and
-    /// on the spot it may turn at any rate: contact is refused anyway.
+    /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety
+    /// margin the robot may creep, and on the spot it may turn at any rate: contact is refused
+    /// anyway.
     fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
         if self.config.admissible == Admissible::Rollout {
             return None;
@@ -298,8 +304,8 @@ impl DynamicWindow {
         (!is_turning_on_the_spot && velocity.omega.abs() > fastest_radps).then_some(TURNS_TOO_FAST)
     }
 
-    /// Brakes along the present arc; at standstill a round robot, which always may, turns towards the guide
-    /// point.
+    /// Brakes along the present arc; at standstill a round robot, which always may, turns towards
+    /// the guide point.
     fn fallback(&self, scene: &Scene<'_>) -> Velocity {
         let is_driving =
             scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s);

@@ -1,10 +1,10 @@
-//! Guided DWA: follows the route while nothing unknown stands on it; around what does, a dynamic window approach
-//! drives to a point behind it and from there back to the route.
+//! Guided DWA: follows the route while nothing unknown stands on it; around what does, a dynamic
+//! window approach drives to a point behind it and from there back to the route.
 //!
 //! # Source
-//! \[ZhuYin2024\]: the evaluation is equation (18), the points of the way around are (19) to (21) (see `detour.rs`),
-//! the order of both is that of its whole algorithm, steps 7 to 10. Equations (11) to (17) are (4) to (8) of
-//! \[You2021\], those of [`WindowConfig`].
+//! \[ZhuYin2024\]: the evaluation is equation (18), the points of the way around are (19) to (21)
+//! (see `detour.rs`), the order of both is that of its whole algorithm, steps 7 to 10. Equations
+//! (11) to (17) are (4) to (8) of \[You2021\], those of [`WindowConfig`].
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -15,28 +15,30 @@
 //! | radius of the invalid zone | `detour.reached_m` | m | not given |
 //!
 //! # Where this differs from the paper
-//! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are tables 2 and 3 of \[You2021\] where they
-//!   have them, its weights in the order of the symbols.
+//! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are tables 2 and 3 of
+//!   \[You2021\] where they have them, its weights in the order of the symbols.
 //! - In (18) beta target becomes beta (the largest target of all candidates - target).
-//! - Something unknown is on the route when a cell that was sensed comes nearer than `detour.clearance_m` to one of the
-//!   nodes of the route within `detour.look_ahead_m`. Nodes are its points at every whole cell of arc length, and
-//!   its end. The obstacle is all sensed cells connected with that cell, as far as they are within the same distance
-//!   of the robot.
-//! - The follower looks at no obstacle, so a command of it is driven only when the robot can then brake on its arc
-//!   without touching anything; otherwise the dynamic window approach drives to the follower's point of the route
-//!   in that cycle. On routes as smooth and as far from obstacles as the paper's, that does not happen.
-//! - The paper goes on with the dynamic window approach while obstacles move. Here everything is judged anew in
-//!   each cycle, whether it moves or not.
+//! - Something unknown is on the route when a cell that was sensed comes nearer than
+//!   `detour.clearance_m` to one of the nodes of the route within `detour.look_ahead_m`. Nodes are
+//!   its points at every whole cell of arc length, and its end. The obstacle is all sensed cells
+//!   connected with that cell, as far as they are within the same distance of the robot.
+//! - The follower looks at no obstacle, so a command of it is driven only when the robot can then
+//!   brake on its arc without touching anything; otherwise the dynamic window approach drives to
+//!   the follower's point of the route in that cycle. On routes as smooth and as far from obstacles
+//!   as the paper's, that does not happen.
+//! - The paper goes on with the dynamic window approach while obstacles move. Here everything is
+//!   judged anew in each cycle, whether it moves or not.
 //!
 //! # What it does not do
-//! A mirrored point lies straight behind the obstacle, so in front of it every turn makes heading and target distance
-//! worse. With the weights of [`GuidedDwaConfig::PAPER`], and all others tried that do not weigh od several times as
-//! much as the rest, the robot stands still there: it is the caller, planning anew with what was seen, who gets it on.
+//! A mirrored point lies straight behind the obstacle, so in front of it every turn makes heading
+//! and target distance worse. With the weights of [`GuidedDwaConfig::PAPER`], and all others tried
+//! that do not weigh od several times as much as the rest, the robot stands still there: it is the
+//! caller, planning anew with what was seen, who gets it on.
 //!
 //! # Errors / cost
-//! When no place behind the obstacle is free, [`NoCommand`]: the caller is to plan a new route. Otherwise see
-//! [`WindowConfig`]. A cycle on the route costs a few distances; one on a way around is linear in the nodes of the
-//! remaining route and the cells of the obstacle.
+//! When no place behind the obstacle is free, [`NoCommand`]: the caller is to plan a new route.
+//! Otherwise see [`WindowConfig`]. A cycle on the route costs a few distances; one on a way around
+//! is linear in the nodes of the remaining route and the cells of the obstacle.
 
 mod detour;
 mod obstacle;
@@ -96,8 +98,8 @@ impl GuidedWeights {
 }
 
 impl GuidedDwaConfig {
-    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2 and 3, where it has
-    /// them.
+    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2
+    /// and 3, where it has them.
     pub const PAPER: Self = Self {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
         weights: GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 },
@@ -124,8 +126,8 @@ impl GuidedDwaConfig {
         "follower.look_ahead_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with all terms at the end,
-    /// [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`].
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with all terms at
+    /// the end, [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`].
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         let judged_s = window.horizon_s;
@@ -166,8 +168,8 @@ impl GuidedDwa {
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
-    /// the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
+    /// error names the field.
     pub fn new(config: GuidedDwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let GuidedDwaConfig { window, weights, detour, follower } = config;
         let safety_margin_m = window.safety_margin_m;
@@ -224,9 +226,9 @@ impl GuidedDwa {
         self.drive_to_guide(&Scene { guide, ..*scene }, scratch)
     }
 
-    /// Whether the robot touches nothing and keeps its margin when it drives one cycle with a command and then
-    /// brakes along its arc. From a pose with a room of half of what any part of it moves to the next such pose, all
-    /// poses between them are free as well.
+    /// Whether the robot touches nothing and keeps its margin when it drives one cycle with a
+    /// command and then brakes along its arc. From a pose with a room of half of what any part of
+    /// it moves to the next such pose, all poses between them are free as well.
     fn can_stop_after(&self, scene: &Scene<'_>, command: Velocity) -> bool {
         let Robot { footprint, cycle_s, .. } = self.robot();
         let (clearance, (core, _)) = (scene.obstacles.clearance(), footprint.core());

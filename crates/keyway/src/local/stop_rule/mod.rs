@@ -1,9 +1,10 @@
-//! The stop rule: a command is issued only if the robot can then still brake to a stop before it touches
-//! anything. A gate of its own, behind any local planner.
+//! The stop rule: a command is issued only if the robot can then still brake to a stop before it
+//! touches anything. A gate of its own, behind any local planner.
 //!
 //! # Source
-//! \[Mitsch2017\], passive safety: no contact while the robot moves, proved there for a robot that keeps
-//! `|p_r - p_o| > s² / (2 b) + V s / b + (A / b + 1) (A e² / 2 + e (s + V))` from every obstacle.
+//! \[Mitsch2017\], passive safety: no contact while the robot moves, proved there for a robot that
+//! keeps `|p_r - p_o| > s² / (2 b) + V s / b + (A / b + 1) (A e² / 2 + e (s + V))` from every
+//! obstacle.
 //!
 //! | paper | here | unit |
 //! |---|---|---|
@@ -14,45 +15,48 @@
 //! | `p_r`, `p_o` | the footprint at its pose; obstacle squares, and the discs of [`Mover`]s | m |
 //!
 //! # The rule
-//! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one to what the limits
-//! let the robot reach of the command; then, cycle by cycle, it brakes along its arc
-//! ([`Limits::braked`](crate::robot::Limits::braked)) until it stands. A command is admissible when on the whole
-//! manoeuvre
+//! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one to
+//! what the limits let the robot reach of the command; then, cycle by cycle, it brakes along its
+//! arc ([`Limits::braked`](crate::robot::Limits::braked)) until it stands. A command is admissible
+//! when on the whole manoeuvre
 //!
 //! 1. the footprint keeps `margin_m` from all obstacle squares and from the map's border;
 //! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
 //!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]);
-//! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its sensor does not see all around:
-//!    to where nobody can have come by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)), and it stands
-//!    within the time for which that is known. What is left of a way back that is reversed in the cycle is not asked about.
+//! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its
+//!    sensor does not see all around: to where nobody can have come by then, seen before or not
+//!    ([`SeenGround`](crate::sense::SeenGround)), and it stands within the time for which that is
+//!    known. What is left of a way back that is reversed in the cycle is not asked about.
 //! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has
 //!    been seen ([`Surroundings::seen`]); to either side, the next cell is as good. What stands
 //!    farther away is met too late. So the robot never drives faster than it can stop within what
 //!    it has seen free: within its sensor's range, before it can look around a corner, and where no
 //!    beam says anything.
 //!
-//! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which the movers are known. What the
-//! robot does until then was decided before, when it was the beginning of the manoeuvre of an earlier command.
+//! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which
+//! the movers are known. What the robot does until then was decided before, when it was the
+//! beginning of the manoeuvre of an earlier command.
 //!
-//! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along the present arc
-//! and issues the nearest velocity on that line which it finds admissible; and braking when there is none. Who asks for
-//! braking along the present arc always gets it.
+//! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along
+//! the present arc and issues the nearest velocity on that line which it finds admissible; and
+//! braking when there is none. Who asks for braking along the present arc always gets it.
 //!
 //! # What follows from it
 //! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and
 //! every mover in view:
 //!
 //! - no contact ever with anything that stands in view;
-//! - none with anything that stands out of view while the robot drives ahead, if its sensor looks at all of
-//!   its front: such a thing stands on ground that has not been seen, and the robot could stop before that. One that is narrower than three
-//!   cells may be missed between other things;
-//! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or into a disc that
-//!   turns on the spot, which covers no other ground.
+//! - none with anything that stands out of view while the robot drives ahead, if its sensor looks
+//!   at all of its front: such a thing stands on ground that has not been seen, and the robot could
+//!   stop before that. One that is narrower than three cells may be missed between other things;
+//! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or
+//!   into a disc that turns on the spot, which covers no other ground.
 //!
-//! With a sensor that does not see all around, the robot backs into nobody, to within a cell: all of the manoeuvre lies within the
-//! time for which cells are known to be free. Nobody is expected to come through walls that the map shows, or through what was seen to
-//! stand. Who comes from where it does not look may still run into the robot while it drives ahead, and into the corners of a
-//! polygon that turns.
+//! With a sensor that does not see all around, the robot backs into nobody, to within a cell: all
+//! of the manoeuvre lies within the time for which cells are known to be free. Nobody is expected
+//! to come through walls that the map shows, or through what was seen to stand. Who comes from
+//! where it does not look may still run into the robot while it drives ahead, and into the corners
+//! of a polygon that turns.
 //!
 //! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing,
 //! whatever the movers do within their bounds. A robot at rest is safe: its manoeuvre is standing
@@ -65,9 +69,10 @@
 //! manoeuvre that touches nothing. It does not matter that estimates change from cycle to cycle, if
 //! each of them holds the mover. ∎
 //!
-//! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther than
-//! [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin. Steps are never shorter
-//! than the margin; on one of that length at least half of the margin is left.
+//! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther
+//! than [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin.
+//! Steps are never shorter than the margin; on one of that length at least half of the margin is
+//! left.
 //!
 //! # A start inside the margin or in contact
 //! An obstacle nearer than the margin may be as near as it is when a command is admitted, but not
@@ -91,20 +96,23 @@
 //! (something came into view too late, or a mover broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper
-//! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to all sides.
+//! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to
+//!   all sides.
 //! - The footprint is a disc or a polygon; the paper's robot is a point.
 //! - The cycle's motion is known, where the paper allows anything up to A.
 //!
 //! # Out of scope
-//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of something. He counts as a mover
-//! as soon as about 0.1 m of him is where the robot has seen through before
-//! ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever needs more adds a mover where
-//! one could come from. Errors of pose and motion: the margin is what there is for them.
+//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of
+//! something. He counts as a mover as soon as about 0.1 m of him is where the robot has seen
+//! through before ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever
+//! needs more adds a mover where one could come from. Errors of pose and motion: the margin is what
+//! there is for them.
 //!
 //! # Errors / cost
-//! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover; otherwise a look-up for
-//! every step, which are few in the open and at most as many as margins fit into the manoeuvre. Up to
-//! four manoeuvres are looked at. Allocates nothing once the scratch is warm.
+//! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover;
+//! otherwise a look-up for every step, which are few in the open and at most as many as margins fit
+//! into the manoeuvre. Up to four manoeuvres are looked at. Allocates nothing once the scratch is
+//! warm.
 
 mod manoeuvre;
 #[cfg(test)]
@@ -142,9 +150,9 @@ pub struct StopRuleConfig {
 }
 
 impl StopRuleConfig {
-    /// For a robot: half of what its local planner keeps from obstacles ([`Robot::safety_margin_m`]), so that the gate
-    /// leaves alone what such a planner finds admissible. Movers are people: they walk at up to 1.5 m/s, and may turn
-    /// around at once.
+    /// For a robot: half of what its local planner keeps from obstacles
+    /// ([`Robot::safety_margin_m`]), so that the gate leaves alone what such a planner finds
+    /// admissible. Movers are people: they walk at up to 1.5 m/s, and may turn around at once.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             margin_m: 0.5 * robot.safety_margin_m(),
@@ -170,8 +178,8 @@ pub struct Surroundings<'a> {
     /// Ground that has been seen ([`SeenGround::cells`](crate::sense::SeenGround::cells)): to where
     /// it may drive so fast that it can just stop before, and over what it may back up.
     pub seen: SeenCells<'a>,
-    /// Everything that moves, or may move, as it was observed last. One with a number that is not finite, or a negative length,
-    /// is left out.
+    /// Everything that moves, or may move, as it was observed last. One with a number that is not
+    /// finite, or a negative length, is left out.
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
     pub delay_s: f64,
@@ -202,7 +210,8 @@ impl Gated {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Before it could stop, the robot would come too near to something that stands, or to the map's border.
+    /// Before it could stop, the robot would come too near to something that stands, or to the
+    /// map's border.
     #[error("the robot could not stop before something that stands, {after_s:.2} s from now")]
     Standing {
         /// When, from now \[s\].

@@ -1,50 +1,60 @@
-//! Movers from scans: hits that no map explains are followed from scan to scan, and what is shown to move is listed.
+//! Movers from scans: hits that no map explains are followed from scan to scan, and what is shown
+//! to move is listed.
 //!
 //! # Source
-//! Detection: what stands is never seen through, and never stands where a beam has passed; the contradiction between
-//! scans as evidence of motion is that of \[Wang2007\], here between the beams of scans, without a grid. Filter:
-//! constant velocity, \[BarShalom2001, section 6.3\]. Circles through hits: \[Kasa1976\].
+//! Detection: what stands is never seen through, and never stands where a beam has passed; the
+//! contradiction between scans as evidence of motion is that of \[Wang2007\], here between the
+//! beams of scans, without a grid. Filter: constant velocity, \[BarShalom2001, section 6.3\].
+//! Circles through hits: \[Kasa1976\].
 //!
 //! # What happens with a scan
 //! 1. Hits within `explained_m` of a known occupied cell are explained by the map.
-//! 2. Every track is predicted, and takes those of the other hits that lie on its disc, within its uncertainty; a hit goes to
-//!    the track whose border it is nearest to. Where beams see through between its hits, a track keeps the larger group:
-//!    what has split becomes two.
-//! 3. A circle through the hits of a track measures its centre: unlike their mean it does not wander along the surface while the
-//!    robot passes, or while a part is hidden. Where the hits show too little of a circle, the radius known from
-//!    before places it. Things that are not round are measured by the middle of what is seen, which is only as certain as the
-//!    thing is large.
-//! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of both places, **and** two
-//!    scans show it by at least two beams each: they pass through the surface that was seen there, or a remembered scan (of
-//!    up to a second ago) has seen through the surface that is seen now. A part of a standing thing that comes into view
-//!    does neither, so it is no mover, however its middle wanders. Of a thing that comes out from behind another one, the
-//!    place is long uncertain: two scans that follow each other, by at least five beams each, show its motion alone. A
-//!    surface is what beams hit no farther apart than three times `range_noise_m`: from so far away that beams are farther
-//!    apart, nothing is seen to move.
+//! 2. Every track is predicted, and takes those of the other hits that lie on its disc, within its
+//!    uncertainty; a hit goes to the track whose border it is nearest to. Where beams see through
+//!    between its hits, a track keeps the larger group: what has split becomes two.
+//! 3. A circle through the hits of a track measures its centre: unlike their mean it does not
+//!    wander along the surface while the robot passes, or while a part is hidden. Where the hits
+//!    show too little of a circle, the radius known from before places it. Things that are not
+//!    round are measured by the middle of what is seen, which is only as certain as the thing is
+//!    large.
+//! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of
+//!    both places, **and** two scans show it by at least two beams each: they pass through the
+//!    surface that was seen there, or a remembered scan (of up to a second ago) has seen through
+//!    the surface that is seen now. A part of a standing thing that comes into view does neither,
+//!    so it is no mover, however its middle wanders. Of a thing that comes out from behind another
+//!    one, the place is long uncertain: two scans that follow each other, by at least five beams
+//!    each, show its motion alone. A surface is what beams hit no farther apart than three times
+//!    `range_noise_m`: from so far away that beams are farther apart, nothing is seen to move.
 //!
-//!    Until then it *may move* for half a second whenever at least two beams of a remembered scan, and at least one for every eight that
-//!    hit it now, have seen through the surface that is seen now. That is no proof, as errors do the same, but the stop rule waits for none: who
-//!    comes out from behind something may be near.
-//! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was out of view
-//!    may have left it, unless its place is known to within `gap_m`. A track ends when it has grown wider than
-//!    `largest_diameter_m`, when three scans in a row see through it, or when it has been out of view for `forget_s`.
-//! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover. Tracks that do not move are kept,
-//!    too: they count as standing, and the sensed layer marks them.
+//!    Until then it *may move* for half a second whenever at least two beams of a remembered scan,
+//!    and at least one for every eight that hit it now, have seen through the surface that is seen
+//!    now. That is no proof, as errors do the same, but the stop rule waits for none: who comes out
+//!    from behind something may be near.
+//! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was
+//!    out of view may have left it, unless its place is known to within `gap_m`. A track ends when
+//!    it has grown wider than `largest_diameter_m`, when three scans in a row see through it, or
+//!    when it has been out of view for `forget_s`.
+//! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover.
+//!    Tracks that do not move are kept, too: they count as standing, and the sensed layer marks
+//!    them.
 //!
 //! Two tracks that come near each other stay two, because each hit goes to one of them.
 //!
 //! # How certain it is
-//! `position_uncertainty_m` and `velocity_uncertainty_mps` are three standard deviations of the filter; its acceleration noise
-//! is half of `acceleration_mps2`. A surprise beyond three standard deviations makes any velocity possible again.
+//! `position_uncertainty_m` and `velocity_uncertainty_mps` are three standard deviations of the
+//! filter; its acceleration noise is half of `acceleration_mps2`. A surprise beyond three standard
+//! deviations makes any velocity possible again.
 //!
 //! # What it does not see
-//! Whatever is as near to a known wall as `explained_m`; things larger than `largest_diameter_m`; what only one beam meets, or is
-//! narrower than four times the noise of ranges (a table leg that is carried). What is hidden of a thing counts only when it was seen before. A
-//! thing that moves exactly along a beam, away from the sensor, is seen by what it leaves; one that rotates is not seen to.
+//! Whatever is as near to a known wall as `explained_m`; things larger than `largest_diameter_m`;
+//! what only one beam meets, or is narrower than four times the noise of ranges (a table leg that
+//! is carried). What is hidden of a thing counts only when it was seen before. A thing that moves
+//! exactly along a beam, away from the sensor, is seen by what it leaves; one that rotates is not
+//! seen to.
 //!
 //! # Errors / cost
-//! [`ConfigError`]. Linear in the beams and in the hits that the map does not explain. Allocates nothing once it is
-//! warm. Nothing is random.
+//! [`ConfigError`]. Linear in the beams and in the hits that the map does not explain. Allocates
+//! nothing once it is warm. Nothing is random.
 
 mod config;
 mod disc_fit;
@@ -119,8 +129,8 @@ const OLD_SCAN_STEP_S: f64 = 0.25;
 const EVIDENCE_BEAMS: u32 = 2;
 const EVIDENCE_SCANS: u32 = 2;
 
-/// So many beams show it of something whose place is known too roughly to see it leave, as of a thing that comes out from behind
-/// another.
+/// So many beams show it of something whose place is known too roughly to see it leave, as of a
+/// thing that comes out from behind another.
 const CLEAR_EVIDENCE_BEAMS: u32 = 5;
 
 /// What may move does so for this long, unless it is doubted again that it stands \[s\].
@@ -162,14 +172,15 @@ impl Tracker {
         &self.movers[..self.moving]
     }
 
-    /// What moves, and after that what may move: that is not known, but up to half a second ago it was where the robot had seen through
-    /// no more than a second before.
+    /// What moves, and after that what may move: that is not known, but up to half a second ago it
+    /// was where the robot had seen through no more than a second before.
     pub fn possible_movers(&self) -> &[Mover] {
         &self.movers
     }
 
-    /// Whether a beam of the last scan, which ended at `place`, hit a mover: one that is followed, or something that is not
-    /// followed itself on ground that a mover in view may cover. What is seen where a mover is only expected is not that mover.
+    /// Whether a beam of the last scan, which ended at `place`, hit a mover: one that is followed,
+    /// or something that is not followed itself on ground that a mover in view may cover. What is
+    /// seen where a mover is only expected is not that mover.
     pub fn hits_mover(&self, beam: usize, place: Point) -> bool {
         if let Some(Owner::Track(track)) = self.hits.owner(beam) {
             return self.tracks.get(track as usize).is_some_and(|track| track.is_mover);
@@ -183,8 +194,8 @@ impl Tracker {
         &self.left
     }
 
-    /// Takes in a scan on the `known` map, `elapsed_s` after the last one. A scan at a pose that is not
-    /// finite shows nothing; a time that is negative or not finite counts as 0.
+    /// Takes in a scan on the `known` map, `elapsed_s` after the last one. A scan at a pose that is
+    /// not finite shows nothing; a time that is negative or not finite counts as 0.
     pub fn update(&mut self, known: &OccupancyGrid, scan: &ProjectedScan, elapsed_s: f64) {
         let pose = scan.pose();
         let elapsed_s = if elapsed_s.is_finite() { elapsed_s.max(0.0) } else { 0.0 };
