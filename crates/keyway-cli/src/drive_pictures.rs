@@ -1,4 +1,5 @@
-//! Pictures of a drive from moment to moment: the candidates of one decision, and the whole run as an animation.
+//! Pictures of a drive from moment to moment: the candidates of one decision, and the whole run as
+//! an animation.
 
 use crate::commands::Moment;
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
@@ -144,7 +145,8 @@ impl<'a> Stage<'a> {
         (middle - half, middle + half)
     }
 
-    /// The whole run. `progress` is called with the number of pictures drawn so far, and their total.
+    /// The whole run. `progress` is called with the number of pictures drawn so far, and their
+    /// total.
     pub(crate) fn animation(
         &self,
         moments: &[Moment],

@@ -72,7 +72,8 @@ pub(crate) fn disturbances(path: &Path) -> Result<Disturbances, CliError> {
     read_disturbances(path).map_err(|error| bad_file(error, "--disturbances"))
 }
 
-/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`; `option` names it.
+/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`;
+/// `option` names it.
 pub(crate) fn stack(
     name: &str,
     folder: &Path,
@@ -96,7 +97,8 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
     })
 }
 
-/// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the option.
+/// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the
+/// option.
 pub(crate) fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
     let error = error.into();
     let cannot_be_read = matches!(

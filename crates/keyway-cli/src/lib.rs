@@ -1,7 +1,7 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 //!
-//! A library as well, for bindings to other languages: [`run`] is the program, and [`BatchPlots`] draws
-//! the results of a batch.
+//! A library as well, for bindings to other languages: [`run`] is the program, and [`BatchPlots`]
+//! draws the results of a batch.
 
 mod args;
 mod commands;
@@ -30,7 +30,8 @@ use std::ffi::OsString;
 /// Bad arguments or input.
 const BAD_INPUT: u8 = 2;
 
-/// The program: does what a command line says, whose first word is the name of the program; gives the exit code.
+/// The program: does what a command line says, whose first word is the name of the program; gives
+/// the exit code.
 pub fn run(argv: &[OsString]) -> u8 {
     let cli = match Cli::try_parse_from(argv) {
         Ok(cli) => cli,

@@ -12,8 +12,8 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8], field: &str) -> Result<(), C
     write_atomically(path, bytes).map_err(|error| CliError::new(Kind::Output, error).field(field))
 }
 
-/// Writes an animation. `make` is given a function to be called with the number of pictures drawn so far, and their
-/// total: a bar shows it on a terminal.
+/// Writes an animation. `make` is given a function to be called with the number of pictures drawn
+/// so far, and their total: a bar shows it on a terminal.
 pub(crate) fn write_animation(
     file: &AnimationFile,
     field: &str,

@@ -1,8 +1,8 @@
 //! Imports: a module of the library or the simulator knows earlier modules only, and in no crate do
 //! two files import each other. Cargo sees to it that no crate knows a later one.
 //!
-//! Reads the `use` lines of the sources, and every path that begins with `crate::`, outside tests and
-//! comments.
+//! Reads the `use` lines of the sources, and every path that begins with `crate::`, outside tests
+//! and comments.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use std::collections::{BTreeMap, BTreeSet};

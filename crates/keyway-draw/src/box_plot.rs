@@ -51,8 +51,9 @@ pub struct BoxGroup<'a> {
     pub note: &'a str,
 }
 
-/// Draws box plots: a box from the lower to the upper quartile with a line at the median and a cross at the mean, whiskers to the
-/// farthest values within 1.5 box lengths of it, and a ring for each value beyond.
+/// Draws box plots: a box from the lower to the upper quartile with a line at the median and a
+/// cross at the mean, whiskers to the farthest values within 1.5 box lengths of it, and a ring for
+/// each value beyond.
 pub fn box_plot(plot: &BoxPlot<'_>) -> Svg {
     let top = EDGE_PX + if plot.title.is_empty() { 4.0 } else { TITLE_PX + 10.0 };
     let names: Vec<NameLines> =

@@ -68,8 +68,8 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas that shows at most `max_side_cells` blocks of cells in a row: more than a picture has
-    /// pixels cannot be seen.
+    /// A canvas that shows at most `max_side_cells` blocks of cells in a row: more than a picture
+    /// has pixels cannot be seen.
     pub(crate) fn new(map: &'a OccupancyGrid, view: View, max_side_cells: i32) -> Self {
         let (first, end) = view.visible_cells(map.frame());
         let mut unit = 1;
@@ -114,8 +114,8 @@ impl<'a> Canvas<'a> {
     }
 
     /// Paints the cells of the map that are `inside`, and returns whether any was in view. Cells
-    /// far below the size of a pixel are painted in blocks: a block is painted when one of its cells
-    /// is, so that thin walls stay.
+    /// far below the size of a pixel are painted in blocks: a block is painted when one of its
+    /// cells is, so that thin walls stay.
     pub fn cells(&mut self, color: Rgb, inside: impl Fn(Cell) -> bool) -> bool {
         let blocks = self.blocks;
         let places = (0..blocks.rows()).flat_map(|y| (0..blocks.columns()).map(move |x| (x, y)));

@@ -1,4 +1,5 @@
-//! Colours: a palette that survives colour blindness and grey print, and a colour map for quantities.
+//! Colours: a palette that survives colour blindness and grey print, and a colour map for
+//! quantities.
 
 use std::fmt;
 

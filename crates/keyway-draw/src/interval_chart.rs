@@ -22,7 +22,8 @@ const EDGE_PX: f64 = 8.0;
 const NAME_PX: f64 = 250.0;
 const NAME_GAP_PX: f64 = 8.0;
 const INTERVALS: usize = 7;
-/// What is this many times as long as all other rows leaves less than a twenty-fifth of the axis for them.
+/// What is this many times as long as all other rows leaves less than a twenty-fifth of the axis
+/// for them.
 const DWARFING: f64 = 25.0;
 const BROKEN: &str = "What has a break goes on beyond the axis; its numbers stand beside it.";
 /// Light enough for the marks over it, and for a page in grey.
@@ -70,11 +71,11 @@ impl IntervalRow<'_> {
     }
 }
 
-/// Draws a bar from 0 to each value with whiskers for its interval, and a diamond where it is compared with something. Numbers
-/// that are not finite are left out.
+/// Draws a bar from 0 to each value with whiskers for its interval, and a diamond where it is
+/// compared with something. Numbers that are not finite are left out.
 ///
-/// A bar that would leave no room for the others is broken: the axis ends where most of the rows end, and a break says that the bar, or its
-/// whisker, goes on. Its numbers belong in its note.
+/// A bar that would leave no room for the others is broken: the axis ends where most of the rows
+/// end, and a break says that the bar, or its whisker, goes on. Its numbers belong in its note.
 pub fn interval_chart(chart: &IntervalChart<'_>) -> Svg {
     let top = EDGE_PX + 4.0;
     let names: Vec<NameLines> =
@@ -144,7 +145,8 @@ fn ends(chart: &IntervalChart<'_>) -> (f64, f64) {
     (if low < 0.0 { low - room } else { low }, if high > 0.0 { high + room } else { high })
 }
 
-/// How far a row may reach: as far as the longest of those that others dwarf, which are at most half of all.
+/// How far a row may reach: as far as the longest of those that others dwarf, which are at most
+/// half of all.
 fn longest(rows: &[IntervalRow<'_>]) -> f64 {
     let mut reaches: Vec<f64> = rows.iter().map(IntervalRow::reach).collect();
     reaches.sort_by(|a, b| b.total_cmp(a));
@@ -270,7 +272,8 @@ mod tests {
         let clipped = IntervalRow { interval: Some((53_000.0, 99_000.0)), ..bar(72_000.0) };
         let svg = draw(&[bar(14.0), bar(-15.0), clipped, bar(16.0)]);
         let px = bars_px(&svg);
-        // The axis ends at 16, so the others keep their lengths to each other; the long one fills it up to the end.
+        // The axis ends at 16, so the others keep their lengths to each other; the long one fills
+        // it up to the end.
         assert!(px[0] > 100.0 && px[2] > px[3] && px[3] > px[0], "{px:?}");
         assert!((px[1] / px[0] - 15.0 / 14.0).abs() < 1e-2, "{px:?}");
         assert!(svg.contains("beyond the axis") && svg.matches("<path").count() == 1);

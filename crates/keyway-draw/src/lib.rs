@@ -1,13 +1,14 @@
 //! Pictures of maps, searches, plans and runs, as SVG, PNG, GIF and APNG.
 //!
-//! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures side by
-//! side; [`speed_curve`] draws speed and
-//! turn rate over time, [`log_chart`] quantities that grow by powers, [`box_plot`] how values are spread, [`interval_chart`] values with their intervals, [`point_panels`] points and rates
-//! with their intervals. Each gives an [`Svg`], whose
+//! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures
+//! side by side; [`speed_curve`] draws speed and turn rate over time, [`log_chart`] quantities that
+//! grow by powers, [`box_plot`] how values are spread, [`interval_chart`] values with their
+//! intervals, [`point_panels`] points and rates with their intervals. Each gives an [`Svg`], whose
 //! text the caller writes where it belongs.
 //!
-//! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well (`Svg::to_png`), and an
-//! `Animation` plays pictures as GIF or APNG. Without it the crate needs no renderer, no font and no image format.
+//! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well
+//! (`Svg::to_png`), and an `Animation` plays pictures as GIF or APNG. Without it the crate needs no
+//! renderer, no font and no image format.
 //!
 //! The same input gives the same bytes. Nothing is read from the machine: the font of all
 //! raster pictures (`DejaVu Sans`, licence in `fonts/`) is part of the library.

@@ -106,8 +106,8 @@ impl Axis {
         Self { low: low - room, high: high + room, marks }
     }
 
-    /// With marks at powers of ten, at 2 and 5 times them where the powers are few, and where these are
-    /// few, too, at round numbers at equal distances.
+    /// With marks at powers of ten, at 2 and 5 times them where the powers are few, and where these
+    /// are few, too, at round numbers at equal distances.
     fn of_values(lines: &[LogLine<'_>]) -> Self {
         let values: Vec<f64> = lines.iter().flat_map(drawable).map(|(_, y)| y).collect();
         let (low, high) = log_range(&values);

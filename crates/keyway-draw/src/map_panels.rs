@@ -20,8 +20,8 @@ use crate::writer::{Anchor, SvgWriter};
 const PANEL_PX: f64 = 250.0;
 /// Panels that are higher than wide are larger, as long as they are not slimmer than this.
 const MAX_SLIMNESS: f64 = 3.0;
-/// Panels stand side by side as long as they are not wider together than this \[px\]; many of them than
-/// that.
+/// Panels stand side by side as long as they are not wider together than this \[px\]; many of them
+/// than that.
 const ROW_PX: f64 = 840.0;
 const LONG_ROW_PX: f64 = 1120.0;
 const MANY_PANELS: usize = 10;
@@ -35,10 +35,11 @@ const MIN_LEGEND_PX: f64 = 120.0;
 /// Cells along the longer side of a panel: more than its PNG has pixels cannot be seen.
 const MAX_SIDE_CELLS: i32 = 1024;
 
-/// Panels with the same map, side by side and below each other, so that many lines can be told apart.
+/// Panels with the same map, side by side and below each other, so that many lines can be told
+/// apart.
 ///
-/// Each panel has a title and a legend of its own; what all panels show is explained once, below them.
-/// Colour bars have no place here and are left out.
+/// Each panel has a title and a legend of its own; what all panels show is explained once, below
+/// them. Colour bars have no place here and are left out.
 pub struct MapPanels<'a> {
     common: MapPicture<'a>,
     panels: Vec<Panel<'a>>,
@@ -131,8 +132,8 @@ impl<'a> MapPanels<'a> {
     }
 }
 
-/// Writes what all panels stand on, to be used by its name. The name comes from the content: several
-/// pictures can then stand in one page.
+/// Writes what all panels stand on, to be used by its name. The name comes from the content:
+/// several pictures can then stand in one page.
 fn define_ground(out: &mut SvgWriter, ground: SvgWriter) -> String {
     let text = ground.finish();
     let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);

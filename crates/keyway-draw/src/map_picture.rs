@@ -107,8 +107,8 @@ impl<'a> MapPicture<'a> {
         Page::new(&self.title, self.canvas(self.view(), Depth::Ground)).svg(&self.table)
     }
 
-    /// The picture in the layout of another one, so that both have the same size and the same legend:
-    /// frames of an animation.
+    /// The picture in the layout of another one, so that both have the same size and the same
+    /// legend: frames of an animation.
     pub fn svg_in(&self, layout: &Layout) -> Svg {
         self.page_in(self.canvas(layout.view, Depth::Ground), layout)
     }
@@ -120,8 +120,8 @@ impl<'a> MapPicture<'a> {
         Page::new(&self.title, canvas).svg(&self.table)
     }
 
-    /// The page with the ground alone (the map and its tints), its cells shown in blocks, at most this many along the
-    /// longer side.
+    /// The page with the ground alone (the map and its tints), its cells shown in blocks, at most
+    /// this many along the longer side.
     #[cfg(feature = "raster")]
     pub(crate) fn ground_in(&self, layout: &Layout, max_side_cells: i32) -> Svg {
         let mut canvas = Canvas::new(self.map, layout.view, max_side_cells);
@@ -131,8 +131,8 @@ impl<'a> MapPicture<'a> {
         self.page_in(canvas, layout)
     }
 
-    /// Only what stands on the ground, without a page: to be drawn over [`Self::ground_in`] of the same layout, which
-    /// is then drawn once for many pictures.
+    /// Only what stands on the ground, without a page: to be drawn over [`Self::ground_in`] of the
+    /// same layout, which is then drawn once for many pictures.
     #[cfg(feature = "raster")]
     pub(crate) fn over_ground_in(&self, layout: &Layout) -> Svg {
         Page::new(&self.title, self.canvas(layout.view, Depth::Search)).over_ground()

@@ -7,9 +7,9 @@ use crate::writer::{Anchor, PathData, SvgWriter};
 /// Distance between the lines of a hatching \[px\].
 const HATCH_PX: f64 = 5.0;
 
-/// A disc with a translucent ground and lines at 45 degrees; one that is too small for such lines is filled, so
-/// that it is seen among other marks. The lines are computed rather than a
-/// pattern: several pictures can then stand in one page without clashing names.
+/// A disc with a translucent ground and lines at 45 degrees; one that is too small for such lines
+/// is filled, so that it is seen among other marks. The lines are computed rather than a pattern:
+/// several pictures can then stand in one page without clashing names.
 pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64, color: Rgb) {
     let opacity = if radius < 0.5 * HATCH_PX { "1" } else { "0.18" };
     let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", opacity);
@@ -94,7 +94,8 @@ pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, col
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;
 
-/// A letter or a number in a disc, dark on white or white on dark, set off from its ground by a light rim.
+/// A letter or a number in a disc, dark on white or white on dark, set off from its ground by a
+/// light rim.
 pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, dark: bool) {
     let (ground, ink) = if dark { (INK, "#fff") } else { (Rgb(0xff, 0xff, 0xff), "#222222") };
     out.tag("circle").round(x, y, LETTER_MARK_PX + 1.2).attr("fill", "#fff").leaf();

@@ -13,8 +13,9 @@ impl NameLines {
     /// From line to line.
     pub(crate) const LINE_PX: f64 = 12.5;
 
-    /// Broken at spaces; within a word only if it is wider than a line: behind the characters that join its parts, or anywhere in a part
-    /// that is wider than a line. There are as few lines as can be, and they are about equally long.
+    /// Broken at spaces; within a word only if it is wider than a line: behind the characters that
+    /// join its parts, or anywhere in a part that is wider than a line. There are as few lines as
+    /// can be, and they are about equally long.
     pub(crate) fn new(name: &str, width_px: f64) -> Self {
         let filled = Self::filled(name, width_px);
         if filled.lines.len() < 2 {
@@ -67,7 +68,8 @@ impl NameLines {
     }
 }
 
-/// Between these a line may end: at spaces, but not before a sign, such as a percent sign, nor around one of equality.
+/// Between these a line may end: at spaces, but not before a sign, such as a percent sign, nor
+/// around one of equality.
 fn words(name: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for word in name.split_inclusive(' ') {

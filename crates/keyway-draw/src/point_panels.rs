@@ -1,5 +1,6 @@
-//! Points of several series, each in a panel of its own with all others pale behind it: a scatter plot, or rates with their
-//! intervals. However many series there are, each is seen, without colours and symbols to be looked up.
+//! Points of several series, each in a panel of its own with all others pale behind it: a scatter
+//! plot, or rates with their intervals. However many series there are, each is seen, without
+//! colours and symbols to be looked up.
 
 use crate::axes::{BOTTOM_AXIS_PX, Scale, border, bottom_axis, left_axis, side_axis_px};
 use crate::caption::Caption;
@@ -75,7 +76,8 @@ struct Layout {
     name_px: f64,
 }
 
-/// Draws each series in a panel, with bars for what is known of its heights, and all others behind it.
+/// Draws each series in a panel, with bars for what is known of its heights, and all others behind
+/// it.
 pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
     let all = || chart.series.iter().flat_map(|series| points_of(series));
     let heights = all().flat_map(|point| {
@@ -235,8 +237,8 @@ fn draw_line(
     tag.attr("stroke-linejoin", "round").attr("d", path.as_str()).leaf();
 }
 
-/// Dots are lines of no length with round ends, in one path. Of those that fall into the same square only one is drawn: of many
-/// thousand points a picture is no larger, and looks the same.
+/// Dots are lines of no length with round ends, in one path. Of those that fall into the same
+/// square only one is drawn: of many thousand points a picture is no larger, and looks the same.
 fn draw_dots(
     out: &mut SvgWriter,
     series: &[PointSeries<'_>],

@@ -90,8 +90,8 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
     Svg::page(right + EDGE_PX + 8.0, caption_y + caption.height_px() + EDGE_PX, out)
 }
 
-/// The line of the run of this index among several: in a colour, and dashes that tell it from its neighbours without
-/// colour.
+/// The line of the run of this index among several: in a colour, and dashes that tell it from its
+/// neighbours without colour.
 pub fn series_style(index: usize) -> LineStyle {
     let color = SERIES[index % SERIES.len()];
     LineStyle { color, width_px: 1.4, dashes: DASHES[index % DASHES.len()] }

@@ -8,8 +8,8 @@ use crate::writer::{Anchor, SvgWriter};
 const ROW_PX: f64 = 17.0;
 const COLUMN_GAP_PX: f64 = 20.0;
 
-/// Text in rows and columns: the first column begins at the left, the others end at the right. A row with a single cell
-/// is a line of text, as long as it needs.
+/// Text in rows and columns: the first column begins at the left, the others end at the right. A
+/// row with a single cell is a line of text, as long as it needs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextTable {
     rows: Vec<Vec<String>>,

@@ -45,13 +45,15 @@ fn joined(corners: Corners, point: Point) -> Corners {
 }
 
 impl Extent {
-    /// Makes the rectangle hold a point, with room for a marker there; one that is not finite is ignored.
+    /// Makes the rectangle hold a point, with room for a marker there; one that is not finite is
+    /// ignored.
     pub fn include(&mut self, point: Point) {
         self.corners = joined(self.corners, point);
         self.marks = joined(self.marks, point);
     }
 
-    /// Makes the rectangle hold a disc, which has its size in the world; one that is not finite is ignored.
+    /// Makes the rectangle hold a disc, which has its size in the world; one that is not finite is
+    /// ignored.
     pub fn include_disc(&mut self, centre: Point, radius_m: f64) {
         let radius = Point::new(radius_m, radius_m);
         for corner in [centre + radius, centre - radius] {
@@ -161,8 +163,8 @@ pub struct View {
 }
 
 impl View {
-    /// Shows a rectangle of the world so that its longer side is `side_px` long. A rectangle without
-    /// area is widened.
+    /// Shows a rectangle of the world so that its longer side is `side_px` long. A rectangle
+    /// without area is widened.
     pub(crate) fn new(extent: Extent, side_px: f64) -> Self {
         let (min, max) = extent.corners.unwrap_or((Point::new(0.0, 0.0), Point::new(1.0, 1.0)));
         let (width, height) = (max.x - min.x, max.y - min.y);

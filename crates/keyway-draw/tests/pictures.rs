@@ -1,4 +1,5 @@
-//! Whole pictures: they are SVG, they can be drawn (with the feature `raster`), and they say what they show.
+//! Whole pictures: they are SVG, they can be drawn (with the feature `raster`), and they say what
+//! they show.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
@@ -15,7 +16,8 @@ use keyway_draw::{
 };
 use keyway_sim::sim::{Mover, WayPoints};
 
-/// Width and height of the page, as its text gives them; where pixels can be made, they have this size.
+/// Width and height of the page, as its text gives them; where pixels can be made, they have this
+/// size.
 fn page_px(picture: &Svg) -> (u32, u32) {
     let numbers = picture.as_str().split('"').filter_map(|text| text.parse().ok());
     let size: Vec<u32> = numbers.take(2).collect();
@@ -135,7 +137,8 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
 fn movers_and_the_robot_have_marks_at_the_same_times() {
     let run = run();
     let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &run)).svg();
-    // 9.9 s in steps of 2 s; the one to and fro is at one place after 2, 6 and 10 s, and after 4 and 8 s.
+    // 9.9 s in steps of 2 s; the one to and fro is at one place after 2, 6 and 10 s, and after 4
+    // and 8 s.
     let marks = |text: &str| picture.as_str().matches(&format!(">{text}</text>")).count();
     assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
     assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
@@ -240,8 +243,8 @@ fn a_marker_does_not_hide_an_obstacle() {
     assert!((beside_x - x).hypot(beside_y - y) > 8.2 + 3.1, "{beside_x} {beside_y}");
 }
 
-/// The key points of a curve stand so close that their rings cover each other, and its line is as wide as the
-/// obstacle.
+/// The key points of a curve stand so close that their rings cover each other, and its line is as
+/// wide as the obstacle.
 #[test]
 fn a_route_does_not_hide_an_obstacle() {
     let map = map(0.0);

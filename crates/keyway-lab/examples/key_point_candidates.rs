@@ -1,5 +1,5 @@
-//! Key points of [You2021] chosen from jump points, as in the paper, and from all cells: how often the paths
-//! differ, and how often they keep D; a table of measurements on seeded random maps, for
+//! Key points of [You2021] chosen from jump points, as in the paper, and from all cells: how often
+//! the paths differ, and how often they keep D; a table of measurements on seeded random maps, for
 //! `docs/FINDINGS.md`.
 //!
 //! `cargo run --release -p keyway-lab --example key_point_candidates`
@@ -25,7 +25,8 @@ use std::error::Error;
 const QUERIES: u64 = 4000;
 /// Queries with random ends on each map.
 const QUERIES_PER_MAP: u64 = 8;
-/// Cells along each side of a map, the share of obstacles in percent, and where paths begin and end.
+/// Cells along each side of a map, the share of obstacles in percent, and where paths begin and
+/// end.
 const MAPS: [(i32, i32, Ends); 9] = [
     (20, 5, Ends::Corners),
     (20, 10, Ends::Corners),
@@ -99,7 +100,8 @@ fn smoother(candidates: KeyPointCandidates) -> Result<KeyPointSmoothing, ConfigE
     KeyPointSmoothing::new(KeyPointSmoothingConfig { candidates, ..KeyPointSmoothingConfig::PAPER })
 }
 
-/// Smooths the same paths with both readings, jump points first; how many paths differ, and of how many.
+/// Smooths the same paths with both readings, jump points first; how many paths differ, and of how
+/// many.
 fn measure(
     (side, percent, ends): (i32, i32, Ends),
     seed: u64,

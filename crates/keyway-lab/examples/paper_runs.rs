@@ -1,5 +1,5 @@
-//! Every driving scene of the papers with every stack: how each run ends, how long it takes, how long the way is, and
-//! how near the robot comes to anything.
+//! Every driving scene of the papers with every stack: how each run ends, how long it takes, how
+//! long the way is, and how near the robot comes to anything.
 //!
 //! `cargo run --release -p keyway-lab --example paper_runs -- scenes runs.json`
 //! prints the tables of docs/FINDINGS.md,

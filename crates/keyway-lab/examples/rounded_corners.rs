@@ -1,5 +1,5 @@
-//! What the curvature-continuous smoother makes of corners: a table for `docs/SMOOTHING.md`, of paths of `jps`
-//! between random free cells of the given maps.
+//! What the curvature-continuous smoother makes of corners: a table for `docs/SMOOTHING.md`, of
+//! paths of `jps` between random free cells of the given maps.
 //!
 //! `cargo run --release -p keyway-lab --example rounded_corners -- PATHS_PER_MAP MAP...`
 

@@ -1,6 +1,6 @@
-//! How long each smoother takes: a table for `docs/PERFORMANCE.md`, of paths of `jps` between random free
-//! cells of the given maps; microseconds of wall clock, for each path the fastest of several
-//! rounds.
+//! How long each smoother takes: a table for `docs/PERFORMANCE.md`, of paths of `jps` between
+//! random free cells of the given maps; microseconds of wall clock, for each path the fastest of
+//! several rounds.
 //!
 //! `cargo run --release -p keyway-lab --example smoothing_times -- PATHS_PER_MAP ROUNDS MAP...`
 

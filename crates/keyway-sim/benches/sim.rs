@@ -1,5 +1,5 @@
-//! Times of the simulator: a scan, and a minute of simulated driving with a controller that decides nothing.
-//! `cargo bench -p keyway --bench sim`.
+//! Times of the simulator: a scan, and a minute of simulated driving with a controller that decides
+//! nothing. `cargo bench -p keyway --bench sim`.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
@@ -21,7 +21,8 @@ fn frame() -> GridFrame {
     GridFrame::new(SIDE_CELLS, SIDE_CELLS, 0.05, Pose::default()).unwrap()
 }
 
-/// Rooms of 6 m with walls of 0.1 m, doors, and a table of 0.8 m in each; a hall of 12 m in the middle.
+/// Rooms of 6 m with walls of 0.1 m, doors, and a table of 0.8 m in each; a hall of 12 m in the
+/// middle.
 fn rooms() -> OccupancyGrid {
     let is_wall = |Cell { x, y }: Cell| {
         let in_hall = (181..420).contains(&x) && (181..420).contains(&y);

@@ -1,5 +1,5 @@
-//! A local planner of your own in a whole simulated run: it turns towards the guide point, drives, and looks at nothing
-//! else. The stop rule stands behind it, so it touches nothing all the same.
+//! A local planner of your own in a whole simulated run: it turns towards the guide point, drives,
+//! and looks at nothing else. The stop rule stands behind it, so it touches nothing all the same.
 //!
 //! `cargo run --example own_local_planner`
 

@@ -141,7 +141,8 @@ fn says_when_what_it_sees_leaves_no_route() {
     assert!(steps.iter().any(no_route));
 }
 
-/// What is seen on the way is planned around at once, however far ahead; and no second time while it stays.
+/// What is seen on the way is planned around at once, however far ahead; and no second time while
+/// it stays.
 #[test]
 fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     let rows = ["############", "#..........#", "#..........#", "#..........#", "############"];
@@ -178,8 +179,8 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     assert_eq!(unwatched.routes_planned(), 1);
 }
 
-/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a user
-/// has set.
+/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a
+/// user has set.
 #[test]
 fn says_that_something_stands_on_the_goal() {
     let map = blocks(&["############", "#..........#", "#..........#", "############"]);
@@ -207,7 +208,8 @@ fn says_that_something_stands_on_the_goal() {
     assert!(text.contains("nearest position with room is ("), "{text}");
 }
 
-/// A guide that needs less room than the robot turns in leads it along corners by which it cannot pass.
+/// A guide that needs less room than the robot turns in leads it along corners by which it cannot
+/// pass.
 #[test]
 fn the_guide_leaves_a_rectangle_room_to_turn() {
     let (map, robot) = (building(), Robot::jackal());

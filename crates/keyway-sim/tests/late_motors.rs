@@ -61,9 +61,10 @@ fn the_same_run_later() {
     }
 }
 
-/// A delay that is no whole number of cycles, and obstacles that are seen on the way. The same delay, of which the
-/// robot does not know, is what makes it touch one. Those behind a corner are more than 1.95 m from it: 0.8 m on which
-/// `jackal` at 2 m/s does not act yet, 0.7 m to stop, and 0.45 m of the robot and the obstacle.
+/// A delay that is no whole number of cycles, and obstacles that are seen on the way. The same
+/// delay, of which the robot does not know, is what makes it touch one. Those behind a corner are
+/// more than 1.95 m from it: 0.8 m on which `jackal` at 2 m/s does not act yet, 0.7 m to stop, and
+/// 0.45 m of the robot and the obstacle.
 #[test]
 fn what_is_seen_on_the_way_is_not_touched() {
     let outcome = |known_s: f64, unknown_s: f64, name: &str| {

@@ -92,7 +92,8 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
             if name == "to and fro"
                 && contact.is_some_and(|contact| contact.robot_stood || !is_safe)
             {
-                // It turns back without looking where the robot waits, or passes without the stop rule.
+                // It turns back without looking where the robot waits, or passes without the stop
+                // rule.
                 continue;
             }
             assert_eq!(report.outcome, EpisodeOutcome::Reached, "{name}: {:?}", report.reason);
@@ -110,7 +111,8 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
     assert!(all_waited > 100, "{all_waited} cycles in which something that moved held it up");
 }
 
-/// It walks into the way and stays: first it is waited for, then it is gone around like anything that stands.
+/// It walks into the way and stays: first it is waited for, then it is gone around like anything
+/// that stands.
 #[test]
 fn who_stops_in_the_way_is_gone_around() {
     let frame = |t_s: f64, x: f64, y: f64| KeyFrame { t_s, position: Point::new(x, y) };
@@ -132,7 +134,8 @@ fn who_comes_straight_on_meets_a_robot_that_stands() {
     }
 }
 
-/// Posts that are on no map, and somebody who comes out from behind one of them, slower than the stop rule expects.
+/// Posts that are on no map, and somebody who comes out from behind one of them, slower than the
+/// stop rule expects.
 #[test]
 fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
     let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();

@@ -1,4 +1,5 @@
-//! Dead ends, wrong headings, corridors that close, hidden guide points, goals with a heading, way-points: whole runs.
+//! Dead ends, wrong headings, corridors that close, hidden guide points, goals with a heading,
+//! way-points: whole runs.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Point, wrap_angle};
@@ -168,7 +169,8 @@ fn a_wrong_heading_at_the_start() {
     let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
-    // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and time by themselves.
+    // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and
+    // time by themselves.
     let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
     for (stack, is_recovery) in [("key-point-fusion", true), ("keyway", false)] {
         backs_out.stack = Stack::by_name(stack, &backs_out.robot).unwrap();
@@ -222,7 +224,8 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
             let Some(heading_rad) = heading_rad else { continue };
             let off_rad = wrap_angle(yaw - heading_rad);
             assert!(off_rad.abs() <= episode.stack.controller.goal_yaw_tolerance_rad);
-            // Once it stands at the goal, it turns to one side only, and no farther than half around.
+            // Once it stands at the goal, it turns to one side only, and no farther than half
+            // around.
             let rows = report.trajectory.as_ref().unwrap();
             let first = rows.iter().rposition(|row| row[4] != 0.0).unwrap() + 1;
             let turns = rows[first..].iter().map(|row| row[5]).filter(|omega| *omega != 0.0);
@@ -308,7 +311,8 @@ fn way_points_are_passed_in_their_order() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is touched.
+    /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is
+    /// touched.
     #[test]
     fn recoveries_touch_nothing(walls in prop::collection::vec(prop::bool::weighted(0.03), 26 * 26),
             hidden in prop::collection::vec((0.4..2.2f64, 0.4..2.2f64, 0.03..0.15f64), 0..4),

@@ -1,5 +1,5 @@
-//! The stop rule behind every local planner, in whole runs: nothing that stands is ever touched, and nothing that moves while
-//! the robot moves. Motion is ideal, and nothing hides anything.
+//! The stop rule behind every local planner, in whole runs: nothing that stands is ever touched,
+//! and nothing that moves while the robot moves. Motion is ideal, and nothing hides anything.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Point, Pose};
@@ -127,8 +127,8 @@ proptest! {
         prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
     }
 
-    /// Movers of at most the speed of the rule, on any way, turning at once. A mover may run into a robot that stands. At
-    /// first it is far away: it takes some scans to see that something moves.
+    /// Movers of at most the speed of the rule, on any way, turning at once. A mover may run into a
+    /// robot that stands. At first it is far away: it takes some scans to see that something moves.
     #[test]
     fn no_mover_is_touched_by_a_robot_that_moves(
         which in locals(), is_long: bool, delay_s in delays(), ends in ends(),

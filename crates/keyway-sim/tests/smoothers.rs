@@ -1,5 +1,5 @@
-//! What every smoother guarantees, whatever the line: on lines of planners, on random maps and on the
-//! bundled ones, and on lines that nobody has planned.
+//! What every smoother guarantees, whatever the line: on lines of planners, on random maps and on
+//! the bundled ones, and on lines that nobody has planned.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{PathPiece, PlannedLine, Point, Polyline, Pose};

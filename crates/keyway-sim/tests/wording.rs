@@ -1,5 +1,6 @@
-//! Every reader says in plain words what is wrong with a file: no names of Rust's types, no advice for those
-//! who write the program, no more than one line. Sound files are damaged in every place, in many ways.
+//! Every reader says in plain words what is wrong with a file: no names of Rust's types, no advice
+//! for those who write the program, no more than one line. Sound files are damaged in every place,
+//! in many ways.
 #![allow(clippy::unwrap_used)]
 
 use keyway::files::from_toml;
@@ -159,8 +160,8 @@ fn readers() -> Vec<(&'static str, Vec<u8>, Reader)> {
     ]
 }
 
-/// The file cut off, with a byte replaced, left out, or something put in: at every place, or at some
-/// of many.
+/// The file cut off, with a byte replaced, left out, or something put in: at every place, or at
+/// some of many.
 fn damaged(sound: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
     let step = sound.len().div_ceil(400);
     (0..=sound.len()).step_by(step).flat_map(move |at| {

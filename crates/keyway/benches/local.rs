@@ -1,6 +1,7 @@
-//! Times of decisions of the dynamic window, with 1,056 candidates of 30 poses each: for a disc and for a box, on
-//! open ground, along a corridor and among scattered obstacles. Each iteration decides once at every one of 64
-//! places; the throughput is in candidates. `cargo bench -p keyway --bench local`.
+//! Times of decisions of the dynamic window, with 1,056 candidates of 30 poses each: for a disc and
+//! for a box, on open ground, along a corridor and among scattered obstacles. Each iteration
+//! decides once at every one of 64 places; the throughput is in candidates. `cargo bench -p keyway
+//! --bench local`.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
@@ -44,7 +45,8 @@ fn planner(robot: Robot) -> Dwa {
     Dwa::new(config, robot).unwrap()
 }
 
-/// Places along the middle of the map at which the robot stands free, with headings up to 0.3 rad to either side.
+/// Places along the middle of the map at which the robot stands free, with headings up to 0.3 rad
+/// to either side.
 fn poses(robot: &Robot, field: &DistanceField) -> Vec<Pose> {
     let pose = |i: i32| {
         let i = f64::from(i);

@@ -1,5 +1,5 @@
-//! Times of the global planners on three kinds of maps: open ground with large obstacles, rooms with
-//! doors, random clutter. `cargo bench -p keyway` compares with the last run.
+//! Times of the global planners on three kinds of maps: open ground with large obstacles, rooms
+//! with doors, random clutter. `cargo bench -p keyway` compares with the last run.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

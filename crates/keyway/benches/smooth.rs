@@ -1,5 +1,5 @@
-//! Times of all smoothers on paths through the bundled house, with no clearance and with that of a robot.
-//! `cargo bench -p keyway --bench smooth`.
+//! Times of all smoothers on paths through the bundled house, with no clearance and with that of a
+//! robot. `cargo bench -p keyway --bench smooth`.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

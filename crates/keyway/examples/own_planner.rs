@@ -1,5 +1,6 @@
-//! A global planner of your own, with its own memory: a wavefront that spreads from the start, cell by cell, until
-//! it reaches the goal. Smoothers, pictures and measurements take its plans like those of any other planner.
+//! A global planner of your own, with its own memory: a wavefront that spreads from the start, cell
+//! by cell, until it reaches the goal. Smoothers, pictures and measurements take its plans like
+//! those of any other planner.
 //!
 //! `cargo run --example own_planner`
 
@@ -23,13 +24,13 @@ const ROOMS: [&str; 7] = [
     "..........#.",
 ];
 
-/// Shortest paths with 4 neighbours: every step costs the same, so no order is needed but first in, first
-/// out.
+/// Shortest paths with 4 neighbours: every step costs the same, so no order is needed but first in,
+/// first out.
 #[derive(Debug)]
 struct Wavefront;
 
-/// What a [`Wavefront`] works in. Nothing is cleared between queries: a cell belongs to the wave whose number it
-/// carries.
+/// What a [`Wavefront`] works in. Nothing is cleared between queries: a cell belongs to the wave
+/// whose number it carries.
 #[derive(Debug, Default)]
 struct Wave {
     /// By cell.

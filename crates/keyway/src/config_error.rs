@@ -3,8 +3,8 @@
 use crate::given::Given;
 use thiserror::Error;
 
-/// A value of a config that cannot be used. Every config is checked once, when the thing that it describes is
-/// made.
+/// A value of a config that cannot be used. Every config is checked once, when the thing that it
+/// describes is made.
 ///
 /// ```
 /// use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
@@ -21,7 +21,8 @@ pub struct ConfigError {
     /// The field, as a path from the config that was checked: `weights.heading` of a local planner,
     /// `local.weights.heading` of a stack.
     pub path: String,
-    /// What is wrong with it and what to do; goes on after the path: `must be a positive number, got -1`.
+    /// What is wrong with it and what to do; goes on after the path: `must be a positive number,
+    /// got -1`.
     pub reason: String,
 }
 
@@ -90,8 +91,8 @@ impl ConfigError {
         Err(Self::must_be(format!("{path}[1]"), &expected, high))
     }
 
-    /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this sums lose their digits
-    /// and at last are not numbers.
+    /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this
+    /// sums lose their digits and at last are not numbers.
     ///
     /// # Errors
     /// When it is not; the error names the path.

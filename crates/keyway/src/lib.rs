@@ -18,9 +18,9 @@
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value with a `step` |
 //!
-//! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs give
-//! equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the few functions that
-//! panic, such as on grids of different sizes, say so.
+//! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs
+//! give equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the
+//! few functions that panic, such as on grids of different sizes, say so.
 //!
 //! ```
 //! use keyway::{Controller, OccupancyGrid, Point, Robot, Stack};

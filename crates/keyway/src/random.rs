@@ -15,8 +15,8 @@ impl Random {
         Self { state: seed }
     }
 
-    /// One of many streams of a seed, such as that of the second robot's odometry: a stream for every list of names. No
-    /// stream depends on how many there are or on what was drawn from them.
+    /// One of many streams of a seed, such as that of the second robot's odometry: a stream for
+    /// every list of names. No stream depends on how many there are or on what was drawn from them.
     pub fn stream(seed: u64, names: &[u64]) -> Self {
         names.iter().fold(Self::new(seed), |mut random, name| Self::new(random.bits() ^ name))
     }

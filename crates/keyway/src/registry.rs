@@ -1,13 +1,13 @@
 //! How things with names and parameters are entered: one line each.
 
-/// Enters things of one kind. Each line has the documentation, the variant with its parameters, and the type
-/// whose `NAME` it is known by.
+/// Enters things of one kind. Each line has the documentation, the variant with its parameters, and
+/// the type whose `NAME` it is known by.
 ///
-/// It makes the type that is a choice as data, its `NAMES`, `by_name`, `name`, `as_published` and `readings`; and
-/// `parameters`, which gives the parameters as the kind's own trait. That trait has a provided
-/// `as_published` and `readings`, and whatever else is to be known of every thing of the kind; it is implemented
-/// beside the thing. Parameters begin with their defaults; with `for Robot` after the trait's name, with those that
-/// its `for_robot` derives.
+/// It makes the type that is a choice as data, its `NAMES`, `by_name`, `name`, `as_published` and
+/// `readings`; and `parameters`, which gives the parameters as the kind's own trait. That trait has
+/// a provided `as_published` and `readings`, and whatever else is to be known of every thing of the
+/// kind; it is implemented beside the thing. Parameters begin with their defaults; with `for Robot`
+/// after the trait's name, with those that its `for_robot` derives.
 macro_rules! registry {
     (
         $(#[$enum_attribute:meta])*
@@ -84,7 +84,8 @@ macro_rules! registry {
                 }
             }
 
-            /// The fields of [`Self::as_published`] for which the paper gives no value: they are readings.
+            /// The fields of [`Self::as_published`] for which the paper gives no value: they are
+            /// readings.
             pub fn readings(&self) -> &'static [&'static str] {
                 self.parameters().readings()
             }

@@ -1,4 +1,5 @@
-//! Values that are finite and yet absurd, in every number of every stack: refused by name, or harmless.
+//! Values that are finite and yet absurd, in every number of every stack: refused by name, or
+//! harmless.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Point, Pose, Velocity};
@@ -64,7 +65,8 @@ fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> 
     Ok(())
 }
 
-/// Every local planner, guide and smoother, one at a time beside the usual ones; with the parts that are its own.
+/// Every local planner, guide and smoother, one at a time beside the usual ones; with the parts
+/// that are its own.
 fn stacks(robot: &Robot) -> Vec<(String, &'static [&'static str], Stack)> {
     let usual = Stack::key_point_fusion(robot);
     let mut stacks = Vec::new();

@@ -78,8 +78,8 @@ fn warm_planners_allocate_nothing() {
     }
 }
 
-/// Planners that take turns on one workspace leave each other's memory alone, and find the same paths as on
-/// their own.
+/// Planners that take turns on one workspace leave each other's memory alone, and find the same
+/// paths as on their own.
 #[test]
 fn planners_share_a_workspace() {
     let map = map();

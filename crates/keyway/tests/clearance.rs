@@ -55,7 +55,8 @@ fn the_border_of_a_turned_map_can_be_touched() {
 fn an_arc_that_is_as_good_as_straight_does_not_slip_along_a_joint() {
     let grid = OccupancyGrid::from_ascii(&["...", ".#.", ".#."]);
     let clearance = Clearance::new(grid.frame(), grid.occupied());
-    // Of 1 m and 10 micrometres long: 1e-11 m from its chord, to the left along the joint y = 1, at x = 1.5.
+    // Of 1 m and 10 micrometres long: 1e-11 m from its chord, to the left along the joint y = 1, at
+    // x = 1.5.
     let short = |y: f64| Arc::new(Point::new(1.5, y - 1.0), 1.0, 0.5 * PI, 1e-5);
     assert!(!clearance.is_clear_arc(short(1.0), 0.0), "along the joint");
     assert!(clearance.is_clear_arc(short(2.0), 0.0), "along the upper edge");

@@ -1,5 +1,5 @@
-//! The jump points of a plan, and the key-point optimisation of [You2021] written out step by step, as
-//! slowly as it stands in the paper, with whole numbers in place of the library's geometry.
+//! The jump points of a plan, and the key-point optimisation of [You2021] written out step by step,
+//! as slowly as it stands in the paper, with whole numbers in place of the library's geometry.
 #![allow(clippy::unwrap_used)]
 
 mod support;

@@ -1,4 +1,5 @@
-//! Prepared maps: as short as A* everywhere, only on their own map, and whole or not at all as files.
+//! Prepared maps: as short as A* everywhere, only on their own map, and whole or not at all as
+//! files.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Pose;

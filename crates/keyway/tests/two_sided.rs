@@ -1,5 +1,5 @@
-//! Planners whose two sides take turns, against brute force on small maps: steps in 16 directions, and
-//! distances kept from obstacles.
+//! Planners whose two sides take turns, against brute force on small maps: steps in 16 directions,
+//! and distances kept from obstacles.
 #![allow(clippy::unwrap_used)]
 
 mod support;
@@ -17,8 +17,8 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Raw, Rules, any_raw, any_rules, query_on};
 
-/// The length of a step in the 5 x 5, if every cell on its line is free: looked up at 64 points of it,
-/// none of which lies between two cells. Diagonals are walked cell by cell.
+/// The length of a step in the 5 x 5, if every cell on its line is free: looked up at 64 points of
+/// it, none of which lies between two cells. Diagonals are walked cell by cell.
 fn long_step(raw: &Raw, from: Cell, to: Cell, rules: &Rules) -> Option<f64> {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     if (dx, dy) == (0, 0) || dx.abs().max(dy.abs()) > 2 {
@@ -211,7 +211,8 @@ fn the_constraint_keeps_more_on_a_finer_grid() {
         let free = frame.cells().filter(|&cell| constrained.is_free(cell));
         [first[0], first[1], free.map(clearance_m).fold(f64::INFINITY, f64::min)]
     };
-    // Straight ahead L less half a cell, past a corner (L less a cell) / sqrt(2), which is the least.
+    // Straight ahead L less half a cell, past a corner (L less a cell) / sqrt(2), which is the
+    // least.
     for (cell_m, straight_m, corner_m) in
         [(1.0, 1.5, FRAC_1_SQRT_2), (0.2, 1.9, 1.2728), (0.05, 1.975, 1.3789)]
     {

@@ -30,8 +30,8 @@ fn a_short_query_on_a_large_map_touches_little() {
         planner.plan_into(&map, &query, &mut workspace, None, &mut plan).unwrap();
         let touched = resident_bytes().saturating_sub(before);
         let reserved = workspace.memory_bytes() as u64;
-        // Half a byte per cell (18 MB here) may be touched: bits that the allocator clears when it takes
-        // their memory from a query before.
+        // Half a byte per cell (18 MB here) may be touched: bits that the allocator clears when it
+        // takes their memory from a query before.
         assert!(touched < 24 << 20, "{name} touched {touched} of {reserved} bytes");
         most_reserved = reserved.max(most_reserved);
     }

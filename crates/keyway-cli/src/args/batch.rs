@@ -73,18 +73,20 @@ pub(crate) struct BatchArgs {
     /// Scene files, and folders of them
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one; `all` [default: that of the scene]
+    /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one;
+    /// `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
-    /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a file with one [default: that of the scene]
+    /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a
+    /// file with one [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// Issue only commands after which a robot can still stop before it touches anything, whatever
     /// its stack wants: in all scenes, also where they do not say `safe = true`
     #[arg(long)]
     pub(crate) safe: bool,
-    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene [default: that of
-    /// the scene]
+    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a
+    /// scene [default: that of the scene]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
     /// How many seeds each scene is driven with: its own, and the numbers that follow
@@ -137,7 +139,8 @@ pub(crate) enum SceneCommand {
     Dynabarn(DynabarnArgs),
     /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
     Pairs(PairsArgs),
-    /// Makes scenes of the papers' maps: generated ones on which the baselines have the published figures
+    /// Makes scenes of the papers' maps: generated ones on which the baselines have the published
+    /// figures
     Papers(PapersArgs),
     /// Prints the JSON schema of scene files, by which editors complete and check them
     #[command(after_help = "\
@@ -159,7 +162,8 @@ pub(crate) struct BarnArgs {
     /// The best times: CSV with the columns `world` and `optimal_time_s`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) summary: Option<PathBuf>,
-    /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in the world
+    /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in
+    /// the world
     #[arg(long)]
     pub(crate) known: bool,
     /// Folder for the scenes
@@ -194,7 +198,8 @@ pub(crate) struct PapersArgs {
 Examples:
   keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn")]
 pub(crate) struct DynabarnArgs {
-    /// Where cylinders are when: CSV with the columns `plugin`, `duration_s`, `t`, `x` and `y` [s, m]
+    /// Where cylinders are when: CSV with the columns `plugin`, `duration_s`, `t`, `x` and `y` [s,
+    /// m]
     #[arg(value_name = "KEYFRAMES.csv")]
     pub(crate) key_frames: PathBuf,
     /// Which cylinders each world has: CSV with the columns `world`, `plugin` and `radius` [m]
@@ -214,8 +219,8 @@ Examples:
   keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
   keyway batch pairs --seeds 2 --out pairs-results")]
 pub(crate) struct PairsArgs {
-    /// The pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and `goal_y_m`; the map's path is that from the table's
-    /// folder
+    /// The pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and `goal_y_m`;
+    /// the map's path is that from the table's folder
     #[arg(value_name = "PAIRS.csv")]
     pub(crate) pairs: PathBuf,
     /// The robot that drives (see `keyway list`), or a file with one
@@ -225,7 +230,8 @@ pub(crate) struct PairsArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) unknown: u32,
-    /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s, other ones for each seed
+    /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s,
+    /// other ones for each seed
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) moving: u32,

@@ -15,8 +15,8 @@ pub(crate) struct ConfigArgs {
     /// Parameters from a file: any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its name:
-    /// `hsta.if_no_path=fail`; may be repeated
+    /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its
+    /// name: `hsta.if_no_path=fail`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// What unknown cells count as [default: blocked]
@@ -59,11 +59,12 @@ impl Unknown {
 /// How a robot plans and drives.
 #[derive(Debug, Args)]
 pub(crate) struct StackArgs {
-    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default: keyway]
+    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default:
+    /// keyway]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) stack: Option<String>,
-    /// The stack with the values of its paper, on the paper's robot, a point named `paper`: for maps with cells of
-    /// 1 m
+    /// The stack with the values of its paper, on the paper's robot, a point named `paper`: for
+    /// maps with cells of 1 m
     #[arg(long, conflicts_with = "radius")]
     pub(crate) as_published: bool,
     /// Another planner in this stack (see `keyway list`)

@@ -77,7 +77,8 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: SceneCommand,
     },
-    /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of one
+    /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of
+    /// one
     List(ListArgs),
     /// Prints completions for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
@@ -173,9 +174,10 @@ pub(crate) struct PlanArgs {
     /// Play the search into this file, then show the path
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
-    /// Write the (smoothed) path into this file, sampled by arc length: positions, headings, curvatures,
-    /// and the fastest speeds within the limits of --robot (without one, of the robot `small`) of speed,
-    /// turn rate and acceleration (how fast the turn rate changes is not limited)
+    /// Write the (smoothed) path into this file, sampled by arc length: positions, headings,
+    /// curvatures, and the fastest speeds within the limits of --robot (without one, of the robot
+    /// `small`) of speed, turn rate and acceleration (how fast the turn rate changes is not
+    /// limited)
     #[arg(long, value_name = "FILE.csv|.json")]
     pub(crate) curve: Option<CurveFile>,
     /// Distance between two samples of --curve [m] [default: 0.01]
@@ -238,7 +240,8 @@ pub(crate) struct NavigateArgs {
     pub(crate) map: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path, or as nearly so as it has room
+    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path, or as nearly so
+    /// as it has room
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
@@ -266,17 +269,17 @@ pub(crate) struct NavigateArgs {
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<CircleArg>,
-    /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight on; or its speed and the
-    /// points that it goes to in turn, for ever around; may be repeated
+    /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight
+    /// on; or its speed and the points that it goes to in turn, for ever around; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) moving: Vec<MovingArg>,
-    /// Issue only commands after which the robot can still stop before it touches anything, whatever the local planner
-    /// wants (`controller.safe`)
+    /// Issue only commands after which the robot can still stop before it touches anything,
+    /// whatever the local planner wants (`controller.safe`)
     #[arg(long)]
     pub(crate) safe: bool,
-    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a scene, in place of those of
-    /// the scene
+    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a
+    /// scene, in place of those of the scene
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
     /// Of all that is random, in place of the seed of the scene [default: 0]
@@ -312,19 +315,19 @@ pub(crate) struct CompareArgs {
     pub(crate) maps: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Planners (see `keyway list`), or `all` that can plan on the map [default: jps,theta-star; only jps with
-    /// --smoothers, the one of the file with --config]
+    /// Planners (see `keyway list`), or `all` that can plan on the map [default: jps,theta-star;
+    /// only jps with --smoothers, the one of the file with --config]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
     /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:
-    /// none,taut,continuous-curvature; only none with --planners, the one of the file with --config]; `--set
-    /// hierarchical.safe_distance_m=0.2` sets a parameter of this one (or of a planner, by its
-    /// name), `--set smoother.safe_distance_m=0.2` sets it for all (and `planner...` for all
-    /// planners)
+    /// none,taut,continuous-curvature; only none with --planners, the one of the file with
+    /// --config]; `--set hierarchical.safe_distance_m=0.2` sets a parameter of this one (or of a
+    /// planner, by its name), `--set smoother.safe_distance_m=0.2` sets it for all (and
+    /// `planner...` for all planners)
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a header
-    /// with these names; with a column `map` in the header, each line is for that map only
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a
+    /// header with these names; with a column `map` in the header, each line is for that map only
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file
@@ -355,9 +358,9 @@ pub(crate) struct CompareArgs {
     pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
-    /// Columns of the table in the terminal and in LaTeX, in this order, after the names: corners, solved, missed,
-    /// compared, length, excess, worst, turns, angle, non-smooth, clearance, shortfalls, plan, smooth [default: most
-    /// of them; in LaTeX all]
+    /// Columns of the table in the terminal and in LaTeX, in this order, after the names: corners,
+    /// solved, missed, compared, length, excess, worst, turns, angle, non-smooth, clearance,
+    /// shortfalls, plan, smooth [default: most of them; in LaTeX all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Vec<String>,
     /// Leave out all times: then the same input gives the same bytes
@@ -398,8 +401,8 @@ Examples:
 pub(crate) struct MapConvertArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// File to write; its extension names the format (.yaml with an image .pgm beside it, .map, .png,
-    /// .pgm). What the format does not keep is reported
+    /// File to write; its extension names the format (.yaml with an image .pgm beside it, .map,
+    /// .png, .pgm). What the format does not keep is reported
     #[arg(value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
@@ -414,7 +417,8 @@ Examples:
   keyway list keyway --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this one; of a stack or a robot, as a file for `--stack` or `--robot`
+    /// Print the parameters of this one; of a stack or a robot, as a file for `--stack` or
+    /// `--robot`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
     /// The robot that defaults are derived for [default: small]

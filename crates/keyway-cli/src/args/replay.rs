@@ -11,13 +11,13 @@ pub(crate) struct DriveFileArgs {
     /// Folder for report, pictures and trajectory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw, into the folder of --out, the velocities that the local planner tried at this simulated time,
-    /// and what became of them [s]
+    /// Draw, into the folder of --out, the velocities that the local planner tried at this
+    /// simulated time, and what became of them [s]
     #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
     #[arg(value_parser = seconds)]
     pub(crate) fan: Option<f64>,
-    /// Write into this file why each velocity was chosen, and what would free a robot that cannot drive: JSON, a line
-    /// for every cycle
+    /// Write into this file why each velocity was chosen, and what would free a robot that cannot
+    /// drive: JSON, a line for every cycle
     #[arg(long, value_name = "FILE.jsonl")]
     pub(crate) explain: Option<PathBuf>,
     /// Play the drive into this file: the robot, what it sees, and what it tries

@@ -39,11 +39,12 @@ pub(crate) struct ReproduceArgs {
     /// Also measure what each part of the methods does, and what their parameters do
     #[arg(long)]
     pub(crate) ablations: bool,
-    /// Leave out all times, and the figures of claims that are times: then the same input gives the same bytes
+    /// Leave out all times, and the figures of claims that are times: then the same input gives the
+    /// same bytes
     #[arg(long)]
     pub(crate) no_times: bool,
-    /// Folder for the report (JSON, a page, tables, pictures), and what was measured on each map; a reproduction that was
-    /// interrupted goes on where it was
+    /// Folder for the report (JSON, a page, tables, pictures), and what was measured on each map; a
+    /// reproduction that was interrupted goes on where it was
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

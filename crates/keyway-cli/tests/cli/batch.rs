@@ -78,7 +78,8 @@ fn each_run_says_what_it_was() {
     assert_eq!((&first["outcome"], &first["reference_time_s"]), (&json!("reached"), &json!(10.0)));
     let (time_s, score) = (first["time_s"].as_f64().unwrap(), first["score"].as_f64().unwrap());
     assert!((score - 10.0 / time_s.clamp(20.0, 80.0)).abs() < 1e-12, "{first}");
-    // The same runs by themselves: with the first stack, and with the one that drives in its world after it.
+    // The same runs by themselves: with the first stack, and with the one that drives in its world
+    // after it.
     for (stack, row) in [("key-point-fusion", first), ("astar-follow", &rows[2])] {
         let line = format!("navigate --scene scenes/hall.toml --stack {stack} --format json");
         let alone = keyway(folder.path(), &line).expect_code(0).json();

@@ -169,7 +169,8 @@ fn killed_or_in_parts_it_is_the_same() {
     // What is known from the results is not driven again, either.
     run("--out torn --jobs 1");
     assert_eq!((results(&folder, "torn"), again()), (whole.clone(), 4));
-    // Unless the rows of its robots are lost: three scenes of several robots, of which two seeds were in the journal.
+    // Unless the rows of its robots are lost: three scenes of several robots, of which two seeds
+    // were in the journal.
     fs::remove_file(folder.path().join("torn/robots.jsonl")).unwrap();
     run("--out torn");
     assert_eq!(results(&folder, "torn"), whole);

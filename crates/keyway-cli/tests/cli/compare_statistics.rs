@@ -1,4 +1,5 @@
-//! `keyway compare`: intervals, tests against the first row, columns, and what is compared by default.
+//! `keyway compare`: intervals, tests against the first row, columns, and what is compared by
+//! default.
 
 use crate::compare::{number, rows};
 use crate::support::{folder, keyway, read, write};
@@ -157,7 +158,8 @@ fn each_row_is_tested_against_the_first() {
     assert_eq!((&longer["equal"], &longer["length_p"]), (&0.into(), &(2.0 / 256.0).into()));
     assert_eq!(longer["rank_biserial"], 1.0);
     assert!(number(longer, "ci_low_length_difference_m") > 0.0, "{longer}");
-    // All rows but the one of equal lengths differ in every query: five tests with the same p, or 1.
+    // All rows but the one of equal lengths differ in every query: five tests with the same p, or
+    // 1.
     let all_differ = tests.iter().filter(|test| test["length_p"] == 2.0 / 256.0).count();
     assert_eq!((all_differ, &longer["length_p_holm"]), (4, &(5.0 * 2.0 / 256.0).into()));
     // One test of what is solved for each other planner.

@@ -128,8 +128,8 @@ fn a_narrow_door_is_passed_near_its_middle() {
     let (_, report) = reached("narrow_door");
     // It cannot turn on the spot in front of the door, and drives a curve.
     assert!(matches!(report.misfit, Some(Misfit::Turn { .. })), "{:?}", report.misfit);
-    // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of room at each side.
-    // It comes at an angle and straightens, and is through in two cycles.
+    // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of room at each
+    // side. It comes at an angle and straightens, and is through in two cycles.
     let drive = drive(&report);
     let inside = || drive.iter().filter(|at| (2.9..3.1).contains(&at.place.x));
     assert!(inside().count() > 1);

@@ -10,7 +10,8 @@ fn doc(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-/// Names of all members, but not of those in a config or a robot, which `keyway list` explains, or in a scene.
+/// Names of all members, but not of those in a config or a robot, which `keyway list` explains, or
+/// in a scene.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     for (name, value) in value.as_object().into_iter().flatten() {
         names.insert(name.clone());

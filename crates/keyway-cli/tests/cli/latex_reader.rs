@@ -27,8 +27,9 @@ const COMMANDS: [&str; 23] = [
     "rightarrow",
 ];
 
-/// The cells of a table's rows, with all that the table is made of tested: characters that pdfLaTeX knows, commands,
-/// braces and dollar signs in pairs, rules in their places, and as many cells in each row as there are columns.
+/// The cells of a table's rows, with all that the table is made of tested: characters that pdfLaTeX
+/// knows, commands, braces and dollar signs in pairs, rules in their places, and as many cells in
+/// each row as there are columns.
 pub(crate) fn read(text: &str) -> Vec<Vec<String>> {
     let lines: Vec<&str> = text.split(['\n', '\r']).map(without_comment).map(str::trim).collect();
     let mut lines = lines.into_iter().filter(|line| !line.is_empty());
@@ -110,7 +111,8 @@ fn command_length(text: &str) -> usize {
     1 + name.len()
 }
 
-/// Printable ASCII, and letters of Latin alphabets that LaTeX composes of a letter and an accent in its oldest fonts.
+/// Printable ASCII, and letters of Latin alphabets that LaTeX composes of a letter and an accent in
+/// its oldest fonts.
 fn is_known(letter: char) -> bool {
     // Of Icelandic, and with a hook or a stroke: not in those fonts.
     let is_missing = "ÐÞðþĄąĐđĘęĦħĮįŲųŊŋŦŧĸſŉ×÷".contains(letter);

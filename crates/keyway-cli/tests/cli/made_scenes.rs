@@ -131,7 +131,8 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
 }
 
-/// On the scenes of the repository A* has the published length, and they are what the command writes.
+/// On the scenes of the repository A* has the published length, and they are what the command
+/// writes.
 #[test]
 fn maps_of_papers_become_scenes() {
     let folder = folder();

@@ -26,8 +26,8 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Each table with the paragraphs before it, up to the table or heading before those, and the ones after it,
-/// up to the next heading.
+/// Each table with the paragraphs before it, up to the table or heading before those, and the ones
+/// after it, up to the next heading.
 fn tables(text: &str) -> Vec<(String, String)> {
     let is_table = |block: &str| block.starts_with('|') && block.contains("|--");
     let (mut found, mut around): (Vec<(String, String)>, _) = (Vec::new(), String::new());

@@ -1,4 +1,5 @@
-//! What pictures show of what moves: of somebody who walks to and fro, and is driven up to and gone around.
+//! What pictures show of what moves: of somebody who walks to and fro, and is driven up to and gone
+//! around.
 
 use crate::support::{folder, keyway, read};
 use std::path::Path;

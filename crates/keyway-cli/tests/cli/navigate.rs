@@ -153,7 +153,8 @@ fn movers_of_a_scene_and_of_arguments_are_the_same() {
 #[test]
 fn a_mover_that_jumps_onto_the_robot_is_reported() {
     let folder = folder();
-    // It is ahead of the robot for a moment, far away until three seconds, and back where the robot is by then.
+    // It is ahead of the robot for a moment, far away until three seconds, and back where the robot
+    // is by then.
     let mover = "[[moving]]\nradius_m = 0.5\nduration_s = 3.02\n\
                  spline = [[0, -7.0, -2.4], [0.5, -3.0, -2.4], [1.5, 8.0, 5.0]]\n";
     write(&folder, "jump.toml", &format!("{}\n{mover}", read(&folder, "small_house.toml")));
@@ -278,7 +279,8 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
 #[test]
 fn unknown_shapes_are_met_and_reported() {
     let folder = folder();
-    // A box and two cells (of 0.05 m) around which there is no way in sight: it drives until it sees them.
+    // A box and two cells (of 0.05 m) around which there is no way in sight: it drives until it
+    // sees them.
     let hall = "version = 2\nmap = \"walled.map\"\nstart = [1.5, 1.5]\ngoal = [5.5, 1.5]\n";
     let touched = |shape: &str, with: Value, reason: &str| {
         write(&folder, "shape.toml", &format!("{hall}[[unknown]]\n{shape}\n"));

@@ -375,7 +375,8 @@ fn all_goals_are_drawn_and_the_reached_one_is_marked() {
     assert!(one.contains(">goal<") && !one.contains(">other goal<"), "{one}");
 }
 
-/// The end is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to bend on.
+/// The end is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to bend
+/// on.
 #[test]
 fn what_a_smoother_could_not_give_is_named() {
     let folder = folder();

@@ -52,7 +52,8 @@ fn the_records_are_those_of_the_runs_that_failed_however_often_it_was_killed() {
     assert_eq!(report["records"], 4);
     let one = files(&folder, "one/records");
     assert_eq!(names(&one), FAILED);
-    // Killed after six runs of a batch that kept no records, and after the first record of one that did.
+    // Killed after six runs of a batch that kept no records, and after the first record of one that
+    // did.
     batch("--out other");
     let rows = read(&folder, "other/runs.jsonl");
     let journal = rows.lines().map(|run| {
@@ -68,7 +69,8 @@ fn the_records_are_those_of_the_runs_that_failed_however_often_it_was_killed() {
     batch("--keep failures --out killed --jobs 2");
     assert_eq!(files(&folder, "killed/records"), one);
     assert_eq!(read(&folder, "killed/runs.jsonl"), rows);
-    // Four that reached the goal, and the one whose record was there; the other was made again for its record.
+    // Four that reached the goal, and the one whose record was there; the other was made again for
+    // its record.
     assert_eq!(read(&folder, "killed/times.jsonl").matches("4321.0").count(), 5);
     // A batch that keeps none removes none, unless they are of something else.
     batch("--out killed");

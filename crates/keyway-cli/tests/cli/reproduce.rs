@@ -231,7 +231,8 @@ fn the_page_stands_alone_and_holds_every_picture() {
         assert!(page.contains(&svg));
         pictures += 1;
     }
-    // Bars of both claims, one of them with a bound; and of each experiment paths, searches and nodes.
+    // Bars of both claims, one of them with a bound; and of each experiment paths, searches and
+    // nodes.
     assert_eq!((pictures, page.matches("<figure>").count()), (9, 9));
     for part in ["S0-5", "keyway reproduce S4-6 --out DIR", "scenes/you2021/corner_to_corner.toml"]
     {
@@ -295,7 +296,8 @@ fn the_table_for_papers_is_sound() {
     assert_eq!((cells[1][0].as_str(), cells[3][0].as_str()), ("S0-5", "S4-6"));
 }
 
-/// A variant is compared with the method as published on the same maps, and the base has a point of its own in a curve.
+/// A variant is compared with the method as published on the same maps, and the base has a point of
+/// its own in a curve.
 #[test]
 fn ablations_are_asked_for() {
     let folder = folder();
@@ -321,7 +323,8 @@ fn ablations_are_asked_for() {
     assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
 }
 
-/// What was measured before it was killed is not lost, and the results are those of one that was not.
+/// What was measured before it was killed is not lost, and the results are those of one that was
+/// not.
 #[test]
 fn killed_on_the_way_it_goes_on() {
     let folder = folder();
@@ -372,7 +375,8 @@ fn cells_of(text: &str, header: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// Which claims there are, how they are worded, and what was published; and that verdicts are counted right.
+/// Which claims there are, how they are worded, and what was published; and that verdicts are
+/// counted right.
 #[test]
 fn the_documentation_has_the_tables_that_are_written() {
     let folder = folder();

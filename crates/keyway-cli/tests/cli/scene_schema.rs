@@ -1,4 +1,5 @@
-//! The published schema of scene files accepts every scene that there is, and refuses what the program refuses for its form.
+//! The published schema of scene files accepts every scene that there is, and refuses what the
+//! program refuses for its form.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -8,7 +9,8 @@ fn schema() -> Value {
     keyway(Path::new("."), "scene schema").expect_code(0).json()
 }
 
-/// What is wrong with a value, if anything. Knows the keywords that the schema has, and stops at any other: none is passed over.
+/// What is wrong with a value, if anything. Knows the keywords that the schema has, and stops at
+/// any other: none is passed over.
 fn fault(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
     let Some(keywords) = schema.as_object() else {
         return (schema != &json!(true)).then(|| format!("{at}: not allowed"));

@@ -1,4 +1,5 @@
-//! The scenes of the papers: what the papers' baselines do there is what the papers print, and every run ends.
+//! The scenes of the papers: what the papers' baselines do there is what the papers print, and
+//! every run ends.
 
 use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Point, Segment};
@@ -136,7 +137,8 @@ fn distance_m(point: Point, segment: Segment) -> f64 {
     (point - nearest).dot(point - nearest).sqrt()
 }
 
-/// \[ZhuYin2024\] prints a clearance of 0 for these paths: they run into obstacles that are not on the map.
+/// \[ZhuYin2024\] prints a clearance of 0 for these paths: they run into obstacles that are not on
+/// the map.
 #[test]
 fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
     for (name, planner) in [
@@ -162,7 +164,8 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
     }
 }
 
-/// What is printed of \[ZhuYin2024\]'s other baseline, RRT, is possible; its table 3 is not, as the README says.
+/// What is printed of \[ZhuYin2024\]'s other baseline, RRT, is possible; its table 3 is not, as the
+/// README says.
 #[test]
 fn shortest_lines() {
     let shortest_m = |name: &str| {

@@ -30,7 +30,8 @@ fn a_robot_gives_its_size_and_a_radius_counts_more() {
     assert_eq!(both["inputs"]["robot"]["cycle_s"], json!(0.05));
     // A single parameter takes precedence over options.
     assert_eq!(clearance(&plan("--robot small --set map.clearance_m=0.05")), 0.05);
-    // Without a robot the speeds of a curve are those of the usual one, and the size is that of a point.
+    // Without a robot the speeds of a curve are those of the usual one, and the size is that of a
+    // point.
     let curve = plan("--curve c.json");
     assert_eq!(clearance(&curve), 0.0);
 }

@@ -61,8 +61,8 @@ struct Frame {
 }
 
 impl Animation {
-    /// An animation without frames, for pictures of the size and colours of `still`, with `scale` pixels
-    /// per unit of it.
+    /// An animation without frames, for pictures of the size and colours of `still`, with `scale`
+    /// pixels per unit of it.
     ///
     /// # Errors
     /// As for [`Svg::to_png`].

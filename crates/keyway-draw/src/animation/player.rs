@@ -11,13 +11,13 @@ const RESULT_CS: u16 = 200;
 /// Cells along the longer side of a picture, in blocks where there are more.
 const MAX_SIDE_CELLS: i32 = 1024;
 
-/// Plays `pictures` pictures, each for this many hundredths of a second; then `still`, the picture of the result, for
-/// 2 s. It has one pixel per unit of `still`.
+/// Plays `pictures` pictures, each for this many hundredths of a second; then `still`, the picture
+/// of the result, for 2 s. It has one pixel per unit of `still`.
 ///
-/// `frame` gives a picture by its number, from 0. All are shown in the layout of `still`; its legend explains what any
-/// of them shows. The map and its tints are drawn once, so they must be the same in all pictures. Colours
-/// are those of `still` and of the legend. `progress` is called with the number of pictures drawn so far, and their
-/// total.
+/// `frame` gives a picture by its number, from 0. All are shown in the layout of `still`; its
+/// legend explains what any of them shows. The map and its tints are drawn once, so they must be
+/// the same in all pictures. Colours are those of `still` and of the legend. `progress` is called
+/// with the number of pictures drawn so far, and their total.
 ///
 /// ```
 /// use keyway::geometry::Point;

@@ -130,8 +130,8 @@ impl Layer for Driven<'_> {
     }
 }
 
-/// Outlines of a robot along the way it drove, with a stroke that points ahead. Nothing is drawn where
-/// the picture's scale makes the robot a dot.
+/// Outlines of a robot along the way it drove, with a stroke that points ahead. Nothing is drawn
+/// where the picture's scale makes the robot a dot.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
     points: &'a [DrivenPoint],

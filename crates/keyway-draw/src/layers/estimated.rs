@@ -8,8 +8,9 @@ use crate::line_style::LineStyle;
 use crate::marks::time_mark;
 use keyway::sense::Mover;
 
-/// Movers as they are estimated: the ground that each may cover, where its centre is in a second when it goes on as it
-/// does, and the number of its track ([`Mover::id`]). They do not make the picture larger.
+/// Movers as they are estimated: the ground that each may cover, where its centre is in a second
+/// when it goes on as it does, and the number of its track ([`Mover::id`]). They do not make the
+/// picture larger.
 #[derive(Clone, Debug)]
 pub struct EstimatedMovers<'a>(pub &'a [Mover]);
 

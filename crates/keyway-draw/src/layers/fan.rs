@@ -22,8 +22,9 @@ const CONTACT_PX: f64 = 1.3;
 const PALE: Rgb = Rgb(0x8f, 0xb8, 0xde);
 const PALE_REFUSED: Rgb = Rgb(0xf0, 0xc9, 0xa8);
 
-/// The ways of all candidates of a cycle: refused ones thin and coloured by rule, with a dot where they would touch
-/// something; admissible ones coloured by score; the best and the second best one thick.
+/// The ways of all candidates of a cycle: refused ones thin and coloured by rule, with a dot where
+/// they would touch something; admissible ones coloured by score; the best and the second best one
+/// thick.
 #[derive(Clone, Debug)]
 pub struct Fan<'a> {
     from: Pose,
@@ -61,8 +62,8 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// The rules that refused some, with what is wrong and the number of candidates: that of contacts first, the others
-    /// by their names, so that pictures can be compared.
+    /// The rules that refused some, with what is wrong and the number of candidates: that of
+    /// contacts first, the others by their names, so that pictures can be compared.
     fn rules(&self) -> Vec<(&str, &str, usize)> {
         let mut rules: BTreeMap<(bool, &str), (&str, usize)> = BTreeMap::new();
         for candidate in &self.explanation.candidates {

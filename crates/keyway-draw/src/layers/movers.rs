@@ -23,9 +23,9 @@ const ASIDE_PX: f64 = 11.0;
 /// Points along a mover's way.
 const STEPS: u32 = 4000;
 
-/// Obstacles that move: where they are at the beginning of a run, their way in its time, and the time in
-/// seconds where they are at equal times, with the same numbers along the robot's way. What lies outside the
-/// map does not make the picture larger.
+/// Obstacles that move: where they are at the beginning of a run, their way in its time, and the
+/// time in seconds where they are at equal times, with the same numbers along the robot's way. What
+/// lies outside the map does not make the picture larger.
 #[derive(Clone, Debug)]
 pub struct Movers<'a> {
     all: &'a [Mover],
@@ -51,8 +51,8 @@ impl<'a> Movers<'a> {
         Self { all: movers, runs: vec![(run, INK)] }
     }
 
-    /// Movers while several robots drive, each with a colour for the times along its way. The times are shown without
-    /// movers, too: the robots move among each other.
+    /// Movers while several robots drive, each with a colour for the times along its way. The times
+    /// are shown without movers, too: the robots move among each other.
     pub const fn among(movers: &'a [Mover], runs: Vec<(&'a [DrivenPoint], Rgb)>) -> Self {
         Self { all: movers, runs }
     }
@@ -154,7 +154,8 @@ fn moments(end_s: f64) -> Ticks {
     Ticks::with_step(0.0, end_s, step_s)
 }
 
-/// Where something is at the moments after the first: where everything begins is seen without a number.
+/// Where something is at the moments after the first: where everything begins is seen without a
+/// number.
 fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Point>) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for &t_s in moments.values.iter().filter(|&&t_s| t_s > 0.0) {
@@ -169,8 +170,8 @@ fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Poi
     marks
 }
 
-/// Dots, each with its times `aside_px` below it. A number that would cover another one is left out: its
-/// neighbours along the way say which it is.
+/// Dots, each with its times `aside_px` below it. A number that would cover another one is left
+/// out: its neighbours along the way say which it is.
 fn draw_marks(
     canvas: &mut Canvas<'_>,
     marks: &[Mark],

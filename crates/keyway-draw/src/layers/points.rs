@@ -238,8 +238,8 @@ const START: Mark<'_> = ("S", false);
 const GOAL: Mark<'_> = ("G", true);
 const OTHER_GOAL: Mark<'_> = ("G", false);
 
-/// Draws a marker, and explains it unless the label is empty. What it would hide stays seen: then it
-/// stands beside its place, at the end of a line from there.
+/// Draws a marker, and explains it unless the label is empty. What it would hide stays seen: then
+/// it stands beside its place, at the end of a line from there.
 fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (text, dark): Mark<'_>, label: &str) {
     if !at.is_finite() {
         return;

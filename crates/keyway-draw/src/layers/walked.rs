@@ -6,8 +6,8 @@ use crate::color::Rgb;
 use crate::legend::{Entry, Sample};
 use keyway::sense::Disc;
 
-/// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines through. It does not make the
-/// picture larger.
+/// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines
+/// through. It does not make the picture larger.
 #[derive(Clone, Debug)]
 pub struct WalkedGround<'a>(pub &'a [Disc]);
 

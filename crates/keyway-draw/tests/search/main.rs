@@ -64,8 +64,9 @@ fn cells_are_shaded_by_order_by_hand() {
     seen.generated(Side::Forward, cell(2), cell(1), 2.0);
     let drawn = picture(&grid, &seen);
     assert_eq!(legend(&drawn), ["expanded, early to late", "generated only"]);
-    // The darkest blue; that of shade 8, 8/15 of the way along five steps: 2/3 from the third colour
-    // (33, 113, 181) to the fourth (66, 146, 198); the tint of open cells. Shade 8 is the ground, too.
+    // The darkest blue; that of shade 8, 8/15 of the way along five steps: 2/3 from the third
+    // colour (33, 113, 181) to the fourth (66, 146, 198); the tint of open cells. Shade 8 is the
+    // ground, too.
     assert_eq!(filled(&drawn, "#08306b"), ["m0 0h1v1h-1z"]);
     assert_eq!(filled(&drawn, "#3787c0"), ["m0 0h2v1h-2z", "m1 0h1v1h-1z"]);
     assert_eq!(filled(&drawn, "#d6e8f5"), ["m2 0h1v1h-1z"]);

@@ -1,6 +1,7 @@
-//! The scenes of the papers that are made of random obstacles: their maps, and their obstacles that are not on the
-//! map. The papers print pictures and lengths of paths, but no map; each map here is the first of a row of seeded
-//! ones on which the papers' baselines have the published lengths. See `scenes/README.md`.
+//! The scenes of the papers that are made of random obstacles: their maps, and their obstacles that
+//! are not on the map. The papers print pictures and lengths of paths, but no map; each map here is
+//! the first of a row of seeded ones on which the papers' baselines have the published lengths. See
+//! `scenes/README.md`.
 //!
 //! `cargo run --release -p keyway-lab --example paper_scenes -- scenes`
 //! writes the files in `scenes/` again, byte for byte.
@@ -52,8 +53,8 @@ fn you2021() -> Result<Vec<File>, Box<dyn Error>> {
     Ok(vec![File::map("you2021/clutter.map", &grid)])
 }
 
-/// \[S1\], tables 1 and 3: A* that cuts corners, from two starts on one map. A robot has to get through without
-/// cutting any.
+/// \[S1\], tables 1 and 3: A* that cuts corners, from two starts on one map. A robot has to get
+/// through without cutting any.
 fn s1() -> Result<Vec<File>, Box<dyn Error>> {
     let clutter = Clutter { side: 30, percent: 15 };
     let query = across(clutter.side);

@@ -13,8 +13,8 @@ const MARGIN: i32 = 2;
 /// Draws before it is given up.
 const DRAWS: u32 = 100_000;
 
-/// Free cells of a square map for obstacles, in the order in which they are added. After each of them a way is left
-/// that cuts no corner of its cell.
+/// Free cells of a square map for obstacles, in the order in which they are added. After each of
+/// them a way is left that cuts no corner of its cell.
 pub(crate) fn random_cells(
     grid: &OccupancyGrid,
     query: &Query,

@@ -29,9 +29,9 @@ impl RawMap {
         self.rows.iter().rposition(|row| !row.is_empty()).map_or(0, |last| last + 1)
     }
 
-    /// Length of a path \[cells\], or `None` when it does not lead from `start` to `goal`, leaves the
-    /// passable cells, stands still, or cuts a corner that may not be cut. Legs between waypoints
-    /// that are not neighbours are swept.
+    /// Length of a path \[cells\], or `None` when it does not lead from `start` to `goal`, leaves
+    /// the passable cells, stands still, or cuts a corner that may not be cut. Legs between
+    /// waypoints that are not neighbours are swept.
     pub(super) fn legal_length(
         &self,
         path: &[Cell],
@@ -52,8 +52,8 @@ impl RawMap {
     }
 }
 
-/// The cells that must be passable for a straight leg from centre to centre: those whose interior it
-/// crosses, and, where it passes a common corner of four cells, all four of them, unless corners
+/// The cells that must be passable for a straight leg from centre to centre: those whose interior
+/// it crosses, and, where it passes a common corner of four cells, all four of them, unless corners
 /// may be cut.
 fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell> {
     // Along the axis with more cells, so that there are at most two cells to a column.
@@ -63,8 +63,8 @@ fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell
     let (a, b) = if a.x <= b.x { (a, b) } else { (b, a) };
     let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
     (a.x..=b.x).flat_map(move |x| {
-        // The rows of a column, from where the leg enters it to where it leaves: heights are fractions
-        // with the denominator 2 dx.
+        // The rows of a column, from where the leg enters it to where it leaves: heights are
+        // fractions with the denominator 2 dx.
         let height =
             |line: i32| (2 * i64::from(a.y) + 1) * dx + (2 * i64::from(line - a.x) - 1) * dy;
         let row = |height: i64| height.div_euclid(2 * dx);

@@ -44,8 +44,8 @@ pub struct Answer {
     pub(super) path: PathFound,
     /// Published length of the best path \[cells\]; `None`: there is none.
     pub(super) optimum: Option<f64>,
-    /// No path of this planner is shorter \[cells\]: the optimum, unless the planner goes other ways
-    /// than those for which it was published.
+    /// No path of this planner is shorter \[cells\]: the optimum, unless the planner goes other
+    /// ways than those for which it was published.
     pub(super) least: f64,
 }
 

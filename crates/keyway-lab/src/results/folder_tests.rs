@@ -105,7 +105,8 @@ fn a_run_after_a_killed_one_is_as_if_that_had_never_been() {
         for state in states {
             let folder = tempfile::tempdir().unwrap();
             make(&state, folder.path());
-            // Which files are of an earlier run is only known from its report, which may be replaced.
+            // Which files are of an earlier run is only known from its report, which may be
+            // replaced.
             let known: &[&str] =
                 if state.get("a") == Some(&b"a1".to_vec()) { earlier } else { &[] };
             run(folder.path(), &THIRD, Some(known)).unwrap_or_else(|e| panic!("{e}: {state:?}"));

@@ -1,7 +1,8 @@
 //! The finished pieces of long work that is under way.
 //!
-//! One line for each piece, as JSON, appended as a whole when the piece is finished. Of a program that is killed while it writes one the
-//! last line may be torn: it is cut off, and its piece made again.
+//! One line for each piece, as JSON, appended as a whole when the piece is finished. Of a program
+//! that is killed while it writes one the last line may be torn: it is cut off, and its piece made
+//! again.
 //!
 //! Whoever has it open has the lock of its folder, so that no two programs write the same results.
 

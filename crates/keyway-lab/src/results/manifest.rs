@@ -1,10 +1,11 @@
 //! The list of the files in a folder that Keyway wrote.
 //!
-//! One line for each: `DIGEST NAME`, where a name may have several lines while a file is being replaced;
-//! and `unfinished NAME` for the files of a run that has begun to replace those of an earlier one.
+//! One line for each: `DIGEST NAME`, where a name may have several lines while a file is being
+//! replaced; and `unfinished NAME` for the files of a run that has begun to replace those of an
+//! earlier one.
 //!
-//! There are two copies of the list, and what either says holds. So a list that is lost, or put back from an
-//! earlier day, does not make Keyway's own files look like somebody else's.
+//! There are two copies of the list, and what either says holds. So a list that is lost, or put
+//! back from an earlier day, does not make Keyway's own files look like somebody else's.
 
 use keyway::file_system::{ReadError, read_file};
 use keyway::map::formats::{TextError, text_from_bytes};

@@ -26,8 +26,8 @@ pub fn watch_episode(
 }
 
 /// Runs an episode with the caller's own local planner or guide: `exchange` puts them in the place
-/// of those of its stack ([`FittedStack::with_local`], [`FittedStack::with_guide`]). The report does
-/// not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
+/// of those of its stack ([`FittedStack::with_local`], [`FittedStack::with_guide`]). The report
+/// does not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
 ///
 /// # Errors
 /// As for [`run_episode`].

@@ -18,7 +18,8 @@ use keyway::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on
+/// the map.
 ///
 /// ```
 /// use keyway_sim::scene_files::SceneFile;
@@ -59,7 +60,8 @@ pub struct SceneFile {
     /// What the scene shows, for people.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Map file, absolute or relative to the folder of the scene file; `None` where there is a `world`.
+    /// Map file, absolute or relative to the folder of the scene file; `None` where there is a
+    /// `world`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<PathBuf>,
     /// A map that is made from the seed.

@@ -10,13 +10,15 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct SceneRules {
-    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the
+    /// stack.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal_tolerance_m: Option<f64>,
     /// Whether the robot has to stand at its goal; `None`: it has to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrival: Option<Arrival>,
-    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top speed.
+    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top
+    /// speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
     /// Time without progress on the remaining way after which the robot is stuck \[s\]; `None`: 20

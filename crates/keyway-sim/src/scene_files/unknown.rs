@@ -6,7 +6,8 @@ use keyway::geometry::Point;
 use keyway::map::{Cell, GridFrame};
 use serde::{Deserialize, Serialize};
 
-/// An obstacle that no map shows. In files it is a table with `position` and `radius_m`, or with `vertices_m`, or with `cells`.
+/// An obstacle that no map shows. In files it is a table with `position` and `radius_m`, or with
+/// `vertices_m`, or with `cells`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnknownTable", into = "UnknownTable")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "UnknownTable"))]
@@ -29,7 +30,8 @@ pub struct UnknownCircle {
     pub radius_m: f64,
 }
 
-/// An obstacle that no map shows: a table with `position` and `radius_m`, or with `vertices_m`, or with `cells`.
+/// An obstacle that no map shows: a table with `position` and `radius_m`, or with `vertices_m`, or
+/// with `cells`.
 #[derive(Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "UnknownObstacle", extend("oneOf" = [
@@ -49,7 +51,8 @@ struct UnknownTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 3, max = 100)))]
     vertices_m: Option<Vec<Point>>,
-    /// Cells of the map that are occupied although it does not show it: `[column, row]` each, `[0, 0]` at the lower left.
+    /// Cells of the map that are occupied although it does not show it: `[column, row]` each, `[0,
+    /// 0]` at the lower left.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     cells: Option<Vec<Cell>>,

@@ -33,14 +33,14 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     Staged::new(path, bytes)?.commit()
 }
 
-/// A content that is complete on the disk, and has yet to get its name. Until then, dropping it leaves
-/// everything as it was.
+/// A content that is complete on the disk, and has yet to get its name. Until then, dropping it
+/// leaves everything as it was.
 #[derive(Debug)]
 pub(crate) struct Staged<'a> {
     path: &'a Path,
     bytes: &'a [u8],
-    /// `None` for a device, which is written to when the others are renamed. The file stays open, and so
-    /// locked, until it has its name.
+    /// `None` for a device, which is written to when the others are renamed. The file stays open,
+    /// and so locked, until it has its name.
     temporary: Option<(PathBuf, File)>,
 }
 
@@ -95,8 +95,8 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     fs::remove_file(temporary).map_err(failed)
 }
 
-/// Removes the temporary files of `path` that a killed program has left. Those that a running program
-/// is writing are locked, and stay.
+/// Removes the temporary files of `path` that a killed program has left. Those that a running
+/// program is writing are locked, and stay.
 pub fn remove_leftovers(path: &Path) {
     for temporary in (0..TEMPORARY_FILES).filter_map(|number| temporary_path(path, number)) {
         if !fs::symlink_metadata(&temporary).is_ok_and(|stands| stands.is_file()) {
@@ -139,8 +139,8 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
             Err(taken) if taken.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
             Ok(file) => {
-                // Some file systems have no locks. Before the lock another program may have taken the
-                // file for a leftover.
+                // Some file systems have no locks. Before the lock another program may have taken
+                // the file for a leftover.
                 let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
                 if !is_taken && temporary.exists() {
                     return Ok((temporary, file));

@@ -42,8 +42,8 @@ pub enum ReadError {
     },
 }
 
-/// Reads a whole file of at most `limit_bytes`. Pipes and devices are read as well, but never more than
-/// 256 MiB of them.
+/// Reads a whole file of at most `limit_bytes`. Pipes and devices are read as well, but never more
+/// than 256 MiB of them.
 ///
 /// # Errors
 /// When the file cannot be read, is a folder, or holds more.

@@ -1,7 +1,7 @@
 //! Which name somebody may have meant who wrote another one.
 
-/// A question to end a message with that refuses a name: `; did you mean ...?` with the nearest of the names that there are.
-/// Nothing where none is near. Upper and lower case are alike.
+/// A question to end a message with that refuses a name: `; did you mean ...?` with the nearest of
+/// the names that there are. Nothing where none is near. Upper and lower case are alike.
 ///
 /// ```
 /// use keyway::files::did_you_mean;

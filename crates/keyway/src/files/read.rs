@@ -147,8 +147,8 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileEr
     }
 }
 
-/// Reads a file of parameters: any part of a stack. Its values are checked when they are laid over a
-/// stack ([`ParameterLayers::over`](super::ParameterLayers::over)).
+/// Reads a file of parameters: any part of a stack. Its values are checked when they are laid over
+/// a stack ([`ParameterLayers::over`](super::ParameterLayers::over)).
 ///
 /// # Errors
 /// When the file cannot be read, or is not TOML.

@@ -16,8 +16,8 @@ use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks like one), relative to
-/// `folder`, with the parameters that it has there.
+/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks
+/// like one), relative to `folder`, with the parameters that it has there.
 ///
 /// # Errors
 /// When there is no such stack; as for [`read_stack`].
@@ -60,7 +60,8 @@ pub fn stack_from_bytes(
     }
 }
 
-/// What is wrong within a part that has a name: the parser knows no more of it than where the part begins.
+/// What is wrong within a part that has a name: the parser knows no more of it than where the part
+/// begins.
 fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
     let tree: Table = text.parse().ok()?;
     let part = tree.get(&error.field)?.as_table()?;

@@ -67,7 +67,8 @@ enum Presets {
 }
 
 impl<'a> StackBase<'a> {
-    /// A stack for a robot: a part that is chosen by its name begins with the parameters for the robot.
+    /// A stack for a robot: a part that is chosen by its name begins with the parameters for the
+    /// robot.
     pub const fn for_robot(stack: &'a Stack, robot: &'a Robot) -> Self {
         Self { stack, robot, presets: Presets::Robot }
     }
@@ -79,7 +80,8 @@ impl<'a> StackBase<'a> {
         Self { stack, robot, presets: radius_m.map_or(Presets::Usual, Presets::Keeping) }
     }
 
-    /// A stack as published: a part that is chosen by its name begins with the values of its paper, where it has one.
+    /// A stack as published: a part that is chosen by its name begins with the values of its paper,
+    /// where it has one.
     pub const fn as_published(stack: &'a Stack, robot: &'a Robot) -> Self {
         Self { stack, robot, presets: Presets::Published }
     }

@@ -1,5 +1,5 @@
-//! What the reader of TOML says, in the words of somebody who writes a file, not of one who writes a
-//! program.
+//! What the reader of TOML says, in the words of somebody who writes a file, not of one who writes
+//! a program.
 
 use super::did_you_mean;
 use crate::map::formats::shown;

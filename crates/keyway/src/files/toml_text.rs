@@ -52,8 +52,8 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
     })
 }
 
-/// Line and column, both from 1, of the value of a field, given as a path such as `limits.v_max_mps`; of a missing field, of
-/// the table where it belongs.
+/// Line and column, both from 1, of the value of a field, given as a path such as
+/// `limits.v_max_mps`; of a missing field, of the table where it belongs.
 pub(super) fn place_of_field(text: &str, path: &str) -> Option<(usize, usize)> {
     let document = DeTable::parse(text).ok()?;
     let (mut table, mut begin) = (document.get_ref(), None);

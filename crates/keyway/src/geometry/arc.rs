@@ -187,7 +187,8 @@ mod tests {
         // All corners, from inside: they are sqrt(1/2) from the centre.
         let around = arc([0.5, 0.5], 2.0, 0.0, TAU).distance_to_square(UNIT);
         assert!((around - (2.0 - 0.5f64.sqrt())).abs() < 1e-15);
-        // An end: the far half of a circle around (3, 0.5) begins at (3, 1.5) and ends at (3, -0.5).
+        // An end: the far half of a circle around (3, 0.5) begins at (3, 1.5) and ends at (3,
+        // -0.5).
         let far_half = arc([3.0, 0.5], 1.0, FRAC_PI_2, -PI).distance_to_square(UNIT);
         assert!((far_half - 4.25f64.sqrt()).abs() < 1e-12, "from (3, 1.5) to (1, 1)");
         // Inside, through, and a touch at (1, 0.5).

@@ -111,9 +111,9 @@ impl Cubic {
         self.is_certainly_within(limit, CURVATURE_HALVINGS)
     }
 
-    /// The curvature is 2/3 (w² a×b + u w a×c + u² b×c) / |w² a + 2 u w b + u² c|³ for the legs a, b, c and
-    /// w = 1 - u. Over the whole curve the numerator is at most its largest coefficient, and the
-    /// denominator at least what the shortest leg reaches along the chord.
+    /// The curvature is 2/3 (w² a×b + u w a×c + u² b×c) / |w² a + 2 u w b + u² c|³ for the legs a,
+    /// b, c and w = 1 - u. Over the whole curve the numerator is at most its largest coefficient,
+    /// and the denominator at least what the shortest leg reaches along the chord.
     fn is_certainly_within(&self, limit: f64, halvings: u32) -> bool {
         let [a, b, c] = self.legs;
         let cross = a.cross(b).abs().max(0.5 * a.cross(c).abs()).max(b.cross(c).abs());
@@ -152,9 +152,9 @@ impl Cubic {
     /// A distance that no point of the curve exceeds from the chord, and no point of the chord from
     /// the curve.
     ///
-    /// The distance from a segment is a convex function, so over the hull of the control polygon it is
-    /// largest at a corner; and on its way along the curve the nearest point of the chord passes over
-    /// all of it.
+    /// The distance from a segment is a convex function, so over the hull of the control polygon it
+    /// is largest at a corner; and on its way along the curve the nearest point of the chord passes
+    /// over all of it.
     pub(crate) fn deviation(&self) -> f64 {
         let [a, b, c] = self.legs;
         let (second, chord) = (a + b, a + b + c);
@@ -255,8 +255,8 @@ mod tests {
     #[test]
     fn a_corner_of_a_spline_by_hand() {
         // Control points (0, 0), (6, 0), (6, 6), (0, 6). At u = 0: position (30, 6) / 6, derivative
-        // (c - a) / 2 = (3, 3), second a - 2 b + c = (-6, 6), curvature 36 / (3 sqrt(2))^3. At u = 1/2,
-        // by symmetry, x = (0 + 23 * 6 + 23 * 6 + 0) / 48 = 5.75, y = 3, heading up.
+        // (c - a) / 2 = (3, 3), second a - 2 b + c = (-6, 6), curvature 36 / (3 sqrt(2))^3. At u =
+        // 1/2, by symmetry, x = (0 + 23 * 6 + 23 * 6 + 0) / 48 = 5.75, y = 3, heading up.
         let cubic = Cubic::uniform_b_spline(points([[0., 0.], [6., 0.], [6., 6.], [0., 6.]]));
         assert!(cubic.start.distance(Point::new(5.0, 1.0)) < 1e-12);
         assert!(cubic.end().distance(Point::new(5.0, 5.0)) < 1e-12);
@@ -286,8 +286,8 @@ mod tests {
 
     #[test]
     fn a_curve_that_goes_back_on_itself() {
-        // Over 0, 4, -1, 3: x' = 3 (4 w² - 10 u w + 4 u²) = 3 (4 - 18 u + 18 u²) is 0 at u = 1/3 and 2/3,
-        // where x is 5/3 and 4/3. So it goes 5/3 ahead, 1/3 back, 5/3 ahead.
+        // Over 0, 4, -1, 3: x' = 3 (4 w² - 10 u w + 4 u²) = 3 (4 - 18 u + 18 u²) is 0 at u = 1/3
+        // and 2/3, where x is 5/3 and 4/3. So it goes 5/3 ahead, 1/3 back, 5/3 ahead.
         let cubic = Cubic::bezier(points([[0., 0.], [4., 0.], [-1., 0.], [3., 0.]]));
         assert!((cubic.length() - 11.0 / 3.0).abs() < 1e-9);
         assert_eq!(

@@ -1,22 +1,23 @@
 //! Arc length of a cubic: Gauss's formula on parts on which its error is certain to be small.
 //!
-//! The length of the part from u = m - h to m + h is h times the integral of |D(z)| over z = -1..1, where the
-//! derivative D(z) = d0 + d1 z + d2 z² has vectors as coefficients.
+//! The length of the part from u = m - h to m + h is h times the integral of |D(z)| over z = -1..1,
+//! where the derivative D(z) = d0 + d1 z + d2 z² has vectors as coefficients.
 //!
 //! # Why the error is certain
 //! Read as complex numbers, |D(z)|² is D(z) times its conjugate. Neither has a zero where
 //! |d1| |z| + |d2| |z|² < |d0|, that is, in a disc of some radius R around the middle, and there |D(z)| has
-//! an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1, the disc holds the
-//! ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R + sqrt(R² - 1). So the
-//! coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k (Trefethen, Approximation Theory and
-//! Approximation Practice, theorem 8.1). Gauss's formula with N points is exact up to degree 2 N - 1 and for
-//! odd degrees, and its error for a Chebyshev polynomial is at most 2 + 2 / (k² - 1) < 2.5. Sum:
+//! an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1, the disc
+//! holds the ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R + sqrt(R²
+//! - 1). So the coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k
+//! (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1). Gauss's formula with
+//! N points is exact up to degree 2 N - 1 and for odd degrees, and its error for a Chebyshev
+//! polynomial is at most 2 + 2 / (k² - 1) < 2.5. Sum:
 //!
 //! error <= 2.5 (4 |d0|) (rho^-2N + rho^-(2N + 2) + ..) = 10 |d0| rho^-2N / (1 - rho^-2).
 //!
-//! Halving makes d1 and d2 smaller, so R grows, except beside a place at which the curve stands still (a
-//! cusp) or nearly does (a sharp bend). There the length itself is soon less than the error
-//! allowed.
+//! Halving makes d1 and d2 smaller, so R grows, except beside a place at which the curve stands
+//! still (a cusp) or nearly does (a sharp bend). There the length itself is soon less than the
+//! error allowed.
 
 use super::{Cubic, Point};
 
@@ -36,7 +37,8 @@ const NODES: [(f64, f64); 5] = [
     (0.148_874_338_981_631_2, 0.295_524_224_714_752_9),
 ];
 
-/// Length between two parameters, `from` the smaller, with an error of at most `tolerance` and rounding.
+/// Length between two parameters, `from` the smaller, with an error of at most `tolerance` and
+/// rounding.
 pub(super) fn length_between(cubic: &Cubic, from: f64, to: f64, tolerance: f64) -> f64 {
     refined(cubic, from, to, tolerance, if tolerance.is_finite() { MAX_HALVINGS } else { 0 })
 }

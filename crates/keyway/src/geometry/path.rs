@@ -123,9 +123,9 @@ pub enum PathError {
 
 /// A connected chain of straight, circular and cubic pieces \[m, world frame\]. May be empty.
 ///
-/// Headings may jump between pieces (a corner). There is no clothoid: a curve of continuous curvature
-/// is a chain of B-spline pieces, whose curvature is continuous already, and no published smoother of
-/// this crate needs one.
+/// Headings may jump between pieces (a corner). There is no clothoid: a curve of continuous
+/// curvature is a chain of B-spline pieces, whose curvature is continuous already, and no published
+/// smoother of this crate needs one.
 ///
 /// ```
 /// use keyway::geometry::{Arc, Path, PathPiece, Point, Segment};
@@ -158,7 +158,8 @@ impl Path {
     /// The path over these pieces, in order.
     ///
     /// # Errors
-    /// When a piece has an unusable number, or does not begin within 1 µm of the end of the one before.
+    /// When a piece has an unusable number, or does not begin within 1 µm of the end of the one
+    /// before.
     pub fn new(pieces: Vec<PathPiece>) -> Result<Self, PathError> {
         for (piece, one) in pieces.iter().enumerate() {
             if !one.numbers_are_finite() {
@@ -187,9 +188,9 @@ impl Path {
         self.pieces.iter().fold(0.0, |sum, piece| sum + piece.length_m())
     }
 
-    /// Heading jumps between pieces, positive to the left \[rad\]: one number per joint, 0 where the
-    /// path is smooth. Pieces of no length have no heading and are left out; a cusp inside a cubic
-    /// is not a joint.
+    /// Heading jumps between pieces, positive to the left \[rad\]: one number per joint, 0 where
+    /// the path is smooth. Pieces of no length have no heading and are left out; a cusp inside a
+    /// cubic is not a joint.
     pub fn joint_turns_rad(&self) -> Vec<f64> {
         let driven = self.pieces.iter().filter(|piece| piece.length_m() > 0.0);
         let headings: Vec<[f64; 2]> =
@@ -197,8 +198,8 @@ impl Path {
         headings.windows(2).map(|pair| wrap_angle(pair[1][0] - pair[0][1])).collect()
     }
 
-    /// A line along the path whose chords are nowhere farther from it than `deviation_m`; segments stay
-    /// as they are. A deviation that is not positive gives the ends of the pieces.
+    /// A line along the path whose chords are nowhere farther from it than `deviation_m`; segments
+    /// stay as they are. A deviation that is not positive gives the ends of the pieces.
     pub fn flattened(&self, deviation_m: f64) -> Polyline {
         let mut points: Vec<Point> =
             self.pieces.first().map(PathPiece::start).into_iter().collect();
@@ -215,12 +216,12 @@ impl Path {
         Polyline::new(points)
     }
 
-    /// The path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end. A joint takes
-    /// heading and curvature of the piece that begins there.
+    /// The path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end. A joint
+    /// takes heading and curvature of the piece that begins there.
     ///
-    /// A path of no length (or one too long for a number) is one sample, an empty path none. A spacing
-    /// that is not a positive number gives the two ends; no spacing gives more than ten million
-    /// samples.
+    /// A path of no length (or one too long for a number) is one sample, an empty path none. A
+    /// spacing that is not a positive number gives the two ends; no spacing gives more than ten
+    /// million samples.
     pub fn samples(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Passed)
     }
@@ -332,8 +333,8 @@ impl From<Path> for Vec<PathPiece> {
     }
 }
 
-/// The segments of the line, repeated points dropped; a line of a single point is a path of no length.
-/// Points that are not finite are left out.
+/// The segments of the line, repeated points dropped; a line of a single point is a path of no
+/// length. Points that are not finite are left out.
 impl From<&Polyline> for Path {
     fn from(line: &Polyline) -> Self {
         let mut points: Vec<Point> = line.points().to_vec();

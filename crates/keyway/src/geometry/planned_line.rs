@@ -2,11 +2,11 @@
 
 use super::{Point, Polyline};
 
-/// A line through the waypoints of a planned path, and which of them are jump points: the points that a
-/// jump point search would have on it.
+/// A line through the waypoints of a planned path, and which of them are jump points: the points
+/// that a jump point search would have on it.
 ///
-/// The first point, the last one and every point at which the line turns must be jump points, so that the
-/// line through the jump points alone is the same.
+/// The first point, the last one and every point at which the line turns must be jump points, so
+/// that the line through the jump points alone is the same.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlannedLine {
     polyline: Polyline,

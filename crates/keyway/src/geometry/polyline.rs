@@ -58,9 +58,10 @@ impl Polyline {
         self.merged().points.windows(3).map(|p| turn_between(p[1] - p[0], p[2] - p[1])).collect()
     }
 
-    /// The arc length of the point that is nearest to `position`, among those from arc length `from_m` on and at
-    /// most `window_m` farther. So a robot that follows a line never goes back along it, and does not
-    /// leap where the line comes near itself. `from_m` for a line without segments.
+    /// The arc length of the point that is nearest to `position`, among those from arc length
+    /// `from_m` on and at most `window_m` farther. So a robot that follows a line never goes back
+    /// along it, and does not leap where the line comes near itself. `from_m` for a line without
+    /// segments.
     pub(crate) fn nearest_along(&self, position: Point, from_m: f64, window_m: f64) -> f64 {
         let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
         for segment in self.segments() {

@@ -78,7 +78,8 @@ impl Pose {
     pub const RAMP_ARCS: u32 = 4;
 }
 
-/// Body velocity of a wheeled robot. Made by [`Self::new`]; a drive that moves sideways will add a part.
+/// Body velocity of a wheeled robot. Made by [`Self::new`]; a drive that moves sideways will add a
+/// part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Velocity {

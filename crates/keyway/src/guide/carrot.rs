@@ -1,7 +1,7 @@
 //! Carrot: the point of the route a look-ahead distance farther on than the robot has come.
 //!
-//! It moves along with the robot, so the robot follows the route itself and not only its corners. How far it
-//! has come is the nearest point of the route, which never goes back.
+//! It moves along with the robot, so the robot follows the route itself and not only its corners.
+//! How far it has come is the nearest point of the route, which never goes back.
 //!
 //! # Source
 //! The carrot of [`crate::local::Follower`], \[Coulter1992\], for any local planner.
@@ -26,14 +26,15 @@ pub struct CarrotConfig {
 }
 
 impl CarrotConfig {
-    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its robot follows a path.
+    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its
+    /// robot follows a path.
     pub const PAPER: Self = Self { look_ahead_m: 1.0 };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
 
-    /// The look-ahead distance is what the robot drives at full speed in a cycle and twice the time it needs to
-    /// stop.
+    /// The look-ahead distance is what the robot drives at full speed in a cycle and twice the time
+    /// it needs to stop.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
         Self { look_ahead_m: robot.limits.v_max_mps * horizon_s }
@@ -60,7 +61,8 @@ impl Carrot {
     }
 }
 
-/// The place of the route that is so far beyond where the robot has come, and the way from there to the end \[m\].
+/// The place of the route that is so far beyond where the robot has come, and the way from there to
+/// the end \[m\].
 pub(super) fn ahead(
     view: &GuideView<'_>,
     memory: &mut GuideMemory,

@@ -1,10 +1,10 @@
 //! Key points \[You2021\]: a smoothed path -> the point that the local planner drives towards.
 //!
 //! The key points are the turning points of the smoothed path and its goal. The local planner is
-//! sent to one after the other. The next one is taken when the robot has come near enough to the last; with
-//! [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is free, and not before. With a
-//! look-ahead distance the point moves on along the route before that: a robot that drives towards a point next to it
-//! has to creep.
+//! sent to one after the other. The next one is taken when the robot has come near enough to the
+//! last; with [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is
+//! free, and not before. With a look-ahead distance the point moves on along the route before that:
+//! a robot that drives towards a point next to it has to creep.
 //!
 //! # Source
 //! \[You2021\]: section 3, steps (3) and (6), table 3.
@@ -14,9 +14,10 @@
 //! | R2 | `reach_m` | m | 1.5 |
 //!
 //! # Where this differs from the paper
-//! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine map, a key point
-//!   beyond which the way is already in sight would only slow the robot down; and one that is dropped while the next
-//!   one is still behind a corner would leave the robot in front of that corner.
+//! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine
+//!   map, a key point beyond which the way is already in sight would only slow the robot down; and
+//!   one that is dropped while the next one is still behind a corner would leave the robot in front
+//!   of that corner.
 
 use super::carrot::ahead;
 use super::parameters::{BoxedGuide, GuideParameters};
@@ -31,13 +32,13 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointsConfig {
-    /// R2: a key point is passed within this distance \[m\]. With `in-sight`: from so near the robot stands in for
-    /// the key point.
+    /// R2: a key point is passed within this distance \[m\]. With `in-sight`: from so near the
+    /// robot stands in for the key point.
     pub reach_m: f64,
     /// When the next key point is taken: `within-reach` or `in-sight`.
     pub passed_when: PassedWhen,
-    /// The guide point is at least this far ahead along the route, up to the goal: a key point, or from so near the
-    /// place of the route that is so far on \[m\]. 0 for key points alone.
+    /// The guide point is at least this far ahead along the route, up to the goal: a key point, or
+    /// from so near the place of the route that is so far on \[m\]. 0 for key points alone.
     pub look_ahead_m: f64,
 }
 
@@ -49,8 +50,8 @@ pub struct KeyPointsConfig {
 pub enum PassedWhen {
     /// Within the reach, whatever is in sight from there \[You2021\].
     WithinReach,
-    /// When the straight way to the next one keeps the clearance. Within the reach, it is enough that nothing is on
-    /// the way from the key point itself, which may be narrower than that.
+    /// When the straight way to the next one keeps the clearance. Within the reach, it is enough
+    /// that nothing is on the way from the key point itself, which may be narrower than that.
     InSight,
 }
 
@@ -59,9 +60,9 @@ impl KeyPointsConfig {
     pub const PAPER: Self =
         Self { reach_m: 1.5, passed_when: PassedWhen::WithinReach, look_ahead_m: 0.0 };
 
-    /// In sight; the reach is one cycle of driving at full speed, because no robot hits a point more exactly than
-    /// that without slowing down for it. The look-ahead distance is what the robot needs to stand from full speed, the
-    /// cycle in which it is told included.
+    /// In sight; the reach is one cycle of driving at full speed, because no robot hits a point
+    /// more exactly than that without slowing down for it. The look-ahead distance is what the
+    /// robot needs to stand from full speed, the cycle in which it is told included.
     pub fn for_robot(robot: &Robot) -> Self {
         let reach_m = robot.limits.v_max_mps * robot.cycle_s;
         let look_ahead_m = reach_m + robot.limits.stop_m();
@@ -213,7 +214,8 @@ mod tests {
     fn a_point_is_driven_to_where_the_next_one_is_hidden() {
         let config =
             KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight, look_ahead_m: 0.0 };
-        // The cell from (2.5, 1.5) to (3.5, 2.5) hides the next point until the robot is nearly at this one.
+        // The cell from (2.5, 1.5) to (3.5, 2.5) hides the next point until the robot is nearly at
+        // this one.
         let behind = |at: (f64, f64), walls: &[Cell]| {
             guidance(&config, &mut GuideMemory::default(), at, walls).point
         };

@@ -1,4 +1,5 @@
-//! Local goals \[S1\]: a smoothed path -> one point after the other at a fixed spacing along it, the goal last.
+//! Local goals \[S1\]: a smoothed path -> one point after the other at a fixed spacing along it,
+//! the goal last.
 //!
 //! # Source
 //! \[S1\]: the fusion of its planner with the dynamic window approach.
@@ -39,8 +40,9 @@ impl LocalGoalsConfig {
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["spacing_m", "reach_m"];
 
-    /// The spacing is what the robot drives at full speed in a cycle and twice the time it needs to stop. The reach is half of that: so a robot on its route always has at
-    /// least as much before it, and does not slow down for a local goal.
+    /// The spacing is what the robot drives at full speed in a cycle and twice the time it needs to
+    /// stop. The reach is half of that: so a robot on its route always has at least as much before
+    /// it, and does not slow down for a local goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
         let spacing_m = robot.limits.v_max_mps * horizon_s;
@@ -71,8 +73,8 @@ impl LocalGoals {
         Ok(Self { config })
     }
 
-    /// How many local goals a path of a length has: one after each whole spacing that ends before the goal, and the
-    /// goal. Rounding makes none of its own.
+    /// How many local goals a path of a length has: one after each whole spacing that ends before
+    /// the goal, and the goal. Rounding makes none of its own.
     fn count(&self, length_m: f64) -> usize {
         let whole = (length_m / self.config.spacing_m * (1.0 - 1e-9)).floor();
         whole.min(Self::MOST) as usize + 1

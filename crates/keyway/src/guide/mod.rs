@@ -81,8 +81,8 @@ pub trait Guide: Debug {
     /// Where to drive now; `None` for a path without points.
     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance>;
 
-    /// The points of a path that the guide hands out one after the other, the goal last. Just the goal where
-    /// the point moves along.
+    /// The points of a path that the guide hands out one after the other, the goal last. Just the
+    /// goal where the point moves along.
     fn points(&self, path: &Polyline) -> Vec<Point>;
 }
 

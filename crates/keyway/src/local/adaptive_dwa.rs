@@ -1,9 +1,9 @@
-//! Adaptive DWA: a dynamic window approach whose weights of heading and speed depend, candidate by candidate, on the
-//! distance to obstacles at the end of its trajectory.
+//! Adaptive DWA: a dynamic window approach whose weights of heading and speed depend, candidate by
+//! candidate, on the distance to obstacles at the end of its trajectory.
 //!
 //! # Source
-//! \[S1\], with the local goals of [`LocalGoals`](crate::guide::LocalGoals). Equations (4) to (8) and (10) of
-//! \[You2021\], which it shares, are those of [`WindowConfig`].
+//! \[S1\], with the local goals of [`LocalGoals`](crate::guide::LocalGoals). Equations (4) to (8)
+//! and (10) of \[You2021\], which it shares, are those of [`WindowConfig`].
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -13,16 +13,17 @@
 //! | dist* = max(dist - R, R) | [`AdaptiveDwa::factors`] | m | |
 //! | alpha, beta, gamma | `weights` | | not given; those of \[You2021\], table 3 |
 //!
-//! G = sigma((a + (1 - a) dist* / R) alpha heading + beta dist + (a + R / dist*) gamma vel), where sigma divides each
-//! term by its sum over the candidates.
+//! G = sigma((a + (1 - a) dist* / R) alpha heading + beta dist + (a + R / dist*) gamma vel), where
+//! sigma divides each term by its sum over the candidates.
 //!
 //! # Where this differs from the paper
-//! - heading, dist and vel are divided by their sums first and multiplied by their factors then. dist* is in metres.
-//! - The factors are as printed: near obstacles that of speed is a + 1, and far away it falls to a. So speed counts
-//!   *more* near obstacles, the opposite of what the text announces. In the open the factors can make standing still,
-//!   with the local goal straight ahead, the best of all.
-//! - dist is never capped near 2 R, as in the MATLAB sample behind much of this literature: dist* would always be
-//!   R, and the weights constant.
+//! - heading, dist and vel are divided by their sums first and multiplied by their factors then.
+//!   dist* is in metres.
+//! - The factors are as printed: near obstacles that of speed is a + 1, and far away it falls to a.
+//!   So speed counts *more* near obstacles, the opposite of what the text announces. In the open
+//!   the factors can make standing still, with the local goal straight ahead, the best of all.
+//! - dist is never capped near 2 R, as in the MATLAB sample behind much of this literature: dist*
+//!   would always be R, and the weights constant.
 //! - The paper gives no limits of its robot: those of [`Robot::paper`] are read.
 //!
 //! # Errors / cost
@@ -57,8 +58,8 @@ pub struct AdaptiveDwaConfig {
 }
 
 impl AdaptiveDwaConfig {
-    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2 and 3, where it has
-    /// them.
+    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2
+    /// and 3, where it has them.
     pub const PAPER: Self = Self {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
         weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
@@ -83,11 +84,12 @@ impl AdaptiveDwaConfig {
         "safe_radius_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance and the heading at
-    /// the end, as its local goals are farther ahead. The safe radius is half the way to stop at full speed, so within
-    /// that way of an obstacle the factors stay as they are there; distances count up to twice that way. The factor of
-    /// heading is then at most 2: with the paper's 5, and more, standing still with the local goal straight ahead
-    /// scores best in the open.
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance
+    /// and the heading at the end, as its local goals are farther ahead. The safe radius is half
+    /// the way to stop at full speed, so within that way of an obstacle the factors stay as they
+    /// are there; distances count up to twice that way. The factor of heading is then at most 2:
+    /// with the paper's 5, and more, standing still with the local goal straight ahead scores best
+    /// in the open.
     pub fn for_robot(robot: &Robot) -> Self {
         let stop_m = robot.limits.stop_m();
         let window = WindowConfig::for_robot(robot);
@@ -124,8 +126,8 @@ impl AdaptiveDwa {
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
-    /// the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
+    /// error names the field.
     pub fn new(
         config: AdaptiveDwaConfig,
         robot: impl Into<Arc<Robot>>,

@@ -15,11 +15,13 @@ registry! {
     LocalConfig by LocalParameters for Robot;
     /// The classic dynamic window approach.
     Dwa(DwaConfig) => Dwa;
-    /// Dynamic window approach towards key points; the weight of speed falls where obstacles stand ahead.
+    /// Dynamic window approach towards key points; the weight of speed falls where obstacles stand
+    /// ahead.
     KeyPointDwa(KeyPointDwaConfig) => KeyPointDwa;
     /// Dynamic window approach whose weights depend on the distance at a trajectory's end.
     AdaptiveDwa(AdaptiveDwaConfig) => AdaptiveDwa;
-    /// Follows the route, and goes around what is unknown by guide points and a dynamic window approach.
+    /// Follows the route, and goes around what is unknown by guide points and a dynamic window
+    /// approach.
     GuidedDwa(GuidedDwaConfig) => GuidedDwa;
     /// Looks for the course through space and time that ends soonest.
     SpaceTime(SpaceTimeConfig) => SpaceTime;

@@ -16,19 +16,20 @@ pub struct Decision {
     pub evaluation: Evaluation,
 }
 
-/// How the candidates of one cycle fared. A planner that does not choose between candidates leaves it
-/// empty.
+/// How the candidates of one cycle fared. A planner that does not choose between candidates leaves
+/// it empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Velocities that were looked at.
     pub candidates: u32,
-    /// Those of them that let the robot drive on: admissible, and faster than standing, or leading elsewhere within the horizon where
-    /// whole courses are compared.
+    /// Those of them that let the robot drive on: admissible, and faster than standing, or leading
+    /// elsewhere within the horizon where whole courses are compared.
     pub driving: u32,
-    /// Why the others were refused: each rule of the planner, also those that refused none. No candidate counts twice.
+    /// Why the others were refused: each rule of the planner, also those that refused none. No
+    /// candidate counts twice.
     pub rejected: Rejections,
-    /// The best way on comes near something that moves, where that is not forbidden: the robot waits for it, makes way for it,
-    /// or drives beside it.
+    /// The best way on comes near something that moves, where that is not forbidden: the robot
+    /// waits for it, makes way for it, or drives beside it.
     pub near_mover: bool,
     /// Each term's share of the chosen candidate's score.
     pub chosen: Shares,
@@ -37,8 +38,9 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Whether the robot comes on no faster because of something that moves: the best way on comes near it, or nothing lets the
-    /// robot drive and it is in the way ([`Rejections::MOVER`]). Then it is better to wait than to look for another way.
+    /// Whether the robot comes on no faster because of something that moves: the best way on comes
+    /// near it, or nothing lets the robot drive and it is in the way ([`Rejections::MOVER`]). Then
+    /// it is better to wait than to look for another way.
     pub fn waits_for_mover(&self) -> bool {
         self.near_mover || self.driving == 0 && self.rejected.count(Rejections::MOVER) > 0
     }
@@ -55,7 +57,8 @@ pub struct Rejection {
     pub count: u32,
 }
 
-/// The rules of a local planner with the candidates that each refused; up to [`Self::MOST`] of them.
+/// The rules of a local planner with the candidates that each refused; up to [`Self::MOST`] of
+/// them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Rejections(ArrayVec<Rejection, { Self::MOST }>);
@@ -67,7 +70,8 @@ impl Rejections {
     /// No planner has more rules.
     pub const MOST: usize = 8;
 
-    /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`] are left out.
+    /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`] are
+    /// left out.
     pub(crate) fn none_by(rules: &[(&'static str, &'static str)]) -> Self {
         let rejection = |&(rule, because): &(&'static str, &'static str)| Rejection {
             rule: Cow::Borrowed(rule),

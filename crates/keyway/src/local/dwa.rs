@@ -1,9 +1,9 @@
-//! The classic dynamic window approach (DWA): the winner among the admissible velocities is the one that best
-//! combines heading towards the guide point, distance to obstacles, and speed.
+//! The classic dynamic window approach (DWA): the winner among the admissible velocities is the one
+//! that best combines heading towards the guide point, distance to obstacles, and speed.
 //!
 //! # Source
-//! \[Fox1997\], in the form of \[You2021\]: equation (9), tables 2 and 3. Equations (4) to (8) and (10), which it
-//! shares with its relatives, are those of [`WindowConfig`].
+//! \[Fox1997\], in the form of \[You2021\]: equation (9), tables 2 and 3. Equations (4) to (8) and
+//! (10), which it shares with its relatives, are those of [`WindowConfig`].
 //!
 //! | paper | here | unit | table 3 |
 //! |---|---|---|---|
@@ -12,8 +12,8 @@
 //! | gamma | `weights.speed` | | 0.1 |
 //!
 //! # Two readings of dist
-//! \[You2021\] means the nearest point of the trajectory: [`DwaConfig::PAPER`]. The sample program behind it measures
-//! at the trajectory's end, and caps the term: [`DwaConfig::SAMPLE`].
+//! \[You2021\] means the nearest point of the trajectory: [`DwaConfig::PAPER`]. The sample program
+//! behind it measures at the trajectory's end, and caps the term: [`DwaConfig::SAMPLE`].
 //!
 //! # Errors / cost
 //! See [`WindowConfig`].
@@ -77,20 +77,22 @@ impl DwaConfig {
         distance_term_cap_m: 5.0,
     };
 
-    /// The MATLAB sample that much of this literature runs as the classic dynamic window approach: the distance is that
-    /// of the trajectory's end, and in the evaluation at most 2 R1 = 1 m. R1 = 0.5 m is the radius that its obstacles,
-    /// points, have; here they are squares of that half width, so nothing is subtracted.
+    /// The MATLAB sample that much of this literature runs as the classic dynamic window approach:
+    /// the distance is that of the trajectory's end, and in the evaluation at most 2 R1 = 1 m. R1 =
+    /// 0.5 m is the radius that its obstacles, points, have; here they are squares of that half
+    /// width, so nothing is subtracted.
     ///
-    /// It drops candidates whose braking distance exceeds the distance, which is (7). There the cap does not count: it
-    /// would hold the robot below 0.632 m/s.
+    /// It drops candidates whose braking distance exceeds the distance, which is (7). There the cap
+    /// does not count: it would hold the robot below 0.632 m/s.
     pub const SAMPLE: Self = Self {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
         distance_term_cap_m: 1.0,
         ..Self::PAPER
     };
 
-    /// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma of its table 3. Towards
-    /// key points, key(v, omega) is the heading of the classic dynamic window approach.
+    /// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma
+    /// of its table 3. Towards key points, key(v, omega) is the heading of the classic dynamic
+    /// window approach.
     pub const FUSED: Self =
         Self { weights: Weights { heading: 0.15, distance: 0.1, speed: 0.1 }, ..Self::PAPER };
 
@@ -98,9 +100,10 @@ impl DwaConfig {
     pub const READINGS: &'static [&'static str] =
         &["window.movers_s", "window.distance_cap_m", "distance_term_cap_m"];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same cap in the
-    /// evaluation. Distance weighs little: with 0.1, heading and distance take turns beside obstacles, and the turn rate
-    /// goes to and fro; with 0.02, a long robot gets stuck more often.
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same
+    /// cap in the evaluation. Distance weighs little: with 0.1, heading and distance take turns
+    /// beside obstacles, and the turn rate goes to and fro; with 0.02, a long robot gets stuck more
+    /// often.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {

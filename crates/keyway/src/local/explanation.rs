@@ -1,5 +1,5 @@
-//! Why a local planner decides as it does: every candidate with its fate, and what would free a robot that cannot
-//! drive.
+//! Why a local planner decides as it does: every candidate with its fate, and what would free a
+//! robot that cannot drive.
 
 use super::Shares;
 use crate::geometry::{Pose, Velocity};
@@ -17,7 +17,8 @@ pub struct Explanation {
     pub chosen: Option<usize>,
     /// The second best one.
     pub runner_up: Option<usize>,
-    /// What would let the robot drive, in the order in which it was tried. Empty while some candidate does.
+    /// What would let the robot drive, in the order in which it was tried. Empty while some
+    /// candidate does.
     pub remedies: Vec<Remedy>,
 }
 
@@ -28,8 +29,8 @@ pub struct JudgedCandidate {
     pub velocity: Velocity,
     /// Admissible or refused.
     pub fate: Fate,
-    /// Where it would lead: poses at equal intervals of time, the last one at the end of the prediction, or at the
-    /// contact. The pose at which the command acts is not among them.
+    /// Where it would lead: poses at equal intervals of time, the last one at the end of the
+    /// prediction, or at the contact. The pose at which the command acts is not among them.
     pub poses: Vec<Pose>,
 }
 
@@ -80,7 +81,8 @@ pub enum Change {
         /// By how much, positive to the left \[rad\].
         by_rad: f64,
     },
-    /// To stand, then to back up: the planner's `window.backwards`, and the robot's `limits.v_min_mps` negative.
+    /// To stand, then to back up: the planner's `window.backwards`, and the robot's
+    /// `limits.v_min_mps` negative.
     BackUp {
         /// Its value \[m/s\].
         v_min_mps: f64,

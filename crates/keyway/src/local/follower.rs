@@ -1,8 +1,8 @@
 //! Pure pursuit \[Coulter1992\]: a route -> the velocity that follows it. It looks at no obstacle.
 //!
-//! The robot drives on the arc that leads to the point of the route a look-ahead distance farther on, as
-//! fast as its limits and the rest of the route allow. For routes that are known to be free, and as
-//! what other local planners are compared with.
+//! The robot drives on the arc that leads to the point of the route a look-ahead distance farther
+//! on, as fast as its limits and the rest of the route allow. For routes that are known to be free,
+//! and as what other local planners are compared with.
 //!
 //! # Source
 //! \[Coulter1992\], section 2.
@@ -16,11 +16,12 @@
 //!
 //! # Where this differs from the paper
 //! - The robot turns on the spot while the carrot is more than a right angle off its heading.
-//! - The speed is not constant: it is the largest one for which the arc keeps the limit of the turn rate and
-//!   from which the robot can stop at the end of the route.
+//! - The speed is not constant: it is the largest one for which the arc keeps the limit of the turn
+//!   rate and from which the robot can stop at the end of the route.
 //!
 //! # Errors / cost
-//! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a cycle.
+//! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a
+//! cycle.
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
@@ -41,14 +42,15 @@ pub struct FollowerConfig {
 }
 
 impl FollowerConfig {
-    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its robot follows a path.
+    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its
+    /// robot follows a path.
     pub const PAPER: Self = Self { look_ahead_m: 1.0 };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
 
-    /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full speed, but at
-    /// least its inscribed radius.
+    /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full
+    /// speed, but at least its inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
@@ -224,8 +226,8 @@ mod tests {
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
         let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);
         assert!((wanted.v - 0.45).abs() < 1e-12 && (wanted.omega - 1.5).abs() < 1e-12);
-        // 0.01 m to go from rest: 0.075 m/s takes 3.75 mm in this cycle, 5 mm in the next one, which brakes to 0.025
-        // m/s, and 1.25 mm in the last one.
+        // 0.01 m to go from rest: 0.075 m/s takes 3.75 mm in this cycle, 5 mm in the next one,
+        // which brakes to 0.025 m/s, and 1.25 mm in the last one.
         let wanted = small().towards(&scene, Point::new(0.3, 0.0), 0.01);
         assert!((wanted.v - 0.075).abs() < 1e-12 && wanted.omega == 0.0);
         // Behind: on the spot, to the left.

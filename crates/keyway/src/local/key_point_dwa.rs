@@ -1,9 +1,10 @@
-//! Key-point DWA: a dynamic window approach that heads for the key points of the route, and weighs speed less the
-//! more obstacles stand ahead.
+//! Key-point DWA: a dynamic window approach that heads for the key points of the route, and weighs
+//! speed less the more obstacles stand ahead.
 //!
 //! # Source
-//! \[You2021\]: equations (11) and (12), tables 2 and 3, and the weights of its fused runs. The key points are
-//! handed out by [`KeyPoints`](crate::guide::KeyPoints); equations (4) to (8) and (10) are those of [`WindowConfig`].
+//! \[You2021\]: equations (11) and (12), tables 2 and 3, and the weights of its fused runs. The key
+//! points are handed out by [`KeyPoints`](crate::guide::KeyPoints); equations (4) to (8) and (10)
+//! are those of [`WindowConfig`].
 //!
 //! | paper | here | unit | fused runs |
 //! |---|---|---|---|
@@ -15,15 +16,16 @@
 //! | gamma(c, d) = `gamma_max` / (l1 c + l2 d + 1/2) | [`SpeedWeight::at`] | | |
 //!
 //! # Where this differs from the paper
-//! - The regions are drawn there but not described. Here they are two half-discs ahead of the robot: up to
-//!   `high_risk_m`, and from there to `low_risk_m`.
-//! - The number of obstacles is the occupied area in a region over `obstacle_area_m2`: 1 m² counts the cells of the
-//!   paper's grid. A cell is in a region when its centre is.
-//! - gamma is never above `gamma_max`: by the equation as printed, 0.1 m² would double the weight that open ground
-//!   has.
+//! - The regions are drawn there but not described. Here they are two half-discs ahead of the
+//!   robot: up to `high_risk_m`, and from there to `low_risk_m`.
+//! - The number of obstacles is the occupied area in a region over `obstacle_area_m2`: 1 m² counts
+//!   the cells of the paper's grid. A cell is in a region when its centre is.
+//! - gamma is never above `gamma_max`: by the equation as printed, 0.1 m² would double the weight
+//!   that open ground has.
 //!
 //! # Errors / cost
-//! See [`WindowConfig`]. In addition, the occupied cells of the regions are counted once in each cycle.
+//! See [`WindowConfig`]. In addition, the occupied cells of the regions are counted once in each
+//! cycle.
 
 use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
@@ -97,9 +99,9 @@ impl SpeedWeight {
         obstacle_area_m2: 1.0,
     };
 
-    /// The regions of the paper, scaled to what a decision of this robot can change: the low-risk region ends at
-    /// [`Robot::decision_reach_m`], the high-risk region half as far away, and one obstacle is the same part of them
-    /// as one cell of the paper's grid.
+    /// The regions of the paper, scaled to what a decision of this robot can change: the low-risk
+    /// region ends at [`Robot::decision_reach_m`], the high-risk region half as far away, and one
+    /// obstacle is the same part of them as one cell of the paper's grid.
     pub fn for_robot(robot: &Robot) -> Self {
         let low_risk_m = robot.decision_reach_m();
         let scale = low_risk_m / Self::PAPER.low_risk_m;
@@ -111,13 +113,15 @@ impl SpeedWeight {
         }
     }
 
-    /// gamma(c, d), eq. (12): the weight with so many obstacles in the high-risk and in the low-risk region.
+    /// gamma(c, d), eq. (12): the weight with so many obstacles in the high-risk and in the
+    /// low-risk region.
     pub fn at(&self, c: f64, d: f64) -> f64 {
         let risk = self.high_risk * c + self.low_risk * d;
         self.largest * (1.0 / (risk + 0.5)).min(1.0)
     }
 
-    /// c and d: what stands in the high-risk and in the low-risk region of a robot at `pose`, in obstacles.
+    /// c and d: what stands in the high-risk and in the low-risk region of a robot at `pose`, in
+    /// obstacles.
     fn obstacles_ahead(&self, obstacles: &Clearance<'_>, pose: Pose) -> (f64, f64) {
         let (frame, bits) = (obstacles.frame(), obstacles.obstacles());
         let cell_m = frame.resolution_m();
@@ -164,14 +168,16 @@ impl SpeedWeight {
     }
 }
 
-/// The rows of a map of this height that may have a centre within `reach` of a coordinate \[cells\].
+/// The rows of a map of this height that may have a centre within `reach` of a coordinate
+/// \[cells\].
 fn rows_within(y: f64, reach: f64, height: u32) -> std::ops::RangeInclusive<i32> {
     let last = height as i32 - 1;
     ((y - reach).floor() as i32).max(0)..=((y + reach).floor() as i32).min(last)
 }
 
 impl KeyPointDwaConfig {
-    /// As published: tables 2 and 3, with the weights of the fused runs; for maps with cells of 1 m.
+    /// As published: tables 2 and 3, with the weights of the fused runs; for maps with cells of 1
+    /// m.
     pub const PAPER: Self = Self {
         window: WindowConfig::PAPER,
         weights: KeyPointWeights { key_point: 0.15, distance: 0.1 },
@@ -190,9 +196,10 @@ impl KeyPointDwaConfig {
         "distance_term_cap_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same cap in the
-    /// evaluation, and [`SpeedWeight::for_robot`]. Distance weighs less than speed does where much stands ahead; where
-    /// it weighs more, a robot stops in front of what stands behind its goal.
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same
+    /// cap in the evaluation, and [`SpeedWeight::for_robot`]. Distance weighs less than speed does
+    /// where much stands ahead; where it weighs more, a robot stops in front of what stands behind
+    /// its goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {
@@ -223,8 +230,8 @@ impl KeyPointDwa {
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names
-    /// the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
+    /// error names the field.
     pub fn new(
         config: KeyPointDwaConfig,
         robot: impl Into<Arc<Robot>>,
@@ -330,7 +337,8 @@ mod tests {
         let obstacles = Clearance::new(map.frame(), map.occupied());
         let ahead =
             |x, y, theta| SpeedWeight::PAPER.obstacles_ahead(&obstacles, Pose::new(x, y, theta));
-        // Beside it, at exactly 90 degrees, stands one at 1 m; (3, 2) and (4, 2) are 2 m and 2.24 m away, (3, 3) 3 m.
+        // Beside it, at exactly 90 degrees, stands one at 1 m; (3, 2) and (4, 2) are 2 m and 2.24 m
+        // away, (3, 3) 3 m.
         assert_eq!(ahead(3.5, 0.5, FRAC_PI_2), (1.0, 3.0));
         assert_eq!(ahead(3.5, 0.5, -FRAC_PI_2), (1.0, 0.0));
         // Half a metre on: 1.5 m belongs to the high-risk region.

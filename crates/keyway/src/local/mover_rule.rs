@@ -9,20 +9,21 @@
 //! | P(t) | the footprint where the velocity leads: one cycle of change, then the arc | |
 //! | D(t) | the disc around c + v t of radius r + e + f t: where the mover is when it goes on as it does | |
 //!
-//! A velocity is refused when at some t the distance between P(t) and D(t) is less than the margin, **and** less than
-//! that between P(0) and D(t), the distance of a robot that had stayed where it is. What comes after the first time
-//! at which D(t) would reach a robot that had stayed does not count, as nothing is lost by then. So standing is never
-//! refused: a robot waits until a mover has passed; who is run after may drive on; and who is inside a disc may leave
-//! it.
+//! A velocity is refused when at some t the distance between P(t) and D(t) is less than the margin,
+//! **and** less than that between P(0) and D(t), the distance of a robot that had stayed where it
+//! is. What comes after the first time at which D(t) would reach a robot that had stayed does not
+//! count, as nothing is lost by then. So standing is never refused: a robot waits until a mover has
+//! passed; who is run after may drive on; and who is inside a disc may leave it.
 //!
 //! # What it misses
-//! A mover that turns or speeds up by more than its uncertainty is seen to do so in the next cycle only. Whether the
-//! robot could then still stop is not asked: that is the [stop rule](super::StopRule). A mover may run into a robot
-//! that stands.
+//! A mover that turns or speeds up by more than its uncertainty is seen to do so in the next cycle
+//! only. Whether the robot could then still stop is not asked: that is the [stop
+//! rule](super::StopRule). A mover may run into a robot that stands.
 //!
 //! # Errors / cost
-//! None. Per velocity and mover at least ten poses with two distances each; steps are no longer than the room, but at least
-//! 1 cm, so a disc may be grazed by as much. Without movers it costs nothing. Allocates nothing.
+//! None. Per velocity and mover at least ten poses with two distances each; steps are no longer
+//! than the room, but at least 1 cm, so a disc may be grazed by as much. Without movers it costs
+//! nothing. Allocates nothing.
 
 use crate::geometry::{Pose, Velocity};
 use crate::map::Core;
@@ -70,8 +71,8 @@ impl<'a> MoverRule<'a> {
         self.room_m(candidate).is_none()
     }
 
-    /// The least room that a velocity leaves to any mover, as far as it counts \[m\], infinite without movers; `None` when it is
-    /// refused.
+    /// The least room that a velocity leaves to any mover, as far as it counts \[m\], infinite
+    /// without movers; `None` when it is refused.
     #[inline]
     pub(crate) fn room_m(&self, candidate: Velocity) -> Option<f64> {
         if self.movers.is_empty() { Some(f64::INFINITY) } else { self.least_room_m(candidate) }
@@ -113,7 +114,8 @@ impl Way<'_, '_> {
         MoverRule::UNCERTAIN_PART * all_m
     }
 
-    /// The room between the footprint at a pose and where a mover is then \[m\]; negative when they meet.
+    /// The room between the footprint at a pose and where a mover is then \[m\]; negative when they
+    /// meet.
     fn room_m(&self, pose: Pose, mover: &Mover, after_s: f64) -> f64 {
         let centre = mover.centre + mover.velocity_mps * after_s;
         let disc_m = mover.radius_m + Self::off_m(mover, after_s);
@@ -166,7 +168,8 @@ mod tests {
         Mover { velocity_mps, ..Mover::standing(0, Point::new(x, y), 0.3) }
     }
 
-    /// Whether a small robot at the origin that moves may take a velocity, for 2 s and with 2 cm of room.
+    /// Whether a small robot at the origin that moves may take a velocity, for 2 s and with 2 cm of
+    /// room.
     fn admits(velocity: Velocity, candidate: Velocity, mover: Mover) -> bool {
         let (robot, movers) = (Robot::small(), [mover]);
         let start = (Pose::default(), velocity);

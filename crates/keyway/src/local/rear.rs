@@ -11,8 +11,9 @@ pub(super) struct Rear {
     points: Vec<Point>,
 }
 
-/// A distance between points of an outline: so many inscribed radii, but not much less than the footprint is long, as a
-/// footprint that turns around a point of its edge has no inscribed circle \[m\].
+/// A distance between points of an outline: so many inscribed radii, but not much less than the
+/// footprint is long, as a footprint that turns around a point of its edge has no inscribed circle
+/// \[m\].
 pub(super) fn spacing_m(footprint: &Footprint, inscribed_radii: f64) -> f64 {
     const LEAST_OF_CIRCUMSCRIBED: f64 = 0.02;
     let least_m = LEAST_OF_CIRCUMSCRIBED * footprint.circumscribed_radius_m();
@@ -27,7 +28,8 @@ impl Rear {
             Footprint::Polygon(_) => {
                 let spacing_m = spacing_m(footprint, spacing_radii);
                 let mut points = outline_points(footprint, spacing_m);
-                // The rearmost ones, too, of a footprint that is all ahead of its centre of rotation.
+                // The rearmost ones, too, of a footprint that is all ahead of its centre of
+                // rotation.
                 let rearmost_m = points.iter().map(|point| point.x).fold(f64::INFINITY, f64::min);
                 points.retain(|point| point.x < 0.0 || point.x <= rearmost_m + 1e-9);
                 points
@@ -124,7 +126,8 @@ fn half_circle(radius_m: f64, spacing_radii: f64, around_rad: f64) -> Vec<Point>
     (0..=parts as u32).map(at).collect()
 }
 
-/// Points along the edges of a polygon, the first one again at the end, no farther apart than `spacing_m`; none of a disc.
+/// Points along the edges of a polygon, the first one again at the end, no farther apart than
+/// `spacing_m`; none of a disc.
 pub(super) fn outline_points(footprint: &Footprint, spacing_m: f64) -> Vec<Point> {
     let Footprint::Polygon(polygon) = footprint else { return Vec::new() };
     let vertices = polygon.vertices();

@@ -113,7 +113,8 @@ impl BitGrid {
         set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
     }
 
-    /// Clears the bits of row `y` that are not in columns `from..=to`; all of them when there are none.
+    /// Clears the bits of row `y` that are not in columns `from..=to`; all of them when there are
+    /// none.
     pub(crate) fn keep_span(&mut self, y: i32, from: i32, to: i32) {
         let width = self.width as i32;
         if y < 0 || y >= self.height as i32 {
@@ -197,8 +198,8 @@ impl BitGrid {
         word(columns.first) & columns.masks[0] | word(columns.last) & columns.masks[1] != 0
     }
 
-    /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in order.
-    /// Empty words cost one test per 64 cells.
+    /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in
+    /// order. Empty words cost one test per 64 cells.
     pub fn ones_in_span(&self, y: i32, from: i32, to: i32) -> impl Iterator<Item = i32> + '_ {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         let words: &[u64] = if y < 0 || y >= self.height as i32 || from > to {
@@ -228,7 +229,8 @@ impl BitGrid {
         })
     }
 
-    /// Visits the columns of [`Self::ones_in_span`] until `visit` returns false; true when it never did.
+    /// Visits the columns of [`Self::ones_in_span`] until `visit` returns false; true when it never
+    /// did.
     pub(crate) fn all_ones_in_span(
         &self,
         y: i32,
@@ -257,7 +259,8 @@ impl BitGrid {
         true
     }
 
-    /// How many set cells follow one another in a row to the left of a cell of the grid, and to its right.
+    /// How many set cells follow one another in a row to the left of a cell of the grid, and to its
+    /// right.
     pub(crate) fn ones_beside(&self, cell: Cell) -> (i32, i32) {
         let row = self.row(cell.y);
         let (at, width) = ((cell.x + 1) as usize, self.width as usize);
@@ -326,8 +329,8 @@ impl BitGrid {
         (0..self.height as i32).map(|y| ones(y) - padding).sum()
     }
 
-    /// The same bits with columns and rows exchanged: block by block of 64 x 64 bits, each with some
-    /// 400 word operations.
+    /// The same bits with columns and rows exchanged: block by block of 64 x 64 bits, each with
+    /// some 400 word operations.
     #[must_use]
     pub fn transposed(&self) -> Self {
         let mut turned = Self::new(self.height, self.width, self.padding);
@@ -353,8 +356,9 @@ impl BitGrid {
     }
 }
 
-/// Exchanges rows and columns of 64 x 64 bits: halves are exchanged across the diagonal, then quarters
-/// within them, down to single bits (H. Warren, "Hacker's Delight", 2nd edition, section 7-3).
+/// Exchanges rows and columns of 64 x 64 bits: halves are exchanged across the diagonal, then
+/// quarters within them, down to single bits (H. Warren, "Hacker's Delight", 2nd edition, section
+/// 7-3).
 fn transpose_block(block: &mut [u64; 64]) {
     let (mut half, mut low) = (32, u64::from(u32::MAX));
     while half != 0 {

@@ -8,11 +8,11 @@
 //! # Which cells are safe
 //! A robot at the centre of a cell with cost 253 or 254 touches an obstacle, whatever its heading;
 //! the converse does not hold. Distances run from centre to centre, so an obstacle's square may be
-//! nearer by up to half of its diagonal (0.71 cells) than the cost suggests: a round
-//! robot of the inscribed radius whose centre is on a cell below 253 may still touch a corner of an
-//! obstacle. To forbid that, add half a diagonal to the inscribed radius, or plan on a
-//! [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint that is not
-//! round needs a check at its heading in all cells up to its circumscribed radius
+//! nearer by up to half of its diagonal (0.71 cells) than the cost suggests: a round robot of the
+//! inscribed radius whose centre is on a cell below 253 may still touch a corner of an obstacle. To
+//! forbid that, add half a diagonal to the inscribed radius, or plan on a
+//! [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint that is
+//! not round needs a check at its heading in all cells up to its circumscribed radius
 //! ([`Footprint::is_free`](super::Footprint::is_free)).
 //!
 //! # Who reads it
@@ -358,7 +358,8 @@ mod tests {
 
     #[test]
     fn a_cell_below_253_may_still_touch_a_corner() {
-        // The centre of (1, 1) is sqrt(2) m from that of the obstacle, and half a diagonal nearer to it.
+        // The centre of (1, 1) is sqrt(2) m from that of the obstacle, and half a diagonal nearer
+        // to it.
         let grid = OccupancyGrid::from_ascii(&["...", "...", "#.."]);
         let config = CostmapConfig {
             inscribed_radius_m: 1.4,

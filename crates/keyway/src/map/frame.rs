@@ -164,7 +164,8 @@ impl GridFrame {
         self.cell_from_grid(self.grid_from_world(world))
     }
 
-    /// The same, also outside the grid: there the cell that would hold the point if the grid went on.
+    /// The same, also outside the grid: there the cell that would hold the point if the grid went
+    /// on.
     pub fn cell_near(&self, world: Point) -> Cell {
         let grid = self.grid_from_world(world);
         self.cell_from_grid(grid)

@@ -36,8 +36,8 @@ pub struct RayCells {
     leave: f64,
 }
 
-/// A ray that begins nearer than this to the origin of the grid \[cells\] knows its place on the grid far better
-/// than to a cell.
+/// A ray that begins nearer than this to the origin of the grid \[cells\] knows its place on the
+/// grid far better than to a cell.
 const NEAR_CELLS: f64 = 1e9;
 
 /// One coordinate of a ray: the column (or row) it is in and where it leaves it.
@@ -71,9 +71,10 @@ impl RayCells {
         Self { x, y, enter, leave }
     }
 
-    /// Where the ray enters the first cell that is an obstacle, if it passes one: exactly the place that
-    /// going from cell to cell finds. `steps` gives the number of steps (to any of the 8 neighbours) from a
-    /// cell of the grid to an obstacle cell: 0 for one, and never more than to the nearest.
+    /// Where the ray enters the first cell that is an obstacle, if it passes one: exactly the place
+    /// that going from cell to cell finds. `steps` gives the number of steps (to any of the 8
+    /// neighbours) from a cell of the grid to an obstacle cell: 0 for one, and never more than to
+    /// the nearest.
     ///
     /// Costs a few operations per square of free cells that the ray crosses.
     pub fn enters_first(mut self, steps: impl Fn(Cell) -> i32) -> Option<f64> {
@@ -164,8 +165,8 @@ impl Axis {
         }
     }
 
-    /// Goes on to the column in which the ray is after distance `enter`: it is entered by then, and left
-    /// later. That is where passing one grid line after the other leads.
+    /// Goes on to the column in which the ray is after distance `enter`: it is entered by then, and
+    /// left later. That is where passing one grid line after the other leads.
     fn go_to(&mut self, enter: f64) {
         if self.rate == 0.0 {
             return;

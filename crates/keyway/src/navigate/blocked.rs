@@ -62,8 +62,8 @@ pub enum Blocked {
     /// The robot stands at its goal and has no room to turn to the heading there, to either side.
     #[error("there is no room at the goal to turn to its heading")]
     NoRoomToTurn,
-    /// The robot is where the map says nothing, which is no place to plan from: its localisation is wrong, or the map is
-    /// too small. The command brakes.
+    /// The robot is where the map says nothing, which is no place to plan from: its localisation is
+    /// wrong, or the map is too small. The command brakes.
     #[error(
         "the pose ({}, {}) is outside the map: correct the localisation, or use a map that holds the place",
         Computed(.0.x), Computed(.0.y)
@@ -77,8 +77,8 @@ pub enum Blocked {
         /// Since a beam said something \[s\]; infinite when none ever has.
         silent_s: f64,
     },
-    /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided the robot could no longer
-    /// stop in time.
+    /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided
+    /// the robot could no longer stop in time.
     #[error(transparent)]
     Unsafe(Refusal),
     /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The

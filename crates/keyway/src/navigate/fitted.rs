@@ -11,8 +11,8 @@ use crate::sense::Tracker;
 use crate::smooth::Smoother;
 use std::sync::Arc;
 
-/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them. Its
-/// planner, smoother, guide and local planner can be exchanged for others of your own.
+/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them.
+/// Its planner, smoother, guide and local planner can be exchanged for others of your own.
 ///
 /// ```
 /// use keyway::guide::{Carrot, CarrotConfig};

@@ -16,7 +16,8 @@ pub struct Goal {
 }
 
 impl Goal {
-    /// How far a heading is from the one at the end, positive to the left \[rad\]; `None` where any is right.
+    /// How far a heading is from the one at the end, positive to the left \[rad\]; `None` where any
+    /// is right.
     pub(crate) fn turn_left_rad(&self, pose: Pose) -> Option<f64> {
         self.heading_rad.map(|heading_rad| wrap_angle(heading_rad - pose.theta))
     }

@@ -1,7 +1,8 @@
-//! Whether a footprint fits along a route: straight along each stretch, turning on the spot where two of them meet.
+//! Whether a footprint fits along a route: straight along each stretch, turning on the spot where
+//! two of them meet.
 //!
-//! Routes are planned for a disc. Where that is smaller than the robot, a route leads where the robot may not fit, and
-//! nobody would know before it stands there.
+//! Routes are planned for a disc. Where that is smaller than the robot, a route leads where the
+//! robot may not fit, and nobody would know before it stands there.
 
 use crate::geometry::{Point, Polyline, Pose, wrap_angle};
 use crate::map::DistanceField;
@@ -10,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
-/// The first place of a route at which the footprint does not fit. A robot that drives curves may pass there all the same,
-/// and its recoveries may find a way through; but it may also get stuck.
+/// The first place of a route at which the footprint does not fit. A robot that drives curves may
+/// pass there all the same, and its recoveries may find a way through; but it may also get stuck.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Misfit {
@@ -34,8 +35,8 @@ pub enum Misfit {
 }
 
 impl Misfit {
-    /// The first one along a path; none where a robot of this footprint can drive it, turning on the spot at its corners.
-    /// Costs a few look-ups per stretch in the open.
+    /// The first one along a path; none where a robot of this footprint can drive it, turning on
+    /// the spot at its corners. Costs a few look-ups per stretch in the open.
     pub(crate) fn first_along(
         path: &Polyline,
         footprint: &Footprint,
@@ -97,7 +98,8 @@ mod tests {
             Misfit::first_along(&path, &footprint, &field)
         };
         let around = [[1.0, 1.5], [5.5, 1.5], [5.5, 3.3]];
-        // The diagonal of the square is 0.99 m: it turns within the lane. The rectangle is 1.08 m from corner to corner.
+        // The diagonal of the square is 0.99 m: it turns within the lane. The rectangle is 1.08 m
+        // from corner to corner.
         assert_eq!(along(&around, 0.7, 0.7), None);
         let at = Point::new(5.5, 1.5);
         let turn = Misfit::Turn { at, from_deg: 0.0, to_deg: 90.0 };

@@ -19,8 +19,8 @@ impl Progress {
     /// The part of what a slow robot drives in the time by which it has to get closer.
     const SLOW_PART: f64 = 0.1;
 
-    /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or a tenth of what a slow
-    /// robot drives in that time.
+    /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or a tenth of what a
+    /// slow robot drives in that time.
     pub fn step_m(robot: &Robot, within_s: f64) -> f64 {
         (Self::SLOW_PART * robot.limits.v_max_mps * within_s).min(Self::LARGEST_STEP_M)
     }

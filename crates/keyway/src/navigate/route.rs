@@ -24,7 +24,8 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NavigateError {
-    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with `robot`.
+    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with
+    /// `robot`.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
@@ -143,8 +144,8 @@ fn nearest_text(nearest: Option<&Point>) -> String {
 /// way.
 ///
 /// The last one is for a robot that has met something on its way: a lane between what it sees and a
-/// wall may fit the robot, and yet hold no cell whose centre keeps the clearance. There the route says
-/// where to try, and the local planner whether the robot fits.
+/// wall may fit the robot, and yet hold no cell whose centre keeps the clearance. There the route
+/// says where to try, and the local planner whether the robot fits.
 #[derive(Clone, Debug)]
 pub(super) struct Layers {
     pub(super) maps: Vec<SearchMap>,
@@ -165,8 +166,8 @@ impl Layers {
             }
         }
         let fitting = maps.len();
-        // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this to
-        // its middle.
+        // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this
+        // to its middle.
         let narrowest_m = least_m.min(stack.map.clearance_m);
         let clearance_m = (narrowest_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
@@ -279,9 +280,9 @@ impl Router {
         Ok(self.wider(known, &query, &route).unwrap_or(route))
     }
 
-    /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on the given one: near the
-    /// middle of the narrowest place, and not along its side. The clearance is found by halving; its layer stays, so that
-    /// later routes may use it.
+    /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on
+    /// the given one: near the middle of the narrowest place, and not along its side. The clearance
+    /// is found by halving; its layer stays, so that later routes may use it.
     fn wider(&mut self, known: &OccupancyGrid, query: &RouteQuery, route: &Route) -> Option<Route> {
         let mut fitting = self.layers.fitting().iter().rev();
         let (least, above) = (fitting.next()?.config().clone(), fitting.next()?.config());
@@ -392,7 +393,8 @@ fn first_route(
     Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }.into()))
 }
 
-/// From a position to another; where a cell is blocked, straight as far as a footprint of this radius fits.
+/// From a position to another; where a cell is blocked, straight as far as a footprint of this
+/// radius fits.
 const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
     RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
 }
@@ -443,8 +445,8 @@ fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> Nav
     NavigateError::NoRoom { end, position, radius_m, why, nearest }
 }
 
-/// Why no route can begin (or end) at a position: where the footprint has no room, that says more than
-/// the cell that is blocked in the last of the layers.
+/// Why no route can begin (or end) at a position: where the footprint has no room, that says more
+/// than the cell that is blocked in the last of the layers.
 fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> NavigateError {
     let (PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) = why else {
         return why.into();
@@ -463,7 +465,8 @@ fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> Navigate
     }
 }
 
-/// Says of a route that does not exist what is in the way: for the least clearance that the robot needs.
+/// Says of a route that does not exist what is in the way: for the least clearance that the robot
+/// needs.
 fn explain(
     layers: &Layers,
     planner: &dyn GlobalPlanner,

@@ -2,20 +2,25 @@
 //!
 //! A stack is data: each is a row of parts, known by their names. It comes twice:
 //!
-//! - For a robot, every part has the parameters that it derives from the robot, or its defaults. Routes keep the
-//!   robot's clearance, smoothers with a safe distance of their own keep the same, and no corner is cut.
-//! - As published, every part has its paper's values, the robot is the point of [`Robot::paper`] on cells of 1 m, and
-//!   corners are cut where the paper's own search cuts them. The route is planned once.
+//! - For a robot, every part has the parameters that it derives from the robot, or its defaults.
+//!   Routes keep the robot's clearance, smoothers with a safe distance of their own keep the same,
+//!   and no corner is cut.
+//! - As published, every part has its paper's values, the robot is the point of [`Robot::paper`] on
+//!   cells of 1 m, and corners are cut where the paper's own search cuts them. The route is planned
+//!   once.
 //!
 //! # What the papers do not say
-//! - \[Wang2019\] does not drive, and the baselines of \[ZhuYin2024\] are paths. Here a robot follows them
-//!   ([`Follower`](crate::local::Follower)); as published from so near that it hardly leaves them.
-//! - References 9 and 14 of \[S1\] and reference 20 of \[ZhuYin2024\] cannot be identified from the texts. Their
-//!   stand-ins are what the texts say of them: the turning points of A*, followed, and as the guide of a classic
-//!   DWA; key points of A* that guide the DWA of \[You2021\] with a fixed weight of speed.
-//! - \[ZhuYin2024\] plans again only when no place behind an obstacle is free. As its DWA may stop before an obstacle
-//!   (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on waits, then plans again. Its collision
-//!   constraint is lifted within a cell of the start and the goal, so that a robot beside an obstacle can plan at all.
+//! - \[Wang2019\] does not drive, and the baselines of \[ZhuYin2024\] are paths. Here a robot
+//!   follows them ([`Follower`](crate::local::Follower)); as published from so near that it hardly
+//!   leaves them.
+//! - References 9 and 14 of \[S1\] and reference 20 of \[ZhuYin2024\] cannot be identified from the
+//!   texts. Their stand-ins are what the texts say of them: the turning points of A*, followed, and
+//!   as the guide of a classic DWA; key points of A* that guide the DWA of \[You2021\] with a fixed
+//!   weight of speed.
+//! - \[ZhuYin2024\] plans again only when no place behind an obstacle is free. As its DWA may stop
+//!   before an obstacle (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on
+//!   waits, then plans again. Its collision constraint is lifted within a cell of the start and the
+//!   goal, so that a robot beside an obstacle can plan at all.
 
 use super::{ControllerConfig, RecoveryKind, Stack};
 use crate::guide::GuideConfig;
@@ -192,21 +197,22 @@ impl Stack {
         of_name(name)?.for_robot(robot)
     }
 
-    /// Keyway's own stack, which is used when none is named, with the parameters for a robot. Where they can, routes keep
-    /// one cycle of driving at full speed and the circumscribed radius from obstacles: there the robot can turn on the
-    /// spot. Where they cannot, they try the circumscribed radius and the margin alone, then
-    /// [`ControllerConfig::least_clearance_m`].
+    /// Keyway's own stack, which is used when none is named, with the parameters for a robot. Where
+    /// they can, routes keep one cycle of driving at full speed and the circumscribed radius from
+    /// obstacles: there the robot can turn on the spot. Where they cannot, they try the
+    /// circumscribed radius and the margin alone, then [`ControllerConfig::least_clearance_m`].
     pub fn keyway(robot: &Robot) -> Self {
         of_known_parts(KEYWAY.for_robot(robot))
     }
 
-    /// The classic one: key points that guide a dynamic window, with the parameters for a robot. Its routes are those of
-    /// [`Self::keyway`].
+    /// The classic one: key points that guide a dynamic window, with the parameters for a robot.
+    /// Its routes are those of [`Self::keyway`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
         of_known_parts(KEY_POINT_FUSION.for_robot(robot))
     }
 
-    /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is nobody's.
+    /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is
+    /// nobody's.
     pub fn published_by_name(name: &str) -> Option<Self> {
         let parts = of_name(name)?;
         parts.source.and_then(|_| parts.as_published())
@@ -229,7 +235,8 @@ fn of_name(name: &str) -> Option<&'static Parts> {
 }
 
 impl Parts {
-    /// Routes keep one cycle of driving at full speed and the circumscribed radius from obstacles, where they can.
+    /// Routes keep one cycle of driving at full speed and the circumscribed radius from obstacles,
+    /// where they can.
     fn for_robot(&self, robot: &Robot) -> Option<Stack> {
         let clearance_m = robot.preferred_clearance_m();
         let mut stack = Stack {

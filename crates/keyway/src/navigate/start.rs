@@ -28,7 +28,8 @@ pub struct StartTooNear {
     pub off_m: f64,
 }
 
-/// Whether a footprint touches an obstacle or the border of the map, or is beyond it: what the simulator calls a contact.
+/// Whether a footprint touches an obstacle or the border of the map, or is beyond it: what the
+/// simulator calls a contact.
 pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
     // Farther away than this, a distance says nothing about contact.
     const REACH_M: f64 = 1e-6;
@@ -36,8 +37,8 @@ pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> 
         || footprint.distance_m(pose, clearance, REACH_M) <= 0.0
 }
 
-/// Whether a footprint touches something whatever its heading. A controller is given the heading later, so one without
-/// contact is enough; they are tried degree by degree.
+/// Whether a footprint touches something whatever its heading. A controller is given the heading
+/// later, so one without contact is enough; they are tried degree by degree.
 pub(super) fn touches_at_every_heading(
     footprint: &Footprint,
     position: Point,

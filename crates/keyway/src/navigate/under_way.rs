@@ -7,17 +7,19 @@ use std::collections::VecDeque;
 /// The commands that are on their way to the motors, for a robot with a known delay
 /// ([`Robot::actuation_delay_s`]).
 ///
-/// What a robot does before its next command acts is decided already. So that command is chosen for the pose and the velocity
-/// which the robot then has: those that follow from the present ones by the commands under way, each for a cycle, in which
-/// the velocity changes linearly as far as the limits allow. Without noise this is exactly what happens, and the robot
-/// drives as it would without a delay, only that much later.
+/// What a robot does before its next command acts is decided already. So that command is chosen for
+/// the pose and the velocity which the robot then has: those that follow from the present ones by
+/// the commands under way, each for a cycle, in which the velocity changes linearly as far as the
+/// limits allow. Without noise this is exactly what happens, and the robot drives as it would
+/// without a delay, only that much later.
 #[derive(Clone, Debug)]
 pub(super) struct UnderWay {
     limits: Limits,
     cycle_s: f64,
     /// How many commands at most: those of the whole cycles of the delay, and one for the rest.
     most: usize,
-    /// What is left of the effect of the oldest one \[s\]; a whole cycle where the delay is one of whole cycles.
+    /// What is left of the effect of the oldest one \[s\]; a whole cycle where the delay is one of
+    /// whole cycles.
     oldest_s: f64,
     /// The oldest first.
     commands: VecDeque<Velocity>,
@@ -37,8 +39,8 @@ impl UnderWay {
         }
     }
 
-    /// Pose and velocity at the instant at which the next command acts. Before the first one, the robot has been told to go
-    /// on as it does.
+    /// Pose and velocity at the instant at which the next command acts. Before the first one, the
+    /// robot has been told to go on as it does.
     pub(super) fn predicted(&mut self, pose: Pose, velocity: Velocity) -> (Pose, Velocity) {
         while self.commands.len() < self.most {
             self.commands.push_front(velocity);

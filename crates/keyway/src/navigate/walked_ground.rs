@@ -1,9 +1,10 @@
 //! Ground on which movers walk, and for how long the robot has been held up beside it.
 //!
-//! Somebody who walks to and fro in a gap may be waited for in vain, though there is a way around. Nobody knows how long the
-//! wait will be. So the robot goes around once that takes no longer than it has been held up already, as one rents skis
-//! until the rent has cost as much as buying them would (\[Karlin1988\]): then it loses no more than twice what somebody loses
-//! who knows it beforehand, but for the time between two looks.
+//! Somebody who walks to and fro in a gap may be waited for in vain, though there is a way around.
+//! Nobody knows how long the wait will be. So the robot goes around once that takes no longer than
+//! it has been held up already, as one rents skis until the rent has cost as much as buying them
+//! would (\[Karlin1988\]): then it loses no more than twice what somebody loses who knows it
+//! beforehand, but for the time between two looks.
 
 use crate::geometry::{Point, Segment};
 use crate::robot::Robot;
@@ -65,9 +66,10 @@ impl WalkedGround {
         self.steps.push(Step { disc, age_s: 0.0, is_walked_again: false, is_avoided: false });
     }
 
-    /// The ground on which movers walk again and again nearer than `needed_m` to one of the segments, what is avoided already,
-    /// and all ground from which these are not farther than twice that: between them the robot does not fit. Somebody who has
-    /// crossed the way once has left it free.
+    /// The ground on which movers walk again and again nearer than `needed_m` to one of the
+    /// segments, what is avoided already, and all ground from which these are not farther than
+    /// twice that: between them the robot does not fit. Somebody who has crossed the way once has
+    /// left it free.
     pub(super) fn across(
         &self,
         way: &(impl Iterator<Item = Segment> + Clone),
@@ -130,7 +132,8 @@ impl Hold {
     /// A way around is looked for each time when so much more time has passed \[s\].
     const LOOK_S: f64 = 3.0;
 
-    /// A robot is held up while it comes no farther than its own diameter, or than it drives at full speed in this time \[s\].
+    /// A robot is held up while it comes no farther than its own diameter, or than it drives at
+    /// full speed in this time \[s\].
     const AWAY_S: f64 = 0.5;
 
     /// Notes where the robot is in a cycle.

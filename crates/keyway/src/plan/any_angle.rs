@@ -12,8 +12,8 @@ use crate::search::{
 
 /// Which way to a cell a search records, and when it checks whether that way is free.
 pub(super) trait Ways {
-    /// The way to a neighbour of an expanded node, and the node that it comes from: the node itself, or
-    /// its parent. `known` is the value of the known way; `None` leaves it as it is.
+    /// The way to a neighbour of an expanded node, and the node that it comes from: the node
+    /// itself, or its parent. `known` is the value of the known way; `None` leaves it as it is.
     fn way(
         &self,
         lines: &Lines<'_>,

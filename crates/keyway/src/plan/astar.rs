@@ -1,8 +1,8 @@
 //! A* \[Hart1968\]: a map and two cells -> a shortest 8-connected path.
 //!
 //! Nodes are expanded in the order of f = g + h, the cost so far plus an estimate of the rest. With
-//! a consistent estimate (octile, the default, or Euclidean) the first time the goal is expanded its
-//! path is a shortest one. Ties go to the larger g (nearer to the goal), then to the lower cell
+//! a consistent estimate (octile, the default, or Euclidean) the first time the goal is expanded
+//! its path is a shortest one. Ties go to the larger g (nearer to the goal), then to the lower cell
 //! index.
 //!
 //! # Source
@@ -17,13 +17,13 @@
 //! | Open, Closed | the open list; a bit of each node |
 //!
 //! # The traditional A* of \[Wang2019\]
-//! There g(n) is the straight line from the start to n, not the cost of a path. With
-//! `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"` the search is that one: an
+//! There g(n) is the straight line from the start to n, not the cost of a path. With `g =
+//! "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"` the search is that one: an
 //! open cell that is met again has the same f, which is "smaller or equal" (step 5), so its parent
-//! becomes the cell expanded last; closed cells are skipped; the search ends when the goal appears in
-//! the open list (step 3), which its last expanded neighbour put there. A cell is closed once and
-//! after its parent, so the search ends, and the parents of the goal lead back to the start over legal
-//! steps. That path need not be a shortest one.
+//! becomes the cell expanded last; closed cells are skipped; the search ends when the goal appears
+//! in the open list (step 3), which its last expanded neighbour put there. A cell is closed once
+//! and after its parent, so the search ends, and the parents of the goal lead back to the start
+//! over legal steps. That path need not be a shortest one.
 //!
 //! # Where this differs from the papers
 //! Ties, on which the papers are silent. In the traditional A* a larger straight-line g goes first.

@@ -7,8 +7,8 @@ use crate::search::{
     Workspace, cells,
 };
 
-/// Evaluates an expression with `$cost` bound to what steps cost on a map and `$seen` to the observer,
-/// if any: one copy of the search for each, so that nothing is looked up inside.
+/// Evaluates an expression with `$cost` bound to what steps cost on a map and `$seen` to the
+/// observer, if any: one copy of the search for each, so that nothing is looked up inside.
 macro_rules! with_costs {
     ($map:expr, $observer:expr, $cost:ident, $seen:ident => $body:expr) => {
         match ($crate::search::UnknownCost::of($map), $observer) {

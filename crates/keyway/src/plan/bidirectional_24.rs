@@ -1,5 +1,5 @@
-//! Bidirectional A* with the 24 neighbours of the 5 x 5 \[Gao2019\]: a map and two cells -> some path
-//! whose steps take 16 directions.
+//! Bidirectional A* with the 24 neighbours of the 5 x 5 \[Gao2019\]: a map and two cells -> some
+//! path whose steps take 16 directions.
 //!
 //! Like [`super::BidirectionalAStar`], but each side steps to every cell of the 5 x 5 around a node
 //! that a straight line reaches over free cells. Paths turn less and are shorter than those of 8
@@ -17,15 +17,16 @@
 //! # Where this differs from the paper
 //! All of it is a reading:
 //! - The 24 offsets of the 5 x 5, with every swept cell checked.
-//! - Turn, meeting and order are those of [`super::BidirectionalAStar`]. Only the nodes of a side can be
-//!   met: cells in the middle of a long step are not reached.
-//! - The straight line is the estimate by default; the octile distance is larger than a knight's step.
+//! - Turn, meeting and order are those of [`super::BidirectionalAStar`]. Only the nodes of a side
+//!   can be met: cells in the middle of a long step are not reached.
+//! - The straight line is the estimate by default; the octile distance is larger than a knight's
+//!   step.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a path that exists is found, as every single step is among the 24. Maps with
-//! penalised cells are refused: a long step would have to weigh every cell that it sweeps. O(n log n) in
-//! the number n of reached cells, with 24 look-ups per expansion; 32 bytes per cell of the padded
-//! map, of which only the pages of reached cells are touched.
+//! penalised cells are refused: a long step would have to weigh every cell that it sweeps. O(n log
+//! n) in the number n of reached cells, with 24 look-ups per expansion; 32 bytes per cell of the
+//! padded map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
 use super::heuristic::with_metric;
@@ -45,7 +46,8 @@ use serde::{Deserialize, Serialize};
 pub struct Bidirectional24Config {
     /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
     pub corners: CornerRule,
-    /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or `mean`.
+    /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
+    /// `mean`.
     pub heuristic: Heuristic,
 }
 
@@ -139,11 +141,11 @@ mod tests {
     use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
     use crate::plan::two_sided::drawn;
 
-    /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398; (1, 1)
-    /// has 1.414 + 4.123 = 5.537, (2, 0) 2.828 + 3 = 5.828. Best of G is (4, 0) with 1 + 4.472 = 5.472; the
-    /// knight's step to (4, 2) has 2.236 + 4 = 6.236, and the one to (3, 1) is blocked. From (2, 1) the
-    /// wall hides everything to the right, and nothing is nearer than known. From (4, 0) a double step
-    /// reaches (2, 0).
+    /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398;
+    /// (1, 1) has 1.414 + 4.123 = 5.537, (2, 0) 2.828 + 3 = 5.828. Best of G is (4, 0) with 1 +
+    /// 4.472 = 5.472; the knight's step to (4, 2) has 2.236 + 4 = 6.236, and the one to (3, 1) is
+    /// blocked. From (2, 1) the wall hides everything to the right, and nothing is nearer than
+    /// known. From (4, 0) a double step reaches (2, 0).
     #[test]
     fn an_expansion_sequence_by_hand() {
         let rows = ["S.....", "...#..", ".....G"];

@@ -1,13 +1,15 @@
 //! Bidirectional A*, as it is usually published \[You2021, Wang2019\]: a map and two cells -> some
 //! 8-connected path, where a search from the start and one from the goal first meet.
 //!
-//! Two A*, one from each end, each aiming at the other's root, expand one node each in turn. The first
-//! node that both have reached joins their two halves into the path. It is fast, and not optimal: a
-//! cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on until none can.
+//! Two A*, one from each end, each aiming at the other's root, expand one node each in turn. The
+//! first node that both have reached joins their two halves into the path. It is fast, and not
+//! optimal: a cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on
+//! until none can.
 //!
 //! # Source
-//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\]: section
-//! 1.3.1 and figure 2. \[Wang2019\]: reference 17, "synchronous bidirectional A*". \[ZhuYin2024\]: table 1.
+//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\]:
+//! section 1.3.1 and figure 2. \[Wang2019\]: reference 17, "synchronous bidirectional A*".
+//! \[ZhuYin2024\]: table 1.
 //!
 //! | papers | here |
 //! |---|---|
@@ -26,12 +28,13 @@
 //! - Order within a side: f, then larger g, then lower cell index.
 //! - The corner rule. The papers' own comparisons with it forbid cutting \[You2021\] or allow it
 //!   \[Wang2019, ZhuYin2024\].
-//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the robot
-//!   *enters* costs. The backward side prices its step from a to b as the robot's step from b to a.
+//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the
+//!   robot *enters* costs. The backward side prices its step from a to b as the robot's step from b
+//!   to a.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; a path that exists is found. O(n log n) in the number n of reached cells; 32 bytes
-//! per cell of the padded map, of which only the pages of reached cells are touched.
+//! See [`PlanError`]; a path that exists is found. O(n log n) in the number n of reached cells; 32
+//! bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::best_first::with_costs;
 use super::heuristic::with_metric;
@@ -52,7 +55,8 @@ use serde::{Deserialize, Serialize};
 pub struct BidirectionalAStarConfig {
     /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
     pub corners: CornerRule,
-    /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or `mean`.
+    /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
+    /// `mean`.
     pub heuristic: Heuristic,
 }
 
@@ -133,10 +137,10 @@ mod tests {
     use crate::plan::two_sided::drawn;
     use crate::search::Cost;
 
-    /// f of the forward side, octile. S = (1, 2) puts in (1, 3) 1 + 3.83, (0, 3) 1.41 + 4.83, (0, 2)
-    /// 1 + 4.41, (0, 1) 1.41 + 4 and (1, 1) 1 + 3 = 4, the best; no diagonal passes the wall. G = (4, 1)
-    /// puts in (3, 1) with 1 + 2.41 = 3.41, the best. Then (1, 1) puts in (2, 1), and (3, 1) as well:
-    /// they have met, with one step more from (2, 1) to either.
+    /// f of the forward side, octile. S = (1, 2) puts in (1, 3) 1 + 3.83, (0, 3) 1.41 + 4.83, (0,
+    /// 2) 1 + 4.41, (0, 1) 1.41 + 4 and (1, 1) 1 + 3 = 4, the best; no diagonal passes the wall. G
+    /// = (4, 1) puts in (3, 1) with 1 + 2.41 = 3.41, the best. Then (1, 1) puts in (2, 1), and (3,
+    /// 1) as well: they have met, with one step more from (2, 1) to either.
     #[test]
     fn an_expansion_sequence_by_hand() {
         let rows = ["......", ".S##..", "....G.", "......"];
@@ -149,8 +153,8 @@ mod tests {
         assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(2, 1)), Some(Stop::SidesMet)));
     }
 
-    /// In the first turn S puts in (1, 0), which the other side has not reached. Then G puts in (1, 0):
-    /// met, before anything is expanded twice.
+    /// In the first turn S puts in (1, 0), which the other side has not reached. Then G puts in (1,
+    /// 0): met, before anything is expanded twice.
     #[test]
     fn generating_is_meeting() {
         let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["S.G"]).unwrap();

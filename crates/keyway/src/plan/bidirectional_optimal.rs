@@ -1,10 +1,10 @@
 //! Bidirectional A* that is provably optimal, NBA* \[Pijls2009\]: a map and two cells -> a shortest
 //! 8-connected path.
 //!
-//! One A* from the start and one from the goal share the cells: a cell that either side has closed is
-//! out of bounds for the other, so no cell is expanded twice. Whenever both sides have reached a cell
-//! there is a path over it; the shortest so far has length L. Cells that cannot lie on a shorter one
-//! are *rejected*: closed, but not expanded.
+//! One A* from the start and one from the goal share the cells: a cell that either side has closed
+//! is out of bounds for the other, so no cell is expanded twice. Whenever both sides have reached a
+//! cell there is a path over it; the shortest so far has length L. Cells that cannot lie on a
+//! shorter one are *rejected*: closed, but not expanded.
 //!
 //! # Source
 //! \[Pijls2009\]: the algorithm and its theorem.
@@ -19,42 +19,43 @@
 //! | L | [`Meeting::cost`] | cost of the best path so far |
 //!
 //! # Why it is optimal
-//! Let h1 and h2 be consistent and d the cost of a shortest path. *While L > d, neither open list is
-//! empty, and F1 <= d and F2 <= d.* So when a side has no open cell left, or none with f < L, then
-//! L = d.
+//! Let h1 and h2 be consistent and d the cost of a shortest path. *While L > d, neither open list
+//! is empty, and F1 <= d and F2 <= d.* So when a side has no open cell left, or none with f < L,
+//! then L = d.
 //!
 //! Proof. As long as L > d, some shortest path v0 .. vk can be cut in three: cells before vi, which
 //! the forward side has expanded, with their true g1; cells after vj, which the backward side has
 //! expanded, with their true g2; and between them, i < j, cells of M. Then vi and vj are open with
 //! their true values, and f1(vi) <= d and f2(vj) <= d by consistency. At first i = 0 and j = k, and
 //! it stays so:
-//! - Let the forward side close a cell vm of the middle (the other side is its mirror image). It had
-//!   the smallest f1, so g1(vm) + h1(vm) <= f1(vi), which with consistency makes g1(vm) true. The way
-//!   by which it was reached, with vm .. vk after it, is a shortest path as well, and takes the
-//!   place of v0 .. vk.
+//! - Let the forward side close a cell vm of the middle (the other side is its mirror image). It
+//!   had the smallest f1, so g1(vm) + h1(vm) <= f1(vi), which with consistency makes g1(vm) true.
+//!   The way by which it was reached, with vm .. vk after it, is a shortest path as well, and takes
+//!   the place of v0 .. vk.
 //! - vm is not rejected: g1(vm) + h1(vm) <= d < L; and g1(vm) + F2 - h2(vm) < L, too, because
 //!   F2 <= f2(vj) = g2(vj) + h2(vj) and h2(vj) <= h2(vm) + c(vm, vj), so F2 - h2(vm) is at most the
 //!   cost from vm to the goal. (vj itself has both true values only when L = d.)
-//! - So vm is expanded, and the next cell, which is in M, gets its true g1: i becomes m + 1. If that is
-//!   j, both values of vj are true, and L = d.
+//! - So vm is expanded, and the next cell, which is in M, gets its true g1: i becomes m + 1. If
+//!   that is j, both values of vj are true, and L = d.
 //!
 //! The octile distance is consistent in both directions, even with penalties, which only raise
 //! costs.
 //!
 //! # Where this differs from the paper
-//! - The side with the shorter open list moves, in a tie the forward one. The paper leaves the choice
-//!   free.
+//! - The side with the shorter open list moves, in a tie the forward one. The paper leaves the
+//!   choice free.
 //! - The search ends as soon as F1 >= L or F2 >= L: the rest would be rejected one by one.
-//! - F2 is the value after the backward side's last move, and F1 likewise; cells that the other side
-//!   has closed since may have raised it. A lower value only rejects less.
-//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the robot
-//!   *enters* costs. The backward side prices its step from a to b as the robot's step from b to a.
+//! - F2 is the value after the backward side's last move, and F1 likewise; cells that the other
+//!   side has closed since may have raised it. A lower value only rejects less.
+//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the
+//!   robot *enters* costs. The backward side prices its step from a to b as the robot's step from b
+//!   to a.
 //! - Order within a side: f, then larger g, then lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]. O(n log n) in the number n of reached cells; 32 bytes per cell of the padded map,
-//! of which only the pages of reached cells are touched. Rejected cells count as expanded: they were
-//! taken from an open list.
+//! See [`PlanError`]. O(n log n) in the number n of reached cells; 32 bytes per cell of the padded
+//! map, of which only the pages of reached cells are touched. Rejected cells count as expanded:
+//! they were taken from an open list.
 
 use super::best_first::{check_budget, with_costs};
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -213,7 +214,8 @@ fn run(
 }
 
 impl<N: Successors> Half<'_, N> {
-    /// Brings F up to date; false when no open cell of this side can be on a path better than `best`.
+    /// Brings F up to date; false when no open cell of this side can be on a path better than
+    /// `best`.
     fn find_lowest_key(&mut self, other: &Frontier, best: Meeting) -> bool {
         match self.frontier.best_key(|at| other.is_closed(at)) {
             Some(key) if key < best.cost => {

@@ -32,21 +32,21 @@ registry! {
     BidirectionalOptimal(BidirectionalOptimalConfig) => BidirectionalOptimal;
     /// Jump point search: shortest paths without corner cutting, found much faster.
     Jps(JpsConfig) => Jps;
-    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as it
-    /// is.
+    /// Prepared map: shortest paths without corner cutting in microseconds, on a map that stays as
+    /// it is.
     Prepared(PreparedConfig) => Prepared;
-    /// Bidirectional A* as usually published: some path quickly, where searches from both ends first
-    /// meet.
+    /// Bidirectional A* as usually published: some path quickly, where searches from both ends
+    /// first meet.
     #[serde(rename = "bidirectional-astar")]
     BidirectionalAStar(BidirectionalAStarConfig) => BidirectionalAStar;
     /// Bidirectional A* with 24 neighbours: some path with steps in 16 directions.
     #[serde(rename = "bidirectional-24")]
     Bidirectional24(Bidirectional24Config) => Bidirectional24;
-    /// Bidirectional jump point A* with fixed targets: from both ends, each side aims at the other's
-    /// root.
+    /// Bidirectional jump point A* with fixed targets: from both ends, each side aims at the
+    /// other's root.
     BidirectionalJpsFixed(BidirectionalJpsFixedConfig) => BidirectionalJpsFixed;
-    /// Improved bidirectional jump point A*: from both ends, each side aims at the node that the other
-    /// expanded last.
+    /// Improved bidirectional jump point A*: from both ends, each side aims at the node that the
+    /// other expanded last.
     BidirectionalJps(BidirectionalJpsConfig) => BidirectionalJps;
     /// Density-weighted A*: an estimate that weighs less the farther from the start, against a cost
     /// that weighs more the denser the obstacles; not a shortest path.
@@ -67,8 +67,9 @@ registry! {
 }
 
 impl PlannerConfig {
-    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of those of papers,
-    /// whose cells are 1 m wide: the constraint of [`Hsta`] becomes as many safe distances as it was cells.
+    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of
+    /// those of papers, whose cells are 1 m wide: the constraint of [`Hsta`] becomes as many safe
+    /// distances as it was cells.
     #[must_use]
     pub fn keeping(mut self, safe_distance_m: f64) -> Self {
         if let Self::Hsta(config) = &mut self {
@@ -97,7 +98,8 @@ impl PlannerConfig {
         self.parameters().build(map)
     }
 
-    /// Like [`Self::build`], reporting how far the preparation is where there is one; `progress` may stop it.
+    /// Like [`Self::build`], reporting how far the preparation is where there is one; `progress`
+    /// may stop it.
     ///
     /// # Errors
     /// See [`Self::build`]; and [`PrepareError::Stopped`](super::PrepareError::Stopped).

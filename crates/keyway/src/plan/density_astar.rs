@@ -1,4 +1,5 @@
-//! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer expansions.
+//! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer
+//! expansions.
 //!
 //! The estimate weighs 1.5 times as much at the start, where the search is to hurry, and falls
 //! along a sigmoid towards 1 with the distance from the start. The cost so far weighs more, the
@@ -18,34 +19,35 @@
 //! | children 1 to 8, classes I to III | [`CornerRule::Forbid`] | | |
 //!
 //! # Where this differs from the paper
-//! - The paper writes g as the straight line from the start, and calls it the actual cost of the way.
-//!   Here it is the cost of the way; [`PathCost::StraightLine`] is the letter of the paper, with the
-//!   rules of \[Wang2019\] (see [`super::AStar`]): an open cell's parent is the neighbour that was
-//!   expanded last, and the search ends when the goal appears in the open list.
-//! - The paper does not say where P is measured. Here it is the share of occupied cells in the box that
-//!   start and goal span; see [`Density`] for others. Cells that are only blocked by a clearance or an
-//!   expansion do not count, and unknown ones do not either, even where they may not be visited.
-//! - Children are numbered 1 2 3 / 4 . 5 / 6 7 8 around the parent. An obstacle above drops 1, 2, 3, one
-//!   below 6, 7, 8, one to the left 1, 4, 6, one to the right 3, 5, 8: this is exactly
+//! - The paper writes g as the straight line from the start, and calls it the actual cost of the
+//!   way. Here it is the cost of the way; [`PathCost::StraightLine`] is the letter of the paper,
+//!   with the rules of \[Wang2019\] (see [`super::AStar`]): an open cell's parent is the neighbour
+//!   that was expanded last, and the search ends when the goal appears in the open list.
+//! - The paper does not say where P is measured. Here it is the share of occupied cells in the box
+//!   that start and goal span; see [`Density`] for others. Cells that are only blocked by a
+//!   clearance or an expansion do not count, and unknown ones do not either, even where they may
+//!   not be visited.
+//! - Children are numbered 1 2 3 / 4 . 5 / 6 7 8 around the parent. An obstacle above drops 1, 2,
+//!   3, one below 6, 7, 8, one to the left 1, 4, 6, one to the right 3, 5, 8: this is exactly
 //!   [`CornerRule::Forbid`]. The paper's traditional A* is [`CornerRule::Allow`].
-//! - The estimate is too large, so a closed cell may turn out to have a shorter way to it. The paper is
-//!   silent; by default it stays closed.
-//! - f is rounded to whole units of [`crate::search::Cost::key`] (1e-8 cells), and to 53 bits, which is
-//!   coarser only for paths of more than 96 million cells; what does not fit into 64 bits counts as equal.
-//!   Ties go to the larger g, then to the lower cell index.
+//! - The estimate is too large, so a closed cell may turn out to have a shorter way to it. The
+//!   paper is silent; by default it stays closed.
+//! - f is rounded to whole units of [`crate::search::Cost::key`] (1e-8 cells), and to 53 bits,
+//!   which is coarser only for paths of more than 96 million cells; what does not fit into 64 bits
+//!   counts as equal. Ties go to the larger g, then to the lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]. Where P is the same for all cells, closed cells are reopened, g is accumulated and
-//! the heuristic consistent, a path is at most max(1, 1.5 / (1 + P)) times as long as the shortest one:
-//! an open cell of the shortest path always has f <= max(1 + P, 1.5) times its length, and the goal is
-//! taken with f = (1 + P) g. Without reopening nothing is promised.
+//! See [`PlanError`]. Where P is the same for all cells, closed cells are reopened, g is
+//! accumulated and the heuristic consistent, a path is at most max(1, 1.5 / (1 + P)) times as long
+//! as the shortest one: an open cell of the shortest path always has f <= max(1 + P, 1.5) times its
+//! length, and the goal is taken with f = (1 + P) g. Without reopening nothing is promised.
 //!
-//! O(n log n) in the number n of reached cells unless they are reopened (which in clutter may take many
-//! times as many expansions as there are cells), with one exponential for each
-//! generated node; 16 bytes per cell of the padded map, of which only the pages of reached cells are
-//! touched. [`Density::Box`] and [`Density::Map`] count 64 cells at a time, once per query;
-//! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes for
-//! each.
+//! O(n log n) in the number n of reached cells unless they are reopened (which in clutter may take
+//! many times as many expansions as there are cells), with one exponential for each generated node;
+//! 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
+//! [`Density::Box`] and [`Density::Map`] count 64 cells at a time, once per query;
+//! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes
+//! for each.
 
 mod summed_area;
 
@@ -273,8 +275,8 @@ fn cell_count(low: Cell, high: Cell) -> f64 {
     f64::from(high.x - low.x + 1) * f64::from(high.y - low.y + 1)
 }
 
-/// Section 1.2: the factor 1 + 1 / (1 + (e^(d/D))^2) of the estimate, from 1.5 at the start to 1.119 at
-/// the goal and on towards 1.
+/// Section 1.2: the factor 1 + 1 / (1 + (e^(d/D))^2) of the estimate, from 1.5 at the start to
+/// 1.119 at the goal and on towards 1.
 fn sigmoid_weight(d_over_whole: f64) -> f64 {
     let e = libm::exp(d_over_whole);
     1.0 + 1.0 / (1.0 + e * e)

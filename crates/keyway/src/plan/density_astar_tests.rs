@@ -71,8 +71,8 @@ fn share(density: Density, map: &SearchMap, query: &Query, at: Cell) -> f64 {
     Share::of(density, map, query, &mut SummedArea::default()).at(map.index(at))
 }
 
-/// Start (0, 0), goal (3, 1), node (1, 2). The box of start and goal has 8 cells with one obstacle, that
-/// of node and goal 6 with two (the unknown cell does not count), the map 15 with four.
+/// Start (0, 0), goal (3, 1), node (1, 2). The box of start and goal has 8 cells with one obstacle,
+/// that of node and goal 6 with two (the unknown cell does not count), the map 15 with four.
 #[test]
 fn the_density_by_hand() {
     let grid = OccupancyGrid::from_ascii(&["..#.#", ".?#..", "....#"]);
@@ -85,8 +85,8 @@ fn the_density_by_hand() {
     }
 }
 
-/// The scene, with g and f of each cell for P = 1/4 (the box is the row of S and G, one of four cells an
-/// obstacle) and D = 3. The upper row is like the lower one.
+/// The scene, with g and f of each cell for P = 1/4 (the box is the row of S and G, one of four
+/// cells an obstacle) and D = 3. The upper row is like the lower one.
 ///
 /// ```text
 ///   .    .    .    .
@@ -99,9 +99,9 @@ fn the_density_by_hand() {
 ///  (2, 1): g 4, d 2,     weight 1.2086, h 1:     f 5.00 + 1.209 = 6.209
 /// ```
 ///
-/// Corners are not cut, so the lower row is followed up to (2, 0). It generates the goal with 5.518,
-/// but (0, 2) has 5.485, and the upper row is followed, too. Without P the lower row has 5.235, 4.863,
-/// 4.674 and the goal 4.414: it comes before (0, 2) with 5.235.
+/// Corners are not cut, so the lower row is followed up to (2, 0). It generates the goal with
+/// 5.518, but (0, 2) has 5.485, and the upper row is followed, too. Without P the lower row has
+/// 5.235, 4.863, 4.674 and the goal 4.414: it comes before (0, 2) with 5.235.
 #[test]
 fn a_scene_by_hand() {
     let map = map(&["....", ".#..", "...."]);

@@ -1,8 +1,8 @@
 //! Dijkstra's algorithm \[Dijkstra1959\]: a map and two cells -> a shortest 8-connected path.
 //!
 //! Nodes are expanded in the order of their path cost, in all directions alike, until the goal is
-//! expanded. It is A* ([`super::AStar`]) with the estimate 0: the baseline that knows nothing of the
-//! goal.
+//! expanded. It is A* ([`super::AStar`]) with the estimate 0: the baseline that knows nothing of
+//! the goal.
 //!
 //! # Source
 //! \[Dijkstra1959\]: problem 2.

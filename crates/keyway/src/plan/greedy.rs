@@ -1,7 +1,8 @@
 //! Greedy best-first search \[Doran1966\]: a map and two cells -> some 8-connected path, quickly.
 //!
 //! The node that seems nearest to the goal is expanded next, whatever it has cost to get there: in
-//! \[Wang2019\], where it is called BFS, it is A* whose g has weight 0. Paths are not shortest ones.
+//! \[Wang2019\], where it is called BFS, it is A* whose g has weight 0. Paths are not shortest
+//! ones.
 //!
 //! # Source
 //! \[Doran1966\]. \[Wang2019\]: section 1.2.

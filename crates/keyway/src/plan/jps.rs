@@ -15,16 +15,16 @@
 //! | g, h | [`Cost::key`], octile |
 //!
 //! # Where this differs from the papers
-//! - The goal does not stop scans. It is looked for in the one direction of a node in which it lies:
-//!   diagonal until it is in line, then straight. A shortest path in this order of moves leaves its last
-//!   jump point in just this way.
+//! - The goal does not stop scans. It is looked for in the one direction of a node in which it
+//!   lies: diagonal until it is in line, then straight. A shortest path in this order of moves
+//!   leaves its last jump point in just this way.
 //! - A diagonal is walked no further once a jump point seen from it is known to be so near to the
-//!   start that the way over it to the diagonal's cell is shorter than the diagonal. Paths that begin
-//!   with a longer way to a cell than is known are not shortest paths, so none is lost.
-//! - Nodes leave the open list in the order of f rounded down to 0.18 cells. So a node may be expanded
-//!   before its path cost is final; it is expanded again when a shorter way turns up. The search ends
-//!   when no node is left whose f is below the cost of the best path so far. As h never exceeds the
-//!   true cost, a better path would have such a node: the answer is exact.
+//!   start that the way over it to the diagonal's cell is shorter than the diagonal. Paths that
+//!   begin with a longer way to a cell than is known are not shortest paths, so none is lost.
+//! - Nodes leave the open list in the order of f rounded down to 0.18 cells. So a node may be
+//!   expanded before its path cost is final; it is expanded again when a shorter way turns up. The
+//!   search ends when no node is left whose f is below the cost of the best path so far. As h never
+//!   exceeds the true cost, a better path would have such a node: the answer is exact.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
@@ -192,8 +192,8 @@ fn estimate(at: Cell, goal: Cell) -> u64 {
     Cost::octile(at.x.abs_diff(goal.x), at.y.abs_diff(goal.y)).key()
 }
 
-/// All cells of the path and its cost: each leg is diagonal first, then straight. Jump points are the
-/// nodes and the cells in which a leg turns.
+/// All cells of the path and its cost: each leg is diagonal first, then straight. Jump points are
+/// the nodes and the cells in which a leg turns.
 fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Plan) {
     let mut to = query.goal;
     plan.cells.push(to);

@@ -20,19 +20,19 @@
 //!
 //! # Where this differs from the paper
 //! - Nodes are the centres of cells, not their corners, as for [`super::ThetaStar`].
-//! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open, here they go
-//!   to the lower cell index.
+//! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open, here
+//!   they go to the lower cell index.
 //! - Whether the goal sees its parent is checked, too, when the goal is taken from the open list.
 //! - Waypoints at which the path goes straight on are dropped from the result.
 //! - Ties of the open list: f, then larger g, then lower cell index.
 //!
-//! Unlike that of Theta*, its path may be longer than a shortest one with 8 neighbours: a node may be
-//! expanded too early, on the strength of a value that it then turns out not to have.
+//! Unlike that of Theta*, its path may be longer than a shortest one with 8 neighbours: a node may
+//! be expanded too early, on the strength of a value that it then turns out not to have.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the number
-//! n of reached cells, and a line of sight for each expanded one; 16 bytes per cell of the padded map, of
-//! which only the pages of reached cells are touched.
+//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the
+//! number n of reached cells, and a line of sight for each expanded one; 16 bytes per cell of the
+//! padded map, of which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -46,8 +46,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct LazyThetaStarConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked? `forbid`
-    /// or `allow`.
+    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
+    /// `forbid` or `allow`.
     pub corners: CornerRule,
 }
 
@@ -143,8 +143,8 @@ mod tests {
     use super::*;
     use crate::plan::any_angle::watched::{reported, rounded, waypoints};
 
-    /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that they are
-    /// generated from; (1, 1) and (2, 0) turn out not to see it.
+    /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that
+    /// they are generated from; (1, 1) and (2, 0) turn out not to see it.
     #[test]
     fn corrections_by_hand() {
         let (plan, reported) = reported(&LazyThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));

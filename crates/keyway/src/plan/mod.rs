@@ -16,7 +16,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A planner of your own implements [`GlobalPlanner`]; the example `own_planner` does so outside the crate.
+//! A planner of your own implements [`GlobalPlanner`]; the example `own_planner` does so outside
+//! the crate.
 
 mod any_angle;
 mod astar;
@@ -89,12 +90,13 @@ use serde::Serialize;
 /// A path on the grid, and what it took to find it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// The path's waypoints, start and goal included; it goes straight from the centre of one to that
-    /// of the next. They are neighbours, unless the planner [is any-angle](GlobalPlanner::is_any_angle).
+    /// The path's waypoints, start and goal included; it goes straight from the centre of one to
+    /// that of the next. They are neighbours, unless the planner [is
+    /// any-angle](GlobalPlanner::is_any_angle).
     pub cells: Vec<Cell>,
-    /// Which of the cells are jump points, as ascending indices; the first cell, the last one and every
-    /// cell in which the path turns are among them. A planner that searches jump points has more: the
-    /// nodes of its search that lie on the path, even where it goes straight on.
+    /// Which of the cells are jump points, as ascending indices; the first cell, the last one and
+    /// every cell in which the path turns are among them. A planner that searches jump points has
+    /// more: the nodes of its search that lie on the path, even where it goes straight on.
     pub jump_points: Vec<usize>,
     /// Its cost, penalties of unknown cells included.
     pub cost: PlanCost,
@@ -151,9 +153,9 @@ impl std::fmt::Display for Stop {
 
 /// The boundary at which a planner is chosen by name.
 ///
-/// A planner is an immutable config; the map, the query, the memory and the observer are
-/// arguments. No call allocates once workspace and plan are warm and the map's components are known.
-/// Time is measured by the caller.
+/// A planner is an immutable config; the map, the query, the memory and the observer are arguments.
+/// No call allocates once workspace and plan are warm and the map's components are known. Time is
+/// measured by the caller.
 pub trait GlobalPlanner: Debug {
     /// Its name on the command line and in reports.
     fn name(&self) -> &'static str;
@@ -178,8 +180,9 @@ pub trait GlobalPlanner: Debug {
         0
     }
 
-    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and connected,
-    /// all cells cost the same if [it needs that](Self::needs_uniform_cost), and the plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
+    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and
+    /// connected, all cells cost the same if [it needs that](Self::needs_uniform_cost), and the
+    /// plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
     ///
     /// # Errors
     /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
@@ -192,8 +195,8 @@ pub trait GlobalPlanner: Debug {
         plan: &mut Plan,
     ) -> Result<(), PlanError>;
 
-    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked or
-    /// not connected are reported without a search.
+    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked
+    /// or not connected are reported without a search.
     ///
     /// # Errors
     /// Says why there is no plan; a search that failed carries its statistics.
@@ -226,8 +229,8 @@ impl Plan {
     }
 
     /// The path in the world: the given start position, the centres of all cells, the given goal
-    /// position. Positions at the centre of their cell are not repeated. Between two positions in one
-    /// cell it is the straight line, from a position to itself a single point.
+    /// position. Positions at the centre of their cell are not repeated. Between two positions in
+    /// one cell it is the straight line, from a position to itself a single point.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> PlannedLine {
         let frame = map.frame();
         let is_in = |point| Some(frame.cell_near(point)) == self.reached();

@@ -18,7 +18,8 @@ pub(super) trait PlannerParameters {
     /// The planner with these parameters. Most do not look at the map.
     fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError>;
 
-    /// The same for one that prepares the map, which takes long: see [`PlannerConfig::build_with_progress`].
+    /// The same for one that prepares the map, which takes long: see
+    /// [`PlannerConfig::build_with_progress`].
     fn build_with_progress(
         &self,
         map: &SearchMap,

@@ -1,8 +1,8 @@
 //! Weight-ratio A* \[Wang2019\]: a map and two cells -> an 8-connected path with few turns.
 //!
-//! A* whose estimate weighs X times as much as the cost so far. X = 1 is plain A*; a larger X draws the
-//! search to the goal, so it expands fewer cells and prefers straight ways, at the price of a path that
-//! may be longer.
+//! A* whose estimate weighs X times as much as the cost so far. X = 1 is plain A*; a larger X draws
+//! the search to the goal, so it expands fewer cells and prefers straight ways, at the price of a
+//! path that may be longer.
 //!
 //! # Source
 //! \[Wang2019\]: steps 1 to 8, equations (5) to (9) and (13) to (15), section 2.2.
@@ -16,17 +16,18 @@
 //! | f'(n), eq. (14) | times 1 + X, the key of the open list | cells | |
 //! | Open, Closed | the open list; a bit of each node | | |
 //!
-//! The paper's *traditional* A*, whose g is the straight line from the start, is [`super::AStar`] with
-//! `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"`. The paper's third and fourth
-//! improvements are stages of their own: a smoother, and the obstacle expansion of the map
-//! ([`crate::map::LayerConfig::expansion_cells`]).
+//! The paper's *traditional* A*, whose g is the straight line from the start, is [`super::AStar`]
+//! with `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"`. The paper's third
+//! and fourth improvements are stages of their own: a smoother, and the obstacle expansion of the
+//! map ([`crate::map::LayerConfig::expansion_cells`]).
 //!
 //! # Where this differs from the paper
 //! - Equation (12) says g'(n) <= g(n), with g the straight line from the start. It is the other way
-//!   round: a path is never shorter than the straight line, so g'(n) >= g(n), and the first improvement
-//!   does not lower the weight of the past cost but raises it. Equations (6) to (9) stand.
-//! - The open list is ordered by (1 + X) f' = g' + X h, which is the same order without rounding g':
-//!   X = 1 expands exactly the cells that A* does. X h is rounded to whole units of
+//!   round: a path is never shorter than the straight line, so g'(n) >= g(n), and the first
+//!   improvement does not lower the weight of the past cost but raises it. Equations (6) to (9)
+//!   stand.
+//! - The open list is ordered by (1 + X) f' = g' + X h, which is the same order without rounding
+//!   g': X = 1 expands exactly the cells that A* does. X h is rounded to whole units of
 //!   [`crate::search::Cost::key`] (1e-8 cells); sums that do not fit into 64 bits count as equal.
 //! - Step 5: an open node takes over a value that is smaller *or equal*; the parent is then the
 //!   neighbour that was expanded last. Step 3: the search ends when the goal appears in the open
@@ -35,9 +36,9 @@
 //! - Ties, on which the paper is silent: the larger g', then the lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]. With `end = "goal-expanded"` and a consistent heuristic a path is at most max(1, X)
-//! times as long as the shortest one. O(n log n) in the number n of reached cells; 16 bytes per cell of
-//! the padded map, of which only the pages of reached cells are touched.
+//! See [`PlanError`]. With `end = "goal-expanded"` and a consistent heuristic a path is at most
+//! max(1, X) times as long as the shortest one. O(n log n) in the number n of reached cells; 16
+//! bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::heuristic::with_metric;
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -228,9 +229,10 @@ mod tests {
         pairs.iter().map(|&(x, y)| Cell::new(x, y)).collect()
     }
 
-    /// Eq. (6) and (8) step by step: from g' = 2 a straight step gives 3, a diagonal one 2 + sqrt(2) =
-    /// 3.414; eq. (9), their sum from the start (g' = 0) over two straight and one diagonal step, is
-    /// the same 2 + sqrt(2). Eq. (7), the estimate, and (5): 3 columns and 4 rows are 5.
+    /// Eq. (6) and (8) step by step: from g' = 2 a straight step gives 3, a diagonal one 2 +
+    /// sqrt(2) = 3.414; eq. (9), their sum from the start (g' = 0) over two straight and one
+    /// diagonal step, is the same 2 + sqrt(2). Eq. (7), the estimate, and (5): 3 columns and 4 rows
+    /// are 5.
     #[test]
     fn equations_5_to_9_by_hand() {
         let map = OccupancyGrid::from_ascii(&["....", "....", "....", "....", "...."]);
@@ -247,8 +249,9 @@ mod tests {
         assert_eq!(rule.key(map.index(Cell::new(0, 0)), 0), 5 * Q);
     }
 
-    /// Eq. (13): 1 / 2.1 + 1.1 / 2.1 = 1. Eq. (14) for g' = 2, h = 3 and X = 1.1: 2 / 2.1 + 3.3 / 2.1 =
-    /// 5.3 / 2.1 = 2.5238, times 2.1 is 5.3. Eq. (15), X = 1: 0.5 * 2 + 0.5 * 3 = 2.5, times 2 is 5.
+    /// Eq. (13): 1 / 2.1 + 1.1 / 2.1 = 1. Eq. (14) for g' = 2, h = 3 and X = 1.1: 2 / 2.1 + 3.3 /
+    /// 2.1 = 5.3 / 2.1 = 2.5238, times 2.1 is 5.3. Eq. (15), X = 1: 0.5 * 2 + 0.5 * 3 = 2.5, times
+    /// 2 is 5.
     #[test]
     fn equations_13_to_15_by_hand() {
         let f = |x, g: u64, h: u64| key(x, g * Q, h * Q) as f64 / Q as f64 / (1.0 + x);
@@ -268,8 +271,9 @@ mod tests {
     /// 4.479  3.874  3.970   .
     /// ```
     ///
-    /// After the start (1, 0) is taken, as its index is lower than that of (1, 2), which comes next. It
-    /// gives (2, 1) the same g' as (1, 0) did, so it becomes its parent. (2, 1) then generates the goal.
+    /// After the start (1, 0) is taken, as its index is lower than that of (1, 2), which comes
+    /// next. It gives (2, 1) the same g' as (1, 0) did, so it becomes its parent. (2, 1) then
+    /// generates the goal.
     #[test]
     fn a_scene_by_hand() {
         let map = OccupancyGrid::from_ascii(&["....", ".#..", "...."]);

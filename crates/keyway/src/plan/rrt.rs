@@ -1,10 +1,10 @@
 //! Rapidly-exploring random tree \[LaValle1998\]: a map, two cells and a seed -> some path in any
 //! direction.
 //!
-//! A tree grows from the start. Each random sample pulls at the tree's nearest node, which grows one step
-//! towards it: as large unknown regions catch most samples, the tree is drawn into them. It ends when a
-//! new node can be joined to the goal. The path has many turns and is far from shortest; here it is a
-//! baseline. The same seed gives the same path on every machine.
+//! A tree grows from the start. Each random sample pulls at the tree's nearest node, which grows
+//! one step towards it: as large unknown regions catch most samples, the tree is drawn into them.
+//! It ends when a new node can be joined to the goal. The path has many turns and is far from
+//! shortest; here it is a baseline. The same seed gives the same path on every machine.
 //!
 //! # Source
 //! \[LaValle1998\]: section 2. The goal as a sample now and then: \[LaValle2001\].
@@ -24,17 +24,19 @@
 //!   shorter than asked for.
 //! - A line is free under the same corner rule as a diagonal step; a step that is not free is not
 //!   taken, and neither is one into a cell that is in the tree.
-//! - The paper does not say when to end: here, when a new node sees the goal and is within one step of it.
+//! - The paper does not say when to end: here, when a new node sees the goal and is within one step
+//!   of it.
 //! - Waypoints at which the path goes straight on are dropped from the result.
 //! - In the statistics, the expanded nodes are the samples drawn, which a budget counts, and the
 //!   generated ones are the nodes of the tree. An observer sees the node that each sample pulls at,
 //!   every time, and each new node.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. Where a step is one
-//! cell, every cell that can be reached is joined eventually; with longer steps a narrow passage
-//! may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of n nodes;
-//! 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are touched.
+//! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. Where a step is
+//! one cell, every cell that can be reached is joined eventually; with longer steps a narrow
+//! passage may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of
+//! n nodes; 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are
+//! touched.
 
 mod cell_tree;
 mod nearest_node;
@@ -58,8 +60,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct RrtConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked? `forbid`
-    /// or `allow`.
+    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
+    /// `forbid` or `allow`.
     pub corners: CornerRule,
     /// How far the tree grows at a time, rounded to whole cells, at least one \[m\].
     pub step_m: f64,
@@ -213,8 +215,8 @@ impl<O: Observer> Growth<'_, O> {
     }
 }
 
-/// The cell whose centre is nearest to the point on the line from `from` to `to` at the distance of a
-/// step (half-way: the farther one); `to` itself when it is not farther.
+/// The cell whose centre is nearest to the point on the line from `from` to `to` at the distance of
+/// a step (half-way: the farther one); `to` itself when it is not farther.
 fn cell_towards(from: Cell, to: Cell, step_cells: u32) -> Cell {
     let distance_sq = u128::from(distance_sq(from, to));
     let step_sq = u128::from(step_cells).pow(2);

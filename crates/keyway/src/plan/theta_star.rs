@@ -21,30 +21,30 @@
 //! Let o(v) be the cost of a shortest path with 8 neighbours from the start to v. *A node v that is
 //! expanded has g(v) <= o(v).*
 //!
-//! Proof. Let v be the first node for which it fails, and u the first node of a shortest path with 8
-//! neighbours to v that was not expanded before v; its predecessor w was, with g(w) <= o(w). Path 2 is no
-//! longer than path 1 (triangle inequality), so w gave u a value of at most g(w) + c(w, u) <= o(u). If
-//! u is v, this is g(v) <= o(v). Otherwise u is open, and as h is consistent,
-//! f(u) <= o(u) + h(u) <= o(v) + h(v) < g(v) + h(v) = f(v): u comes before v.
+//! Proof. Let v be the first node for which it fails, and u the first node of a shortest path with
+//! 8 neighbours to v that was not expanded before v; its predecessor w was, with g(w) <= o(w). Path
+//! 2 is no longer than path 1 (triangle inequality), so w gave u a value of at most g(w) + c(w, u)
+//! <= o(u). If u is v, this is g(v) <= o(v). Otherwise u is open, and as h is consistent, f(u) <=
+//! o(u) + h(u) <= o(v) + h(v) < g(v) + h(v) = f(v): u comes before v.
 //!
-//! It holds for the rounded numbers as well: steps cost their length rounded up, lines theirs rounded
-//! down, so the triangle inequality of c(p, s') <= c(p, s) + (step from s to s') survives, and so does
-//! the consistency of h.
+//! It holds for the rounded numbers as well: steps cost their length rounded up, lines theirs
+//! rounded down, so the triangle inequality of c(p, s') <= c(p, s) + (step from s to s') survives,
+//! and so does the consistency of h.
 //!
 //! # Where this differs from the paper
-//! - Nodes are the centres of cells, not their corners: the project's paths lead from centre to centre.
-//!   A line is free under the same corner rule as a diagonal step.
+//! - Nodes are the centres of cells, not their corners: the project's paths lead from centre to
+//!   centre. A line is free under the same corner rule as a diagonal step.
 //! - The line of sight is checked only where path 2 is shorter than the known way. Otherwise
 //!   path 1, which is never shorter, would not be taken either: the same search, with fewer checks.
-//! - Expanded nodes are not opened again, as in the paper's figure; f may decrease along a path, so a
-//!   node's way need not be the best that could be found.
+//! - Expanded nodes are not opened again, as in the paper's figure; f may decrease along a path, so
+//!   a node's way need not be the best that could be found.
 //! - Waypoints at which the path goes straight on are dropped from the result.
 //! - Ties: f, then larger g, then lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the number
-//! n of reached cells, and at most 8 n lines of sight; 16 bytes per cell of the padded map, of which only
-//! the pages of reached cells are touched.
+//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the
+//! number n of reached cells, and at most 8 n lines of sight; 16 bytes per cell of the padded map,
+//! of which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -58,8 +58,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ThetaStarConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked? `forbid`
-    /// or `allow`.
+    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
+    /// `forbid` or `allow`.
     pub corners: CornerRule,
 }
 
@@ -141,8 +141,8 @@ mod tests {
 
     /// Over the obstacle, whose corners are not cut.
     ///
-    /// (0, 1) is reached from the start, in a straight line. (1, 1) does not see the start: path 1. (2, 1)
-    /// sees the parent of (1, 1), which is (0, 1): path 2. (2, 0) does not: path 1.
+    /// (0, 1) is reached from the start, in a straight line. (1, 1) does not see the start: path 1.
+    /// (2, 1) sees the parent of (1, 1), which is (0, 1): path 2. (2, 0) does not: path 1.
     #[test]
     fn path_1_and_path_2_by_hand() {
         let (plan, reported) = reported(&ThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));

@@ -12,8 +12,8 @@ pub(super) const fn statistics(forward: &Frontier, backward: &Frontier) -> Searc
     SearchStatistics { forward: forward.statistics(), backward: backward.statistics() }
 }
 
-/// Writes the path over a cell that both sides reached, where they met and what they did. The path's
-/// waypoints are the nodes of the two searches.
+/// Writes the path over a cell that both sides reached, where they met and what they did. The
+/// path's waypoints are the nodes of the two searches.
 pub(super) fn join(
     map: &SearchMap,
     (forward, backward): (&Frontier, &Frontier),
@@ -63,8 +63,8 @@ pub(super) struct Half<'a, N, A> {
 }
 
 /// Lets both sides expand one node each in turn, the forward one first, until they meet; returns
-/// where. `rule` is asked before each expansion for the rule of a side, given the current node of the
-/// other one.
+/// where. `rule` is asked before each expansion for the rule of a side, given the current node of
+/// the other one.
 ///
 /// Where a path exists they meet: a side that runs out of open nodes has expanded all that can be
 /// reached, the root of the other one included.

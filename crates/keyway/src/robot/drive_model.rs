@@ -248,8 +248,8 @@ mod tests {
         }
     }
 
-    /// The way that a robot drives in a cycle that takes it from one speed to another, and then until it
-    /// stands \[m\].
+    /// The way that a robot drives in a cycle that takes it from one speed to another, and then
+    /// until it stands \[m\].
     fn driven_m(limits: &Limits, from_mps: f64, to_mps: f64, cycle_s: f64) -> f64 {
         let (mut v, mut driven_m) = (to_mps, 0.5 * (from_mps + to_mps) * cycle_s);
         while v > 0.0 {

@@ -12,8 +12,8 @@ use thiserror::Error;
 /// # Which clearance to plan with
 /// Planners and smoothers treat a robot as a disc whose radius is the clearance asked for:
 ///
-/// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but closes
-///   passages that a long robot fits through lengthwise.
+/// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but
+///   closes passages that a long robot fits through lengthwise.
 /// - The *inscribed* radius opens them, but promises nothing: then check the path.
 ///   [`Self::is_free`] at its samples judges the poses on the way
 ///   ([`crate::geometry::Path::samples_and_joints`]; a robot moves on between two samples, so plan
@@ -137,16 +137,17 @@ impl Polygon {
     /// Vertices nearer than this to each other or to an edge count as touching \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
 
-    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to them, and so does every decision
-    /// of a local planner. No convex hull is taken of them, because a robot may be a fork that an obstacle goes into.
+    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to
+    /// them, and so does every decision of a local planner. No convex hull is taken of them,
+    /// because a robot may be a fork that an obstacle goes into.
     pub const MOST_VERTICES: usize = 100;
 
-    /// The polygon with these vertices \[m\], in either direction around. The last one is joined to the
-    /// first, which is not repeated.
+    /// The polygon with these vertices \[m\], in either direction around. The last one is joined to
+    /// the first, which is not repeated.
     ///
     /// # Errors
-    /// When they are fewer than 3, more than [`Self::MOST_VERTICES`], or do not bound one piece of ground, or
-    /// when one is not within a kilometre of the centre of rotation.
+    /// When they are fewer than 3, more than [`Self::MOST_VERTICES`], or do not bound one piece of
+    /// ground, or when one is not within a kilometre of the centre of rotation.
     pub fn new(vertices: Vec<Point>) -> Result<Self, FootprintError> {
         if vertices.len() < 3 {
             return Err(FootprintError::TooFewVertices(vertices.len()));
@@ -238,9 +239,9 @@ impl Footprint {
         }
     }
 
-    /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller by `by_m`: all of its
-    /// outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when there would be nothing left, or for a length
-    /// that is not a number of at least 0.
+    /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller
+    /// by `by_m`: all of its outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when
+    /// there would be nothing left, or for a length that is not a number of at least 0.
     #[must_use]
     pub fn smaller_by(&self, by_m: f64) -> Option<Self> {
         let radius_m = self.inscribed_radius_m();

@@ -10,9 +10,9 @@ pub enum EndRule {
     /// By the cell in which it lies; the planner refuses a blocked one.
     #[default]
     OwnCell,
-    /// By the cell in which it lies if that is free, otherwise by the nearest free one, if a disc can go there
-    /// straight. Where the disc has no room even at the position (a cell was sensed too near), the way may not
-    /// come nearer than that.
+    /// By the cell in which it lies if that is free, otherwise by the nearest free one, if a disc
+    /// can go there straight. Where the disc has no room even at the position (a cell was sensed
+    /// too near), the way may not come nearer than that.
     NearestFree {
         /// Radius of the disc \[m\].
         radius_m: f64,
@@ -39,8 +39,8 @@ impl EndRule {
         if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
     }
 
-    /// What the smoothed line keeps where the path does: where cells are too coarse for a lane, shortcuts must
-    /// still fit the disc.
+    /// What the smoothed line keeps where the path does: where cells are too coarse for a lane,
+    /// shortcuts must still fit the disc.
     pub(super) fn clearance_m(&self, map: &SearchMap) -> f64 {
         match *self {
             Self::OwnCell => map.config().clearance_m,

@@ -1,9 +1,10 @@
 //! The pipeline: two positions -> a plan -> a line -> a smoothed route.
 //!
-//! [`plan_route`] is all of it. Where single steps are wanted (to plan once and to smooth in several ways, or to
-//! take a plan from elsewhere), they are [`RouteQuery::search`], [`RouteQuery::line`], [`smooth_line`] and
-//! [`Route::of_plan`]; `plan_route` consists of them. Nothing here reads a clock: a [`StageObserver`] learns when a
-//! search or a smoothing begins and ends.
+//! [`plan_route`] is all of it. Where single steps are wanted (to plan once and to smooth in
+//! several ways, or to take a plan from elsewhere), they are [`RouteQuery::search`],
+//! [`RouteQuery::line`], [`smooth_line`] and [`Route::of_plan`]; `plan_route` consists of them.
+//! Nothing here reads a clock: a [`StageObserver`] learns when a search or a smoothing begins and
+//! ends.
 //!
 //! ```
 //! use keyway::geometry::Point;
@@ -92,8 +93,9 @@ pub trait StageObserver {
 
 impl StageObserver for () {}
 
-/// Plans a path, draws it as a line between the two positions, and smooths that. The smoothed line keeps the
-/// clearance of the map's layers, and the radius of [`EndRule::NearestFree`] where that is larger.
+/// Plans a path, draws it as a line between the two positions, and smooths that. The smoothed line
+/// keeps the clearance of the map's layers, and the radius of [`EndRule::NearestFree`] where that
+/// is larger.
 ///
 /// # Errors
 /// As for [`GlobalPlanner::plan_into`]; and when a blocked end cannot be joined to a free cell.
@@ -111,7 +113,8 @@ pub fn plan_route(
 }
 
 impl RouteQuery {
-    /// From `start` to `goal` and nowhere else, each of which lies in a free cell; without a budget.
+    /// From `start` to `goal` and nowhere else, each of which lies in a free cell; without a
+    /// budget.
     pub const fn new(start: Point, goal: Point) -> Self {
         Self {
             start,
@@ -152,8 +155,8 @@ impl RouteQuery {
         result
     }
 
-    /// A plan for this query as a line from position to position. Where the goal was not reached, it ends at the
-    /// centre of the cell that was reached in its place.
+    /// A plan for this query as a line from position to position. Where the goal was not reached,
+    /// it ends at the centre of the cell that was reached in its place.
     pub fn line(&self, map: &SearchMap, plan: &Plan) -> PlannedLine {
         let goal = self.ends.cell(map, PathEnd::Goal, self.goal).ok();
         let in_its_place = plan.reached().filter(|&cell| Some(cell) != goal);

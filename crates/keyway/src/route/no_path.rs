@@ -14,8 +14,8 @@ pub struct NoPath {
     pub is_joined_through_unknown: bool,
 }
 
-/// What separates two cells; `None` where a path joins them, or one of them is blocked. `grid` is what the layers
-/// of `map` were derived from.
+/// What separates two cells; `None` where a path joins them, or one of them is blocked. `grid` is
+/// what the layers of `map` were derived from.
 ///
 /// Costs several times as much as a search: for a user who wants to know, not for a control cycle.
 pub fn why_no_path(

@@ -4,8 +4,8 @@ use crate::geometry::Point;
 use crate::map::SearchMap;
 use crate::plan::{PathEnd, PlanError};
 
-/// Why a start or goal \[m\] cannot be used, with its position, its cell and the nearest free position; `None` for every other
-/// error. Planners know cells alone.
+/// Why a start or goal \[m\] cannot be used, with its position, its cell and the nearest free
+/// position; `None` for every other error. Planners know cells alone.
 pub fn why_no_room(
     map: &SearchMap,
     [start, goal]: [Point; 2],

@@ -41,8 +41,8 @@ pub(crate) struct ConvexCorners {
 }
 
 /// The corners between two rows of blocked cells; `below` and `above` are the words `word` of them
-/// and what follows. Lattice point x lies between the columns x - 1 and x, whose bits are x and x + 1:
-/// it is bit x of the answer.
+/// and what follows. Lattice point x lies between the columns x - 1 and x, whose bits are x and x +
+/// 1: it is bit x of the answer.
 #[inline]
 pub(crate) fn convex_corners(below: &[u64], above: &[u64], word: usize) -> ConvexCorners {
     let next = |row: &[u64]| row[word] >> 1 | row.get(word + 1).map_or(1 << 63, |next| next << 63);

@@ -23,9 +23,9 @@ impl Cost {
     /// a q + b p with p / q = `KEY_DIAGONAL` / `KEY_STRAIGHT`. Both have the same sign as long as
     /// |b| < q: a fraction -a / b between p / q and sqrt(2) would have a denominator of at least
     /// q. So **keys order exactly every pair of paths with fewer than 93,222,358 diagonal steps**,
-    /// as all shortest paths on maps of up to 13,600 x 13,600 cells have (steps into penalised cells
-    /// count as often as their penalty says); beyond that, paths whose lengths differ by less than
-    /// 1e-8 cells may be misordered.
+    /// as all shortest paths on maps of up to 13,600 x 13,600 cells have (steps into penalised
+    /// cells count as often as their penalty says); beyond that, paths whose lengths differ by less
+    /// than 1e-8 cells may be misordered.
     pub const KEY_STRAIGHT: u64 = 93_222_358;
     /// See [`Self::KEY_STRAIGHT`].
     pub const KEY_DIAGONAL: u64 = 131_836_323;

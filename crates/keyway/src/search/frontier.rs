@@ -20,8 +20,8 @@ pub(crate) struct Expanded {
 /// map; they carry the epoch of their query, so a new query clears nothing, and pages that no query
 /// touches are never touched.
 ///
-/// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one all
-/// of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
+/// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one
+/// all of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frontier {
     /// g, and parent << 32 | epoch << 1 | closed. Plain arrays, because only those are allocated

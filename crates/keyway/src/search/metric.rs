@@ -25,7 +25,8 @@ pub(crate) struct Octile;
 ///
 /// Proof: a straight step costs q = [`Cost::KEY_STRAIGHT`], a diagonal one p > q sqrt(2). By the
 /// triangle inequality the unrounded distances e (in units of 1/q cell) keep e(n) <= c + e(m) for a
-/// step of cost c from n to m. As c is an integer, floor(e(n)) <= floor(c + e(m)) = c + floor(e(m)).
+/// step of cost c from n to m. As c is an integer, floor(e(n)) <= floor(c + e(m)) = c +
+/// floor(e(m)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Euclidean;
 
@@ -33,8 +34,8 @@ pub(crate) struct Euclidean;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manhattan;
 
-/// Half of [`Euclidean`] and half of [`Manhattan`], rounded down \[You2021, eq. (3)\]; consistent for
-/// 4 neighbours, too large for 8 (a diagonal step: 1.707 for 1.414).
+/// Half of [`Euclidean`] and half of [`Manhattan`], rounded down \[You2021, eq. (3)\]; consistent
+/// for 4 neighbours, too large for 8 (a diagonal step: 1.707 for 1.414).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mean;
 

@@ -5,9 +5,9 @@
 //! to one loop without indirect calls; they are chosen by name at the edge, in
 //! [`crate::plan`].
 //!
-//! What is public is what a caller of a planner needs ([`Query`], [`Workspace`], [`Observer`]), and what a planner
-//! of your own is written with: [`Neighbours`], [`Sight`], [`Cost`], and its own memory ([`SearchMemory`]). The
-//! example `own_planner` is one.
+//! What is public is what a caller of a planner needs ([`Query`], [`Workspace`], [`Observer`]), and
+//! what a planner of your own is written with: [`Neighbours`], [`Sight`], [`Cost`], and its own
+//! memory ([`SearchMemory`]). The example `own_planner` is one.
 
 pub(crate) mod bit_scan;
 mod buckets;

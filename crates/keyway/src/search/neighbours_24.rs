@@ -8,9 +8,9 @@ use crate::map::{CellIndex, SearchMap};
 /// directions, 8 of them with a second, longer step. In the order of rows, the lowest first.
 ///
 /// Every cell that the line sweeps must be free. A *knight's* step (2, 1) sweeps (1, 0) and (1, 1)
-/// and touches no corner. A double step sweeps the cell in its middle; a diagonal one keeps the corner
-/// rule on both halves. Without corner cutting those are the cells whose closed squares the line
-/// meets, with it those whose inside it meets.
+/// and touches no corner. A double step sweeps the cell in its middle; a diagonal one keeps the
+/// corner rule on both halves. Without corner cutting those are the cells whose closed squares the
+/// line meets, with it those whose inside it meets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neighbours24<'m> {
     words: &'m [u64],
@@ -23,8 +23,8 @@ pub(crate) struct Neighbours24<'m> {
 struct Reach {
     /// Cells of the 3 x 3 around the first one that must be free, as a [`pattern`].
     near: usize,
-    /// Cells beyond them that must be free, as distances of indices; looked at only when the near ones
-    /// are free, so that they are on the map or in the padding next to it.
+    /// Cells beyond them that must be free, as distances of indices; looked at only when the near
+    /// ones are free, so that they are on the map or in the padding next to it.
     far: [i32; 3],
     to: i32,
     cost: u64,
@@ -150,8 +150,8 @@ mod tests {
         assert_eq!(gone(CornerRule::Forbid), cut);
     }
 
-    /// Whether the segment from the centre of (0, 0) to that of `to` meets the square of a cell: its
-    /// inside, or with `closed` its border as well. All numbers are quarters, so exact.
+    /// Whether the segment from the centre of (0, 0) to that of `to` meets the square of a cell:
+    /// its inside, or with `closed` its border as well. All numbers are quarters, so exact.
     fn meets(to: (i32, i32), cell: (i32, i32), closed: bool) -> bool {
         let (mut low, mut high) = (0.0f64, 1.0f64);
         let mut inside = true;

@@ -19,8 +19,8 @@ pub trait Observer {
         let _ = (side, at, g_cells);
     }
 
-    /// A node was put into the open list, or improved there; `parent` is the node that the way to it
-    /// comes from.
+    /// A node was put into the open list, or improved there; `parent` is the node that the way to
+    /// it comes from.
     fn generated(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
         let _ = (side, at, parent, g_cells);
     }

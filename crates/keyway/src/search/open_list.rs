@@ -7,15 +7,15 @@ use std::collections::BinaryHeap;
 
 /// Nodes to be expanded, ordered by key, then larger g, then lower cell index.
 ///
-/// An entry is one 128-bit number, so that comparing two is one operation: the key, then g from large
-/// to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index. Equal keys
-/// whose g differ by less than such a unit are ordered by index.
+/// An entry is one 128-bit number, so that comparing two is one operation: the key, then g from
+/// large to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index.
+/// Equal keys whose g differ by less than such a unit are ordered by index.
 ///
 /// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So
 /// only those with keys up to a *horizon* are kept in a heap, which stays small; the others wait
-/// unsorted in buckets of equal width (a ring) until the horizon comes to them, those too far ahead in
-/// one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie below the
-/// horizon and all others beyond.
+/// unsorted in buckets of equal width (a ring) until the horizon comes to them, those too far ahead
+/// in one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie
+/// below the horizon and all others beyond.
 ///
 /// Entries are never changed. A node that is improved is put in again, and whoever takes an entry
 /// out sees by [`Entry::has_g`] whether it is out of date.
@@ -86,8 +86,8 @@ impl Default for OpenList {
 impl OpenList {
     /// Buckets that are held at a time.
     const BUCKETS: usize = 1024;
-    /// Width of a bucket, as a power of two: 1/44 of a cell, so that most buckets hold one value of f;
-    /// all buckets together span 23 cells, more than a step adds to f (2.8 without penalties).
+    /// Width of a bucket, as a power of two: 1/44 of a cell, so that most buckets hold one value of
+    /// f; all buckets together span 23 cells, more than a step adds to f (2.8 without penalties).
     const WIDTH_BITS: u32 = 21;
 
     const fn bucket(key: u64) -> u64 {
@@ -106,8 +106,8 @@ impl OpenList {
         self.len = 0;
     }
 
-    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap; an entry too
-    /// far ahead for the buckets is looked at again each time the ring has turned.
+    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap; an entry
+    /// too far ahead for the buckets is looked at again each time the ring has turned.
     pub(crate) fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);

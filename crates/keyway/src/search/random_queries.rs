@@ -4,9 +4,9 @@ use super::Query;
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::random::Random;
 
-/// Random queries on a map, the same for the same seed: the start is any free cell from which another
-/// one can be reached, the goal any other free cell that can be reached from there. None when there is
-/// no such cell.
+/// Random queries on a map, the same for the same seed: the start is any free cell from which
+/// another one can be reached, the goal any other free cell that can be reached from there. None
+/// when there is no such cell.
 ///
 /// Every free cell is as likely a start as any other; so most queries are in the largest component,
 /// and none asks for the impossible. Lists the free cells: 12 bytes each.

@@ -7,13 +7,14 @@ use crate::map::CellIndex;
 /// The rule of a best-first search: the value g that is recorded for a node, the key by which nodes
 /// are expanded, and which way to an open node is kept.
 ///
-/// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent is
-/// always closed before its children, parents never form a circle.
+/// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent
+/// is always closed before its children, parents never form a circle.
 pub(crate) trait Rule {
-    /// Whether an open node takes over another way of the same value, and not only of a smaller one.
+    /// Whether an open node takes over another way of the same value, and not only of a smaller
+    /// one.
     const TAKES_EQUAL: bool = false;
-    /// Whether the search ends when the goal is put into the open list, and not only when it is taken
-    /// out.
+    /// Whether the search ends when the goal is put into the open list, and not only when it is
+    /// taken out.
     const ENDS_AT_GENERATION: bool = false;
 
     /// Whether a closed node is opened again when a way of smaller value to it is found. Only for
@@ -45,9 +46,9 @@ impl<M: Metric> Rule for Accumulated<M> {
 
 /// f = g + h with g the straight line from the start \[Wang2019, eq. (3) and (4)\].
 ///
-/// A node's value does not depend on the way to it. An open node takes over a value that is "smaller
-/// or equal" (step 5 there), which here means: its parent is the neighbour that was expanded last. The
-/// search ends when the goal appears in the open list (step 3).
+/// A node's value does not depend on the way to it. An open node takes over a value that is
+/// "smaller or equal" (step 5 there), which here means: its parent is the neighbour that was
+/// expanded last. The search ends when the goal appears in the open list (step 3).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StraightLine<M> {
     /// The distance from the start.

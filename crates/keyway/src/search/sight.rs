@@ -1,15 +1,15 @@
 //! Line of sight between the centres of two cells, exact.
 //!
-//! The line crosses the grid row by row, and in each row a run of cells. Whether a run is free is one
-//! test for up to 64 cells. Rows are taken along the line's longer axis, on the transposed map when that
-//! is the vertical one: so a line of n rows costs n tests, however long its runs are.
+//! The line crosses the grid row by row, and in each row a run of cells. Whether a run is free is
+//! one test for up to 64 cells. Rows are taken along the line's longer axis, on the transposed map
+//! when that is the vertical one: so a line of n rows costs n tests, however long its runs are.
 //!
 //! # Which cells count
 //! A line between two centres meets a row's border at one point, which lies inside a column or is a
 //! corner of four cells. Through a corner it goes diagonally from one cell into the next, like a
 //! diagonal step, and the corner rule decides about the two cells beside it: under
-//! [`CornerRule::Forbid`] both must be free, under [`CornerRule::Allow`] they do not count. Cells whose
-//! interior the line crosses must be free in any case.
+//! [`CornerRule::Forbid`] both must be free, under [`CornerRule::Allow`] they do not count. Cells
+//! whose interior the line crosses must be free in any case.
 //!
 //! Only integers are compared, so the answer is exact, and the same from both ends.
 
@@ -79,9 +79,9 @@ struct Crossing {
 
 /// The crossings of a line of this many columns and rows, at most as high as it is wide.
 ///
-/// With the origin in the centre of its first cell, the line leaves row k at
-/// x = width (2k + 1) / (2 height), which is in column floor(x + 1/2) and, when nothing is left over,
-/// on the border before that column. From row to row x grows by width / height.
+/// With the origin in the centre of its first cell, the line leaves row k at x = width (2k + 1) /
+/// (2 height), which is in column floor(x + 1/2) and, when nothing is left over, on the border
+/// before that column. From row to row x grows by width / height.
 struct Crossings {
     rows_left: usize,
     /// x + 1/2, in units of 1 / (2 height): its floor, and what is left over.
@@ -271,7 +271,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
 
-        /// A line with one blocked cell near it, on maps of several words a row: all slopes and lengths.
+        /// A line with one blocked cell near it, on maps of several words a row: all slopes and
+        /// lengths.
         #[test]
         fn a_cell_near_the_line(a in (0i32..200, 0i32..140), b in (0i32..200, 0i32..140), seed: u64,
                                 allow: bool, near in 0i32..=1000, off in (-1i32..=1, -1i32..=1)) {

@@ -1,6 +1,6 @@
-//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]), and
-//! those that move, as a list ([`Tracker`]). Each looks at the scan of a cycle as it was projected once
-//! ([`ProjectedScan`]).
+//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]),
+//! and those that move, as a list ([`Tracker`]). Each looks at the scan of a cycle as it was
+//! projected once ([`ProjectedScan`]).
 
 mod layer;
 mod mover;

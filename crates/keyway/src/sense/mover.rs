@@ -54,8 +54,8 @@ pub struct Mover {
 pub struct MoverBounds {
     /// No mover is faster than this \[m/s\].
     pub speed_mps: f64,
-    /// No mover changes its velocity faster than this \[m/s²\]. Without it a mover may turn around at once, and
-    /// its estimated velocity says nothing of where it goes.
+    /// No mover changes its velocity faster than this \[m/s²\]. Without it a mover may turn around
+    /// at once, and its estimated velocity says nothing of where it goes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration_mps2: Option<f64>,
 }
@@ -97,7 +97,8 @@ impl Mover {
         }
     }
 
-    /// Where it is in a while when it goes on as estimated; less well known by what its velocity is uncertain by.
+    /// Where it is in a while when it goes on as estimated; less well known by what its velocity is
+    /// uncertain by.
     pub(crate) fn after(&self, duration_s: f64) -> Self {
         Self {
             centre: self.centre + self.velocity_mps * duration_s,
@@ -123,16 +124,16 @@ impl Mover {
         Disc { radius_m: centres.radius_m + self.radius_m, ..centres }
     }
 
-    /// The ground that it may cover after `duration_s` by its speed alone: it may go in any direction, at the
-    /// speed of the bounds, or at its own where it seems to be faster.
+    /// The ground that it may cover after `duration_s` by its speed alone: it may go in any
+    /// direction, at the speed of the bounds, or at its own where it seems to be faster.
     pub fn by_speed(&self, duration_s: f64, bounds: &MoverBounds) -> Disc {
         let now = self.now();
         let spread_m = self.fastest_mps(bounds) * duration_s;
         Disc { radius_m: now.radius_m + spread_m, ..now }
     }
 
-    /// The ground that it may cover after `duration_s` when it goes on as estimated, but for the velocity's
-    /// uncertainty and what it can accelerate; `None` without a bound of that.
+    /// The ground that it may cover after `duration_s` when it goes on as estimated, but for the
+    /// velocity's uncertainty and what it can accelerate; `None` without a bound of that.
     pub fn by_estimate(&self, duration_s: f64, bounds: &MoverBounds) -> Option<Disc> {
         let now = self.now();
         let changed_mps = 0.5 * bounds.acceleration_mps2? * duration_s;
@@ -158,7 +159,8 @@ impl Mover {
 }
 
 impl Disc {
-    /// The smallest disc that holds what two discs share; the smaller of the two when they share nothing.
+    /// The smallest disc that holds what two discs share; the smaller of the two when they share
+    /// nothing.
     fn shared_with(&self, other: &Self) -> Self {
         let (small, large) =
             if self.radius_m <= other.radius_m { (self, other) } else { (other, self) };
@@ -173,7 +175,8 @@ impl Disc {
         if !(to_chord_m > 0.0 && half_chord_sq > 0.0) {
             return *small;
         }
-        // Each part beyond the chord is less than half of its disc, so the chord is the widest line.
+        // Each part beyond the chord is less than half of its disc, so the chord is the widest
+        // line.
         let middle = small.centre + apart * (to_chord_m / apart_m);
         Self { centre: middle, radius_m: half_chord_sq.sqrt() }
     }

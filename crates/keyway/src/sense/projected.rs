@@ -144,8 +144,8 @@ impl ProjectedScan {
         self.angle_increment_rad.abs()
     }
 
-    /// The number of beams in a turn, if the sensor looks all around. The last beam may look where the
-    /// first one does: then there is one beam more.
+    /// The number of beams in a turn, if the sensor looks all around. The last beam may look where
+    /// the first one does: then there is one beam more.
     fn beams_of_a_turn(&self) -> Option<f64> {
         let count = self.beams.len() as f64;
         let is_full_turn = self.step_rad() * (count + 0.5) >= TAU;

@@ -14,15 +14,15 @@ pub struct Scan {
     pub angle_min_rad: f64,
     /// Bearing from one beam to the next \[rad\], negative where they go clockwise.
     pub angle_increment_rad: f64,
-    /// A shorter range says nothing \[m\]: the sensor is blind so near, or has seen its own housing. 0 when it
-    /// sees from its centre on.
+    /// A shorter range says nothing \[m\]: the sensor is blind so near, or has seen its own
+    /// housing. 0 when it sees from its centre on.
     pub range_min_m: f64,
     /// A longer range says nothing \[m\], except infinity: nothing was met as far as this.
     pub range_max_m: f64,
-    /// Range of every beam \[m\]. As in ROS, what is not between [`Self::range_min_m`] and [`Self::range_max_m`] is
-    /// discarded, NaN and 0 as well; infinity means that nothing was met. A driver that writes another number
-    /// where it met nothing (0, or one beyond the range) has to write infinity instead, or the sensor's free ground
-    /// stays unknown.
+    /// Range of every beam \[m\]. As in ROS, what is not between [`Self::range_min_m`] and
+    /// [`Self::range_max_m`] is discarded, NaN and 0 as well; infinity means that nothing was met.
+    /// A driver that writes another number where it met nothing (0, or one beyond the range) has to
+    /// write infinity instead, or the sensor's free ground stays unknown.
     pub ranges_m: Vec<f64>,
 }
 
@@ -75,9 +75,9 @@ impl Reading {
 }
 
 impl Scan {
-    /// What a sensor measures where it meets nothing. All around (360 degrees), beam 0 looks back (-180 degrees) and the
-    /// others follow evenly; with a smaller field of view the first and the last beam look along its edges. A single beam
-    /// looks straight ahead.
+    /// What a sensor measures where it meets nothing. All around (360 degrees), beam 0 looks back
+    /// (-180 degrees) and the others follow evenly; with a smaller field of view the first and the
+    /// last beam look along its edges. A single beam looks straight ahead.
     pub fn of_nothing(sensor: &RangeSensor) -> Self {
         let count = f64::from(sensor.beams);
         let field_rad = sensor.field_of_view_deg.to_radians();
@@ -172,7 +172,8 @@ mod tests {
         let expected = [hit(0.1), none, none, none, none, none, hit(3.0), none, none, free, none];
         assert_eq!(readings, expected);
         assert_eq!((Reading::Hit(1.0).free_m(), Reading::Free(3.0).free_m()), (1.0, 3.0));
-        // What is seen is not ignored for an end that is not a number; how far it is free is then unknown.
+        // What is seen is not ignored for an end that is not a number; how far it is free is then
+        // unknown.
         let blind = Scan { range_min_m: nan, ..scan.clone() };
         assert_eq!((blind.reading(0), blind.reading(9)), (hit(0.1), free));
         let endless = Scan { range_max_m: inf, ..scan };

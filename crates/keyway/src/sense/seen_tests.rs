@@ -79,8 +79,9 @@ fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
 
 #[test]
 fn seen_ground_is_walked_on() {
-    // What is farther away than a walk of 1.27 s from the ground that is looked at counts as unseen; it is free until
-    // somebody from there may be there within 0.27 s. Cells are whole, and walkers take two in a cycle.
+    // What is farther away than a walk of 1.27 s from the ground that is looked at counts as
+    // unseen; it is free until somebody from there may be there within 0.27 s. Cells are whole, and
+    // walkers take two in a cycle.
     assert!(free_s(0.0, walls(&open())) > 4.9);
     let (fast_s, slow_s) = (free_s(1.5, walls(&open())), free_s(0.5, walls(&open())));
     assert!((0.4..1.3).contains(&fast_s), "{fast_s}");
@@ -155,7 +156,8 @@ fn walkers() -> impl Strategy<Value = Vec<Walk>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// The robot drives and turns as it likes, and scans are lost; walkers go through each other. Until one touches it.
+    /// The robot drives and turns as it likes, and scans are lost; walkers go through each other.
+    /// Until one touches it.
     #[test]
     fn nobody_comes_to_free_ground_in_time(
         walkers in walkers(), turns in prop::collection::vec((-1.0..1.0f64, -3.0..3.0f64, 1u32..3), 30), is_slow: bool,

@@ -27,8 +27,9 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Makes the seen cells of a window unseen that share a side or a corner with an unseen cell which is no wall. Outside the
-    /// window no cell is seen. Whether there were such cells. Costs a few instructions for every 64 cells.
+    /// Makes the seen cells of a window unseen that share a side or a corner with an unseen cell
+    /// which is no wall. Outside the window no cell is seen. Whether there were such cells. Costs a
+    /// few instructions for every 64 cells.
     pub(super) fn step(
         &mut self,
         seen: &mut BitGrid,

@@ -1,10 +1,10 @@
-//! Bidirectional smoothing \[S1\]: a line -> the same line with its detours cut off, from the start and
-//! then from the goal.
+//! Bidirectional smoothing \[S1\]: a line -> the same line with its detours cut off, from the start
+//! and then from the goal.
 //!
-//! The line is cut into points at a small spacing, and each kept point is connected with the farthest
-//! later one that can be reached safely. A connection may therefore begin and end anywhere on the line,
-//! not only at its corners as in [`super::LineOfSight`]; the run from the goal removes what the run
-//! from the start has left.
+//! The line is cut into points at a small spacing, and each kept point is connected with the
+//! farthest later one that can be reached safely. A connection may therefore begin and end anywhere
+//! on the line, not only at its corners as in [`super::LineOfSight`]; the run from the goal removes
+//! what the run from the start has left.
 //!
 //! # Source
 //! \[S1\]: bidirectional smoothing, steps 1 to 3. There are no equations.
@@ -16,20 +16,22 @@
 //!
 //! # Where this differs from the paper
 //! - The paper takes "the node that is collision-free and farthest from the obstacle". Read as the
-//!   farthest along the line; [`Select::LargestClearance`] is the letter of the paper: of the points
-//!   that can be reached, the one whose own distance from obstacles is largest, and the farthest of
-//!   several. (Along the line no two points are equally far, so there are no ties to break otherwise.)
+//!   farthest along the line; [`Select::LargestClearance`] is the letter of the paper: of the
+//!   points that can be reached, the one whose own distance from obstacles is largest, and the
+//!   farthest of several. (Along the line no two points are equally far, so there are no ties to
+//!   break otherwise.)
 //! - Spacing and safety distance are half a cell, which is a reading.
-//! - Each straight stretch is cut into equal parts, none longer than the spacing, and its ends are points
-//!   too: otherwise the connection to the next point could cut a corner of the line.
-//! - A connection keeps the safety distance, or the clearance that is asked for where that is larger.
-//!   The next point can always be reached, so where the line itself is nearer, it stays as it was.
-//! - The paper smooths once in each direction. A second run cuts the new line into new points, so it can
-//!   shorten it further, and may need more points for that.
+//! - Each straight stretch is cut into equal parts, none longer than the spacing, and its ends are
+//!   points too: otherwise the connection to the next point could cut a corner of the line.
+//! - A connection keeps the safety distance, or the clearance that is asked for where that is
+//!   larger. The next point can always be reached, so where the line itself is nearer, it stays as
+//!   it was.
+//! - The paper smooths once in each direction. A second run cuts the new line into new points, so
+//!   it can shorten it further, and may need more points for that.
 //!
 //! # Errors / cost
-//! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as whole
-//! stretches lie in the shadow of an obstacle that was found before ([`Visibility`]).
+//! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as
+//! whole stretches lie in the shadow of an obstacle that was found before ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -80,12 +82,13 @@ pub enum Passes {
 pub struct BidirectionalSmoothingConfig {
     /// The line is cut into points that are at most this far apart; at least 0.01 \[cells\].
     pub spacing_cells: f64,
-    /// Which point comes next: the `farthest` along the line that can be reached, or of those the one
-    /// with the `largest-clearance`.
+    /// Which point comes next: the `farthest` along the line that can be reached, or of those the
+    /// one with the `largest-clearance`.
     pub select: Select,
     /// What a connection keeps from obstacles \[cells\].
     pub safety_distance_cells: f64,
-    /// Directions: `both` as in the paper, `forward` from the start alone, or `backward` from the goal alone.
+    /// Directions: `both` as in the paper, `forward` from the start alone, or `backward` from the
+    /// goal alone.
     pub passes: Passes,
 }
 
@@ -191,7 +194,8 @@ fn reversed(line: &Polyline) -> Polyline {
     Polyline::new(line.points().iter().rev().copied().collect())
 }
 
-/// Step 2, first half: points at a fixed spacing, corners included; and which of them are corners or ends.
+/// Step 2, first half: points at a fixed spacing, corners included; and which of them are corners
+/// or ends.
 fn cut(line: &Polyline, spacing_m: f64) -> (Vec<Point>, Vec<usize>) {
     // A little less, so that rounding adds no part.
     let parts_of = |stretch: Segment| {
@@ -326,8 +330,8 @@ mod tests {
 
     #[test]
     fn forward_and_then_backward_by_hand() {
-        // Forward, the farthest point that is seen from (0.5, 1.5) is (3.5, 0.5), on a line that touches
-        // the square at (2, 1), and from there the goal.
+        // Forward, the farthest point that is seen from (0.5, 1.5) is (3.5, 0.5), on a line that
+        // touches the square at (2, 1), and from there the goal.
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let required = RequiredClearance::new(&clearance, 0.0, 0.0);
@@ -336,13 +340,13 @@ mod tests {
         let mut visibility = Visibility::new(&clearance, required.unsafe_within_m());
         let forward = connected(&points, |at| visibility.farthest_safe(&stretches, at, &required));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
-        // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5, 1.5).
-        // From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
+        // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5,
+        // 1.5). From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
         let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
         assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
-        // Backward alone, the points of the line are 0.707 m and 1 m apart: from the goal (1.5, 0.5) is seen, not (1, 1), and from there
-        // the start.
+        // Backward alone, the points of the line are 0.707 m and 1 m apart: from the goal (1.5,
+        // 0.5) is seen, not (1, 1), and from there the start.
         let one_way = |passes| {
             run(&BidirectionalSmoothingConfig { passes, ..config(Select::Farthest, 0.0) }, 0.0).0
         };
@@ -352,9 +356,10 @@ mod tests {
 
     #[test]
     fn a_second_run_can_shorten_further() {
-        // From (0, 0) the square hides (4, 1.5) and the goal. From the goal the farthest of the points
-        // 0.806 m apart is (3.2, 0.4); (2.4, 0.3) lies behind the square, at (3, 1.125). The second run
-        // cuts the new stretch in three, and from (0, 0) sees (3.467, 1.1), at (3, 0.952) below the square.
+        // From (0, 0) the square hides (4, 1.5) and the goal. From the goal the farthest of the
+        // points 0.806 m apart is (3.2, 0.4); (2.4, 0.3) lies behind the square, at (3, 1.125). The
+        // second run cuts the new stretch in three, and from (0, 0) sees (3.467, 1.1), at (3,
+        // 0.952) below the square.
         let (once, _) =
             run_on(&[[0.0, 0.0], [4.0, 0.5], [4.0, 2.5]], &config(Select::Farthest, 0.0), 0.0);
         let (twice, _) = run_on(&once, &config(Select::Farthest, 0.0), 0.0);
@@ -366,8 +371,9 @@ mod tests {
 
     #[test]
     fn the_safety_distance_is_kept() {
-        // From (0.5, 1.5) the connection with (1.5, 0.5) is 0.707 m from (2, 1), that with (2.5, 0.5)
-        // 0.224 m. From (1.5, 0.5) those with (4, 1) and (4.5, 1.5) are nearer than 0.2 m to (3, 1).
+        // From (0.5, 1.5) the connection with (1.5, 0.5) is 0.707 m from (2, 1), that with (2.5,
+        // 0.5) 0.224 m. From (1.5, 0.5) those with (4, 1) and (4.5, 1.5) are nearer than 0.2 m to
+        // (3, 1).
         let expected = [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&config(Select::Farthest, 0.5), 0.0);
         assert_eq!((points, done.shortfall_m), (expected.to_vec(), None));
@@ -379,8 +385,8 @@ mod tests {
 
     #[test]
     fn the_largest_clearance_by_hand() {
-        // Clearances of the seven points: 1.5, 1, 0.707, 0.5, 0.707, 1, 1.5. From the first, (1, 1) has
-        // the largest of those that are seen; from there (4, 1), along the square's edge.
+        // Clearances of the seven points: 1.5, 1, 0.707, 0.5, 0.707, 1, 1.5. From the first, (1, 1)
+        // has the largest of those that are seen; from there (4, 1), along the square's edge.
         let (points, _) = run(&config(Select::LargestClearance, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [1.0, 1.0], [4.0, 1.0], [4.5, 1.5]]);
     }

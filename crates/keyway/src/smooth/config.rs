@@ -19,8 +19,8 @@ registry! {
     LineOfSight(LineOfSightConfig) => LineOfSight;
     /// Key points: the turning points, and points that keep the path away from obstacles.
     KeyPoints(KeyPointSmoothingConfig) => KeyPointSmoothing;
-    /// From the start and then from the goal, straight on to the farthest place of the path that can
-    /// safely be reached.
+    /// From the start and then from the goal, straight on to the farthest place of the path that
+    /// can safely be reached.
     Bidirectional(BidirectionalSmoothingConfig) => BidirectionalSmoothing;
     /// A point is dropped where those before and after it can be joined; in several passes.
     Shortcut(ShortcutConfig) => Shortcut;
@@ -29,14 +29,14 @@ registry! {
     /// The locally shortest path at the clearance, pulled tight like a string around the same
     /// obstacles; its bends are arcs of the clearance's radius.
     Taut(TautConfig) => Taut;
-    /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature within
-    /// a turning limit.
+    /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature
+    /// within a turning limit.
     ContinuousCurvature(ContinuousCurvatureConfig) => ContinuousCurvature;
 }
 
 impl SmootherConfig {
-    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of those of papers,
-    /// whose cells are 1 m wide.
+    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of
+    /// those of papers, whose cells are 1 m wide.
     #[must_use]
     pub fn keeping(mut self, safe_distance_m: f64) -> Self {
         match &mut self {
@@ -55,8 +55,8 @@ impl SmootherConfig {
         self.parameters().build()
     }
 
-    /// The smoother's own safe distance to obstacles on a map with cells of this side \[m\]; 0 for a smoother
-    /// without one. It is kept where it is larger than the clearance.
+    /// The smoother's own safe distance to obstacles on a map with cells of this side \[m\]; 0 for
+    /// a smoother without one. It is kept where it is larger than the clearance.
     pub fn safe_distance_m(&self, cell_m: f64) -> f64 {
         self.parameters().safe_distance_m(cell_m)
     }

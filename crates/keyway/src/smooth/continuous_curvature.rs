@@ -1,9 +1,9 @@
 //! Continuous curvature: a line -> a path without corners that a robot can drive at speed.
 //!
 //! The line is shortened by line of sight, then each corner is cut by two cubic curves
-//! (`corner_blend`): their curvature rises from 0 on one edge to a peak that is known in closed form,
-//! and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance allow.
-//! A corner for which no curve within the turning limit fits stays sharp, and is reported: a
+//! (`corner_blend`): their curvature rises from 0 on one edge to a peak that is known in closed
+//! form, and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance
+//! allow. A corner for which no curve within the turning limit fits stays sharp, and is reported: a
 //! differential drive turns on the spot there.
 //!
 //! Two corners share the edge between them: each gets what the turning limit asks for, and half of
@@ -13,9 +13,9 @@
 //! `docs/SMOOTHING.md`.
 //!
 //! # Once more
-//! The path depends on the shortened line alone, and that is not shortened again: smoothing it gives the
-//! same path. Points on the curves are another line: from them line of sight sees farther than from the
-//! corners, so smoothing them gives a shorter path, not the same one.
+//! The path depends on the shortened line alone, and that is not shortened again: smoothing it
+//! gives the same path. Points on the curves are another line: from them line of sight sees farther
+//! than from the corners, so smoothing them gives a shorter path, not the same one.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. At most 14 tests of a curve per corner, each a few scans of the cells near it.
@@ -35,8 +35,8 @@ use serde::{Deserialize, Serialize};
 /// No cut is shorter than this \[cells\].
 const SHORTEST_CUT_CELLS: f64 = 0.01;
 
-/// Curves use no more than this share of an edge: between two of them, and at the ends of the line, a
-/// little stays straight.
+/// Curves use no more than this share of an edge: between two of them, and at the ends of the line,
+/// a little stays straight.
 const CURVED_SHARE: f64 = 0.999;
 
 /// A cut is known to this share of its range.
@@ -59,8 +59,8 @@ pub struct ContinuousCurvatureConfig {
 }
 
 impl ContinuousCurvatureConfig {
-    /// For a robot that need not slow down below `speed_mps` on curves: it turns at its largest turn
-    /// rate there. Its largest speed where that is less.
+    /// For a robot that need not slow down below `speed_mps` on curves: it turns at its largest
+    /// turn rate there. Its largest speed where that is less.
     pub fn for_robot(robot: &Robot, speed_mps: f64) -> Self {
         let speed_mps = speed_mps.min(robot.limits.v_max_mps);
         Self { min_turning_radius_m: speed_mps / robot.limits.omega_max_radps }
@@ -240,8 +240,8 @@ impl<'a> Rounding<'a> {
         Some(fits_m)
     }
 
-    /// Whether the curves of a cut keep the clearance; where the line does not keep it, whether they
-    /// are no nearer to obstacles than the part of it that they replace.
+    /// Whether the curves of a cut keep the clearance; where the line does not keep it, whether
+    /// they are no nearer to obstacles than the part of it that they replace.
     fn fits(&self, index: usize, cut_m: f64) -> bool {
         let corner = &self.corners[index - 1];
         let [from, to] = corner.ends(cut_m);
@@ -283,8 +283,8 @@ impl<'a> Rounding<'a> {
         SharpCorner { at: corner.at, why }
     }
 
-    /// What is left of the edges, and the curves between them; and which of these certainly keep the
-    /// clearance, as what they were made of does.
+    /// What is left of the edges, and the curves between them; and which of these certainly keep
+    /// the clearance, as what they were made of does.
     fn pieces(&self, points: &[Point], cuts_m: &[f64]) -> Vec<(PathPiece, bool)> {
         let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
             return Vec::new();

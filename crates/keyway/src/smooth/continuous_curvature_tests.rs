@@ -79,8 +79,8 @@ fn a_right_angle_takes_both_edges() {
     assert_eq!(done.path.pieces().len(), 1, "nothing stands: {done:?}");
 
     // The block is in the straight way. Its corner (4, 2) is sqrt(2) from the line's corner, on the
-    // bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's corner,
-    // for the longest cut of 0.999 * 2.5 m.
+    // bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's
+    // corner, for the longest cut of 0.999 * 2.5 m.
     let rows = ["####....", "####....", "........", "........"];
     // (2, 1) is not a corner, and does not count as one that was removed.
     let done = smoothed(&rows, &[[1.0, 1.0], [2.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.1, 0.0);
@@ -95,9 +95,9 @@ fn a_right_angle_takes_both_edges() {
 
 #[test]
 fn a_cut_stops_at_the_clearance() {
-    // The bisector of the corner (5, 1) meets the block at (4, 2), sqrt(2) away, so the curve's middle
-    // is at most sqrt(2) - 0.99 from the corner: cut at most (sqrt(2) - 0.99) sqrt(2) 640 / 289 = 1.329 m.
-    // It is less, for the curve is nearer to (4, 2) on both sides of the middle.
+    // The bisector of the corner (5, 1) meets the block at (4, 2), sqrt(2) away, so the curve's
+    // middle is at most sqrt(2) - 0.99 from the corner: cut at most (sqrt(2) - 0.99) sqrt(2) 640 /
+    // 289 = 1.329 m. It is less, for the curve is nearer to (4, 2) on both sides of the middle.
     let rows = ["####....", "####....", "####....", "####....", "........", "........"];
     let line = [[1.0, 1.0], [5.0, 1.0], [5.0, 3.5]];
     let done = smoothed(&rows, &line, 0.99, 0.0);
@@ -118,8 +118,8 @@ fn a_cut_stops_at_the_clearance() {
 
 #[test]
 fn a_line_that_just_keeps_the_clearance_is_rounded() {
-    // The walls, and the map's border, are exactly 0.5 m from both edges. The corner itself is 0.707 m
-    // from the inner wall: room for a radius of at most (0.707 - 0.5) / 0.5098 = 0.406 m.
+    // The walls, and the map's border, are exactly 0.5 m from both edges. The corner itself is
+    // 0.707 m from the inner wall: room for a radius of at most (0.707 - 0.5) / 0.5098 = 0.406 m.
     let rows = ["######.", "######.", "######.", "......."];
     let line = [[0.5, 0.5], [6.5, 0.5], [6.5, 3.5]];
     assert_eq!(smoothed(&rows, &line, 0.5, 0.3).sharp_corners, []);
@@ -152,7 +152,8 @@ fn edges_are_shared_by_hand() {
         let is_same = cuts_m.iter().zip(expected_m).all(is_near);
         assert!(cuts_m.len() == expected_m.len() && is_same, "{cuts_m:?} {expected_m:?}");
     };
-    // Edges of 3.5, 4 and 2.4 m: each corner gets half of the one between, however long the others are.
+    // Edges of 3.5, 4 and 2.4 m: each corner gets half of the one between, however long the others
+    // are.
     let z = [[1.0, 0.0], [1.0, 3.5], [5.0, 3.5], [5.0, 1.1]];
     near(&cuts_m(&z, 0.0), &[0.0, 0.999 * 2.0, 0.999 * 2.0, 0.0]);
     // 0.5, 4, 2.9 m: the second corner takes what the first one cannot use, and the other way
@@ -161,8 +162,8 @@ fn edges_are_shared_by_hand() {
     near(&cuts_m(&uneven, 0.0), &[0.0, 0.999 * 0.5, 0.999 * 2.9, 0.0]);
     let back = [uneven[3], uneven[2], uneven[1], uneven[0]];
     near(&cuts_m(&back, 0.0), &[0.0, 0.999 * 2.9, 0.999 * 0.5, 0.0]);
-    // Right angles with a radius of 1.3 m need 1.597 * 1.3 = 2.08 m, more than half of 4 m. The first one
-    // has no room at all, so that the second one gets all that its other edge allows.
+    // Right angles with a radius of 1.3 m need 1.597 * 1.3 = 2.08 m, more than half of 4 m. The
+    // first one has no room at all, so that the second one gets all that its other edge allows.
     near(&cuts_m(&uneven, 1.3), &[0.0, 0.0, 0.999 * 2.9, 0.0]);
 }
 
@@ -193,8 +194,8 @@ fn the_turning_radius_comes_first_when_an_edge_is_shared() {
 
 #[test]
 fn a_line_that_is_too_near_is_rounded_where_the_curve_is_no_nearer() {
-    // 0.5 m above an obstacle, or at first 0.5 m and then farther; the block 1.5 m from both edges keeps
-    // line of sight away. The curve goes up from the edge as soon as it begins.
+    // 0.5 m above an obstacle, or at first 0.5 m and then farther; the block 1.5 m from both edges
+    // keeps line of sight away. The curve goes up from the edge as soon as it begins.
     for below in ["...#....", ".#......"] {
         let block = "####....";
         let rows = [block, block, block, "........", "........", below];
@@ -210,8 +211,9 @@ fn a_line_that_is_too_near_is_rounded_where_the_curve_is_no_nearer() {
     }
 }
 
-/// The corner of the line is (d, -d) from that of a block, d in cells: the middle of a curve of cut c, on
-/// the bisector, is 289/640 c / sqrt(2) from it, so c is at most sqrt(2) d * sqrt(2) * 640/289 = 4.43 d.
+/// The corner of the line is (d, -d) from that of a block, d in cells: the middle of a curve of cut
+/// c, on the bisector, is 289/640 c / sqrt(2) from it, so c is at most sqrt(2) d * sqrt(2) *
+/// 640/289 = 4.43 d.
 #[test]
 fn no_cut_is_shorter_than_a_hundredth_of_a_cell() {
     for resolution_m in [0.05, 1.0, 20.0] {

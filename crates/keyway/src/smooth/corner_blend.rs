@@ -1,20 +1,21 @@
 //! A corner of a line -> two cubic curves that round it with continuous curvature, in closed form.
 //!
-//! Along both edges the curves begin at the distance `cut` from the corner and meet on its bisector,
-//! each the mirror image of the other. The control points of either lie on the edge at the fractions
-//! 1, (b + c) and c of the cut from the corner, the last one half-way between its c and that of the
-//! other edge, with a : b : c = 130 : 221 : 289.
+//! Along both edges the curves begin at the distance `cut` from the corner and meet on its
+//! bisector, each the mirror image of the other. The control points of either lie on the edge at
+//! the fractions 1, (b + c) and c of the cut from the corner, the last one half-way between its c
+//! and that of the other edge, with a : b : c = 130 : 221 : 289.
 //!
 //! With half the turn β and w = 1 - u, the first curve's curvature is
 //!
-//! κ(u) = 2/3 c sin β cos β u (a w + b u) / (((a w + 2 b u) w)² + 2 c q u² (a w + 2 b u) w + c² q u⁴)^(3/2) / cut,
-//! q = cos² β:
+//! κ(u) = 2/3 c sin β cos β u (a w + b u) / (((a w + 2 b u) w)² + 2 c q u² (a w + 2 b u) w + c² q
+//! u⁴)^(3/2) / cut, q = cos² β:
 //!
-//! 0 at the edge (u = 0), where three control points lie on a line, and 2/3 (b / c²) sin β / (q cut) at
-//! the joint (u = 1), the same for both by symmetry. There its derivative is 0 when 6 b² = 4 b c + a c,
-//! which holds. In between it only rises: the derivative's sign is that of w times a polynomial of
-//! degree 4 in u, linear in q, whose Bernstein coefficients are positive for q = 0 and for q = 1 (a
-//! test works them out in whole numbers), hence for every corner. So the peak is at the joint.
+//! 0 at the edge (u = 0), where three control points lie on a line, and 2/3 (b / c²) sin β / (q
+//! cut) at the joint (u = 1), the same for both by symmetry. There its derivative is 0 when 6 b² =
+//! 4 b c + a c, which holds. In between it only rises: the derivative's sign is that of w times a
+//! polynomial of degree 4 in u, linear in q, whose Bernstein coefficients are positive for q = 0
+//! and for q = 1 (a test works them out in whole numbers), hence for every corner. So the peak is
+//! at the joint.
 //!
 //! # Source
 //! \[Yang2010\]: two mirrored cubic spirals per corner, after D. J. Walton and D. S. Meek.
@@ -27,10 +28,10 @@
 //! | κ max | [`Corner::peak_curvature`] |
 //!
 //! # Where this differs from the paper
-//! - The proportions g : h : k / cos β. The paper's follow from a number that is rounded to 7.2364, at
-//!   the edge of those whose curvature only rises: the largest curvature may be a little before the
-//!   joint. The fractions here are inside that edge, so that the bound holds as it is written; it is
-//!   0.6 % larger.
+//! - The proportions g : h : k / cos β. The paper's follow from a number that is rounded to 7.2364,
+//!   at the edge of those whose curvature only rises: the largest curvature may be a little before
+//!   the joint. The fractions here are inside that edge, so that the bound holds as it is written;
+//!   it is 0.6 % larger.
 
 use crate::geometry::{Cubic, Point};
 
@@ -41,8 +42,8 @@ const B: f64 = 221.0 / 640.0;
 /// From the third to the corner.
 const C: f64 = 289.0 / 640.0;
 
-/// Where the cosine of half the turn is less than this (a turn of more than 178.8 degrees), the line
-/// turns back.
+/// Where the cosine of half the turn is less than this (a turn of more than 178.8 degrees), the
+/// line turns back.
 const REVERSAL_COSINE: f64 = 0.01;
 
 /// A corner of a line, and the curves that round it.
@@ -114,9 +115,9 @@ mod tests {
 
     #[test]
     fn a_right_angle_by_hand() {
-        // To the left in (0, 0), cut 640: control points at x = -640, -510, -289, then half-way from
-        // (-289, 0) to (0, 289). Peak: 2/3 * 221/640 / (289/640)^2 * sqrt(1/2) / (1/2) / 640
-        // = 2 * 221 / (3 * 289^2) * sqrt(2) = 442 sqrt(2) / 250563.
+        // To the left in (0, 0), cut 640: control points at x = -640, -510, -289, then half-way
+        // from (-289, 0) to (0, 289). Peak: 2/3 * 221/640 / (289/640)^2 * sqrt(1/2) / (1/2) / 640 =
+        // 2 * 221 / (3 * 289^2) * sqrt(2) = 442 sqrt(2) / 250563.
         let corner = corner(std::f64::consts::FRAC_PI_2);
         let [first, second] = corner.curves(640.0);
         let near = |a: Point, x: f64, y: f64| assert!(a.distance(Point::new(x, y)) < 1e-9, "{a:?}");
@@ -132,7 +133,8 @@ mod tests {
         assert!((corner.cut_for_radius(1.0 / peak) - 640.0).abs() < 1e-6);
     }
 
-    /// The table of `docs/SMOOTHING.md`: cut and depth for a radius of 1 m, of a circle and of these curves.
+    /// The table of `docs/SMOOTHING.md`: cut and depth for a radius of 1 m, of a circle and of
+    /// these curves.
     #[test]
     fn cuts_and_depths_for_a_radius_of_1_m() {
         let expected = [
@@ -186,7 +188,8 @@ mod tests {
     fn the_peak_is_at_the_joint() {
         let (a, b, c) = (130_i128, 221, 289);
         for q in [0, 1] {
-            // Curvature is n / s^(3/2): n = u (a w + b u), p = (a w + 2 b u) w = a + (2 b - 2 a) u + (a - 2 b) u².
+            // Curvature is n / s^(3/2): n = u (a w + b u), p = (a w + 2 b u) w = a + (2 b - 2 a) u
+            // + (a - 2 b) u².
             let n = [0, a, b - a];
             let p = [a, 2 * b - 2 * a, a - 2 * b];
             let mut s = times(&p, &p);
@@ -207,7 +210,8 @@ mod tests {
                 })
                 .take(5)
                 .collect();
-            // Bernstein coefficients of degree 4, times 12: row i holds 12 binomial(i, j) / binomial(4, j).
+            // Bernstein coefficients of degree 4, times 12: row i holds 12 binomial(i, j) /
+            // binomial(4, j).
             let rows: [[i128; 5]; 5] =
                 [[12, 0, 0, 0, 0], [12, 3, 0, 0, 0], [12, 6, 2, 0, 0], [12, 9, 6, 3, 0], [12; 5]];
             for row in rows {

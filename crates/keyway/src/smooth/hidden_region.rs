@@ -3,9 +3,9 @@
 use super::stretches::{Span, Stretches};
 use crate::geometry::Point;
 
-/// What lies behind a convex shape for an eye: in the wedge of the two tangents, beyond the connection of
-/// the points where they touch. That connection lies in the shape, and every straight way from the eye to
-/// what is hidden crosses it.
+/// What lies behind a convex shape for an eye: in the wedge of the two tangents, beyond the
+/// connection of the points where they touch. That connection lies in the shape, and every straight
+/// way from the eye to what is hidden crosses it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HiddenRegion {
     /// Half-planes whose common part it is: a normal, and how far along it they begin.
@@ -86,8 +86,8 @@ mod tests {
 
     #[test]
     fn behind_a_box_by_hand() {
-        // From (0, 0) the box from (2, -1) to (3, 1) hides what is between the rays through its near corners,
-        // beyond x = 2.
+        // From (0, 0) the box from (2, -1) to (3, 1) hides what is between the rays through its
+        // near corners, beyond x = 2.
         let shape = Span::of_two(Point::new(2.0, -1.0), Point::new(3.0, 1.0));
         let shadow = HiddenRegion::of_box(shape, 0.0, Point::default());
         let hides = |x: f64, y: f64| shadow.hides(Span::of_two(Point::new(x, y), Point::new(x, y)));

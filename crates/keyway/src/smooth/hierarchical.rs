@@ -1,5 +1,5 @@
-//! Hierarchical smoothing \[ZhuYin2024\]: a line -> few straight stretches that keep a safe distance, joined by
-//! the bends of a cubic B-spline.
+//! Hierarchical smoothing \[ZhuYin2024\]: a line -> few straight stretches that keep a safe
+//! distance, joined by the bends of a cubic B-spline.
 //!
 //! The inner layer drops points that no obstacle requires. The outer layer puts a control node on
 //! either side of each corner that is left; the B-spline over the nodes is straight between
@@ -18,31 +18,34 @@
 //! | the matrix of eq. (8) to (10) | [`Cubic::uniform_b_spline`] | | |
 //!
 //! # Where this differs from the paper
-//! - d = 0.8 m, because the published clearances are 0.81 to 0.83 m; R = 1 m. A connection keeps d when its
-//!   distance is d or more (to 1e-9 m), from obstacles, not from the map's border. Where d is less
-//!   than the clearance that is asked for, that stands in for it.
-//! - Of the nodes that can be joined with one, the farthest is taken, and the search goes on from there.
-//!   The next node can always be joined, so where the line itself is nearer to an obstacle than d, it
-//!   stays as it was.
-//! - The control nodes are the start three times, A, corner and B of each corner, the goal three times:
-//!   so the curve begins at the start and ends at the goal. (Twice would begin it at (5 P0 + P1) / 6.)
+//! - d = 0.8 m, because the published clearances are 0.81 to 0.83 m; R = 1 m. A connection keeps d
+//!   when its distance is d or more (to 1e-9 m), from obstacles, not from the map's border. Where d
+//!   is less than the clearance that is asked for, that stands in for it.
+//! - Of the nodes that can be joined with one, the farthest is taken, and the search goes on from
+//!   there. The next node can always be joined, so where the line itself is nearer to an obstacle
+//!   than d, it stays as it was.
+//! - The control nodes are the start three times, A, corner and B of each corner, the goal three
+//!   times: so the curve begins at the start and ends at the goal. (Twice would begin it at (5 P0 +
+//!   P1) / 6.)
 //! - The paper does not say what the curve keeps from obstacles: R is at most half of the corner's
-//!   shorter edge, so that bends do not overlap. Where a bend is nearer to an obstacle than d and than the
-//!   corner's edges there, R is halved until it is not. A corner that would need less than a 16th of it
-//!   stays sharp, and so does a reversal. So a corner that an obstacle holds at its distance, d or less,
-//!   cannot be rounded: every bend cuts it. A line that keeps more than d, as that of the paper's planner
-//!   nearly does, has no such corners; with others [`BendsKeep::Clearance`] rounds them.
-//! - The paper's paths have no non-smooth turns, heading changes of over 5 degrees within a centimetre. A
-//!   spline can have them all the same: a bend between edges at an angle of phi has a curvature of
-//!   2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as much before and after it
-//!   where the edges are many times longer than R. A bend that would exceed 5 degrees per centimetre
-//!   anywhere is not made: the corner stays sharp and is reported. So the non-smooth turns of a
-//!   path are its sharp corners.
+//!   shorter edge, so that bends do not overlap. Where a bend is nearer to an obstacle than d and
+//!   than the corner's edges there, R is halved until it is not. A corner that would need less than
+//!   a 16th of it stays sharp, and so does a reversal. So a corner that an obstacle holds at its
+//!   distance, d or less, cannot be rounded: every bend cuts it. A line that keeps more than d, as
+//!   that of the paper's planner nearly does, has no such corners; with others
+//!   [`BendsKeep::Clearance`] rounds them.
+//! - The paper's paths have no non-smooth turns, heading changes of over 5 degrees within a
+//!   centimetre. A spline can have them all the same: a bend between edges at an angle of phi has a
+//!   curvature of 2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as much
+//!   before and after it where the edges are many times longer than R. A bend that would exceed 5
+//!   degrees per centimetre anywhere is not made: the corner stays sharp and is reported. So the
+//!   non-smooth turns of a path are its sharp corners.
 //! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. At most n tests per kept point for a line of n corners, most of them saved by
-//! [`Visibility`]; some certified distances of cubic curves for each corner and halving. Distances of bends are certain to within 4e-5 cells.
+//! [`Visibility`]; some certified distances of cubic curves for each corner and halving. Distances
+//! of bends are certain to within 4e-5 cells.
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -56,8 +59,8 @@ use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 use std::iter::repeat_n;
 
-/// No bend has a larger curvature \[1/m\]: 5 degrees within a centimetre, beyond which a turn counts as
-/// non-smooth.
+/// No bend has a larger curvature \[1/m\]: 5 degrees within a centimetre, beyond which a turn
+/// counts as non-smooth.
 const MAX_CURVATURE_PER_M: f64 = 5.0 * std::f64::consts::PI / 180.0 / 0.01;
 
 /// How often R is halved before a corner stays sharp.
@@ -89,11 +92,11 @@ pub enum BendsKeep {
 pub struct HierarchicalSmoothingConfig {
     /// Safe distance d: what connections and bends keep from obstacles, where the line does \[m\].
     pub safe_distance_m: f64,
-    /// R: how far the control nodes are from their corner; at most half of its shorter edge, and halved
-    /// where the bend would come too near to an obstacle \[m\].
+    /// R: how far the control nodes are from their corner; at most half of its shorter edge, and
+    /// halved where the bend would come too near to an obstacle \[m\].
     pub control_distance_m: f64,
-    /// What bends keep: the `safe-distance`, or only the `clearance` that is asked for, which rounds more
-    /// corners.
+    /// What bends keep: the `safe-distance`, or only the `clearance` that is asked for, which
+    /// rounds more corners.
     pub bends_keep: BendsKeep,
 }
 
@@ -194,12 +197,13 @@ fn inner_layer(
         at = visibility.farthest_safe(&stretches, at, required);
         kept.push(points[at]);
     }
-    // Where a line comes back to a place, what is left can repeat a point, or go straight on over it.
+    // Where a line comes back to a place, what is left can repeat a point, or go straight on over
+    // it.
     Polyline::new(kept).merged().points().to_vec()
 }
 
-/// The distance that is kept for certain, where that is less than what is asked for by more than what
-/// can be certified.
+/// The distance that is kept for certain, where that is less than what is asked for by more than
+/// what can be certified.
 fn shortfall_m(
     path: &Path,
     clearance: &Clearance<'_>,
@@ -234,9 +238,9 @@ impl<'a> Bends<'a> {
         Self { nodes, radii: nodes.windows(3).map(radius).collect() }
     }
 
-    /// The same without bends that turn too sharply, and with every bend as far from obstacles as its
-    /// edges, or `kept_m`: R of the others is halved. All at once, until none is left, for each bend
-    /// depends on the nodes of its neighbours too.
+    /// The same without bends that turn too sharply, and with every bend as far from obstacles as
+    /// its edges, or `kept_m`: R of the others is halved. All at once, until none is left, for each
+    /// bend depends on the nodes of its neighbours too.
     fn kept_clear(mut self, clearance: &Clearance<'_>, kept_m: f64) -> Self {
         let widest = self.radii.clone();
         // A bend depends on its own nodes and those of the corners next to it.
@@ -349,8 +353,8 @@ impl<'a> Bends<'a> {
     }
 }
 
-/// The two pieces of the spline that are not straight, those whose four control nodes have A, corner and
-/// B of a corner among them. Eq. (8) to (10).
+/// The two pieces of the spline that are not straight, those whose four control nodes have A,
+/// corner and B of a corner among them. Eq. (8) to (10).
 fn bend(control: &[Point], corner: usize) -> [Cubic; 2] {
     // Before A of the first corner stands the start, three times.
     let piece = |first: usize| {

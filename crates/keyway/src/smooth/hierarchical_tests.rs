@@ -48,9 +48,10 @@ fn the_inner_layer_by_hand() {
     ]));
     let kept =
         |safe_m| inner_layer(&line, &clearance, &RequiredClearance::new(&clearance, 0.0, safe_m));
-    // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1)
-    // 0.5 / sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is blocked.
-    // (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m away.
+    // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1) 0.5 /
+    // sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is
+    // blocked. (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m
+    // away.
     assert_eq!(kept(0.5), points_of(&[[0.5, 1.5], [0.5, 0.5], [4.5, 0.5], [5.5, 2.5]]));
     assert_eq!(kept(0.7).len(), 5, "0.5 m is too near, but the next node is always joined");
     for safe_m in [0.1, 0.5, 0.7] {
@@ -128,9 +129,9 @@ fn the_control_distance_is_at_most_half_an_edge() {
 
 #[test]
 fn a_bend_that_comes_too_near_is_halved() {
-    // The square (3, 2) - (4, 3); the edges y = 0.5 and x = 5.5 are 1.5 m from its corner (4, 2), nearest
-    // at (4, 0.5). The bend begins at x = (0.5 + 4 (5.5 - R) + 5.5) / 6: with R = 2 at 3.33, so at x = 4 it
-    // is above the edge and too near; with R = 1 at 4.
+    // The square (3, 2) - (4, 3); the edges y = 0.5 and x = 5.5 are 1.5 m from its corner (4, 2),
+    // nearest at (4, 0.5). The bend begins at x = (0.5 + 4 (5.5 - R) + 5.5) / 6: with R = 2 at
+    // 3.33, so at x = 4 it is above the edge and too near; with R = 1 at 4.
     let free = "........";
     let grid = OccupancyGrid::from_ascii(&[free, free, free, free, free, "...#....", free, free]);
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
@@ -144,9 +145,10 @@ fn a_bend_that_comes_too_near_is_halved() {
     assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
 }
 
-/// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20), and is too near to (800, 80) where
-/// that is less than 800, except for a few metres, over which it hardly leaves the edge: for c =
-/// 972 R has to be 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7 m.
+/// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20), and is too near to (800, 80)
+/// where that is less than 800, except for a few metres, over which it hardly leaves the edge: for
+/// c = 972 R has to be 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7
+/// m.
 #[test]
 fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
     let frame =
@@ -166,7 +168,8 @@ fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
 
 #[test]
 fn a_bend_may_be_as_near_as_either_of_its_edges() {
-    // (6, 3) is 1.12 m from (5.5, 2), where the bend with R = 1 m leaves the edge: farther away from there on.
+    // (6, 3) is 1.12 m from (5.5, 2), where the bend with R = 1 m leaves the edge: farther away
+    // from there on.
     let free = "........";
     let grid = OccupancyGrid::from_ascii(&[free, free, free, free, "......#.", free, free, free]);
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
@@ -178,7 +181,8 @@ fn a_bend_may_be_as_near_as_either_of_its_edges() {
 
 #[test]
 fn a_corner_without_room_stays_sharp() {
-    // Everything beyond y = 1 up to x = 5 is a wall: every bend begins before its end, 0.5 m from it.
+    // Everything beyond y = 1 up to x = 5 is a wall: every bend begins before its end, 0.5 m from
+    // it.
     let wall = "#####...";
     let grid = OccupancyGrid::from_ascii(&[wall, wall, wall, wall, wall, wall, wall, "........"]);
     let done = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]], 0.8, 1.0);
@@ -189,8 +193,8 @@ fn a_corner_without_room_stays_sharp() {
     );
     assert_eq!(done.path.length_m(), 10.0);
     assert!((done.shortfall_m.unwrap() - 0.5).abs() < 1e-9);
-    // Where bends only keep the clearance, here 0, it is rounded. Its middle is (A + 4 corner + B) / 6 =
-    // (5.5 - 1/6, 0.5 + 1/6), 1/3 m to the right of and below the wall's corner (5, 1).
+    // Where bends only keep the clearance, here 0, it is rounded. Its middle is (A + 4 corner + B)
+    // / 6 = (5.5 - 1/6, 0.5 + 1/6), 1/3 m to the right of and below the wall's corner (5, 1).
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
     let done = smooth_with(BendsKeep::Clearance, &grid, &line, 0.8, 1.0);
     assert_eq!((done.sharp_corners.len(), done.inserted_points), (0, 2));
@@ -198,8 +202,8 @@ fn a_corner_without_room_stays_sharp() {
     assert!(kept_m <= 2f64.sqrt() / 3.0 && kept_m > 0.4, "{kept_m}");
 }
 
-/// Eq. (6) to (10) give a curvature of 2 sin(t / 2) / (R cos²(t / 2)) in the middle of a turn by t; at most
-/// 5 degrees per centimetre, 8.727 / m.
+/// Eq. (6) to (10) give a curvature of 2 sin(t / 2) / (R cos²(t / 2)) in the middle of a turn by t;
+/// at most 5 degrees per centimetre, 8.727 / m.
 #[test]
 fn a_corner_stays_sharp_where_its_bend_would_turn_too_sharply() {
     let why = |points: &[[f64; 2]]| {
@@ -220,9 +224,9 @@ fn a_corner_stays_sharp_where_its_bend_would_turn_too_sharply() {
     assert_eq!(why(&turned(128.0)), Some(WhySharp::TurningRadius));
 }
 
-/// Where the edges are long, the curvature peaks beside the middle: for a turn by 120 degrees, R = 1 m and
-/// a control node s before A it is 6.93 / m in the middle, but at most 7.44 / m for s = 10 m and
-/// 9.48 / m for s = 30 m, evaluated from the quotient of polynomials at 20,000 points.
+/// Where the edges are long, the curvature peaks beside the middle: for a turn by 120 degrees, R =
+/// 1 m and a control node s before A it is 6.93 / m in the middle, but at most 7.44 / m for s = 10
+/// m and 9.48 / m for s = 30 m, evaluated from the quotient of polynomials at 20,000 points.
 #[test]
 fn long_edges_sharpen_a_bend() {
     let sine = 0.75f64.sqrt();

@@ -1,5 +1,5 @@
-//! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away from
-//! obstacles.
+//! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away
+//! from obstacles.
 //!
 //! Jump points are dropped one after another while the line past them is free; where what is left
 //! passes an obstacle too closely, the jump point that gives the shortest safe detour is put back.
@@ -26,8 +26,8 @@
 //!   those between jump points. `docs/FINDINGS.md` compares the two.
 //! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
 //!   clearance stands in for D.
-//! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would refuse
-//!   every point there. D is kept from obstacles, not from the map's border.
+//! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would
+//!   refuse every point there. D is kept from obstacles, not from the map's border.
 //! - Where no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
 //!   reports what is kept of D. Of points with the same L the first one is taken.
 //! - A second run can shorten the line further, because fewer points are in its way.
@@ -68,8 +68,8 @@ pub struct KeyPointSmoothingConfig {
     /// Q, the points that key points are chosen from: the `jump-points` of the path (for a planner
     /// without them, its turning points), or all its `cells`.
     pub candidates: KeyPointCandidates,
-    /// Safe distance D: where a connection is nearer to an obstacle, a point of Q is put back if that
-    /// helps \[m\].
+    /// Safe distance D: where a connection is nearer to an obstacle, a point of Q is put back if
+    /// that helps \[m\].
     pub safe_distance_m: f64,
 }
 
@@ -211,8 +211,8 @@ fn with_safe_detours(
     kept
 }
 
-/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least; the
-/// first one of several.
+/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least;
+/// the first one of several.
 fn shortest_safe_detour(
     q: &Stretches<'_>,
     from: usize,
@@ -268,30 +268,31 @@ mod tests {
 
     #[test]
     fn step_3_puts_the_shortest_safe_detour_back() {
-        // (0.5, 1.5) - (3.5, 0.5) touches the square. Over (1.5, 0.5): the first leg is x + y = 2, its
-        // distance from (2, 1) 1 / sqrt(2), the second one y = 0.5, 0.5 m away; L = 3.414 m. Over
-        // (2.5, 0.5): x + 2 y = 3.5, 0.5 / sqrt(5) = 0.224 m.
+        // (0.5, 1.5) - (3.5, 0.5) touches the square. Over (1.5, 0.5): the first leg is x + y = 2,
+        // its distance from (2, 1) 1 / sqrt(2), the second one y = 0.5, 0.5 m away; L = 3.414 m.
+        // Over (2.5, 0.5): x + 2 y = 3.5, 0.5 / sqrt(5) = 0.224 m.
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.5);
         assert_eq!(points, [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]]);
         assert_eq!((done.removed_points, done.shortfall_m), (0, None), "0.5 m is enough");
-        // Over (1.75, 0.5): x + 1.25 y = 2.375, 0.875 / 1.601 = 0.547 m; L = 1.601 + 1.75 = 3.351 m.
+        // Over (1.75, 0.5): x + 1.25 y = 2.375, 0.875 / 1.601 = 0.547 m; L = 1.601 + 1.75 = 3.351
+        // m.
         let line = [[0.5, 1.5], [1.5, 0.5], [1.75, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         assert_eq!(run(&line, 0.5).0, [[0.5, 1.5], [1.75, 0.5], [3.5, 0.5], [4.5, 1.5]]);
     }
 
     #[test]
     fn step_2_stops_at_the_first_point_that_is_hidden() {
-        // From (0.5, 1.5) both ends of the last stretch are seen, past the square on either side, but not
-        // (4.5, 1.5) between them.
+        // From (0.5, 1.5) both ends of the last stretch are seen, past the square on either side,
+        // but not (4.5, 1.5) between them.
         let line = [[0.5, 1.5], [2.5, 0.1], [4.5, 0.1], [4.5, 1.5], [4.5, 2.9]];
         assert_eq!(run(&line, 0.0).0, [line[0], line[2], line[4]]);
     }
 
     #[test]
     fn of_detours_of_the_same_length_the_first_is_taken() {
-        // y = 0.5 is 0.5 m below the square. Over (1.5, 0.2) the second leg is 0.65 m below (3, 1), over
-        // (3.5, 0.2) the first one as far below (2, 1), and both are as long.
+        // y = 0.5 is 0.5 m below the square. Over (1.5, 0.2) the second leg is 0.65 m below (3, 1),
+        // over (3.5, 0.2) the first one as far below (2, 1), and both are as long.
         let line = [[0.5, 0.5], [1.5, 0.2], [3.5, 0.2], [4.5, 0.5]];
         assert_eq!(run(&line, 0.6).0, [line[0], line[1], line[3]]);
         let back = [line[3], line[2], line[1], line[0]];
@@ -309,8 +310,8 @@ mod tests {
 
     #[test]
     fn a_second_run_can_drop_more() {
-        // (3.5, 1.5) cannot be seen from the start, so (3.5, 0.5) is kept, although the goal can: at
-        // y = 0.5 + (x - 0.5) / 8 below the square. (3.5, 1.5) itself is dropped.
+        // (3.5, 1.5) cannot be seen from the start, so (3.5, 0.5) is kept, although the goal can:
+        // at y = 0.5 + (x - 0.5) / 8 below the square. (3.5, 1.5) itself is dropped.
         let (once, _) = run(&[[0.5, 0.5], [3.5, 0.5], [3.5, 1.5], [4.5, 1.0]], 0.0);
         assert_eq!(once, [[0.5, 0.5], [3.5, 0.5], [4.5, 1.0]]);
         assert_eq!(run(&once, 0.0).0, [[0.5, 0.5], [4.5, 1.0]]);

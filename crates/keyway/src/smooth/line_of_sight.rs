@@ -6,8 +6,8 @@
 //! accepted, so where the line itself is too close to an obstacle it stays as it was.
 //!
 //! # Errors / cost
-//! None. From each kept point the line is searched back from its end; whole stretches of it lie in the
-//! shadow of an obstacle that was found before ([`Visibility`]), so few connections are tested.
+//! None. From each kept point the line is searched back from its end; whole stretches of it lie in
+//! the shadow of an obstacle that was found before ([`Visibility`]), so few connections are tested.
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -53,7 +53,8 @@ impl Smoother for LineOfSight {
     }
 }
 
-/// The line without its detours, keeping `clearance_m` from obstacles wherever it keeps that itself.
+/// The line without its detours, keeping `clearance_m` from obstacles wherever it keeps that
+/// itself.
 pub(super) fn line_of_sight(
     line: &Polyline,
     clearance: &Clearance<'_>,
@@ -136,7 +137,8 @@ mod tests {
             let frame = crate::map::GridFrame::new(40, 30, 0.1, crate::geometry::Pose::new(3.0, -2.0, yaw)).unwrap();
             let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
-            // Straight stretches with points all along, through obstacles, too; some on lattice points.
+            // Straight stretches with points all along, through obstacles, too; some on lattice
+            // points.
             let mut points = Vec::new();
             for pair in corners.windows(2) {
                 let ends = [pair[0], pair[1]].map(|(x, y)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y)));

@@ -1,5 +1,5 @@
-//! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a path
-//! can be driven.
+//! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a
+//! path can be driven.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};

@@ -3,8 +3,8 @@
 use crate::geometry::{Path, PathPiece, Point, Segment, Square};
 use crate::map::{Clearance, Obstruction};
 
-/// Distances that fall short of a safe distance by less than this \[m\] keep it: beside a wall of 1 m
-/// cells a path lies at exactly 0.5 m.
+/// Distances that fall short of a safe distance by less than this \[m\] keep it: beside a wall of 1
+/// m cells a path lies at exactly 0.5 m.
 const SAFE_TOLERANCE_M: f64 = 1e-9;
 
 /// The obstacles, the clearance that was asked for, and the smoother's own safe distance.
@@ -150,7 +150,8 @@ impl<'a> RequiredClearance<'a> {
         self.is_short(kept_m, self.clearance_m, slack_m).then_some(kept_m)
     }
 
-    /// Whether a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for it.
+    /// Whether a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for
+    /// it.
     fn is_short(&self, kept_m: f64, asked_m: f64, slack_m: f64) -> bool {
         let scale_m = asked_m + self.clearance.frame().resolution_m();
         kept_m < asked_m - slack_m.max(SAFE_TOLERANCE_M * scale_m.max(1.0))

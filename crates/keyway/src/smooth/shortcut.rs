@@ -1,7 +1,8 @@
-//! Grandparent shortcuts \[Wang2019\]: a line -> the same line without points past which it is free.
+//! Grandparent shortcuts \[Wang2019\]: a line -> the same line without points past which it is
+//! free.
 //!
-//! Walking back from the goal, a point is dropped when its predecessor and its successor can be joined.
-//! A pass leaves at least every second point; a few passes straighten most of a path.
+//! Walking back from the goal, a point is dropped when its predecessor and its successor can be
+//! joined. A pass leaves at least every second point; a few passes straighten most of a path.
 //!
 //! # Source
 //! \[Wang2019\]: third improvement (path generation), equations (16), (17); the fourth one for the
@@ -13,14 +14,14 @@
 //! | expanded obstacles | [`ShortcutConfig::expansion_cells`] | cells | 1 |
 //!
 //! # Where this differs from the paper
-//! - The paper looks at the line's points between two x values (16), (17). That misses vertical lines
-//!   and cells that the line only clips. Here every cell that the line touches must be free, even
-//!   if only a corner is touched.
-//! - In the paper the expansion is one of the map, and the search and the shortcuts see the same one. Here
-//!   a smoother is given obstacles and distances, not the layers of a search, so the expansion is a
-//!   parameter: [`ShortcutConfig::for_layers`] takes that of the search. Where the line itself leads
-//!   through expanded cells, as it may when the search had fewer, it stays as it was, which
-//!   [`Smoothed::shortfall_m`] reports: n expanded cells are a distance of n cells.
+//! - The paper looks at the line's points between two x values (16), (17). That misses vertical
+//!   lines and cells that the line only clips. Here every cell that the line touches must be free,
+//!   even if only a corner is touched.
+//! - In the paper the expansion is one of the map, and the search and the shortcuts see the same
+//!   one. Here a smoother is given obstacles and distances, not the layers of a search, so the
+//!   expansion is a parameter: [`ShortcutConfig::for_layers`] takes that of the search. Where the
+//!   line itself leads through expanded cells, as it may when the search had fewer, it stays as it
+//!   was, which [`Smoothed::shortfall_m`] reports: n expanded cells are a distance of n cells.
 //! - A second run is that many more passes, so it can drop further points; when a run ends because
 //!   a pass has dropped none, a second one changes nothing.
 //! - Besides, a line is only free when it keeps the clearance that is asked for.
@@ -160,8 +161,8 @@ mod tests {
         assert_eq!(walked_back(&all, |_| true), at(&[0, 2, 4, 6]));
         // From 6 over 4 to 2, and there is no grandparent of 2.
         assert_eq!(walked_back(&at(&[0, 2, 4, 6]), |_| true), at(&[0, 2, 6]));
-        // Only 5 and 3 cannot be joined: 6 to 4, 4 to 2, 2 to 0 can. Only 6 and 4 cannot: then 5 to 3,
-        // 3 to 1, and on to the start.
+        // Only 5 and 3 cannot be joined: 6 to 4, 4 to 2, 2 to 0 can. Only 6 and 4 cannot: then 5 to
+        // 3, 3 to 1, and on to the start.
         let only_not = |x: f64| move |shortcut: Segment| shortcut.a.x != x;
         assert_eq!(walked_back(&all, only_not(5.0)), at(&[0, 2, 4, 6]));
         assert_eq!(walked_back(&all, only_not(6.0)), at(&[0, 1, 3, 5, 6]));
@@ -188,8 +189,8 @@ mod tests {
         // (2.5, 1.5) - (0.5, 2.5). (3.5, 1.5) is dropped too.
         let first = points_of(&[[0.5, 2.5], [2.5, 1.5], [4.5, 1.5], [6.5, 2.5]]);
         assert_eq!(run(1, 1), first);
-        // Pass 2 finds (6.5, 2.5) - (2.5, 1.5) at (5, 2.125), in an expanded cell, and likewise from
-        // (4.5, 1.5) to the start.
+        // Pass 2 finds (6.5, 2.5) - (2.5, 1.5) at (5, 2.125), in an expanded cell, and likewise
+        // from (4.5, 1.5) to the start.
         assert_eq!(run(2, 1), first);
         assert_eq!(run(2, 0), points_of(&[[0.5, 2.5], [2.5, 1.5], [6.5, 2.5]]));
         assert_eq!(run(9, 0), points_of(&[[0.5, 2.5], [6.5, 2.5]]), "y = 2.5, 0.5 m below it");
@@ -212,7 +213,8 @@ mod tests {
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = Polyline::new(points_of(&[[0.5, 0.5], [1.5, 1.5], [2.5, 1.5], [3.5, 0.5]]));
         let done = smooth(&ShortcutConfig::PAPER, &line, &clearance, 0.0);
-        // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1, 1).
+        // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1,
+        // 1).
         assert_eq!(done.path, (&line).into());
         assert_eq!(done.shortfall_m, Some(0.5));
         // Expanded cells are cells, whatever their size.
@@ -228,8 +230,8 @@ mod tests {
             None,
             "1.5 cells away"
         );
-        // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below the
-        // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
+        // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below
+        // the corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
         let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));
         let none = ShortcutConfig { passes: 1, expansion_cells: 0 };
         assert_eq!(smooth(&none, &line, &clearance, 0.2).path.pieces().len(), 1);

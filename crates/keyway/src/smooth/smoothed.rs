@@ -16,10 +16,10 @@ pub struct Smoothed {
     pub inserted_points: usize,
     /// Corners that were to be rounded and were not.
     pub sharp_corners: Vec<SharpCorner>,
-    /// The distance that the path certainly keeps \[m\], where that is less than was asked for; `None`
-    /// where it is kept. The clearance is to be kept from obstacles and from the map's border, a
-    /// smoother's own safe distance from obstacles only; where neither is kept it is the smaller
-    /// distance, 0 in an obstacle and outside the map.
+    /// The distance that the path certainly keeps \[m\], where that is less than was asked for;
+    /// `None` where it is kept. The clearance is to be kept from obstacles and from the map's
+    /// border, a smoother's own safe distance from obstacles only; where neither is kept it is the
+    /// smaller distance, 0 in an obstacle and outside the map.
     pub shortfall_m: Option<f64>,
 }
 
@@ -42,8 +42,8 @@ pub enum WhySharp {
     /// The path turns back on itself.
     Reversal,
     /// There is only room for a curve that is sharper than the turning limit, or for none at all
-    /// because the edges are too short. A smoother without a turning limit of its own bends at most 5 degrees
-    /// within a centimetre.
+    /// because the edges are too short. A smoother without a turning limit of its own bends at most
+    /// 5 degrees within a centimetre.
     TurningRadius,
 }
 

@@ -33,8 +33,9 @@ use std::fmt::Debug;
 /// assert_eq!(done.path.length_m(), 13f64.sqrt());
 /// ```
 pub trait Smoother: Debug {
-    /// The smoothing itself, for [`Self::smooth`]: the points of the line are finite and no two successive ones
-    /// are equal, its ends are jump points, and the clearance is a number of at least 0.
+    /// The smoothing itself, for [`Self::smooth`]: the points of the line are finite and no two
+    /// successive ones are equal, its ends are jump points, and the clearance is a number of at
+    /// least 0.
     fn smooth_distinct(
         &self,
         line: &PlannedLine,
@@ -42,11 +43,12 @@ pub trait Smoother: Debug {
         clearance_m: f64,
     ) -> Smoothed;
 
-    /// Smooths the line of a plan, or another one (`PlannedLine::from(polyline)`); points that are not finite
-    /// are left out, and so are repeated ones. The result begins and ends where the line does, is never longer,
-    /// and keeps `clearance_m` (or the smoother's own safe distance, if that is larger; with
-    /// [`BendsKeep::Clearance`](super::BendsKeep::Clearance), only straight stretches do) wherever the line did;
-    /// where that is not kept, [`Smoothed::shortfall_m`] says what is. A negative clearance counts as none.
+    /// Smooths the line of a plan, or another one (`PlannedLine::from(polyline)`); points that are
+    /// not finite are left out, and so are repeated ones. The result begins and ends where the line
+    /// does, is never longer, and keeps `clearance_m` (or the smoother's own safe distance, if that
+    /// is larger; with [`BendsKeep::Clearance`](super::BendsKeep::Clearance), only straight
+    /// stretches do) wherever the line did; where that is not kept, [`Smoothed::shortfall_m`] says
+    /// what is. A negative clearance counts as none.
     fn smooth(&self, line: &PlannedLine, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         self.smooth_distinct(&distinct(line), clearance, clearance_m.max(0.0))
     }

@@ -6,18 +6,19 @@
 //! metre. One pass backward and one forward cut off what cannot be reached; no other profile is
 //! faster anywhere.
 //!
-//! At a corner, where the heading jumps, the robot stops and turns on the spot, as fast as turn rate,
-//! angular acceleration and deceleration allow. A reversal is a turn by pi: nothing is driven
+//! At a corner, where the heading jumps, the robot stops and turns on the spot, as fast as turn
+//! rate, angular acceleration and deceleration allow. A reversal is a turn by pi: nothing is driven
 //! backwards.
 //!
 //! # What the time is good for
 //! It is a lower bound of the time of any run along this path under these limits: angular
 //! acceleration is ignored on curves, turning towards the path's first heading takes no time, and
-//! only a robot that leaves the path may be faster. Curvature is read at the samples; in between, the
-//! ceiling of the squared speed is a straight line. For segments and arcs that is exact at any
+//! only a robot that leaves the path may be faster. Curvature is read at the samples; in between,
+//! the ceiling of the squared speed is a straight line. For segments and arcs that is exact at any
 //! spacing. For cubic curves the error of the time, to either side, shrinks with the square of the
-//! spacing; at 1 cm it was about 1e-5 of the time on a spline with bends of half a metre. A bend that is
-//! shorter than the spacing is not passed faster than its turn takes at the largest turn rate.
+//! spacing; at 1 cm it was about 1e-5 of the time on a spline with bends of half a metre. A bend
+//! that is shorter than the spacing is not passed faster than its turn takes at the largest turn
+//! rate.
 //!
 //! # Source
 //! \[Bobrow1985\], for limits that do not depend on the speed; textbook material since.
@@ -32,8 +33,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use thiserror::Error;
 
-/// Between two samples, a turn that exceeds what their curvatures explain by more than this \[rad\] has
-/// a peak of curvature that both have missed.
+/// Between two samples, a turn that exceeds what their curvatures explain by more than this \[rad\]
+/// has a peak of curvature that both have missed.
 const MISSED_TURN_RAD: f64 = 1e-6;
 
 /// What a profile assumes besides the robot's limits.
@@ -54,7 +55,8 @@ pub struct SpeedProfileConfig {
 }
 
 impl SpeedProfileConfig {
-    /// Refuses a spacing at which a path has over a million samples, for whoever takes it from a user.
+    /// Refuses a spacing at which a path has over a million samples, for whoever takes it from a
+    /// user.
     ///
     /// # Errors
     /// [`SpeedProfileError::TooFine`].
@@ -170,9 +172,9 @@ impl SpeedSample {
 /// The fastest way to drive along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedProfile {
-    /// Samples in order, joints of the path's pieces among them. The arc length grows from each to the
-    /// next, except at a corner that needs a stop: that is listed twice, and the robot arrives at
-    /// the time of the first and leaves at that of the second. At another joint heading and
+    /// Samples in order, joints of the path's pieces among them. The arc length grows from each to
+    /// the next, except at a corner that needs a stop: that is listed twice, and the robot arrives
+    /// at the time of the first and leaves at that of the second. At another joint heading and
     /// curvature are those of the piece that begins there.
     pub samples: Vec<SpeedSample>,
     /// Time for the whole path \[s\].
@@ -277,8 +279,8 @@ fn ceilings(samples: &[PathSample], limits: &Limits, config: &SpeedProfileConfig
     curvatures.iter().map(ceiling).collect()
 }
 
-/// The largest squared speed at each sample that can be reached from the beginning, and from which the
-/// robot can slow down for all that follows.
+/// The largest squared speed at each sample that can be reached from the beginning, and from which
+/// the robot can slow down for all that follows.
 fn reachable(
     samples: &[PathSample],
     ceilings: &[Bound],
@@ -315,7 +317,8 @@ fn reachable(
     Ok(bounds)
 }
 
-/// The heading change over a distance between two samples \[rad\]; 0 at a joint, where nothing is driven.
+/// The heading change over a distance between two samples \[rad\]; 0 at a joint, where nothing is
+/// driven.
 fn driven_turn_rad(before: &PathSample, after: &PathSample) -> f64 {
     if after.s_m == before.s_m {
         return 0.0;
@@ -329,8 +332,8 @@ fn corner_rad(before: &PathSample, after: &PathSample, config: &SpeedProfileConf
     if after.s_m == before.s_m && turn_rad > config.smooth_turn_rad { turn_rad } else { 0.0 }
 }
 
-/// The shortest time for a distance between two samples \[s\]; `ends` are squared speed and ceiling at
-/// either.
+/// The shortest time for a distance between two samples \[s\]; `ends` are squared speed and ceiling
+/// at either.
 ///
 /// Over the distance, the squared speed under constant acceleration is a straight line, and so are
 /// the ceiling and the squared speed under constant deceleration. The fastest is the lowest of the

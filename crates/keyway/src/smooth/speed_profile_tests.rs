@@ -48,7 +48,8 @@ fn a_straight_line_by_hand() {
     );
     assert_eq!((at(39).1, at(40)), (SpeedLimit::Deceleration, (0.0, SpeedLimit::End)));
     assert!((at(1).0 - 0.05f64.sqrt()).abs() < 1e-12);
-    // Too short for that: with 1 up and 0.5 down over 0.12 m the peak is sqrt(2 * 0.12 / 3) = 0.2828.
+    // Too short for that: with 1 up and 0.5 down over 0.12 m the peak is sqrt(2 * 0.12 / 3) =
+    // 0.2828.
     let uneven = Limits { acceleration_mps2: 1.0, deceleration_mps2: 0.5, ..limits() };
     let peak = 0.08f64.sqrt();
     for spacing_m in [0.001, 0.05, 1.0] {
@@ -86,8 +87,8 @@ fn circles_by_hand() {
 
 #[test]
 fn corners_by_hand() {
-    // Twice the straight line, and a turn by 90 degrees: 0.5 s and 0.375 rad up to 1.5 rad/s, the same
-    // down, the rest at 1.5 rad/s.
+    // Twice the straight line, and a turn by 90 degrees: 0.5 s and 0.375 rad up to 1.5 rad/s, the
+    // same down, the rest at 1.5 rad/s.
     let driven = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &spaced(0.05));
     let turn_s = 1.0 + (FRAC_PI_2 - 0.75) / 1.5;
     assert!((driven.turning_s - turn_s).abs() < 1e-12);
@@ -284,8 +285,8 @@ fn a_bend_shorter_than_the_spacing_takes_the_time_of_its_turn() {
     }
 }
 
-/// The least time over intervals of equal length, each with its own largest speed, from rest to rest:
-/// all constant accelerations between squared speeds on a grid are tried.
+/// The least time over intervals of equal length, each with its own largest speed, from rest to
+/// rest: all constant accelerations between squared speeds on a grid are tried.
 fn brute_force_s(step_m: f64, v_max: &[f64], limits: &Limits) -> f64 {
     let changes = 8;
     let grid = 2.0 * limits.acceleration_mps2 * step_m / changes as f64;

@@ -11,7 +11,8 @@ const STRAIGHT_CELLS: f64 = 1e-8;
 pub(super) struct Stretches<'l> {
     points: &'l [Point],
     frame: &'l GridFrame,
-    /// The last point of each stretch, with which the next one begins; the first stretch is a point.
+    /// The last point of each stretch, with which the next one begins; the first stretch is a
+    /// point.
     ends: Vec<usize>,
     /// What each stretch spans, each two of them, each two of these, up to the whole line.
     spans: Vec<Vec<Span>>,

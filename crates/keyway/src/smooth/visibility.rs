@@ -1,11 +1,11 @@
 //! What an eye sees of a line: which points of it can be reached in a straight line, with a
 //! clearance.
 //!
-//! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a convex
-//! shape is convex ([`HiddenRegion`]): where both ends of a straight stretch of a line lie in it,
-//! everything between them does, too; and where the corners of a box do, so do all points in the
-//! box. The shapes are rows and columns of obstacle cells with all that is nearer to them than the
-//! clearance.
+//! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a
+//! convex shape is convex ([`HiddenRegion`]): where both ends of a straight stretch of a line lie
+//! in it, everything between them does, too; and where the corners of a box do, so do all points in
+//! the box. The shapes are rows and columns of obstacle cells with all that is nearer to them than
+//! the clearance.
 
 use super::hidden_region::HiddenRegion;
 use super::required_clearance::RequiredClearance;
@@ -26,7 +26,8 @@ const SOLIDS: usize = 8;
 pub(super) struct Visibility<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// What stops connections, and its shadow for the eye. The one that was found or used last comes last.
+    /// What stops connections, and its shadow for the eye. The one that was found or used last
+    /// comes last.
     solids: Vec<(Solid, HiddenRegion)>,
     /// Where the eye is \[cells\].
     eye: Point,
@@ -50,7 +51,8 @@ impl<'a> Visibility<'a> {
     }
 
     /// The point that is farthest along a line of those to which a safe connection leads from point
-    /// `eye`; the next one, whatever leads there, when there is none. `required` has the clearance of this.
+    /// `eye`; the next one, whatever leads there, when there is none. `required` has the clearance
+    /// of this.
     pub(super) fn farthest_safe(
         &mut self,
         line: &Stretches<'_>,
@@ -68,8 +70,8 @@ impl<'a> Visibility<'a> {
         self.safe.unwrap_or(next)
     }
 
-    /// The last point of a line, from number `least` on, that is seen from point `eye`: nothing stops
-    /// its connection.
+    /// The last point of a line, from number `least` on, that is seen from point `eye`: nothing
+    /// stops its connection.
     pub(super) fn last_seen(
         &mut self,
         line: &Stretches<'_>,
@@ -222,8 +224,8 @@ impl Solid {
         off < shadow + radius * way.norm() && self.is_rounded_near(Segment::new(from, to))
     }
 
-    /// Whether a connection past the box is nearer than the radius: then it is so at one of its ends or
-    /// at a corner.
+    /// Whether a connection past the box is nearer than the radius: then it is so at one of its
+    /// ends or at a corner.
     fn is_rounded_near(&self, connection: Segment) -> bool {
         let Self { low, high, radius } = *self;
         let radius_sq = radius * radius;

@@ -1,5 +1,5 @@
-//! The truth about small maps: plain arrays, searched by relaxing all edges until nothing changes. It
-//! shares nothing with the planners but the types of the answer.
+//! The truth about small maps: plain arrays, searched by relaxing all edges until nothing changes.
+//! It shares nothing with the planners but the types of the answer.
 // Every test program uses its own part of this.
 #![allow(dead_code)]
 

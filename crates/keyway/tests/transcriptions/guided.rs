@@ -1,4 +1,5 @@
-//! Steps 7 to 10 of Zhu and Yin's algorithm, literally, with equations (18) to (21) and pure pursuit for step 7.
+//! Steps 7 to 10 of Zhu and Yin's algorithm, literally, with equations (18) to (21) and pure
+//! pursuit for step 7.
 
 use super::Wanted;
 use super::window::{self, State};
@@ -207,7 +208,8 @@ impl Whole {
     }
 }
 
-/// The fastest speed at the end of a cycle after which the robot stops within what is left, found by trying.
+/// The fastest speed at the end of a cycle after which the robot stops within what is left, found
+/// by trying.
 fn stoppable(u: f64, left: f64) -> f64 {
     let needs = |v: f64| {
         let (mut v, mut way) = (v, 0.05 * (u + v));
@@ -314,7 +316,8 @@ fn joined(world: &World, theta: f64, x_ga: P, st: (f64, P), nodes: &[(f64, P)]) 
     best.unwrap_or(st)
 }
 
-/// Maps, routes that are smooth and keep well away from what is known, and something unknown on each.
+/// Maps, routes that are smooth and keep well away from what is known, and something unknown on
+/// each.
 pub(crate) fn cases() -> Vec<(World, Polyline)> {
     let line = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
     let hall = [".................."; 8];

@@ -1,13 +1,15 @@
-//! The papers' local planners against literal transcriptions of their equations, in every cycle of whole runs.
+//! The papers' local planners against literal transcriptions of their equations, in every cycle of
+//! whole runs.
 //!
-//! The transcriptions are plain and slow: own rollouts by Euler steps, distances to all squares of the map one after the
-//! other, own normalisation, own search for the best. They share the map, the robot's limits and the state at the
-//! beginning of each cycle with the planners, and nothing else.
+//! The transcriptions are plain and slow: own rollouts by Euler steps, distances to all squares of
+//! the map one after the other, own normalisation, own search for the best. They share the map, the
+//! robot's limits and the state at the beginning of each cycle with the planners, and nothing else.
 //!
-//! Two commands are equal when neither component differs by more than 1e-9. Otherwise it is a tie when the planner's
-//! command is a candidate of the transcription with a score that is at most 1e-9 below its best. In a cycle in which a
-//! candidate passes something at less than 0.2 mm, the commands may differ, because that candidate may be admissible or
-//! not. Both are counted, and at most one cycle of a hundred may be such a one.
+//! Two commands are equal when neither component differs by more than 1e-9. Otherwise it is a tie
+//! when the planner's command is a candidate of the transcription with a score that is at most 1e-9
+//! below its best. In a cycle in which a candidate passes something at less than 0.2 mm, the
+//! commands may differ, because that candidate may be admissible or not. Both are counted, and at
+//! most one cycle of a hundred may be such a one.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 mod guided;
@@ -289,8 +291,9 @@ fn adaptive_dwa() {
     assert!(tally.arrived >= 2, "{tally:?}");
 }
 
-/// The guidance with the published weights, and with such that keep the robot far from obstacles. With the published
-/// ones it stands still in front of what it should drive around: the point behind it is straight ahead.
+/// The guidance with the published weights, and with such that keep the robot far from obstacles.
+/// With the published ones it stands still in front of what it should drive around: the point
+/// behind it is straight ahead.
 #[test]
 fn guided_dwa() {
     let guide = KeyPoints::new(KeyPointsConfig::PAPER).unwrap();

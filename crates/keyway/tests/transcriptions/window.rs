@@ -1,5 +1,6 @@
-//! The dynamic window approach, literally: equations (4) to (12) of You 2021, the evaluation of S1, and equation (18) of
-//! Zhu and Yin 2024; with table 2 and 3 of You 2021 and a robot that is a point.
+//! The dynamic window approach, literally: equations (4) to (12) of You 2021, the evaluation of S1,
+//! and equation (18) of Zhu and Yin 2024; with table 2 and 3 of You 2021 and a robot that is a
+//! point.
 
 use super::Wanted;
 use super::world::{World, meets, to_square};
@@ -16,8 +17,8 @@ const D_OMEGA: f64 = PI / 180.0;
 const STEPS: u32 = 30;
 const RANGE_M: f64 = 5.0;
 
-/// The planners count a stretch this short that they cannot show to be free as contact (0.1 mm), so a trajectory that
-/// passes something nearer than this may be refused.
+/// The planners count a stretch this short that they cannot show to be free as contact (0.1 mm), so
+/// a trajectory that passes something nearer than this may be refused.
 const DOUBT_M: f64 = 2e-4;
 
 /// Differences of this size are rounding.
@@ -88,8 +89,8 @@ fn angle_difference(a: f64) -> f64 {
     a
 }
 
-/// All admissible candidates, (5) to (8), and whether one of them, or one that was refused, is in doubt.
-/// `at_end`: dist is that of the trajectory's end, otherwise of its nearest point.
+/// All admissible candidates, (5) to (8), and whether one of them, or one that was refused, is in
+/// doubt. `at_end`: dist is that of the trajectory's end, otherwise of its nearest point.
 fn admissible(world: &World, state: State, target: (f64, f64), at_end: bool) -> (Vec<Terms>, bool) {
     let (mut all, mut has_doubt) = (Vec::new(), false);
     let slowest = (state.v - V_A * DT).max(V_MIN);
@@ -113,8 +114,8 @@ fn is_refused(Terms { v, omega, dist, .. }: &Terms) -> bool {
     *v > (2.0 * dist * V_A).sqrt() || (*v != 0.0 && omega.abs() > (2.0 * dist * OMEGA_A).sqrt())
 }
 
-/// Contact is what comes nearer than `contact_m`. Also whether rounding decides: whether (7) refuses it, or where
-/// the target is from a place on it.
+/// Contact is what comes nearer than `contact_m`. Also whether rounding decides: whether (7)
+/// refuses it, or where the target is from a place on it.
 fn rolled_out(
     world: &World,
     state: State,

@@ -17,7 +17,8 @@ const OUTSIDE_M: f64 = 1e-7;
 /// Rounding of lengths \[m\].
 const ROUNDING_M: f64 = 1e-8;
 
-/// A line that touches the path from outside: arcs are replaced by tangents, so it keeps their clearance.
+/// A line that touches the path from outside: arcs are replaced by tangents, so it keeps their
+/// clearance.
 fn tangents(path: &Path) -> Polyline {
     let mut points: Vec<Point> = path.pieces().first().map(PathPiece::start).into_iter().collect();
     for piece in path.pieces() {
@@ -47,8 +48,8 @@ fn turned_rad(path: &Path) -> f64 {
     path.pieces().iter().map(of_piece).sum()
 }
 
-/// Of a line over cells that keep the clearance; false when there is nothing to smooth. Between such
-/// cells a line of Theta* may come nearer, which is then what is kept.
+/// Of a line over cells that keep the clearance; false when there is nothing to smooth. Between
+/// such cells a line of Theta* may come nearer, which is then what is kept.
 fn check(map: &SearchMap, line: &Polyline) -> bool {
     let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
     let smooth = |smoother: &dyn Smoother, line: &Polyline| {

@@ -27,8 +27,8 @@ pub(crate) fn length(a: Cell, b: Cell) -> f64 {
     f64::from(a.x - b.x).hypot(f64::from(a.y - b.y))
 }
 
-/// Whether the line between two centres meets no blocked cell. It meets those whose open square is not
-/// all on one side of it; where corners are not cut, also those that it touches at a corner.
+/// Whether the line between two centres meets no blocked cell. It meets those whose open square is
+/// not all on one side of it; where corners are not cut, also those that it touches at a corner.
 pub(crate) fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
     let columns = a.x.min(b.x)..=a.x.max(b.x);
     let cells = (a.y.min(b.y)..=a.y.max(b.y)).flat_map(|y| columns.clone().map(move |x| (x, y)));
@@ -69,8 +69,8 @@ pub(crate) fn optimum(raw: &Raw, rules: &Rules, query: &Query) -> Option<f64> {
     None
 }
 
-/// A path's length, when it leads from the start to the goal over lines that are free, turns at every
-/// waypoint, and is as long as it says.
+/// A path's length, when it leads from the start to the goal over lines that are free, turns at
+/// every waypoint, and is as long as it says.
 fn checked_length(raw: &Raw, rules: &Rules, query: &Query, plan: &Plan) -> f64 {
     let cells = &plan.cells;
     assert_eq!((cells.first(), cells.last()), (Some(&query.start), Some(&query.goal)));

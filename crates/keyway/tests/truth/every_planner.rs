@@ -1,5 +1,5 @@
-//! Every planner that has a name, under both corner rules: legal paths, no shorter than the best there
-//! is, and a path wherever there is one, unless the planner says that its method misses it.
+//! Every planner that has a name, under both corner rules: legal paths, no shorter than the best
+//! there is, and a path wherever there is one, unless the planner says that its method misses it.
 
 use crate::any_angle::{self, length, sees};
 use crate::planners::ask;

@@ -116,7 +116,8 @@ proptest! {
     }
 }
 
-/// The kinds of maps are what they are called: neither all free nor all blocked, and mostly passable.
+/// The kinds of maps are what they are called: neither all free nor all blocked, and mostly
+/// passable.
 #[test]
 fn shapes_have_ways_and_walls() {
     for shape in [Shape::Noise, Shape::Blocks, Shape::Rooms, Shape::Diagonals, Shape::Maze] {

@@ -1,9 +1,9 @@
-//! Which way around the obstacles a line goes, and whether it is the shortest that goes this way. Exact:
-//! corners of cells and centres of cells are whole numbers of half cells.
+//! Which way around the obstacles a line goes, and whether it is the shortest that goes this way.
+//! Exact: corners of cells and centres of cells are whole numbers of half cells.
 //!
-//! The free plane with its way around each obstacle unrolled has no two locally shortest lines between
-//! the same ends. So a line is the shortest of its class if it is free, straight between corners of
-//! obstacles, and bends around each on the obstacle's side.
+//! The free plane with its way around each obstacle unrolled has no two locally shortest lines
+//! between the same ends. So a line is the shortest of its class if it is free, straight between
+//! corners of obstacles, and bends around each on the obstacle's side.
 
 use keyway::geometry::{Point, Polyline};
 use keyway::map::Cell;
@@ -51,8 +51,9 @@ impl Obstacles {
         is_inside && self.blocked[(y * self.width + x) as usize]
     }
 
-    /// The rays that a line \[cells\] crosses, with the direction, those crossed to and fro left out: two
-    /// lines with the same ends can be pulled into each other if and only if these are the same.
+    /// The rays that a line \[cells\] crosses, with the direction, those crossed to and fro left
+    /// out: two lines with the same ends can be pulled into each other if and only if these are the
+    /// same.
     pub(crate) fn class(&self, line: &Polyline) -> Vec<(usize, bool)> {
         let mut word = Vec::new();
         for segment in line.segments() {
@@ -121,8 +122,8 @@ impl Obstacles {
             })
     }
 
-    /// Whether a straight line stays in the map, enters no obstacle, and does not pass between two blocked
-    /// cells that it touches in the same place.
+    /// Whether a straight line stays in the map, enters no obstacle, and does not pass between two
+    /// blocked cells that it touches in the same place.
     fn is_free(&self, a: Half, b: Half) -> bool {
         let is_inside = |p: Half| {
             (0..=2 * i64::from(self.width)).contains(&p.x)

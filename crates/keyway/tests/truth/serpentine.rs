@@ -43,14 +43,14 @@ fn straight_corridors() {
 }
 
 /// Corridors that change between two rows every third column, over blocks of 2 x 2 free cells: each
-/// change is one diagonal step. A corridor has three rows, the third of which is a wall with an opening
-/// at the corridor's end.
+/// change is one diagonal step. A corridor has three rows, the third of which is a wall with an
+/// opening at the corridor's end.
 ///
 /// In the columns 3k and 3k + 1 both rows are free (there the corridor changes), in 3k + 2 only the
-/// one in which it goes on: the upper one for even k, the lower one for odd k. A corridor is entered in
-/// its lower row and comes to its last block in the upper one, from where an opening leads on; so each
-/// of its 1499 changes of the column is straight except for one in every block before the last.
-/// Only the last corridor ends in its lower row, where the goal is.
+/// one in which it goes on: the upper one for even k, the lower one for odd k. A corridor is
+/// entered in its lower row and comes to its last block in the upper one, from where an opening
+/// leads on; so each of its 1499 changes of the column is straight except for one in every block
+/// before the last. Only the last corridor ends in its lower row, where the goal is.
 #[test]
 fn corridors_with_diagonal_steps() {
     let corridors = SIZE / 3;

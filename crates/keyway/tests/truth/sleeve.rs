@@ -1,11 +1,11 @@
-//! The shortest line of a homotopy class, from the whole line at once: no string is led along it, and
-//! nothing is known about corners or the sides that they bend to.
+//! The shortest line of a homotopy class, from the whole line at once: no string is led along it,
+//! and nothing is known about corners or the sides that they bend to.
 //!
-//! The free plane is cut into runs, the longest rows of free cells, which meet at gates, the edges that
-//! two runs share. Runs are convex and gates are straight, so two lines with the same ends can be pulled
-//! into each other if and only if they pass the same gates, those passed to and fro left out; and the
-//! shortest such line stays in the sleeve of these gates, where the funnel of Lee and Preparata
-//! \[Lee1984\] finds it. Exact, except for the sum of lengths.
+//! The free plane is cut into runs, the longest rows of free cells, which meet at gates, the edges
+//! that two runs share. Runs are convex and gates are straight, so two lines with the same ends can
+//! be pulled into each other if and only if they pass the same gates, those passed to and fro left
+//! out; and the shortest such line stays in the sleeve of these gates, where the funnel of Lee and
+//! Preparata \[Lee1984\] finds it. Exact, except for the sum of lengths.
 
 use crate::homotopy::Half;
 use keyway::geometry::Polyline;
@@ -80,8 +80,9 @@ impl Sleeves {
         gates
     }
 
-    /// The gates that a line \[cells\] between centres of cells passes, those passed to and fro left out.
-    /// `None` when it enters an obstacle, or slips between two cells that touch at a corner.
+    /// The gates that a line \[cells\] between centres of cells passes, those passed to and fro
+    /// left out. `None` when it enters an obstacle, or slips between two cells that touch at a
+    /// corner.
     pub(crate) fn passages(&self, line: &Polyline) -> Option<Vec<Passage>> {
         let points: Vec<Half> =
             line.points().iter().map(|&point| Half::new(point)).collect::<Option<_>>()?;

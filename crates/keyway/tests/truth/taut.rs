@@ -1,5 +1,5 @@
-//! The taut path without clearance against the topology of the plane: it goes the same way around every
-//! obstacle as the line that it was pulled from, and is the shortest that does.
+//! The taut path without clearance against the topology of the plane: it goes the same way around
+//! every obstacle as the line that it was pulled from, and is the shortest that does.
 
 use crate::homotopy::Obstacles;
 use crate::sleeve::Sleeves;
@@ -47,8 +47,8 @@ pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<P
     Some(plan.line(map, centre(query.start), centre(query.goal)).into_polyline())
 }
 
-/// Pulls a line tight and checks that the result is the shortest line of its class. True where the class
-/// is that of the shortest line of all.
+/// Pulls a line tight and checks that the result is the shortest line of its class. True where the
+/// class is that of the shortest line of all.
 fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     let Classes { obstacles, sleeves } = classes;
     let smoothed = Taut.smooth(&line.clone().into(), &map.clearance(), 0.0);

@@ -1,6 +1,7 @@
-//! Every one-sided planner against best-first search as the textbooks and \[Wang2019\] write it: two
-//! lists, searched from end to end. The same cells have to come out, and the same counts: so ties,
-//! which node is improved, what becomes of closed ones and where the search ends are all as documented.
+//! Every one-sided planner against best-first search as the textbooks and \[Wang2019\] write it:
+//! two lists, searched from end to end. The same cells have to come out, and the same counts: so
+//! ties, which node is improved, what becomes of closed ones and where the search ends are all as
+//! documented.
 
 use crate::planners::ask;
 use crate::support::{Raw, Rules, any_raw, any_rules, query_on};

@@ -183,8 +183,8 @@ impl Groups {
     /// With fewer runs of a stack in a group its interval says little.
     const FEWEST_RUNS: usize = 10;
 
-    /// As many runs in each as equal shares allow; each share by itself where there are few. `per_stack` is the number of runs of a
-    /// stack. `None` where there is only one.
+    /// As many runs in each as equal shares allow; each share by itself where there are few.
+    /// `per_stack` is the number of runs of a stack. `None` where there is only one.
     fn of(shares: Vec<f64>, per_stack: usize) -> Option<Self> {
         let most = (per_stack / Self::FEWEST_RUNS).clamp(2, Self::MOST);
         let sample = Sample::new(shares).ok()?;

@@ -22,9 +22,9 @@ const MAX_LINES: usize = 6;
 /// Free cells too close for the robot.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
-/// Paths on top of each other are all seen: in pairs, the second of a pair dashed over the first, and each
-/// pair narrower than the one behind it. Neighbours differ in colour; once all colours are used, they
-/// change from solid to dashed lines and back, then the dashes differ.
+/// Paths on top of each other are all seen: in pairs, the second of a pair dashed over the first,
+/// and each pair narrower than the one behind it. Neighbours differ in colour; once all colours are
+/// used, they change from solid to dashed lines and back, then the dashes differ.
 fn style(index: usize, count: usize) -> LineStyle {
     let (pair, last_pair) = (index / 2, count.saturating_sub(1) / 2);
     let step_px = ((WIDEST_PX - NARROWEST_PX) / last_pair.max(1) as f64).min(STEP_PX);
@@ -41,8 +41,8 @@ fn style(index: usize, count: usize) -> LineStyle {
     }
 }
 
-/// The same in a panel, in which a path has the colour of what found it, as in all panels: each line is
-/// narrower than the one behind it.
+/// The same in a panel, in which a path has the colour of what found it, as in all panels: each
+/// line is narrower than the one behind it.
 fn panel_style(found_by: usize, index: usize, count: usize) -> LineStyle {
     let width_px = NARROWEST_PX + PANEL_STEP_PX * (count - 1 - index) as f64;
     LineStyle { width_px, ..style(found_by, MAX_LINES) }
@@ -73,8 +73,8 @@ fn is_same(a: &Polyline, b: &Polyline) -> bool {
     a.points().len() == b.points().len() && pairs.all(|(a, b)| a.distance(*b) <= SAME_M)
 }
 
-/// The paths of one query, and the shortest line under the corner rule of the first planner. More paths than
-/// can be told apart in one picture have panels.
+/// The paths of one query, and the shortest line under the corner rule of the first planner. More
+/// paths than can be told apart in one picture have panels.
 pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let entries: Vec<&Entry> = map.contest.entries.iter().collect();
     let title = format!("{}, query {} of {}", map.name, query + 1, map.queries.len());

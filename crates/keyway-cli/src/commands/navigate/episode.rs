@@ -94,7 +94,8 @@ pub(crate) fn given(
     Ok(Given { episode, sources })
 }
 
-/// The runs of all robots of a scene. What the arguments say of the robot and its stack holds for each of them.
+/// The runs of all robots of a scene. What the arguments say of the robot and its stack holds for
+/// each of them.
 pub(super) fn given_team(args: &NavigateArgs, scene: &SceneFile) -> Result<Given<Team>, CliError> {
     let folder = scene_folder(args);
     let time_limit_s = check_time_limit(args.time_limit)?;
@@ -157,7 +158,8 @@ fn given_disturbances(
     Ok(Disturbances { seed: args.seed.unwrap_or(of_scene.seed), ..given })
 }
 
-/// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is made from its seed.
+/// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is
+/// made from its seed.
 fn given_map(
     args: &NavigateArgs,
     scene: Option<&SceneFile>,
@@ -180,8 +182,8 @@ fn given_map(
     Ok((SceneMap { grid: loaded.grid, source }, loaded.sources))
 }
 
-/// The robot, which a scene may name, with the radius that was asked for. Robots that are named on the command line are
-/// files of the current folder.
+/// The robot, which a scene may name, with the radius that was asked for. Robots that are named on
+/// the command line are files of the current folder.
 fn given_robot(
     args: &NavigateArgs,
     in_scene: Option<&str>,
@@ -213,8 +215,8 @@ fn named_robot(
     }
 }
 
-/// The stack with all that was changed of it, and its name in reports. Stacks that are named on the command line are
-/// files of the current folder.
+/// The stack with all that was changed of it, and its name in reports. Stacks that are named on the
+/// command line are files of the current folder.
 fn given_stack(
     args: &NavigateArgs,
     (in_scene, safe_in_scene): (Option<&str>, bool),

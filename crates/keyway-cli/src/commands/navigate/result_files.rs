@@ -50,7 +50,8 @@ pub(crate) const fn wanted(args: &DriveFileArgs) -> Wanted {
     Wanted { explanations: args.explain.is_some(), fan_s: args.fan, film: args.animate.is_some() }
 }
 
-/// The folder of results, if one was asked for. Refuses outputs that would replace a file that is read, or cannot be written.
+/// The folder of results, if one was asked for. Refuses outputs that would replace a file that is
+/// read, or cannot be written.
 pub(crate) fn prepared(
     args: &DriveFileArgs,
     sources: &[PathBuf],
@@ -108,8 +109,8 @@ fn own_files(args: &DriveFileArgs, driven: &Driven) -> Vec<String> {
     files.map(|path| path.display().to_string()).collect()
 }
 
-/// The files with names of their own. Without a run there is nothing to write; those of an earlier one stay as they
-/// are.
+/// The files with names of their own. Without a run there is nothing to write; those of an earlier
+/// one stay as they are.
 fn write_own_files(
     args: &DriveFileArgs,
     episode: &Episode,
@@ -147,7 +148,8 @@ fn points(driven: &Driven) -> Vec<DrivenPoint> {
     driven.report.trajectory.iter().flatten().map(driven_point).collect()
 }
 
-/// Without a run: the report, and the map with start and goal. `files` are the paths of all of them.
+/// Without a run: the report, and the map with start and goal. `files` are the paths of all of
+/// them.
 pub(crate) fn write_files(
     episode: &Episode,
     driven: &Driven,

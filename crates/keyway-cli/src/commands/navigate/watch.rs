@@ -58,7 +58,8 @@ pub(crate) struct Watcher {
     path: Option<(u32, Arc<Polyline>)>,
 }
 
-/// Moments at equal intervals, not too many of them, although nobody knows how long the run will be.
+/// Moments at equal intervals, not too many of them, although nobody knows how long the run will
+/// be.
 #[derive(Default)]
 pub(crate) struct Film {
     pub(crate) moments: Vec<Moment>,

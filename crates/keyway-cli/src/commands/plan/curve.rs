@@ -17,7 +17,8 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Within the limits of the robot that is named, or else the usual one. `None` where no curve is wanted.
+    /// Within the limits of the robot that is named, or else the usual one. `None` where no curve
+    /// is wanted.
     pub(super) fn from_args(args: &PlanArgs, robot: Option<&Robot>) -> Option<Self> {
         let file = args.curve.as_ref()?;
         let usual = SpeedProfileConfig::default();

@@ -178,8 +178,8 @@ fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
     RouteAnswer { plan, ..answer }
 }
 
-/// Searches again, watched this time: the search is the same, and the time of the first one is that of
-/// a search without an observer. The result is already known, even where there is none.
+/// Searches again, watched this time: the search is the same, and the time of the first one is that
+/// of a search without an observer. The result is already known, even where there is none.
 fn record(request: &RouteRequest<'_>, goal: usize, workspace: &mut Workspace) -> Recording {
     let (mut search, mut plan) = (Recording::default(), Plan::default());
     let RouteRequest { map, planner, goals, .. } = *request;

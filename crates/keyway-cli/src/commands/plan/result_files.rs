@@ -13,8 +13,8 @@ use std::path::PathBuf;
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
 
-/// Refuses outputs that would replace a file that is read, or cannot be written: before the search, so
-/// that no result is lost.
+/// Refuses outputs that would replace a file that is read, or cannot be written: before the search,
+/// so that no result is lost.
 pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let picture = args.picture.as_ref().map(|file| (&file.path, PICTURE));
     let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
@@ -34,8 +34,8 @@ pub(super) const fn show_search(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }
 
-/// Gives the paths of the files that were written. Without a path there is no curve; a file of an earlier
-/// one stays as it is.
+/// Gives the paths of the files that were written. Without a path there is no curve; a file of an
+/// earlier one stays as it is.
 pub(super) fn write(
     args: &PlanArgs,
     picture: &PlanPicture<'_>,

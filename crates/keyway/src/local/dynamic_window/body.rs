@@ -27,9 +27,9 @@ impl<'a> Standing<'a> {
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
     const HALVINGS: u32 = 16;
 
-    /// The footprint and the margin around it. Where it is inside the margin already (or over a cell that
-    /// was sensed too near), it must stay at least as far away as now: a polygon that covers an obstacle is
-    /// shrunk into `shrunk` until it covers none.
+    /// The footprint and the margin around it. Where it is inside the margin already (or over a
+    /// cell that was sensed too near), it must stay at least as far away as now: a polygon that
+    /// covers an obstacle is shrunk into `shrunk` until it covers none.
     pub(super) fn body(self, margin_m: f64, shrunk: &'a mut Vec<Point>) -> Body<'a> {
         let (core, radius_m) = self.robot.footprint.core();
         let room_m = self.room_m(&core, radius_m);
@@ -51,8 +51,8 @@ impl<'a> Standing<'a> {
         distance_m.min(core.to_border_m(pose, &clearance))
     }
 
-    /// What there is of room now, except for the distance by which the noise of its odometry seems to move a
-    /// standing robot \[m\].
+    /// What there is of room now, except for the distance by which the noise of its odometry seems
+    /// to move a standing robot \[m\].
     fn kept_m(&self, room_m: f64, offset_m: f64) -> f64 {
         let speed = self.scene.velocity.v.abs();
         let cycle_s = self.robot.cycle_s;

@@ -1,8 +1,8 @@
 //! Speeds of one turn rate that surely touch something. All lengths are in cells.
 //!
-//! Among many obstacles most candidates do, and that is told faster than how near the others come: at a pose the places of all
-//! speeds lie on a line, and the part of it on which a convex core meets a box is found by cutting it once for each side of
-//! either ([`Surroundings::meets`]).
+//! Among many obstacles most candidates do, and that is told faster than how near the others come:
+//! at a pose the places of all speeds lie on a line, and the part of it on which a convex core
+//! meets a box is found by cutting it once for each side of either ([`Surroundings::meets`]).
 
 use super::counting::Counting;
 use super::motion::Motion;
@@ -25,7 +25,8 @@ impl Contacts<'_, '_> {
     /// Every so-manieth pose is looked at first: what the robot drives over it meets at several.
     const POSES_AT_ONCE: usize = 6;
 
-    /// Tells of each speed whether it surely touches something at some poses. Of the others nothing is known.
+    /// Tells of each speed whether it surely touches something at some poses. Of the others nothing
+    /// is known.
     pub(super) fn find(&mut self, poses: &Range<usize>, touching: &mut Vec<bool>) {
         touching.clear();
         touching.resize(self.all_mps.len(), false);

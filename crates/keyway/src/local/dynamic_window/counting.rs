@@ -23,7 +23,8 @@ pub(super) struct Counting {
 }
 
 impl Counting {
-    /// From the first to the last pose of the speeds between two at which something may be near enough to count.
+    /// From the first to the last pose of the speeds between two at which something may be near
+    /// enough to count.
     pub(super) fn near_poses(
         &self,
         motion: &Motion,

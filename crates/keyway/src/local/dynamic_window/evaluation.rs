@@ -57,7 +57,8 @@ impl Term {
         Self { name, weight, is_cost: false }
     }
 
-    /// A term of which less is better: it counts by how far it is below the largest of all candidates.
+    /// A term of which less is better: it counts by how far it is below the largest of all
+    /// candidates.
     pub const fn cost(name: &'static str, weight: f64) -> Self {
         Self { name, weight, is_cost: true }
     }
@@ -71,7 +72,8 @@ struct Scale {
 }
 
 impl<const TERMS: usize> Weighing<TERMS> {
-    /// Ranks the candidates, which are gone through twice; ties go to the earlier one. `None` when there is none.
+    /// Ranks the candidates, which are gone through twice; ties go to the earlier one. `None` when
+    /// there is none.
     ///
     /// A term whose sum over the candidates is 0 contributes 0.
     #[inline]

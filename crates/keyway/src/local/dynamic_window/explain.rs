@@ -1,14 +1,14 @@
-//! Why a dynamic window decides as it does: every candidate with its fate, and what would free a robot that cannot
-//! drive.
+//! Why a dynamic window decides as it does: every candidate with its fate, and what would free a
+//! robot that cannot drive.
 //!
-//! Nothing here is used by a decision, which only counts. Each candidate is judged as there, by the same rollouts and
-//! rules; a property test compares the two.
+//! Nothing here is used by a decision, which only counts. Each candidate is judged as there, by the
+//! same rollouts and rules; a property test compares the two.
 //!
 //! What would free it is found as for every planner (`remedies.rs`).
 //!
 //! # Errors / cost
-//! None. Those of a decision, and about twelve rollouts in addition for a candidate that touches something; where none
-//! drives, up to 40 times as many candidates.
+//! None. Those of a decision, and about twelve rollouts in addition for a candidate that touches
+//! something; where none drives, up to 40 times as many candidates.
 
 use super::roller::{RollMemory, Roller};
 use super::rollout::{Prediction, Rollout};
@@ -27,8 +27,8 @@ const POSES: u32 = 10;
 const CONTACT_S: f64 = 1e-3;
 
 impl DynamicWindow {
-    /// The reasons for what [`Self::decide`] does with the same scene, candidate by candidate. Costs many
-    /// times as much as the decision.
+    /// The reasons for what [`Self::decide`] does with the same scene, candidate by candidate.
+    /// Costs many times as much as the decision.
     pub fn explain<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,

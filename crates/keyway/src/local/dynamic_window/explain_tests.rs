@@ -148,13 +148,15 @@ fn facing_a_wall_a_turn_frees_and_waiting_does_not() {
     let expected =
         [("wait", false), ("turn", true), ("back up", true), ("margin", true), ("footprint", true)];
     assert_eq!(remedies(&explanation), expected);
-    // To the right is the guide point. The slowest candidate, v = 0.01 m/s with omega = 0.3 rad/s after a cycle of ramps,
-    // turns from 0.015 to 0.615 rad and comes 0.5 mm + v / omega (sin(a + 0.615) - sin(a + 0.015)) nearer to the wall:
-    // 19.2 mm when it faces the wall, 17.0 mm after 15 degrees, 13.3 mm after 30; 16 mm are free.
+    // To the right is the guide point. The slowest candidate, v = 0.01 m/s with omega = 0.3 rad/s
+    // after a cycle of ramps, turns from 0.015 to 0.615 rad and comes 0.5 mm + v / omega (sin(a +
+    // 0.615) - sin(a + 0.015)) nearer to the wall: 19.2 mm when it faces the wall, 17.0 mm after 15
+    // degrees, 13.3 mm after 30; 16 mm are free.
     let Change::Turn { by_rad } = explanation.remedies[1].change else { panic!() };
     assert!((by_rad + PI / 6.0).abs() < 1e-9, "{by_rad}");
-    // Without turning first, only candidates that hardly turn remain: so near to the wall, (7) refuses the others. Straight
-    // on at 0.01 m/s, 20.5 mm are driven, so 0.5 mm may be left to the margin.
+    // Without turning first, only candidates that hardly turn remain: so near to the wall, (7)
+    // refuses the others. Straight on at 0.01 m/s, 20.5 mm are driven, so 0.5 mm may be left to the
+    // margin.
     let Change::SafetyMargin { safety_margin_m } = explanation.remedies[3].change else { panic!() };
     assert!((0.0004..=0.0005).contains(&safety_margin_m), "{safety_margin_m}");
     // As soon as it can drive, there is nothing to be said.
@@ -180,8 +182,8 @@ fn in_a_narrow_room_a_turn_does_not_help() {
     ];
     assert_eq!(remedies(&explanation), expected);
     let Change::Footprint { smaller_by_m } = explanation.remedies[4].change else { panic!() };
-    // 8 mm are free ahead; the slowest candidate drives 20.5 mm and keeps 5 mm. The front, 0.3 m away, moves back twice
-    // as far as the sides: 8 + 2 x >= 25.5.
+    // 8 mm are free ahead; the slowest candidate drives 20.5 mm and keeps 5 mm. The front, 0.3 m
+    // away, moves back twice as far as the sides: 8 + 2 x >= 25.5.
     assert!((0.00875..=0.00985).contains(&smaller_by_m), "{smaller_by_m}");
 }
 

@@ -1,8 +1,9 @@
-//! Where the candidates of one turn rate lead: for each predicted pose, its place as a function of the speed.
+//! Where the candidates of one turn rate lead: for each predicted pose, its place as a function of
+//! the speed.
 //!
-//! The heading depends on the turn rate alone, and every length driven is linear in the speed v, in the ramp as in the
-//! steps after it. So the places of all speeds are A + B v, with the same A and B, and all sines and cosines are made
-//! once per turn rate.
+//! The heading depends on the turn rate alone, and every length driven is linear in the speed v, in
+//! the ramp as in the steps after it. So the places of all speeds are A + B v, with the same A and
+//! B, and all sines and cosines are made once per turn rate.
 
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
@@ -101,7 +102,8 @@ impl Timing {
     /// The last predicted pose before a candidate is judged, and the time from there \[s\].
     fn to_judged(self) -> (usize, f64) {
         let after_ramp_s = (self.judged_s - self.ramp_s).max(0.0);
-        // At the end of a step nothing is left of it, rounded or not. No steps: of no length, which gives no number.
+        // At the end of a step nothing is left of it, rounded or not. No steps: of no length, which
+        // gives no number.
         let whole = (after_ramp_s / self.step_s + 1e-9).floor().min(self.steps as f64);
         let steps = if self.steps > 0 { whole } else { 0.0 };
         let left_s = (after_ramp_s - self.step_s * steps).max(0.0);
@@ -198,8 +200,9 @@ fn chord(turned_rad: f64) -> f64 {
 }
 
 impl Motion {
-    /// Those of another turn rate, from a place on the grid with the direction ahead; allocates nothing once it is warm.
-    /// Where nothing is near not all of them are needed, only those up to where it is compared with the guide point.
+    /// Those of another turn rate, from a place on the grid with the direction ahead; allocates
+    /// nothing once it is warm. Where nothing is near not all of them are needed, only those up to
+    /// where it is compared with the guide point.
     pub(super) fn fill(
         &mut self,
         timing: &Timing,
@@ -214,7 +217,8 @@ impl Motion {
         self.fill_judged(timing, judged, left_s);
     }
 
-    /// Turns the core at some poses and at those before and after them: at no other it may be asked for.
+    /// Turns the core at some poses and at those before and after them: at no other it may be asked
+    /// for.
     pub(super) fn turn(&mut self, core: &Core<'_>, poses: &Range<usize>) {
         let count = self.places.len();
         self.turned.resize_with(count, Turned::default);
@@ -268,7 +272,8 @@ impl Motion {
         Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
     }
 
-    /// The middle of the places of all speeds between two at a pose, and how far the others are from it at most \[cells\].
+    /// The middle of the places of all speeds between two at a pose, and how far the others are
+    /// from it at most \[cells\].
     #[inline]
     pub(super) fn line(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> (Point, f64) {
         let place = &self.places[index];

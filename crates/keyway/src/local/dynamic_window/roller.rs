@@ -47,11 +47,12 @@ impl RollMemory {
 }
 
 impl Roller<'_> {
-    /// What is near a core is kept this much less than it has to be \[cells\], because distances are rounded.
+    /// What is near a core is kept this much less than it has to be \[cells\], because distances
+    /// are rounded.
     const ROUNDING_CELLS: f64 = 1e-9;
 
-    /// Rolls out every candidate; refused are those whose footprint would touch something on the way or leave the map,
-    /// and all where numbers are not finite.
+    /// Rolls out every candidate; refused are those whose footprint would touch something on the
+    /// way or leave the map, and all where numbers are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
         let RollMemory { near, turned, motion, touching, bounds, rollouts } = memory;
         if !self.is_finite() {
@@ -156,8 +157,8 @@ impl Roller<'_> {
         self.stretches(lattice)[1]
     }
 
-    /// What is asked for: all distances up to those that count, with the candidates of the window looked at
-    /// together.
+    /// What is asked for: all distances up to those that count, with the candidates of the window
+    /// looked at together.
     fn reach(&self, counting: &Counting, lattice: &Lattice) -> Reach {
         let ([longest, _], contact) = (self.stretches(lattice), counting.contact.abs());
         let Timing { ramp_s, steps, step_s, .. } = self.timing;

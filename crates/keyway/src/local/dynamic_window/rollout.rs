@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 pub enum Prediction {
     /// \[You2021, eq. (4)\]: Euler steps at the candidate velocity.
     Euler,
-    /// As the robot really moves: one cycle in which the velocity changes linearly to the candidate,
-    /// then the exact circular arc.
+    /// As the robot really moves: one cycle in which the velocity changes linearly to the
+    /// candidate, then the exact circular arc.
     Arcs,
 }
 
@@ -34,8 +34,8 @@ pub enum DistanceAt {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Admissible {
-    /// \[You2021, eq. (7)\]: those that could stop within dist, the distance to what is beside the trajectory as well as
-    /// ahead.
+    /// \[You2021, eq. (7)\]: those that could stop within dist, the distance to what is beside the
+    /// trajectory as well as ahead.
     StoppingDistance,
     /// All of them. With [`Prediction::Arcs`] the way to stop is part of the trajectory.
     Rollout,
@@ -45,8 +45,8 @@ pub enum Admissible {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Rollout {
-    /// Pose after [`judged_s`](crate::local::WindowConfig::judged_s), which is compared with the guide
-    /// point.
+    /// Pose after [`judged_s`](crate::local::WindowConfig::judged_s), which is compared with the
+    /// guide point.
     pub judged: Pose,
     /// Pi less the absolute bearing of the guide point from there \[rad\].
     pub heading: f64,

@@ -1,5 +1,5 @@
-//! The rollouts of a cycle against a literal transcription: each candidate by itself, pose after pose, with distances
-//! measured at every pose and at many places between.
+//! The rollouts of a cycle against a literal transcription: each candidate by itself, pose after
+//! pose, with distances measured at every pose and at many places between.
 
 use super::motion::euler_step;
 use super::roller::{RollMemory, Roller};
@@ -252,8 +252,9 @@ fn assert_distances_are_exact(
     }
 }
 
-/// With a wall at its side that is the nearest for the slow, and one ahead that is the nearest for the fast: where the
-/// wall ahead is the nearest of half of some speeds, that at the side still is of the others.
+/// With a wall at its side that is the nearest for the slow, and one ahead that is the nearest for
+/// the fast: where the wall ahead is the nearest of half of some speeds, that at the side still is
+/// of the others.
 #[test]
 fn in_a_corner_one_wall_or_the_other_is_nearest() {
     let frame = GridFrame::new(80, 80, 0.05, Pose::default()).unwrap();

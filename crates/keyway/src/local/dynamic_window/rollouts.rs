@@ -1,8 +1,9 @@
 //! The rollouts of all candidates, in the order of the lattice: slowest speed first.
 //!
-//! Of each only two numbers are kept, because moving more of them about takes longer than making them where nothing is near:
-//! the distance, and how well the robot looks at the guide point. The pose at which it does follows from the turn rate's
-//! [`Judged`] and the speed, for the few who ask.
+//! Of each only two numbers are kept, because moving more of them about takes longer than making
+//! them where nothing is near: the distance, and how well the robot looks at the guide point. The
+//! pose at which it does follows from the turn rate's [`Judged`] and the speed, for the few who
+//! ask.
 
 use super::motion::Judged;
 use super::rollout::Rollout;
@@ -46,7 +47,8 @@ impl Rollouts {
         self.judged.push(judged);
     }
 
-    /// Compares the candidates of the turn rate added last with the guide point, all speeds in one loop.
+    /// Compares the candidates of the turn rate added last with the guide point, all speeds in one
+    /// loop.
     pub(super) fn compare(&mut self, lattice: &Lattice, guide: Point) {
         let (speeds_mps, columns) = (lattice.speeds_mps(), lattice.turn_rates_radps().len());
         let column = self.judged.len() - 1;
@@ -76,7 +78,8 @@ impl Rollouts {
             .sum()
     }
 
-    /// Applies a rule to all candidates that are not refused: it gives the distance that counts; `None` refuses.
+    /// Applies a rule to all candidates that are not refused: it gives the distance that counts;
+    /// `None` refuses.
     pub(super) fn retain(
         &mut self,
         lattice: &Lattice,

@@ -1,10 +1,12 @@
-//! The candidates of one turn rate: which of them touch something, and how near the others come to obstacles.
+//! The candidates of one turn rate: which of them touch something, and how near the others come to
+//! obstacles.
 //!
-//! At any time the places of all speeds lie on a line ([`super::motion`]), and of each box near that line one measurement
-//! bounds how far all of them are from it, by two straight lines over the speed ([`Surroundings::apart`]). So the speeds are
-//! judged together first, then in parts, and with each part only the boxes go on that leave a doubt: that may be the nearest,
-//! or too near. Where a robot drives along a wall, both lines are the distance itself, and nothing is measured again. In open
-//! ground one look per pose decides for all speeds. All lengths are in cells.
+//! At any time the places of all speeds lie on a line ([`super::motion`]), and of each box near
+//! that line one measurement bounds how far all of them are from it, by two straight lines over the
+//! speed ([`Surroundings::apart`]). So the speeds are judged together first, then in parts, and
+//! with each part only the boxes go on that leave a doubt: that may be the nearest, or too near.
+//! Where a robot drives along a wall, both lines are the distance itself, and nothing is measured
+//! again. In open ground one look per pose decides for all speeds. All lengths are in cells.
 
 use super::counting::Counting;
 use super::motion::{Motion, Timing};
@@ -24,8 +26,8 @@ pub(super) struct Bounds {
     spare: Vec<Turned>,
 }
 
-/// Something at a pose that may be too near, or the nearest, with bounds of how far it is from the slowest speed to the
-/// fastest.
+/// Something at a pose that may be too near, or the nearest, with bounds of how far it is from the
+/// slowest speed to the fastest.
 #[derive(Clone, Copy, Debug)]
 struct Doubt {
     pose: usize,
@@ -106,7 +108,8 @@ impl Part {
 #[derive(Clone, Copy, Debug)]
 struct Known {
     part: Part,
-    /// What each speed comes at least so near to. Where it is exact it may be missing among what is in doubt.
+    /// What each speed comes at least so near to. Where it is exact it may be missing among what is
+    /// in doubt.
     nearest: Doubt,
 }
 
@@ -136,11 +139,13 @@ impl Speeds<'_, '_> {
     /// Speeds are judged together, then in so many parts, and so on.
     const PARTS: usize = 8;
 
-    /// After so many halvings, a piece of a stretch that cannot be shown to be free counts as contact.
+    /// After so many halvings, a piece of a stretch that cannot be shown to be free counts as
+    /// contact.
     const MOST_HALVINGS: u32 = 8;
 
-    /// Reports for each speed the core's smallest distance at the poses, up to what counts, or `None` on
-    /// contact. Some are known to be `touching` something; at the poses outside of `near` nothing is near enough to count.
+    /// Reports for each speed the core's smallest distance at the poses, up to what counts, or
+    /// `None` on contact. Some are known to be `touching` something; at the poses outside of `near`
+    /// nothing is near enough to count.
     pub(super) fn judge(
         &mut self,
         near: &Range<usize>,
@@ -222,8 +227,8 @@ impl Speeds<'_, '_> {
         Stretch::new(self.timing, number, candidate, self.core.swing_m())
     }
 
-    /// Looks at what is in doubt and appends what is still in doubt, the nearest first. Gives what every speed comes as
-    /// near as; `None` when all touch something.
+    /// Looks at what is in doubt and appends what is still in doubt, the nearest first. Gives what
+    /// every speed comes as near as; `None` when all touch something.
     fn look(&mut self, part: &Part, doubtful: Range<usize>, known: &Known) -> Option<Doubt> {
         let begin = self.bounds.doubtful.len();
         let ends = [part.low_mps, part.high_mps].map(|v_mps| known.part.fraction(v_mps));
@@ -268,7 +273,8 @@ impl Speeds<'_, '_> {
                 && doubt.is_nearer_than(nearest.doubt.apart.at_most)
     }
 
-    /// Looks for what is near a pose and appends what leaves a doubt; `None` when all touch something.
+    /// Looks for what is near a pose and appends what leaves a doubt; `None` when all touch
+    /// something.
     #[inline]
     fn look_around(&mut self, part: &Part, pose: usize, nearest: &mut Nearest) -> Option<()> {
         let sweep = self.motion.sweep(pose, [part.low_mps, part.high_mps]);
@@ -388,7 +394,8 @@ impl Speeds<'_, '_> {
         self.counting.certain + if index < 2 { first.max(other) } else { other }
     }
 
-    /// Whether a single speed touches nothing, given what is so near that there may be too little room.
+    /// Whether a single speed touches nothing, given what is so near that there may be too little
+    /// room.
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
         let candidate = Velocity::new(part.low_mps, self.omega_radps);
         let last = self.motion.poses() - 1;
@@ -403,8 +410,8 @@ impl Speeds<'_, '_> {
         })
     }
 
-    /// Fills in the room that a speed has at the poses at which something is in doubt, and at those before and after
-    /// them. Gives the first and the last of the former.
+    /// Fills in the room that a speed has at the poses at which something is in doubt, and at those
+    /// before and after them. Gives the first and the last of the former.
     fn fill_room(&mut self, part: &Part, doubtful: Range<usize>) -> (usize, usize) {
         let count = self.motion.poses();
         let poses = self.bounds.doubtful[doubtful.clone()].iter().map(|doubt| doubt.pose);
@@ -421,9 +428,9 @@ impl Speeds<'_, '_> {
         (first, last)
     }
 
-    /// Whether the way from a pose to the next is free. After a move by s, of l in all, there is at least the
-    /// room r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c it is at least c everywhere;
-    /// otherwise the way is looked at as a straight line, and each half of it.
+    /// Whether the way from a pose to the next is free. After a move by s, of l in all, there is at
+    /// least the room r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c it is at least c
+    /// everywhere; otherwise the way is looked at as a straight line, and each half of it.
     fn is_stretch_free(&mut self, number: usize, candidate: Velocity) -> bool {
         let (Stretch { moves_m, deviation_m }, cell_m) =
             (self.stretch(number, candidate), self.frame.resolution_m());
@@ -470,8 +477,8 @@ impl Speeds<'_, '_> {
         is_free
     }
 
-    /// Whether a way that deviates so little from a straight line is free. The border's distance is concave, so
-    /// it is smallest at an end.
+    /// Whether a way that deviates so little from a straight line is free. The border's distance is
+    /// concave, so it is smallest at an end.
     fn is_straight_way_free(&mut self, from: Stop<'_>, to: Stop<'_>, deviation: f64) -> bool {
         let (from, to) = (&from.placement, &to.placement);
         let least = self.counting.contact + deviation;

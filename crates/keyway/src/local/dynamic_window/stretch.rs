@@ -8,18 +8,20 @@ use crate::geometry::Velocity;
 pub(super) struct Stretch {
     /// No part of the core moves farther \[m\].
     pub(super) moves_m: f64,
-    /// No vertex of the core (nor the centre, where it is alone) is ever farther from the straight line between its
-    /// two ends \[m\]. A part of the way as long as half of it deviates a quarter as far at most.
+    /// No vertex of the core (nor the centre, where it is alone) is ever farther from the straight
+    /// line between its two ends \[m\]. A part of the way as long as half of it deviates a quarter
+    /// as far at most.
     pub(super) deviation_m: f64,
 }
 
 impl Stretch {
-    /// The stretch of this number with a candidate of at most this speed, for a core that reaches `swing_m` from the
-    /// centre of rotation.
+    /// The stretch of this number with a candidate of at most this speed, for a core that reaches
+    /// `swing_m` from the centre of rotation.
     ///
-    /// In the time T a curve is nowhere farther from its chord than T² / 8 times the largest second derivative
-    /// across the chord. That of a vertex is at most |dv/dt| + swing |d omega/dt| + (|v| + swing |omega|) |omega|. The
-    /// centre alone moves along its chord but for the angle turned, unless it reverses, so of dv/dt only that part counts.
+    /// In the time T a curve is nowhere farther from its chord than T² / 8 times the largest second
+    /// derivative across the chord. That of a vertex is at most |dv/dt| + swing |d omega/dt| + (|v|
+    /// + swing |omega|) |omega|. The centre alone moves along its chord but for the angle turned,
+    /// unless it reverses, so of dv/dt only that part counts.
     pub(super) fn new(timing: &Timing, number: usize, candidate: Velocity, swing_m: f64) -> Self {
         if !(number == 0 && timing.has_ramp()) {
             let driven_m = candidate.v.abs() * timing.step_s;

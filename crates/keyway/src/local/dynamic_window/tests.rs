@@ -234,8 +234,8 @@ proptest! {
         touches_nothing(DwaConfig::for_robot(&robot), &robot, &world, Pose::new(1.5, 1.5, heading), guides)?;
     }
 
-    /// Also where a robot brakes in less than a cycle, of which it then needs the whole all the same. Its guide point
-    /// keeps moving, so it keeps driving.
+    /// Also where a robot brakes in less than a cycle, of which it then needs the whole all the
+    /// same. Its guide point keeps moving, so it keeps driving.
     #[test]
     fn strong_brakes_and_long_cycles_touch_nothing(
         world in blocks(), heading in -3.0..3.0f64, shape in 0..3usize,

@@ -25,7 +25,8 @@ impl Window {
         }
     }
 
-    /// The width that no window exceeds: what can be reached within a cycle to both sides, and what the limits allow.
+    /// The width that no window exceeds: what can be reached within a cycle to both sides, and what
+    /// the limits allow.
     pub(super) fn widest(limits: &Limits, cycle_s: f64) -> Velocity {
         let by_v = limits.acceleration_mps2 + limits.deceleration_mps2;
         let by_omega = limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2;
@@ -80,7 +81,8 @@ impl Lattice {
         Velocity::new(largest(&self.speeds_mps), largest(&self.turn_rates_radps))
     }
 
-    /// The slowest speed and the fastest, backwards being slower than standing; none at all are two of 0.
+    /// The slowest speed and the fastest, backwards being slower than standing; none at all are two
+    /// of 0.
     pub(super) fn ends_mps(&self) -> [f64; 2] {
         let end = |end: Option<&f64>| end.copied().unwrap_or_default();
         [end(self.speeds_mps.first()), end(self.speeds_mps.last())]
@@ -120,7 +122,8 @@ mod tests {
         let Window { slowest, fastest } = window(0.48, f64::INFINITY);
         assert!((slowest.v - 0.43).abs() < 1e-12 && (fastest.v - 0.5).abs() < 1e-12);
         assert!((slowest.omega + 0.3).abs() < 1e-12);
-        // From 0.45 m/s it still stops within 0.0465 m and 0.2025 m; nothing is slower than braking.
+        // From 0.45 m/s it still stops within 0.0465 m and 0.2025 m; nothing is slower than
+        // braking.
         assert!((window(0.48, 0.249).fastest.v - 0.45).abs() < 1e-12);
         assert!((window(0.48, 0.1).fastest.v - 0.43).abs() < 1e-12);
         let limits = Limits { v_min_mps: -0.3, ..robot.limits.clone() };

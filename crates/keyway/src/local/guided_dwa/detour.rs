@@ -17,21 +17,23 @@
 //! | `x_it`, eq. (21) | the node in the direction from `x_ga` that is closest to `e_gi` | m |
 //!
 //! # Where this differs from the paper
-//! - It does not say what holds for an obstacle on a straight route, where `x_ga` lies on the route: with `x_ga` and `x_st`
-//!   nearer to each other than half a cell, `e_gs` is 0; where `e_gi` is 0, `e_gs` stands in for it.
-//! - The remaining route begins behind the place where the obstacle stands on it. Candidates for `x_it` lie behind
-//!   `x_st`, at least half a cell from `x_ga`, and in a straight line from it that keeps the clearance; directions that
-//!   are equal up to rounding go to the first along the route. With no candidate, `x_it` is `x_st`.
-//! - `x_ga` must keep the clearance from everything known and sensed, and the straight line from `x_j` to it may cross
-//!   the obstacle and nothing else. Otherwise `x_ga` is the first node of the remaining route that keeps the
-//!   clearance. Where there is none, the way around has failed.
-//! - `x_j` is kept while the robot is on its way to `x_ga`, and the rest is computed anew in each cycle: from what was
-//!   seen meanwhile, and where an obstacle that moves is now. When nothing is left of it on the route up to `x_st`,
-//!   the way around ends.
+//! - It does not say what holds for an obstacle on a straight route, where `x_ga` lies on the
+//!   route: with `x_ga` and `x_st` nearer to each other than half a cell, `e_gs` is 0; where `e_gi`
+//!   is 0, `e_gs` stands in for it.
+//! - The remaining route begins behind the place where the obstacle stands on it. Candidates for
+//!   `x_it` lie behind `x_st`, at least half a cell from `x_ga`, and in a straight line from it
+//!   that keeps the clearance; directions that are equal up to rounding go to the first along the
+//!   route. With no candidate, `x_it` is `x_st`.
+//! - `x_ga` must keep the clearance from everything known and sensed, and the straight line from
+//!   `x_j` to it may cross the obstacle and nothing else. Otherwise `x_ga` is the first node of the
+//!   remaining route that keeps the clearance. Where there is none, the way around has failed.
+//! - `x_j` is kept while the robot is on its way to `x_ga`, and the rest is computed anew in each
+//!   cycle: from what was seen meanwhile, and where an obstacle that moves is now. When nothing is
+//!   left of it on the route up to `x_st`, the way around ends.
 //!
 //! # Errors / cost
-//! [`AllCovered`]. Linear in the nodes of the remaining route; (21) with one test of a line for each of them, once
-//! for each way around.
+//! [`AllCovered`]. Linear in the nodes of the remaining route; (21) with one test of a line for
+//! each of them, once for each way around.
 
 use super::obstacle::{Cluster, Search, Unknown};
 use super::route_nodes::{RouteNode, route_nodes};
@@ -47,24 +49,28 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DetourConfig {
-    /// How far ahead along the route something unknown matters, and how far from the robot its cells count \[m\].
+    /// How far ahead along the route something unknown matters, and how far from the robot its
+    /// cells count \[m\].
     pub look_ahead_m: f64,
-    /// What the route, a guide point and the straight way from it keep from obstacles to be free \[m\].
+    /// What the route, a guide point and the straight way from it keep from obstacles to be free
+    /// \[m\].
     pub clearance_m: f64,
     /// A guide point is reached within this distance: the radius of the invalid zone \[m\].
     pub reached_m: f64,
 }
 
 impl DetourConfig {
-    /// For maps with cells of 1 m. All are readings: the range of the sensor, the safe distance of the smoother, and
-    /// half a cell.
+    /// For maps with cells of 1 m. All are readings: the range of the sensor, the safe distance of
+    /// the smoother, and half a cell.
     pub const PAPER: Self = Self { look_ahead_m: 5.0, clearance_m: 0.8, reached_m: 0.5 };
 
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `look_ahead_m`: [`Robot::decision_reach_m`];
-    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_m`]: there the robot can turn;
-    /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint covers the point.
+    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_m`]: there the robot
+    ///   can turn;
+    /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint covers
+    ///   the point.
     pub fn for_robot(robot: &Robot) -> Self {
         let cycle_m = robot.limits.v_max_mps * robot.cycle_s;
         Self {
@@ -182,7 +188,8 @@ impl GuidePoints<'_> {
         cluster.first_on(stretch, &search)
     }
 
-    /// `x_j`: the next node of the route if it is before the obstacle, otherwise where the robot is.
+    /// `x_j`: the next node of the route if it is before the obstacle, otherwise where the robot
+    /// is.
     fn detected_from(&self, covered_m: f64, unknown: &Unknown) -> Point {
         let next = self.nodes(covered_m).next().filter(|node| node.along_m < unknown.along_m);
         next.map_or(self.scene.pose.point(), |node| node.point)
@@ -218,7 +225,8 @@ impl GuidePoints<'_> {
         Err(AllCovered { tried })
     }
 
-    /// Whether the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive around.
+    /// Whether the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive
+    /// around.
     fn crosses_nothing_else(&self, from: Point, to: Point, cluster: &Cluster) -> bool {
         let (frame, obstacles) = (self.scene.obstacles.frame(), self.scene.obstacles.clearance());
         let (start, end) = (frame.grid_from_world(from), frame.grid_from_world(to));

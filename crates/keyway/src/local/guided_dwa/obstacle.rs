@@ -41,8 +41,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Cluster {
-    /// What stands on the first of these nodes that is not free. Of several sensed cells, the one nearest to the node
-    /// counts.
+    /// What stands on the first of these nodes that is not free. Of several sensed cells, the one
+    /// nearest to the node counts.
     pub(super) fn first_on(
         &mut self,
         nodes: impl Iterator<Item = RouteNode>,
@@ -58,8 +58,8 @@ impl Cluster {
         self.members.get(cell)
     }
 
-    /// Takes all sensed cells that are connected with one of them, by an edge or a corner; the mean of their
-    /// centres. The first one counts wherever it is.
+    /// Takes all sensed cells that are connected with one of them, by an edge or a corner; the mean
+    /// of their centres. The first one counts wherever it is.
     fn fill(&mut self, seed: Cell, search: &Search<'_>) -> Point {
         let (frame, sensed) = (search.sensed.frame(), search.sensed.obstacles());
         self.clear(frame);
@@ -95,8 +95,8 @@ const NEIGHBOURS: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 impl Search<'_> {
-    /// The sensed cell whose square is nearest to a point, if one is nearer than the clearance; of equals the lowest,
-    /// then the leftmost.
+    /// The sensed cell whose square is nearest to a point, if one is nearer than the clearance; of
+    /// equals the lowest, then the leftmost.
     fn nearest(&self, point: Point) -> Option<Cell> {
         let reach_m = self.clearance_m;
         let nearest_m = self.sensed.of_point(point, reach_m);

@@ -11,8 +11,8 @@ pub(super) struct RouteNode {
     pub(super) along_m: f64,
 }
 
-/// The points of a route at every whole `spacing_m` of arc length that lie after `from_m`, and its end. A route ends
-/// with one node, also where rounding puts the last of the others there.
+/// The points of a route at every whole `spacing_m` of arc length that lie after `from_m`, and its
+/// end. A route ends with one node, also where rounding puts the last of the others there.
 pub(super) fn route_nodes(
     path: &Polyline,
     spacing_m: f64,

@@ -100,7 +100,8 @@ fn the_whole_way_around_on_a_straight_route() {
     // On the way there x_j stays.
     assert_eq!(world.target(Pose::new(8.5, 4.5, 0.0), &path, &mut memory), Some([13.5, 2.5]));
     assert_eq!(memory.covered_m, 2.0);
-    // In the invalid zone e_gs is 0 and all nodes ahead are in the direction of e_gt: the first one is taken.
+    // In the invalid zone e_gs is 0 and all nodes ahead are in the direction of e_gt: the first one
+    // is taken.
     assert_eq!(world.target(Pose::new(13.1, 2.7, 0.0), &path, &mut memory), Some([14.5, 2.5]));
     let back = Detour::Back { point: Point::new(14.5, 2.5), along_m: 14.0 };
     assert_eq!((memory.detour(), memory.covered_m), (Some(back), 13.0));
@@ -233,7 +234,8 @@ fn the_follower_drives_at_full_speed_in_the_open() {
 #[test]
 fn the_follower_does_not_drive_into_anything() {
     let planner = GuidedDwa::new(GuidedDwaConfig::PAPER, Robot::paper()).unwrap();
-    // At 0.4 m/s it needs 0.4 m and a cycle to stop. The route, straight ahead, leads through a known wall.
+    // At 0.4 m/s it needs 0.4 m and a cycle to stop. The route, straight ahead, leads through a
+    // known wall.
     let (world, path) = (hall(&[], &[(8, 2)]), straight());
     let evaluated = |x: f64| {
         let velocity = Velocity::new(0.4, 0.0);
@@ -283,7 +285,8 @@ fn drives_around_what_stands_on_the_route() {
 
 #[test]
 fn stands_in_front_of_what_it_cannot_drive_around() {
-    // The point behind it is straight ahead, so every turn makes things worse: the caller has to plan a new route.
+    // The point behind it is straight ahead, so every turn makes things worse: the caller has to
+    // plan a new route.
     let (world, path) = (hall(&[(8, 2)], &[]), straight());
     let (end, nearest_m) = drive(&world, &path, &Robot::paper(), GuidedDwaConfig::PAPER);
     assert!(end.x > 7.5 && end.x < 8.0 && nearest_m > 0.0, "{end:?} {nearest_m}");
@@ -326,7 +329,8 @@ fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, max_global_rejects: 20_000, ..ProptestConfig::default() })]
 
-    /// What the follower's commands are checked for: beside obstacles, and beside the border of the map.
+    /// What the follower's commands are checked for: beside obstacles, and beside the border of the
+    /// map.
     #[test]
     fn a_way_to_stop_that_is_called_free_is_free(
         blocks in prop::collection::vec((0..60i32, 0..60i32), 0..4), x in 0.3..2.7f64, y in 0.3..2.7f64,

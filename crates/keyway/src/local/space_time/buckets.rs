@@ -1,7 +1,7 @@
 //! An open list for values that are passed on with at least a certain growth.
 
-/// Points that wait, in buckets of values. A bucket is as wide as the least growth: so what is in the lowest one cannot
-/// become lower, and may be taken in any order.
+/// Points that wait, in buckets of values. A bucket is as wide as the least growth: so what is in
+/// the lowest one cannot become lower, and may be taken in any order.
 #[derive(Debug, Default)]
 pub(super) struct Buckets {
     waiting: Vec<Vec<u32>>,

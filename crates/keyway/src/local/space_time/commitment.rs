@@ -17,8 +17,8 @@ pub(super) fn reluctance_s(
     if are_apart(rest, new, start, judge) { DECIDED_S } else { 0.0 }
 }
 
-/// Whether two courses pass something on different sides: where the robot would be at some instant on the one, it could not come
-/// straight from where it would be on the other.
+/// Whether two courses pass something on different sides: where the robot would be at some instant
+/// on the one, it could not come straight from where it would be on the other.
 fn are_apart(one: &[Velocity], other: &[Velocity], start: &State, judge: &Judge<'_>) -> bool {
     let (mut a, mut b) = (*start, *start);
     for (&to_a, &to_b) in one.iter().zip(other) {
@@ -44,8 +44,8 @@ fn is_open_between(a: Point, b: Point, judge: &Judge<'_>) -> bool {
     (0..=steps as u32).all(fits)
 }
 
-/// What is left of a course that was begun a cycle ago, as velocities at the ends of so many stretches from now on. The last one
-/// goes on, and none changes faster than the robot can.
+/// What is left of a course that was begun a cycle ago, as velocities at the ends of so many
+/// stretches from now on. The last one goes on, and none changes faster than the robot can.
 pub(super) fn go_on(
     rest: &mut Vec<Velocity>,
     course: Option<&Course>,

@@ -16,12 +16,13 @@ pub struct SpaceTimeConfig {
     pub horizon_s: f64,
     /// K: stretches of a course, from 1 to 32.
     pub stretches: u32,
-    /// W: the most promising courses that are followed from stretch to stretch where something moves, from 1 to 1000;
-    /// half as many where nothing does.
+    /// W: the most promising courses that are followed from stretch to stretch where something
+    /// moves, from 1 to 1000; half as many where nothing does.
     pub width: u32,
     /// m: room that the robot likes to have around its footprint \[m\]; positive.
     pub comfortable_m: f64,
-    /// q: with a fifth of the room that it likes, a metre counts as 0.64 q more, beside something that it nearly touches as 9 q more.
+    /// q: with a fifth of the room that it likes, a metre counts as 0.64 q more, beside something
+    /// that it nearly touches as 9 q more.
     pub discomfort: f64,
     /// u: a second in which the velocity changes as fast as it can counts as so many more.
     pub steering: f64,
@@ -39,12 +40,15 @@ impl SpaceTimeConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and three times the time to stop;
-    /// - `stretches`: 6, but as many as it takes for one to be no longer than a second, up to 32: what changes its velocity over a
-    ///   longer one makes way too late;
-    /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed radius;
-    /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of movers are rough;
+    /// - `stretches`: 6, but as many as it takes for one to be no longer than a second, up to 32:
+    ///   what changes its velocity over a longer one makes way too late;
+    /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed
+    ///   radius;
+    /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of
+    ///   movers are rough;
     /// - `mover_acceleration_mps2`: what the tracker's filter reckons with
-    ///   ([`TrackerConfig::acceleration_mps2`](crate::sense::TrackerConfig), two standard deviations).
+    ///   ([`TrackerConfig::acceleration_mps2`](crate::sense::TrackerConfig), two standard
+    ///   deviations).
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let inscribed_m = robot.footprint.inscribed_radius_m();

@@ -1,17 +1,20 @@
 //! How far it is to the end of the route from everywhere around the robot, and in which direction.
 //!
-//! The way is weighed by the room along it: a metre counts as more where the robot has less room than it would like. So the
-//! cheapest way keeps clear of corners where that costs little, and is the shortest one where nothing else fits.
+//! The way is weighed by the room along it: a metre counts as more where the robot has less room
+//! than it would like. So the cheapest way keeps clear of corners where that costs little, and is
+//! the shortest one where nothing else fits.
 //!
 //! # Source
-//! \[Tsitsiklis1995\]: values grow outwards from the end, as in Dijkstra's search, but a way may cross the line between two
-//! neighbours anywhere, where the value is interpolated. So ways are not bound to the directions of a grid. The eight triangles
-//! around a point, and the closed form of [`across`], are those of \[Ferguson2006\].
+//! \[Tsitsiklis1995\]: values grow outwards from the end, as in Dijkstra's search, but a way may
+//! cross the line between two neighbours anywhere, where the value is interpolated. So ways are not
+//! bound to the directions of a grid. The eight triangles around a point, and the closed form of
+//! [`across`], are those of \[Ferguson2006\].
 //!
 //! # Where this differs from the paper
-//! What is blocked costs 200 m a metre instead of being infinite, so that there always is a direction, and
-//! interpolation never meets infinity. A point takes its own weight for a whole step to it. What values grow too much by
-//! between the directions of the grid is taken away again, so that in sight of the end they are the distance to it.
+//! What is blocked costs 200 m a metre instead of being infinite, so that there always is a
+//! direction, and interpolation never meets infinity. A point takes its own weight for a whole step
+//! to it. What values grow too much by between the directions of the grid is taken away again, so
+//! that in sight of the end they are the distance to it.
 //!
 //! # Cost
 //! Linear in the points from which the way is not much longer than from the robot.
@@ -32,7 +35,8 @@ pub(super) struct CostToGo {
     weights: Vec<f32>,
     /// What a straight step to each point counts as \[m\].
     steps_m: Vec<f32>,
-    /// What is left from each point that is done for those who come from elsewhere \[m\]; infinite from the others.
+    /// What is left from each point that is done for those who come from elsewhere \[m\]; infinite
+    /// from the others.
     leaving_m: Vec<f32>,
     open: Buckets,
     end: Point,
@@ -62,7 +66,8 @@ pub(super) struct WayAhead<'a> {
 }
 
 impl Weighing {
-    /// What a metre counts as in addition where the robot cannot turn around: its heading has to fit, and often does not.
+    /// What a metre counts as in addition where the robot cannot turn around: its heading has to
+    /// fit, and often does not.
     const TIGHT: f64 = 3.0;
 
     fn weight(&self, room_m: f64) -> f64 {
@@ -88,8 +93,8 @@ impl CostToGo {
     /// On open ground values are too large by no more than this part of the distance.
     const EXCESS: f32 = 0.03;
 
-    /// Finds the ways to the end of the route from all points from which they are at most `beyond_m` longer than from the
-    /// robot; all others count as just as far.
+    /// Finds the ways to the end of the route from all points from which they are at most
+    /// `beyond_m` longer than from the robot; all others count as just as far.
     pub(super) fn fill(
         &mut self,
         lattice: Lattice,
@@ -112,7 +117,8 @@ impl CostToGo {
         }
         self.block_walked(way.walked, weighing);
         self.open_route(way.route, weighing);
-        // What is blocked has the value of the free ground beside it, so that values in between are those of the free ground.
+        // What is blocked has the value of the free ground beside it, so that values in between are
+        // those of the free ground.
         let free = |&weight: &f32| if weight.is_finite() { weight } else { 1.0 };
         self.steps_m.clear();
         self.steps_m
@@ -211,9 +217,9 @@ impl CostToGo {
             .for_each(|(value, _)| *value = farthest);
     }
 
-    /// What a point that is done makes of its neighbours. It shares two triangles with each of them, whose third corners are
-    /// neighbours, too: the ways of these may be crossed where they are done. The corner from which less is left is the
-    /// better one.
+    /// What a point that is done makes of its neighbours. It shares two triangles with each of
+    /// them, whose third corners are neighbours, too: the ways of these may be crossed where they
+    /// are done. The corner from which less is left is the better one.
     fn pass_on(&mut self, from: usize) {
         let side = self.lattice.side;
         let (below, above) = (from - side, from + side);
@@ -233,8 +239,8 @@ impl CostToGo {
         }
     }
 
-    /// Takes away what values grow too much by between the directions of the grid, so that in sight of the end they are the
-    /// distance to it, and directions are exact.
+    /// Takes away what values grow too much by between the directions of the grid, so that in sight
+    /// of the end they are the distance to it, and directions are exact.
     fn straighten(&mut self, end: Point) {
         let Self { lattice, values, .. } = self;
         for y in 0..lattice.side {
@@ -246,7 +252,8 @@ impl CostToGo {
         }
     }
 
-    /// What is left from a position \[m\], and the direction in which that falls fastest (not of length 1).
+    /// What is left from a position \[m\], and the direction in which that falls fastest (not of
+    /// length 1).
     pub(super) fn way(&self, position: Point) -> (f64, Point) {
         match self.straight_to_end(position) {
             Some(way) => (way.norm(), way),
@@ -272,12 +279,14 @@ impl CostToGo {
     const ROUNDING: f64 = 0.005;
 }
 
-/// The least value of a point that is a straight step from a neighbour with the value `straight` and a diagonal one from a
-/// neighbour with the value `diagonal`, when the way to it may begin anywhere between the two; `step` is what a straight step
-/// counts as. A neighbour that is not done has an infinite value: then the way comes from the other one.
+/// The least value of a point that is a straight step from a neighbour with the value `straight`
+/// and a diagonal one from a neighbour with the value `diagonal`, when the way to it may begin
+/// anywhere between the two; `step` is what a straight step counts as. A neighbour that is not done
+/// has an infinite value: then the way comes from the other one.
 ///
-/// At the part t of the line between them the value is straight - t g, with g = straight - diagonal, and the way from there
-/// counts as step sqrt(1 + t²). Their sum is least at t = g / sqrt(step² - g²), where it is straight + sqrt(step² - g²).
+/// At the part t of the line between them the value is straight - t g, with g = straight -
+/// diagonal, and the way from there counts as step sqrt(1 + t²). Their sum is least at t = g /
+/// sqrt(step² - g²), where it is straight + sqrt(step² - g²).
 fn across(straight: f32, diagonal: f32, step: f32) -> f32 {
     let gain = straight - diagonal;
     if gain <= 0.0 {
@@ -365,7 +374,8 @@ mod tests {
         assert!(cost_to_go.straight_to_end(at).is_none());
     }
 
-    /// Tangents from both places to the circle of 0.5 m around the end of the lane, and the arc in between.
+    /// Tangents from both places to the circle of 0.5 m around the end of the lane, and the arc in
+    /// between.
     #[test]
     fn ground_on_which_movers_walk_is_gone_around() {
         let lane =

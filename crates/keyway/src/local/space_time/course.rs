@@ -1,4 +1,5 @@
-//! A course: velocities at a few instants, between which they change linearly. Where it leads, and what it costs.
+//! A course: velocities at a few instants, between which they change linearly. Where it leads, and
+//! what it costs.
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
@@ -53,7 +54,8 @@ pub(super) struct Judge<'a> {
     pub(super) beyond_m: f64,
     /// Room that the robot likes to have around its footprint \[m\].
     pub(super) comfortable_m: f64,
-    /// With less than this it touches something: the margin, or what it has now, where that is less \[m\].
+    /// With less than this it touches something: the margin, or what it has now, where that is less
+    /// \[m\].
     pub(super) least_m: f64,
     pub(super) discomfort: f64,
     pub(super) steering: f64,
@@ -88,8 +90,8 @@ impl Judge<'_> {
         by_way.max(least).ceil() as u32
     }
 
-    /// Where a stretch leads: from a state, until its velocity is `to`; with the cost of that, without what its way costs. Neither
-    /// of them looks at what is there.
+    /// Where a stretch leads: from a state, until its velocity is `to`; with the cost of that,
+    /// without what its way costs. Neither of them looks at what is there.
     pub(super) fn leads_to(&self, from: &State, cost: &Cost, to: Velocity) -> (State, Cost) {
         let steps = self.steps(from.velocity, to);
         let (mut state, mut cost) = (*from, *cost);
@@ -143,7 +145,8 @@ impl Judge<'_> {
         velocity.v
     }
 
-    /// What room is missing to turn on the spot at a place: 0 where there is enough, 1 where no more fits than its inscribed circle.
+    /// What room is missing to turn on the spot at a place: 0 where there is enough, 1 where no
+    /// more fits than its inscribed circle.
     pub(super) fn short_of_turning(&self, place: Point) -> f64 {
         let swings_m = self.outline.circumscribed_m - self.outline.inscribed_m;
         if swings_m <= 0.0 {
@@ -153,12 +156,14 @@ impl Judge<'_> {
         (missing_m / swings_m).clamp(0.0, 1.0)
     }
 
-    /// Whether the robot drives backwards where it has not looked: what is there would be touched before it is seen.
+    /// Whether the robot drives backwards where it has not looked: what is there would be touched
+    /// before it is seen.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
         v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
     }
 
-    /// Whether the robot could brake along its arc from a state without touching anything: the stop rule will ask for it.
+    /// Whether the robot could brake along its arc from a state without touching anything: the stop
+    /// rule will ask for it.
     pub(super) fn can_stop(&self, from: &State) -> bool {
         let Velocity { v, omega, .. } = from.velocity;
         let Limits { deceleration_mps2, angular_deceleration_radps2, .. } = *self.limits;
@@ -206,11 +211,13 @@ impl Judge<'_> {
         self.steering * self.stretch_s * (turn * turn + 0.25 * speed * speed)
     }
 
-    /// An estimate of the time that is needed from a state to the end of the route, to stand there \[s\].
+    /// An estimate of the time that is needed from a state to the end of the route, to stand there
+    /// \[s\].
     ///
-    /// With D, what is left of the way, and the angle f between heading and way: the time of the fastest profile of speeds over D
-    /// that begins with v cos f, and (1 - cos f) / 2 times what a robot needs to turn around and to speed up again, up to
-    /// twice as much where it stands, or nearly, and has no room to turn: it has to get away from there first.
+    /// With D, what is left of the way, and the angle f between heading and way: the time of the
+    /// fastest profile of speeds over D that begins with v cos f, and (1 - cos f) / 2 times what a
+    /// robot needs to turn around and to speed up again, up to twice as much where it stands, or
+    /// nearly, and has no room to turn: it has to get away from there first.
     pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
         let (left_m, way) = self.cost_to_go.way(state.at);
         let left_m = left_m + self.beyond_m;
@@ -227,9 +234,10 @@ impl Judge<'_> {
         profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
     }
 
-    /// Whether a course need not go on from a state: it is at the end of the route before another stretch has passed, or
-    /// faces the end of what is seen of the route across open ground without movers. There the time to go is exact, while the
-    /// speeds of further stretches would be those of whole stretches.
+    /// Whether a course need not go on from a state: it is at the end of the route before another
+    /// stretch has passed, or faces the end of what is seen of the route across open ground without
+    /// movers. There the time to go is exact, while the speeds of further stretches would be those
+    /// of whole stretches.
     pub(super) fn arrives(&self, state: &State, left_s: f64) -> bool {
         if left_s <= self.stretch_s {
             return true;
@@ -247,8 +255,8 @@ impl Judge<'_> {
     const FACING_COS: f64 = 0.999;
 }
 
-/// The time to drive `left_m` and stand there, beginning at the speed `v` (negative: away from it) \[s\]. Who is too fast to stop
-/// there pays for what is too much with twice the time to brake it.
+/// The time to drive `left_m` and stand there, beginning at the speed `v` (negative: away from it)
+/// \[s\]. Who is too fast to stop there pays for what is too much with twice the time to brake it.
 fn profile_s(limits: &Limits, v: f64, left_m: f64) -> f64 {
     let Limits { v_max_mps, acceleration_mps2: a, deceleration_mps2: b, .. } = *limits;
     let stoppable_mps = (2.0 * b * left_m).sqrt();

@@ -1,8 +1,10 @@
-//! Why a course was chosen: the best one for each beginning that was tried, and what would free a robot that cannot drive.
+//! Why a course was chosen: the best one for each beginning that was tried, and what would free a
+//! robot that cannot drive.
 //!
-//! The first candidate is the course that was chosen, as a decision finds it. Each other one is the best course that begins
-//! with one of the other velocities that the search tries first; it is not polished. Candidates are named by what they would command.
-//! As each is searched for alone, one may be better than what a decision has time to find; the second best is the best that is not.
+//! The first candidate is the course that was chosen, as a decision finds it. Each other one is the
+//! best course that begins with one of the other velocities that the search tries first; it is not
+//! polished. Candidates are named by what they would command. As each is searched for alone, one
+//! may be better than what a decision has time to find; the second best is the best that is not.
 //!
 //! # Errors / cost
 //! None. About 30 decisions; where none drives, up to 40 times as many.

@@ -4,9 +4,10 @@ use crate::geometry::Point;
 use crate::map::{Cell, GridFrame};
 use std::ops::Range;
 
-/// Points around the robot: the centres of every `stride`-th cell of the map, in every `stride`-th row; or, for robots that are
-/// small beside a cell, the centres of the `parts` times `parts` squares that each cell is divided into. Positions are
-/// in metres along the axes of the map's cells, from the corner of the map at its origin.
+/// Points around the robot: the centres of every `stride`-th cell of the map, in every `stride`-th
+/// row; or, for robots that are small beside a cell, the centres of the `parts` times `parts`
+/// squares that each cell is divided into. Positions are in metres along the axes of the map's
+/// cells, from the corner of the map at its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
     /// Column and row of the first point, in parts of a cell.
@@ -26,7 +27,8 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// No more points to either side: for robots that come far within a horizon, points are farther apart.
+    /// No more points to either side: for robots that come far within a horizon, points are farther
+    /// apart.
     const MOST_TO_A_SIDE: f64 = 250.0;
 
     /// So that columns and rows stay numbers of cells.
@@ -35,8 +37,9 @@ impl Lattice {
     /// Points along each axis of a cell that is divided.
     const PARTS: i32 = 3;
 
-    /// All points up to `reach_m` from a position along both axes, and one more. They are `spacing_m` apart, rounded down to
-    /// cells, but at least one cell (a third of it where half a cell is too much), and farther where there would be too many.
+    /// All points up to `reach_m` from a position along both axes, and one more. They are
+    /// `spacing_m` apart, rounded down to cells, but at least one cell (a third of it where half a
+    /// cell is too much), and farther where there would be too many.
     pub(super) fn around(frame: &GridFrame, at: Point, reach_m: f64, spacing_m: f64) -> Self {
         let cell_m = frame.resolution_m();
         let finest_m = reach_m / Self::MOST_TO_A_SIDE;
@@ -47,7 +50,8 @@ impl Lattice {
         let part_m = cell_m / f64::from(parts);
         let spacing_m = f64::from(stride) * part_m;
         let half = (reach_m / spacing_m).ceil().min(Self::MOST_TO_A_SIDE) as i32 + 1;
-        // The same points wherever the robot is, so that values in between do not change as it goes.
+        // The same points wherever the robot is, so that values in between do not change as it
+        // goes.
         let first = |along_m: f64| ((along_m / spacing_m).floor() as i32 - half) * stride;
         let low = (first(at.x), first(at.y));
         let along_m = |part: i32| (f64::from(part) + 0.5) * part_m;
@@ -106,7 +110,8 @@ impl Lattice {
         })
     }
 
-    /// Whether everything that is no farther than this from a place, in points from the first one, is between the points.
+    /// Whether everything that is no farther than this from a place, in points from the first one,
+    /// is between the points.
     #[inline]
     pub(super) fn holds(&self, place: Point, within_m: f64) -> bool {
         let within = within_m / self.spacing_m + 1.0;
@@ -114,7 +119,8 @@ impl Lattice {
         place.x >= low && place.y >= low && place.x <= high && place.y <= high
     }
 
-    /// The value at a position, interpolated between the four points around it; beyond the points that at their edge.
+    /// The value at a position, interpolated between the four points around it; beyond the points
+    /// that at their edge.
     ///
     /// Values are kept as `f32`, and interpolated as `f64`: what rounding adds must not decide
     /// between two courses, which would be another one seen in a mirror.
@@ -138,7 +144,8 @@ impl Lattice {
         self.between(values, below, parts)
     }
 
-    /// The first of the four points around a place, and what is beyond it of the distance to the next one along both axes.
+    /// The first of the four points around a place, and what is beyond it of the distance to the
+    /// next one along both axes.
     #[inline]
     fn corner(&self, place: Point) -> (usize, (f64, f64)) {
         let (left, low) = (place.x as u32, place.y as u32);

@@ -12,7 +12,8 @@ pub(super) struct Foreseen {
     pub(super) velocity_mps: Point,
     /// Centres that are farther apart do not touch: its radius and that of the robot \[m\].
     pub(super) reach_m: f64,
-    /// A standard deviation of its position \[m\], of its velocity \[m/s\], and of what it accelerates \[m/s²\].
+    /// A standard deviation of its position \[m\], of its velocity \[m/s\], and of what it
+    /// accelerates \[m/s²\].
     pub(super) off_m: f64,
     pub(super) off_mps: f64,
     pub(super) off_mps2: f64,
@@ -42,10 +43,12 @@ impl Foreseen {
     /// It may matter anywhere.
     pub(super) const ALWAYS: [f64; PARTS] = [f64::INFINITY; PARTS];
 
-    /// It has come to a wall when it has less room than this part of its radius: movers also walk along walls.
+    /// It has come to a wall when it has less room than this part of its radius: movers also walk
+    /// along walls.
     const WALL: f64 = 0.7;
 
-    /// The part of its speed by which it becomes less certain where it is, once it may have turned around.
+    /// The part of its speed by which it becomes less certain where it is, once it may have turned
+    /// around.
     const ASTRAY: f64 = 0.7;
 
     /// When it comes to something that stands, if that is within a horizon; a mover of this radius.
@@ -91,8 +94,8 @@ impl Foreseen {
         off_m + astray_m
     }
 
-    /// How far its accelerating leads \[m\]. What it changes its velocity by is no more than that velocity: who strolls does not begin to
-    /// run.
+    /// How far its accelerating leads \[m\]. What it changes its velocity by is no more than that
+    /// velocity: who strolls does not begin to run.
     #[inline]
     fn turned_away_m(&self, after_s: f64) -> f64 {
         let most_mps = self.velocity_mps.norm();
@@ -106,11 +109,11 @@ impl Foreseen {
 impl Meeting<'_> {
     /// What a second at a place costs a robot of this speed \[s\].
     ///
-    /// With the gap g between the discs, the standard deviation s and the comfortable room n, it counts as
-    /// `contact` R² / (R² + s²) (1 + |v| / 2) times
+    /// With the gap g between the discs, the standard deviation s and the comfortable room n, it
+    /// counts as `contact` R² / (R² + s²) (1 + |v| / 2) times
     /// - 1 - g / R, where the discs overlap (g < 0, R the distance at which they touch);
-    /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the less is known, the more likely a contact
-    ///   is outside the disc, and the less likely it is inside.
+    /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the less is known, the
+    ///   more likely a contact is outside the disc, and the less likely it is inside.
     #[inline]
     pub(super) fn cost_s(&self, at: Point, after_s: f64, v_mps: f64) -> f64 {
         let part = (after_s / self.horizon_s * PARTS as f64) as usize;

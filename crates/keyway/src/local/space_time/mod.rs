@@ -1,24 +1,29 @@
-//! Keyway's own local planner: it looks for the course through space and time that brings the robot to the end of
-//! its route soonest, and begins to drive it.
+//! Keyway's own local planner: it looks for the course through space and time that brings the robot
+//! to the end of its route soonest, and begins to drive it.
 //!
 //! # The method
 //! In every cycle, from everything that is known and sensed:
 //!
-//! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is computed for every place around the
-//!    robot, on ground that is weighed by the room on it (`cost_to_go.rs`). Ground on which movers walk, and around which the
-//!    route leads, is blocked.
-//! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes linearly. The W most
-//!    promising courses are followed from stretch to stretch, as in a beam search: each goes on with every pair of a few
-//!    speeds and turn rates, and of those that lead to nearly the same state only the best one is kept (`search.rs`). States
-//!    from which the robot could not brake along its arc are left out, and ways backwards over ground that it has not seen.
-//! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long as that makes it better
-//!    (`polish.rs`).
-//! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is taken unless the new
-//!    one is better; by 0.3 s, where it passes something on the other side (`commitment.rs`). So a side that was taken is kept.
-//! 5. **Command.** What the first cycle of the course asks for goes through the [stop rule](StopRule) for what
-//!    stands. When that refuses it, the search is made again among the beginnings that it lets pass.
+//! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is
+//!    computed for every place around the robot, on ground that is weighed by the room on it
+//!    (`cost_to_go.rs`). Ground on which movers walk, and around which the route leads, is blocked.
+//! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes
+//!    linearly. The W most promising courses are followed from stretch to stretch, as in a beam
+//!    search: each goes on with every pair of a few speeds and turn rates, and of those that lead
+//!    to nearly the same state only the best one is kept (`search.rs`). States from which the robot
+//!    could not brake along its arc are left out, and ways backwards over ground that it has not
+//!    seen.
+//! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long
+//!    as that makes it better (`polish.rs`).
+//! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is
+//!    taken unless the new one is better; by 0.3 s, where it passes something on the other side
+//!    (`commitment.rs`). So a side that was taken is kept.
+//! 5. **Command.** What the first cycle of the course asks for goes through the [stop
+//!    rule](StopRule) for what stands. When that refuses it, the search is made again among the
+//!    beginnings that it lets pass.
 //!
-//! A course is worth the time until its end, the time to go from there, and what it costs on the way (`course.rs`, `meeting.rs`):
+//! A course is worth the time until its end, the time to go from there, and what it costs on the
+//! way (`course.rs`, `meeting.rs`):
 //!
 //! | symbol | meaning | parameter | unit |
 //! |---|---|---|---|
@@ -29,33 +34,37 @@
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
-//! So there are no weights of heading, speed and distance to balance: what turns away from the way, drives slowly or
-//! takes a detour takes longer, and everything else is given as the time that it is worth.
+//! So there are no weights of heading, speed and distance to balance: what turns away from the way,
+//! drives slowly or takes a detour takes longer, and everything else is given as the time that it
+//! is worth.
 //!
 //! # Source
-//! The parts are known: an exact cost to go inside of a dynamic window is that of \[Brock1999\]; a search through states and
-//! time that grows by short motions that the robot can drive, that of \[Fraichard1993\]; the beam is that of \[Lowerre1976\]. What is not
-//! theirs: all of it in every cycle, with the time to go in place of weights.
+//! The parts are known: an exact cost to go inside of a dynamic window is that of \[Brock1999\]; a
+//! search through states and time that grows by short motions that the robot can drive, that of
+//! \[Fraichard1993\]; the beam is that of \[Lowerre1976\]. What is not theirs: all of it in every
+//! cycle, with the time to go in place of weights.
 //!
 //! # What follows from it
-//! - **No contact with what stands and is seen**, with ideal motion: every command has passed the stop rule, or is what that
-//!   rule puts in its place. See there for the proof.
+//! - **No contact with what stands and is seen**, with ideal motion: every command has passed the
+//!   stop rule, or is what that rule puts in its place. See there for the proof.
 //! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop
 //!   within what it has seen free. On open ground that is [`Robot::sight_mps`]; where that is below
 //!   the robot's top speed, it is the top speed.
-//! - It waits, makes way, backs up, turns around and passes behind something that moves where that is the fastest way on;
-//!   none of it is a rule of its own.
+//! - It waits, makes way, backs up, turns around and passes behind something that moves where that
+//!   is the fastest way on; none of it is a rule of its own.
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
 //!
 //! # Where it is not exact
-//! Room is that of points on the outline between the points of a grid (`room.rs`): exact at flat sides, to less than half a cell
-//! beside corners. Only the first cycle, and how the robot would stop after it, are judged exactly, by the stop rule.
+//! Room is that of points on the outline between the points of a grid (`room.rs`): exact at flat
+//! sides, to less than half a cell beside corners. Only the first cycle, and how the robot would
+//! stop after it, are judged exactly, by the stop rule.
 //!
 //! # Errors / cost
-//! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H to each side, are
-//! filled once. About W K 15 stretches are proposed; those that may be among the best are driven, or all where none leads on.
-//! Allocates nothing once the scratch is warm. The same scene gives the same command on any machine: nothing is random, and
-//! nothing depends on time.
+//! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H
+//! to each side, are filled once. About W K 15 stretches are proposed; those that may be among the
+//! best are driven, or all where none leads on. Allocates nothing once the scratch is warm. The
+//! same scene gives the same command on any machine: nothing is random, and nothing depends on
+//! time.
 
 mod buckets;
 mod commitment;
@@ -151,7 +160,8 @@ impl SpaceTime {
     /// A planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the error names the field.
+    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
+    /// error names the field.
     pub fn new(config: SpaceTimeConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let robot = robot.into();
         let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), Arc::clone(&robot))?;
@@ -285,8 +295,8 @@ impl SpaceTime {
         self.gated(scene, command, scratch) == command
     }
 
-    /// The best course whose first cycle the stop rule lets pass; empty when there is none. What is left of the last course
-    /// competes with what is found anew.
+    /// The best course whose first cycle the stop rule lets pass; empty when there is none. What is
+    /// left of the last course competes with what is found anew.
     fn search(
         &self,
         scene: &Scene<'_>,
@@ -298,7 +308,8 @@ impl SpaceTime {
         let tally = beam.search(*start, judge, &extent, |_| true);
         let lowest_mps = extent.lowest_mps;
         let found_s = polish(&mut beam.best, start, judge, (&STEPS, lowest_mps));
-        // Movers do other things than they are expected to do: what was best a moment ago is not any more.
+        // Movers do other things than they are expected to do: what was best a moment ago is not
+        // any more.
         if judge.meeting.movers.is_empty() {
             let rest_s = polish(rest, start, judge, (&FINEST, lowest_mps));
             let is_best = rest_s.is_finite()
@@ -406,12 +417,13 @@ fn local(frame: &GridFrame, point: Point) -> Point {
     frame.grid_from_world(point) * frame.resolution_m()
 }
 
-/// What is known of the stretches that were tried, and of the course that was chosen, which may begin with standing.
+/// What is known of the stretches that were tried, and of the course that was chosen, which may
+/// begin with standing.
 fn evaluation(tally: Tally, chosen: Option<&Total>, stands: bool) -> Evaluation {
     let comes_near = |total: &Total| total.cost.movers_s > Beam::MEETING_S;
     let near_mover = tally.meets && chosen.is_some_and(comes_near);
-    // To come near to something that moves takes time, and is not forbidden. Where the best course stands because of it, all
-    // that lead on are not driven because of it.
+    // To come near to something that moves takes time, and is not forbidden. Where the best course
+    // stands because of it, all that lead on are not driven because of it.
     let waiting = if near_mover && stands { tally.driving } else { 0 };
     let mut rejected = Rejections::none_by(&RULES);
     rejected.add_many(CONTACT, tally.touching);

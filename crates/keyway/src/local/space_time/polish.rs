@@ -21,8 +21,8 @@ impl Total {
         Self::below(f64::INFINITY, &Begun::at(start), course, judge)
     }
 
-    /// That of a course that goes on; also `None` where it is `most_s` and more. Mostly that is known from where the course leads,
-    /// without looking at what is there.
+    /// That of a course that goes on; also `None` where it is `most_s` and more. Mostly that is
+    /// known from where the course leads, without looking at what is there.
     fn below(most_s: f64, begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
         let (least, stretches) = Self::least(begun, rest, judge);
         let spare_s = most_s - least.sum_s();
@@ -41,7 +41,8 @@ impl Total {
         (total.sum_s() < most_s).then_some(total)
     }
 
-    /// That of a course that goes on if its way costs nothing, and how many stretches it has up to where it arrives.
+    /// That of a course that goes on if its way costs nothing, and how many stretches it has up to
+    /// where it arrives.
     fn least(begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> (Self, usize) {
         let Begun { mut state, mut cost } = *begun;
         let (mut left_s, mut stretches) = (judge.time_to_go_s(&state), 0);
@@ -82,8 +83,8 @@ const ROUNDING_S: f64 = 1e-9;
 /// Less is no gain \[s\].
 const LEAST_GAIN_S: f64 = 1e-9;
 
-/// Changes the velocities of a course, by smaller and smaller steps, where that makes it better. What it costs then \[s\];
-/// infinite when it touches something, or there is none.
+/// Changes the velocities of a course, by smaller and smaller steps, where that makes it better.
+/// What it costs then \[s\]; infinite when it touches something, or there is none.
 pub(super) fn polish(
     course: &mut [Velocity],
     start: &State,
@@ -137,7 +138,8 @@ fn polish_at(
     }
 }
 
-/// Whether the robot could stop at the end of each stretch of a free course, up to where it arrives.
+/// Whether the robot could stop at the end of each stretch of a free course, up to where it
+/// arrives.
 pub(super) fn can_stop(start: &State, course: &[Velocity], judge: &Judge<'_>) -> bool {
     let mut state = *start;
     for &to in course {

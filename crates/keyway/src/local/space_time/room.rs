@@ -15,14 +15,15 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Between points that are a metre apart, an interpolated distance is too large by no more than this, which it is at the corner
-    /// of a square in the middle between four points \[m\].
+    /// Between points that are a metre apart, an interpolated distance is too large by no more than
+    /// this, which it is at the corner of a square in the middle between four points \[m\].
     const EXCESS: f64 = 0.427;
 
     /// Takes the distances at the points of a lattice; 0 and less outside the map.
     ///
-    /// Where cells are divided, the robot is not larger than what interpolation does not see. There, up to `enough_m`, distances are made
-    /// so much smaller that none in between is too large.
+    /// Where cells are divided, the robot is not larger than what interpolation does not see.
+    /// There, up to `enough_m`, distances are made so much smaller that none in between is too
+    /// large.
     pub(super) fn fill(&mut self, lattice: Lattice, obstacles: &DistanceField, enough_m: f64) {
         self.lattice = lattice;
         self.distances_m.clear();
@@ -106,8 +107,9 @@ impl Room {
     }
 }
 
-/// Distance of the centre of a cell to what stands and to the border \[m\]; below 0 outside the map, and half a cell below where
-/// something stands, so that the distance in between is 0 at its side.
+/// Distance of the centre of a cell to what stands and to the border \[m\]; below 0 outside the
+/// map, and half a cell below where something stands, so that the distance in between is 0 at its
+/// side.
 fn of_centre_m(cell: Cell, obstacles: &DistanceField) -> f64 {
     let frame = obstacles.frame();
     let (last_x, last_y) = (frame.width() as i32 - 1, frame.height() as i32 - 1);
@@ -163,13 +165,15 @@ impl Outline {
         }
     }
 
-    /// No part of the footprint moves farther in a turn by a radian \[m\]; 0 for a disc, which covers the same ground.
+    /// No part of the footprint moves farther in a turn by a radian \[m\]; 0 for a disc, which
+    /// covers the same ground.
     pub(super) fn swing_m(&self) -> f64 {
         if self.points.is_empty() { 0.0 } else { self.circumscribed_m }
     }
 
-    /// Room between the footprint and what stands \[m\]. Less than `least_m` is not told apart, nor is more than `enough_m`.
-    /// Negative where it touches. The footprint is at `at` and faces `ahead`, a direction of length 1.
+    /// Room between the footprint and what stands \[m\]. Less than `least_m` is not told apart, nor
+    /// is more than `enough_m`. Negative where it touches. The footprint is at `at` and faces
+    /// `ahead`, a direction of length 1.
     #[inline]
     pub(super) fn room_m(
         &self,
@@ -199,7 +203,8 @@ impl Outline {
         }
     }
 
-    /// The least of the distances along the outline; less than the first bound is not told apart, nor is more than the second.
+    /// The least of the distances along the outline; less than the first bound is not told apart,
+    /// nor is more than the second.
     #[inline]
     fn along_m(&self, (least_m, most_m): (f64, f64), at_point_m: impl Fn(Point) -> f64) -> f64 {
         let (falls_m, near_m) = (Self::STEEPEST * self.spacing_m, Self::NEAR * self.inscribed_m);
@@ -264,8 +269,8 @@ mod tests {
             let (sin, cos) = libm::sincos(theta);
             let found_m = outline.room_m(&room, (at, Point::new(cos, sin)), (f64::NEG_INFINITY, 2.0));
             if exact_m > 0.0 {
-                // Between points, a distance is off by up to half a cell beside a square, and by less elsewhere; the outline is
-                // looked at every 0.375 m where it is near.
+                // Between points, a distance is off by up to half a cell beside a square, and by
+                // less elsewhere; the outline is looked at every 0.375 m where it is near.
                 prop_assert!((found_m.min(2.0) - exact_m.min(2.0)).abs() < 0.6, "{found_m} {exact_m}");
             } else {
                 prop_assert!(found_m < 0.6, "{found_m}");

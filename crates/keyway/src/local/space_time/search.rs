@@ -19,8 +19,8 @@ struct Node {
     arrives: bool,
 }
 
-/// A stretch that may become a node. Where it leads is known at once; what it costs on its way takes longer to find, and
-/// is looked at only when the course might be one of the best.
+/// A stretch that may become a node. Where it leads is known at once; what it costs on its way
+/// takes longer to find, and is looked at only when the course might be one of the best.
 #[derive(Clone, Copy, Debug)]
 struct Proposal {
     /// What the course costs at least, until it `is_driven`: then, what it costs \[s\].
@@ -65,15 +65,15 @@ pub(super) struct Extent {
     pub(super) width: usize,
     /// The slowest speed of a course \[m/s\].
     pub(super) lowest_mps: f64,
-    /// Of courses that lead to nearly the same state, only the best one is followed: the positions of a bin are no farther
-    /// apart than this along each axis \[m\].
+    /// Of courses that lead to nearly the same state, only the best one is followed: the positions
+    /// of a bin are no farther apart than this along each axis \[m\].
     pub(super) bin_m: f64,
     /// Who comes no farther than this within the horizon does not drive, but has no room to \[m\].
     pub(super) elsewhere_m: f64,
 }
 
-/// What became of the stretches that a search has looked at. Each is counted once: it touches something, is refused, drives, or
-/// none of these.
+/// What became of the stretches that a search has looked at. Each is counted once: it touches
+/// something, is refused, drives, or none of these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub(super) tried: u32,
@@ -170,10 +170,12 @@ impl Beam {
         }
     }
 
-    /// The best proposals of different bins from which the robot could stop become nodes, the best one first.
+    /// The best proposals of different bins from which the robot could stop become nodes, the best
+    /// one first.
     ///
-    /// A proposal comes up again once its cost is known, which is no less than what it was before. So proposals come up in the
-    /// order of their costs, and those that come up too late are never looked at. Where nothing drives, all are.
+    /// A proposal comes up again once its cost is known, which is no less than what it was before.
+    /// So proposals come up in the order of their costs, and those that come up too late are never
+    /// looked at. Where nothing drives, all are.
     fn keep(
         &mut self,
         judge: &Judge<'_>,

@@ -1,4 +1,5 @@
-//! The search drives only what may be among the best. It finds what one finds that drives everything.
+//! The search drives only what may be among the best. It finds what one finds that drives
+//! everything.
 
 use super::super::{Around, Mover, Scene, SpaceTime, SpaceTimeConfig};
 use super::*;
@@ -125,7 +126,8 @@ proptest! {
         let (best, all) = search_all(start, &judge, &extent, begins);
         prop_assert_eq!(&beam.best, &best);
         prop_assert!(tally.driving == 0 || all.driving > 0);
-        // Of nearly the same ones, only the first is looked at once something drives: that one may be refused.
+        // Of nearly the same ones, only the first is looked at once something drives: that one may
+        // be refused.
         prop_assert!(tally.driving > 0 || all.driving == 0 || tally.refused > 0);
         prop_assert!(all.meets || !tally.meets);
         prop_assert!(tally.tried >= tally.touching + tally.refused + tally.driving);

@@ -105,7 +105,8 @@ impl<'a> Drive<'a> {
         self.pose.point().distance(*self.path.points().last().unwrap())
     }
 
-    /// Drives until it is at the end of the route, for so long at most \[s\]; the time that it took.
+    /// Drives until it is at the end of the route, for so long at most \[s\]; the time that it
+    /// took.
     fn arrive(&mut self, longest_s: f64) -> Option<f64> {
         let cycle_s = self.planner.robot().cycle_s;
         let cycles = (longest_s / cycle_s) as usize;
@@ -267,7 +268,8 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     assert_eq!(info.count_total, 0);
 }
 
-/// On which side of the pillar at the middle of the world the course passes; none where it does not come so far.
+/// On which side of the pillar at the middle of the world the course passes; none where it does not
+/// come so far.
 fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
     let course = drive.memory.course().cloned()?;
     let step_s = 0.05;
@@ -281,8 +283,8 @@ fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
     (pose.x >= middle_m).then_some(pose.y > middle_m)
 }
 
-/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot takes itself to be somewhat
-/// to the left and to the right of where it is in turns.
+/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot
+/// takes itself to be somewhat to the left and to the right of where it is in turns.
 #[test]
 fn a_side_that_is_taken_is_kept() {
     const MIDDLE_M: f64 = 10.025;
@@ -340,7 +342,8 @@ fn the_chosen_course_is_that_of_the_decision() {
     }
 }
 
-/// With 7.5 cm of room: at full acceleration it drives 6.7 cm in the first stretch, and as far again until it stands.
+/// With 7.5 cm of room: at full acceleration it drives 6.7 cm in the first stretch, and as far
+/// again until it stands.
 #[test]
 fn from_rest_it_may_begin_gently() {
     let walled = world(100, |x, y| (x - 50).abs().max((y - 50).abs()) == 5);
@@ -353,7 +356,8 @@ fn from_rest_it_may_begin_gently() {
     assert!(ahead.any(|candidate| matches!(candidate.fate, Fate::Admissible { .. })));
 }
 
-/// In a cell in which it can turn, but not drive: waiting does not help, and neither does turning. A smaller footprint does.
+/// In a cell in which it can turn, but not drive: waiting does not help, and neither does turning.
+/// A smaller footprint does.
 #[test]
 fn what_would_free_a_robot_that_is_walled_in() {
     let walled = world(100, |x, y| (x - 50).abs().max((y - 50).abs()) == 4);
@@ -409,7 +413,8 @@ fn blocks() -> impl Strategy<Value = DistanceField> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Wherever its route leads, also through obstacles: a robot that starts free never touches what stands around it.
+    /// Wherever its route leads, also through obstacles: a robot that starts free never touches
+    /// what stands around it.
     #[test]
     fn never_touches_what_stands_still(
         world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), shape in 0..3usize,
@@ -428,7 +433,8 @@ proptest! {
         }
     }
 
-    /// Wherever a stretch of the chosen course ends, braking along the arc touches nothing, to less than a cell.
+    /// Wherever a stretch of the chosen course ends, braking along the arc touches nothing, to less
+    /// than a cell.
     #[test]
     fn it_could_stop_at_the_end_of_every_stretch(
         world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), v_mps in 0.5..2.0f64,

@@ -4,8 +4,8 @@ use super::local;
 use crate::geometry::Point;
 use crate::local::Scene;
 
-/// Collects the route from an arc length on, until it leaves the square of this half-width around the robot, in the
-/// positions of a lattice. The length of the route beyond \[m\].
+/// Collects the route from an arc length on, until it leaves the square of this half-width around
+/// the robot, in the positions of a lattice. The length of the route beyond \[m\].
 pub(super) fn collect(
     route: &mut Vec<Point>,
     scene: &Scene<'_>,

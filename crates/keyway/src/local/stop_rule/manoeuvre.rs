@@ -50,7 +50,8 @@ pub(super) struct Manoeuvres<'a> {
     behind: Option<Seen<'a>>,
     /// Movers that may matter.
     near: &'a [Mover],
-    /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches something.
+    /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches
+    /// something.
     grounds: ArrayVec<Ground<'a>, 2>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].
@@ -99,7 +100,8 @@ impl Reach {
         let v = from.v.abs().max(asked.v.abs());
         let omega = from.omega.abs().max(asked.omega.abs());
         let stop_s = (v / limits.deceleration_mps2).max(omega / limits.angular_deceleration_radps2);
-        // The mean speed while braking is half of the first one; the last cycle may be braked more gently.
+        // The mean speed while braking is half of the first one; the last cycle may be braked more
+        // gently.
         let full_s = cycle_s + 0.5 * (stop_s + cycle_s);
         Self {
             moves_m: core.moves_m(v * full_s, omega * full_s),
@@ -201,8 +203,8 @@ impl<'a> Manoeuvres<'a> {
                     unlooked_m = 0.0;
                 }
             }
-            // Where steps are longer than what is to spare, the ends of cycles are looked at, because there the next
-            // command begins.
+            // Where steps are longer than what is to spare, the ends of cycles are looked at,
+            // because there the next command begins.
             if spare_m < 0.0 {
                 spare_m = self.look(pose, after_s, 0.0)?;
             }
@@ -236,9 +238,10 @@ impl<'a> Manoeuvres<'a> {
         holds(origin * frame.resolution_m(), ahead * frame.resolution_m())
     }
 
-    /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is noise, as long as it is asked
-    /// for nothing else: otherwise it could not turn away from a wall that the noise seems to lead to. If it is no
-    /// noise, it is the end of a manoeuvre that was admissible.
+    /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is
+    /// noise, as long as it is asked for nothing else: otherwise it could not turn away from a wall
+    /// that the noise seems to lead to. If it is no noise, it is the end of a manoeuvre that was
+    /// admissible.
     fn from(&self, first: Velocity) -> Velocity {
         let Velocity { v, omega, .. } = self.around.velocity;
         let is_standing = self.robot.stands(self.around.velocity);
@@ -247,8 +250,8 @@ impl<'a> Manoeuvres<'a> {
         Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))
     }
 
-    /// Follows a stretch at whose beginning there is at least this to spare (nothing is known when it is negative);
-    /// what is known of its end.
+    /// Follows a stretch at whose beginning there is at least this to spare (nothing is known when
+    /// it is negative); what is known of its end.
     fn check_standing(&mut self, stretch: &Stretch, known_m: f64) -> Result<f64, Refusal> {
         // Of the whole footprint, also where a part of it counts.
         let (core, _) = self.robot.footprint.core();
@@ -273,7 +276,8 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when it is too little.
+    /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when
+    /// it is too little.
     fn look(&mut self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
         let obstacles = self.around.obstacles;
         let spare_m =
@@ -314,7 +318,8 @@ impl<'a> Manoeuvres<'a> {
 }
 
 impl Ground<'_> {
-    /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither `wanted_m` nor a cell.
+    /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither
+    /// `wanted_m` nor a cell.
     fn spare_m(&mut self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
         let Body { core, radius_m, kept_m, keeps_border } = &self.body;
         let least_m = radius_m + kept_m;
@@ -344,8 +349,9 @@ struct Start<'a> {
 }
 
 impl<'a> Start<'a> {
-    /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where the robot touches something,
-    /// first the part of it that may touch nothing at all, then the whole, which may touch nothing but what is `touched`.
+    /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where
+    /// the robot touches something, first the part of it that may touch nothing at all, then the
+    /// whole, which may touch nothing but what is `touched`.
     fn bodies(
         &self,
         moves_m: f64,

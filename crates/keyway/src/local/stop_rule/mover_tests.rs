@@ -8,8 +8,8 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Movers that turn around in every cycle, the first one always towards the robot; or that accelerate
-    /// as hard as they may. They are seen with errors.
+    /// Movers that turn around in every cycle, the first one always towards the robot; or that
+    /// accelerate as hard as they may. They are seen with errors.
     #[test]
     fn no_mover_touches_a_robot_that_moves(
         robot in robots(), commands in commands(), has_acceleration: bool, off_m in 0.0..0.1f64,

@@ -63,7 +63,8 @@ fn stops_before_a_wall_by_hand() {
         let pose = Pose::new(5.0 - to_wall_m, 4.0, 0.0);
         gate(&rule, &ground.around(pose, AHEAD, &[]), AHEAD)
     };
-    // 0.05 m in this cycle, 0.5² / (2 * 0.5) = 0.25 m of braking, 0.18 m of robot, 0.0025 m of margin.
+    // 0.05 m in this cycle, 0.5² / (2 * 0.5) = 0.25 m of braking, 0.18 m of robot, 0.0025 m of
+    // margin.
     let least_m = 0.05 + 0.25 + 0.18 + 0.0025;
     assert_eq!(at(least_m + 1e-6), Gated { command: AHEAD, why: None });
     let refused = at(least_m - 1e-6);
@@ -94,7 +95,8 @@ fn movers_by_hand() {
         assert!(by_mover, "{gated:?}");
         !gated.changed()
     };
-    // It stands after 1.1 s and 0.3 m: until then a mover comes 1.1 m towards it. Shown to a margin's length.
+    // It stands after 1.1 s and 0.3 m: until then a mover comes 1.1 m towards it. Shown to a
+    // margin's length.
     assert!(admits(&any_way, 1.4 + 0.006, 1.0, 0.0) && !admits(&any_way, 1.4, 1.0, 0.0));
     // From behind it has to catch up.
     assert!(admits(&any_way, 0.8 + 0.006, -1.0, 0.0) && !admits(&any_way, 0.8, -1.0, 0.0));
@@ -157,8 +159,8 @@ fn inside_the_margin_it_may_leave_and_pass_but_not_come_nearer() {
                 assert_eq!(nearer.command, Velocity::ZERO, "{robot:?} {depth_m}");
                 assert!(matches!(nearer.why, Some(Refusal::Standing { .. })), "{nearer:?}");
             }
-            // Odometry that shows a little speed towards the wall keeps it from neither driving back nor, when it
-            // is round, turning.
+            // Odometry that shows a little speed towards the wall keeps it from neither driving
+            // back nor, when it is round, turning.
             let noise = Velocity::new(0.004, 0.0);
             let from_noise = |command| gate(&rule, &ground.around(pose, noise, &[]), command);
             assert!(!from_noise(Velocity::new(-0.05, 0.0)).changed(), "{robot:?} {depth_m}");

@@ -1,4 +1,5 @@
-//! dist(v, omega) of \[You2021, eq. (9)\]: the footprint's distance from obstacles along the trajectory.
+//! dist(v, omega) of \[You2021, eq. (9)\]: the footprint's distance from obstacles along the
+//! trajectory.
 
 pub(in crate::local) const NAME: &str = "distance";
 

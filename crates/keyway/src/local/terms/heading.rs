@@ -1,11 +1,13 @@
-//! heading(v, omega) of \[You2021, eq. (9)\]: how well the robot looks at the guide point, at a predicted pose.
+//! heading(v, omega) of \[You2021, eq. (9)\]: how well the robot looks at the guide point, at a
+//! predicted pose.
 
 use crate::geometry::{Point, Pose};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 pub(in crate::local) const NAME: &str = "heading";
 
-/// Pi less the absolute bearing of the guide point \[rad\]; the pose is that at the end of the trajectory in the paper.
+/// Pi less the absolute bearing of the guide point \[rad\]; the pose is that at the end of the
+/// trajectory in the paper.
 ///
 /// There is no branch in it, so the compiler makes it for several poses at once.
 pub(in crate::local) fn raw(judged: Pose, guide: Point) -> f64 {
@@ -13,7 +15,8 @@ pub(in crate::local) fn raw(judged: Pose, guide: Point) -> f64 {
     PI - (bearing_rad - TAU * rounded(bearing_rad * (1.0 / TAU))).abs()
 }
 
-/// The nearest whole number, for numbers of less than 2^51: nothing smaller than 1 is left beside so large a number.
+/// The nearest whole number, for numbers of less than 2^51: nothing smaller than 1 is left beside
+/// so large a number.
 fn rounded(number: f64) -> f64 {
     const LARGE: f64 = 6_755_399_441_055_744.0;
     number + LARGE - LARGE
@@ -37,7 +40,8 @@ const ARC_TANGENT: [f64; 11] = [
     1.628_582_011_536_578_2e-2,
 ];
 
-/// The sum of the coefficients with the powers of a number: every other one apart, so that two sums grow at a time.
+/// The sum of the coefficients with the powers of a number: every other one apart, so that two sums
+/// grow at a time.
 fn series(number: f64) -> f64 {
     let [a, b, c, d, e, f, g, h, i, j, k] = ARC_TANGENT;
     let square = number * number;

@@ -1,7 +1,7 @@
 //! Certified distances from cubic curves to the nearest obstacle square.
 //!
-//! A cubic curve has no closed form, so it is halved until it is known well enough: neither it nor its
-//! chord is anywhere farther from the other than the control polygon is from the chord
+//! A cubic curve has no closed form, so it is halved until it is known well enough: neither it nor
+//! its chord is anywhere farther from the other than the control polygon is from the chord
 //! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
 
 use crate::geometry::{Cubic, Point, Segment, Square};

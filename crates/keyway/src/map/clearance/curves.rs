@@ -1,5 +1,5 @@
-//! Exact distances from arcs to the nearest obstacle square, and all that can be asked about the pieces
-//! of a path. An arc is measured square by square in closed form.
+//! Exact distances from arcs to the nearest obstacle square, and all that can be asked about the
+//! pieces of a path. An arc is measured square by square in closed form.
 
 use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
 use crate::map::Clearance;
@@ -43,9 +43,9 @@ impl Clearance<'_> {
         self.within_m(nearest, (reach, near_m))
     }
 
-    /// True when the arc stays inside the map and keeps `clearance_m` from every obstacle square. For
-    /// a clearance of 0 the same holds as in [`Self::is_clear`]: the arc may touch a square, but
-    /// neither enter one nor slip between two that share a corner.
+    /// True when the arc stays inside the map and keeps `clearance_m` from every obstacle square.
+    /// For a clearance of 0 the same holds as in [`Self::is_clear`]: the arc may touch a square,
+    /// but neither enter one nor slip between two that share a corner.
     pub fn is_clear_arc(&self, arc: Arc, clearance_m: f64) -> bool {
         let grid = self.arc_to_grid(arc);
         let margin = self.margin(clearance_m).max(0.0);
@@ -79,8 +79,8 @@ impl Clearance<'_> {
     /// `reach_m`, and both are that when nothing is nearer than the two together. Segments and arcs
     /// are exact.
     ///
-    /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where all
-    /// of it is equally far from obstacles, and about ten where one place is the nearest.
+    /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where
+    /// all of it is equally far from obstacles, and about ten where one place is the nearest.
     pub fn of_curve(&self, piece: &PathPiece, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
         match piece {
             PathPiece::Segment(segment) => {
@@ -104,12 +104,13 @@ impl Clearance<'_> {
         bounds.at_most_m.is_finite().then_some(bounds)
     }
 
-    /// True when a piece of a path certainly stays inside the map and keeps `clearance_m` from every
-    /// obstacle square; see [`Self::is_clear`] and [`Self::is_clear_arc`] for segments and arcs.
+    /// True when a piece of a path certainly stays inside the map and keeps `clearance_m` from
+    /// every obstacle square; see [`Self::is_clear`] and [`Self::is_clear_arc`] for segments and
+    /// arcs.
     ///
-    /// A cubic that keeps the clearance by less than a millionth of a cell may be refused, and so may a
-    /// bent one that touches an obstacle at a clearance of 0. One that does not keep it is never
-    /// accepted.
+    /// A cubic that keeps the clearance by less than a millionth of a cell may be refused, and so
+    /// may a bent one that touches an obstacle at a clearance of 0. One that does not keep it is
+    /// never accepted.
     pub fn is_clear_curve(&self, piece: &PathPiece, clearance_m: f64) -> bool {
         match piece {
             PathPiece::Segment(segment) => self.is_clear(*segment, clearance_m),
@@ -161,8 +162,8 @@ impl Clearance<'_> {
     }
 
     /// Whether an arc that touches a corner of `touched` runs between it and the obstacle square
-    /// diagonally across. (Between two squares that share an edge no arc fits: it is straight or enters
-    /// one of them.)
+    /// diagonally across. (Between two squares that share an edge no arc fits: it is straight or
+    /// enters one of them.)
     fn arc_slips_past(&self, arc: &Arc, touched: Square) -> bool {
         let centre = touched.corner + Point::new(0.5, 0.5);
         touched.corners().into_iter().any(|corner| {
@@ -193,8 +194,8 @@ impl ShortArc {
     }
 }
 
-/// The arc in parts of at most an eighth of half a turn: each is near its chord, which is what a scan
-/// walks along.
+/// The arc in parts of at most an eighth of half a turn: each is near its chord, which is what a
+/// scan walks along.
 fn short_parts(arc: Arc) -> impl Iterator<Item = Arc> {
     let parts = (arc.sweep_rad.abs() / FRAC_PI_8).ceil().max(1.0) as u32;
     let fraction = move |part: u32| f64::from(part) / f64::from(parts);
@@ -251,9 +252,9 @@ mod tests {
 
     #[test]
     fn arcs_by_hand() {
-        // The square (2, 2) - (3, 3). A quarter circle of radius 1 around (1, 1), from (2, 1) to (1, 2),
-        // is nearest to the corner (2, 2): sqrt(2) - 1. The half circle on the other side, from (1, 2)
-        // over (0, 1) to (1, 0), is nearest at its beginning, 1 m away.
+        // The square (2, 2) - (3, 3). A quarter circle of radius 1 around (1, 1), from (2, 1) to
+        // (1, 2), is nearest to the corner (2, 2): sqrt(2) - 1. The half circle on the other side,
+        // from (1, 2) over (0, 1) to (1, 0), is nearest at its beginning, 1 m away.
         let grid = grid(&[".....", ".....", "..#..", ".....", "....."]);
         let near = Arc::new(Point::new(1.0, 1.0), 1.0, 0.0, FRAC_PI_2);
         assert!((clearance(&grid).of_arc(near, 9.0) - (2f64.sqrt() - 1.0)).abs() < 1e-12);
@@ -287,8 +288,8 @@ mod tests {
 
     #[test]
     fn a_spline_around_a_corner_by_hand() {
-        // Control points (0, 1), (6, 1), (6, 7), (0, 7): from (5, 2) to (5, 6), over (5.75, 4). The wall
-        // begins at x = 7: 1.25 m from there.
+        // Control points (0, 1), (6, 1), (6, 7), (0, 7): from (5, 2) to (5, 6), over (5.75, 4). The
+        // wall begins at x = 7: 1.25 m from there.
         let free = "........";
         let grid = grid(&[free, free, free, ".......#", ".......#", free, free, free]);
         let points = [[0.0, 1.0], [6.0, 1.0], [6.0, 7.0], [0.0, 7.0]].map(Point::from);

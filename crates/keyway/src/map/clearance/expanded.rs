@@ -5,8 +5,8 @@ use crate::map::Clearance;
 use crate::map::clearance::TOUCH_TOLERANCE_CELLS;
 
 impl Clearance<'_> {
-    /// True when the segment touches an obstacle cell, or one that is at most `expansion_cells` rows and
-    /// columns away from an obstacle cell. Touching a cell's corner is enough.
+    /// True when the segment touches an obstacle cell, or one that is at most `expansion_cells`
+    /// rows and columns away from an obstacle cell. Touching a cell's corner is enough.
     pub(crate) fn touches_expanded(&self, segment: Segment, expansion_cells: u32) -> bool {
         let to_grid = |point| self.frame.grid_from_world(point);
         let grid = Segment::new(to_grid(segment.a), to_grid(segment.b));

@@ -263,8 +263,8 @@ impl<'a> Clearance<'a> {
         let on_line = |p: Point| {
             segment.distance_sq_to_point(p) <= TOUCH_TOLERANCE_CELLS * TOUCH_TOLERANCE_CELLS
         };
-        // Along an edge: the square on its other side. A wall that ends at the map's border leaves no
-        // gap there, so beyond the border counts as solid.
+        // Along an edge: the square on its other side. A wall that ends at the map's border leaves
+        // no gap there, so beyond the border counts as solid.
         let beyond = |dx: i32, dy: i32| {
             let cell = Cell::new(x as i32 + dx, y as i32 + dy);
             !self.frame.contains(cell) || self.obstacles.get(cell)

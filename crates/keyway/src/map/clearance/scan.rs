@@ -75,8 +75,8 @@ impl Clearance<'_> {
             })
     }
 
-    /// Visits the obstacle squares that may lie within `reach` \[cells\] of a triangle, or in it, until
-    /// `visit` returns false; true when it never did.
+    /// Visits the obstacle squares that may lie within `reach` \[cells\] of a triangle, or in it,
+    /// until `visit` returns false; true when it never did.
     fn scan_triangle(
         &self,
         edges: &[Segment; 3],
@@ -241,8 +241,8 @@ mod tests {
     }
 
     proptest! {
-        /// All squares within reach are visited, and few others: none that are farther than a cell's
-        /// diagonal beyond.
+        /// All squares within reach are visited, and few others: none that are farther than a
+        /// cell's diagonal beyond.
         #[test]
         fn visits_what_is_within_reach(a in (-3.0..83.0f64, -3.0..12.0f64), b in (-3.0..83.0f64, -3.0..12.0f64),
                                        level in prop_oneof![Just(1.0), Just(0.0), Just(1e-7), Just(1e-5)],

@@ -30,8 +30,8 @@ impl DistanceTo {
         }
     }
 
-    /// Squared distance, in half cells, along a row or column: from the cell at `at` to the nearest of
-    /// those from `low` to `high`.
+    /// Squared distance, in half cells, along a row or column: from the cell at `at` to the nearest
+    /// of those from `low` to `high`.
     pub(super) fn away_sq(self, low: i32, high: i32, at: i32) -> i32 {
         let cells = (low - at).max(at - high).max(0);
         self.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16)
@@ -61,8 +61,8 @@ pub(super) struct Envelope {
     pub(super) limit_sq: i32,
 }
 
-/// A parabola of the lower envelope: squared distances, in half cells, to an obstacle that is as far
-/// as its apex along the row and `height` across.
+/// A parabola of the lower envelope: squared distances, in half cells, to an obstacle that is as
+/// far as its apex along the row and `height` across.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parabola {
     /// Half cells from the left end of the row.
@@ -73,8 +73,8 @@ pub(super) struct Parabola {
 }
 
 impl Parabola {
-    /// The first column in which `right`, a parabola with its apex further right, is at least as low:
-    /// the least p with height' + (2 p + 1 - apex')² <= height + (2 p + 1 - apex)².
+    /// The first column in which `right`, a parabola with its apex further right, is at least as
+    /// low: the least p with height' + (2 p + 1 - apex')² <= height + (2 p + 1 - apex)².
     fn crossing(&self, right: &Self) -> i64 {
         let apart = right.apex - self.apex;
         let rise = i64::from(right.height - self.height);
@@ -88,8 +88,9 @@ impl Parabola {
         self.height as i64 + half_cells * half_cells
     }
 
-    /// Lowers the values of columns `from..to` to this parabola, and of some beyond, which it can only
-    /// bring nearer to what they become: whole runs of cells take fewer branches than an exact end.
+    /// Lowers the values of columns `from..to` to this parabola, and of some beyond, which it can
+    /// only bring nearer to what they become: whole runs of cells take fewer branches than an exact
+    /// end.
     fn lower(&self, out: &mut [i32], from: i64, to: i64) {
         const RUN: usize = 8;
         // Farther columns are beyond every limit, and their squares would not fit.
@@ -122,8 +123,8 @@ impl Envelope {
     /// how far across each column's obstacle is, and starts with column `offset` of `out`, which
     /// may lie before its start. `hull` is scratch memory.
     ///
-    /// Every column gives its own distance. Along the row it helps others only at a step: an equally
-    /// near neighbour is nearer to whatever lies on its side.
+    /// Every column gives its own distance. Along the row it helps others only at a step: an
+    /// equally near neighbour is nearer to whatever lies on its side.
     pub(super) fn lower(
         &self,
         rows: &[i16],

@@ -32,11 +32,11 @@ pub(super) struct RowScratch {
     rises: Vec<u64>,
     /// Bits of each block for the columns that are farther from their obstacle than the next ones.
     falls: Vec<u64>,
-    /// Per block of columns, no cell of the next rows is farther than this from its nearest obstacle, in
-    /// rows; 0 for blocks whose cells are not asked for; empty when it is not known.
+    /// Per block of columns, no cell of the next rows is farther than this from its nearest
+    /// obstacle, in rows; 0 for blocks whose cells are not asked for; empty when it is not known.
     most_rows: Vec<i16>,
-    /// Per block of columns, no obstacle of theirs that is more rows away is the nearest one to a cell of
-    /// the next rows; empty when it is not known.
+    /// Per block of columns, no obstacle of theirs that is more rows away is the nearest one to a
+    /// cell of the next rows; empty when it is not known.
     near_rows: Vec<i16>,
     /// Most cells of a row were far: the next ones are left to the envelope.
     is_far: bool,
@@ -119,8 +119,8 @@ impl Envelope {
         }
     }
 
-    /// The distances of some columns of a row, the first of which is `first`, to the obstacles of the
-    /// columns `sources`, by the lower envelope.
+    /// The distances of some columns of a row, the first of which is `first`, to the obstacles of
+    /// the columns `sources`, by the lower envelope.
     fn part(
         &self,
         rows: &[i16],
@@ -197,8 +197,8 @@ impl RowScratch {
 
     /// Finishes blocks with many steps where obstacles are near: each column with those beside it.
     ///
-    /// Beyond such a block only what is near its ends can matter: whatever a cell there is nearest to is
-    /// not farther than what the block's last cell has, and the way from there.
+    /// Beyond such a block only what is near its ends can matter: whatever a cell there is nearest
+    /// to is not farther than what the block's last cell has, and the way from there.
     fn compare(&mut self, first: usize, to: DistanceTo) {
         let Self { across, nearest, rises, falls, most_rows, .. } = self;
         let (nearest, _) = nearest[RUN..].as_chunks_mut::<BLOCK>();
@@ -256,8 +256,8 @@ impl RowScratch {
     }
 }
 
-/// What a block's columns are nearest to, from their own and a run's at both ends, and how many columns
-/// away that is at most; `None` when farther columns might matter.
+/// What a block's columns are nearest to, from their own and a run's at both ends, and how many
+/// columns away that is at most; `None` when farther columns might matter.
 fn compared(across: &[i16], to: DistanceTo) -> Option<([i16; BLOCK], usize)> {
     let mut nearest = [0; BLOCK];
     nearest.copy_from_slice(&across[RUN..RUN + BLOCK]);

@@ -18,14 +18,14 @@ impl DistanceField {
         Some(self.within_reach_m(half_cells_sq).unwrap_or(f64::INFINITY))
     }
 
-    /// The square of a cell's distance, in half cells: exact. [`Self::limit_half_cells_sq`] where no
-    /// obstacle lies within reach; `None` outside the map.
+    /// The square of a cell's distance, in half cells: exact. [`Self::limit_half_cells_sq`] where
+    /// no obstacle lies within reach; `None` outside the map.
     pub(crate) fn half_cells_sq(&self, cell: Cell) -> Option<u32> {
         self.frame.contains(cell).then(|| self.half_cells_sq[self.index(cell)] as u32)
     }
 
-    /// The squared distances of row `y` in half cells, from left to right, in memory; `None` where the
-    /// map has no such row.
+    /// The squared distances of row `y` in half cells, from left to right, in memory; `None` where
+    /// the map has no such row.
     pub(crate) fn row_squares(&self, y: i32) -> Option<&[i32]> {
         let is_there = (0..self.frame.height() as i32).contains(&y);
         is_there.then(|| &self.half_cells_sq[self.row(y)])
@@ -57,8 +57,8 @@ impl DistanceField {
         self.bounds_on_grid(self.frame.grid_from_world(point)).1 * self.frame.resolution_m()
     }
 
-    /// Bounds of the distance from a point to the nearest obstacle *square* \[m\], whatever the field's
-    /// distances are measured to.
+    /// Bounds of the distance from a point to the nearest obstacle *square* \[m\], whatever the
+    /// field's distances are measured to.
     pub(crate) fn square_bounds_m(&self, point: Point) -> (f64, f64) {
         let (lower, upper) = self.square_bounds_on_grid(self.frame.grid_from_world(point));
         (lower * self.frame.resolution_m(), upper * self.frame.resolution_m())
@@ -75,11 +75,12 @@ impl DistanceField {
         }
     }
 
-    /// True only when no obstacle square is nearer than `distance` to a point inside the map, in grid
-    /// coordinates \[cells\]: one load and no root. False where it might be.
+    /// True only when no obstacle square is nearer than `distance` to a point inside the map, in
+    /// grid coordinates \[cells\]: one load and no root. False where it might be.
     #[inline]
     pub(crate) fn is_beyond(&self, grid: Point, distance: f64) -> bool {
-        // No point of a cell is farther from its centre than half a diagonal, nor a square's centre from its border.
+        // No point of a cell is farther from its centre than half a diagonal, nor a square's centre
+        // from its border.
         let slack = match self.to {
             DistanceTo::Squares => FRAC_1_SQRT_2,
             DistanceTo::Centres => 2.0 * FRAC_1_SQRT_2,

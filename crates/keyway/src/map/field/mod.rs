@@ -1,12 +1,12 @@
 //! Exact Euclidean distance from every cell's centre to the nearest obstacle.
 //!
 //! The squared distance to a cell splits into a part along the column and a part along the row. The
-//! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction. The
-//! second one takes, along each row, the lowest of the parabolas that stand where the first pass's
-//! result changes: each is followed to its side as long as it is the lowest; in clutter the few columns
-//! that matter are compared; far from everything the lower envelope is built. Both passes run band by
-//! band, in cache, on several cores; all numbers are integers, so any number of threads gives the
-//! same bytes.
+//! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction.
+//! The second one takes, along each row, the lowest of the parabolas that stand where the first
+//! pass's result changes: each is followed to its side as long as it is the lowest; in clutter the
+//! few columns that matter are compared; far from everything the lower envelope is built. Both
+//! passes run band by band, in cache, on several cores; all numbers are integers, so any number of
+//! threads gives the same bytes.
 //!
 //! # Source
 //! Two passes: \[Meijster2000\]. Lower envelope: \[Felzenszwalb2012\].
@@ -14,10 +14,11 @@
 //! # Where this differs from the papers
 //! - Distances are measured to the obstacle cells' squares (or to their centres, by choice). The
 //!   distance to a square is the distance to the nearer of its edges: parabolas stand on edges.
-//! - Between two columns whose nearest obstacles are equally far, no parabola is needed: walls along
-//!   the axes cost nothing.
-//! - Up to 181 cells from an obstacle no envelope is built. A parabola is followed, 16 cells at a time, until
-//!   a cell is as low already because of one that stands further on; these are taken first.
+//! - Between two columns whose nearest obstacles are equally far, no parabola is needed: walls
+//!   along the axes cost nothing.
+//! - Up to 181 cells from an obstacle no envelope is built. A parabola is followed, 16 cells at a
+//!   time, until a cell is as low already because of one that stands further on; these are taken
+//!   first.
 //! - A changed window is followed outwards only as far as a changed cell could matter
 //!   ([`DistanceField::update`]).
 //!
@@ -48,11 +49,11 @@ pub use window::CellWindow;
 pub struct FieldConfig {
     /// What the distance to an obstacle cell is.
     pub to: DistanceTo,
-    /// Distances of more than this are not told apart \[m\]; infinity for none. Smaller is faster to
-    /// update on open ground.
+    /// Distances of more than this are not told apart \[m\]; infinity for none. Smaller is faster
+    /// to update on open ground.
     pub reach_m: f64,
-    /// Threads that compute a whole field; `None` for as many as there are cores. A window is updated on
-    /// one.
+    /// Threads that compute a whole field; `None` for as many as there are cores. A window is
+    /// updated on one.
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -160,8 +161,8 @@ impl DistanceField {
     }
 }
 
-/// Numbers from one row to the next: in a wide field an odd number of cache lines, so that the cells
-/// of a column do not compete for the same places of the cache.
+/// Numbers from one row to the next: in a wide field an odd number of cache lines, so that the
+/// cells of a column do not compete for the same places of the cache.
 fn stride(width: usize) -> usize {
     const LINE: usize = 16;
     if width < 32 * LINE { width } else { (width.div_ceil(LINE) | 1) * LINE }

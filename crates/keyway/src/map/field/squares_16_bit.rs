@@ -11,11 +11,12 @@ pub(super) const RUN: usize = 16;
 /// Runs beside an obstacle until all is far.
 const RUNS: usize = NEAR_ROWS as usize / RUN + 1;
 
-/// Quarters: squared distances in numbers a fourth as large, whose sums stand for the sums of the squares.
+/// Quarters: squared distances in numbers a fourth as large, whose sums stand for the sums of the
+/// squares.
 ///
-/// Between centres a square in half cells is 4 r². To a square's edge it is (2 r - 1)² = 4 q - 3 with the
-/// odd q = r² - r + 1, and 0 with q = 0. In a sum of two, the parity of q shows how often the 3 is
-/// taken off: 4 q - 3, or 4 q - 6 and never less than 0.
+/// Between centres a square in half cells is 4 r². To a square's edge it is (2 r - 1)² = 4 q - 3
+/// with the odd q = r² - r + 1, and 0 with q = 0. In a sum of two, the parity of q shows how often
+/// the 3 is taken off: 4 q - 3, or 4 q - 6 and never less than 0.
 impl DistanceTo {
     /// What stands for a distance along a row or column.
     pub(super) const fn quarter(self, rows: i32) -> i16 {
@@ -67,8 +68,8 @@ impl Along {
     }
 }
 
-/// Lowers runs of cells, one after the other, to an obstacle `across` from their row, up to the first
-/// one whose `last` cell is as low already.
+/// Lowers runs of cells, one after the other, to an obstacle `across` from their row, up to the
+/// first one whose `last` cell is as low already.
 pub(super) fn lower<'a>(
     runs: impl Iterator<Item = (&'a mut [i16; RUN], &'a [i16; RUN])>,
     last: usize,

@@ -1,7 +1,7 @@
 //! What a changed window changes in the field, and nothing else.
 //!
-//! Every cell that gets another distance was nearest to an obstacle that has vanished, or is nearest
-//! to one that has appeared. All such cells lie in a rectangle around these obstacles
+//! Every cell that gets another distance was nearest to an obstacle that has vanished, or is
+//! nearest to one that has appeared. All such cells lie in a rectangle around these obstacles
 //! ([`DistanceField::touched`]). What stands far apart has rectangles of its own; those that meet
 //! become one. In each, distances are lowered to the new obstacles, or computed anew when some have
 //! vanished or many are new.
@@ -200,7 +200,8 @@ fn bounds(cells: &[Cell]) -> CellWindow {
     windows.fold(none, |all, one| all.union(&one))
 }
 
-/// Changes whose rectangles overlap or touch are one: around those that are left no distance changes.
+/// Changes whose rectangles overlap or touch are one: around those that are left no distance
+/// changes.
 fn joined(changes: Vec<Change>) -> Vec<Change> {
     let mut apart: Vec<Change> = Vec::new();
     for mut change in changes {

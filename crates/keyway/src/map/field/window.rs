@@ -13,8 +13,8 @@ pub struct CellWindow {
 }
 
 impl CellWindow {
-    /// The cells of a grid that are within a distance of a place along its axes; for a place that is
-    /// not finite some at the border.
+    /// The cells of a grid that are within a distance of a place along its axes; for a place that
+    /// is not finite some at the border.
     pub fn around(frame: &GridFrame, place: Point, reach_m: f64) -> Self {
         let centre = frame.grid_from_world(place);
         let reach = reach_m / frame.resolution_m();

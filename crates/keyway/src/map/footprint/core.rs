@@ -1,7 +1,7 @@
 //! How far a footprint is from what stands around it.
 //!
-//! A footprint is all ground within a radius of its *core*: of the centre of rotation for a disc, of the
-//! polygon itself (radius 0) for a polygon. So one rule measures both.
+//! A footprint is all ground within a radius of its *core*: of the centre of rotation for a disc,
+//! of the polygon itself (radius 0) for a polygon. So one rule measures both.
 
 use crate::geometry::{Point, Pose, Segment, holds_point, outline};
 use crate::map::{Cell, Clearance, GridFrame};
@@ -17,8 +17,8 @@ pub struct Core<'a> {
 }
 
 impl Footprint {
-    /// Distance from the footprint at a pose to the nearest obstacle square \[m\]: 0 when it touches or
-    /// covers one, `reach_m` when none is nearer than that.
+    /// Distance from the footprint at a pose to the nearest obstacle square \[m\]: 0 when it
+    /// touches or covers one, `reach_m` when none is nearer than that.
     pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         let (core, radius_m) = self.core();
         let core_reach_m = reach_m + radius_m;
@@ -26,7 +26,8 @@ impl Footprint {
         if apart_m >= core_reach_m { reach_m } else { (apart_m - radius_m).max(0.0).min(reach_m) }
     }
 
-    /// Distance from the footprint at a pose to the map's border \[m\]; negative when it leaves the map.
+    /// Distance from the footprint at a pose to the map's border \[m\]; negative when it leaves the
+    /// map.
     pub fn to_border_m(&self, pose: Pose, clearance: &Clearance<'_>) -> f64 {
         let (core, radius_m) = self.core();
         core.to_border_m(pose, clearance) - radius_m
@@ -63,8 +64,8 @@ impl<'a> Core<'a> {
         driven_m.abs() + self.swing_m * turned_rad.abs()
     }
 
-    /// Distance to the nearest obstacle square: 0 when the core touches or covers one, `reach_m` when none
-    /// is nearer than that.
+    /// Distance to the nearest obstacle square: 0 when the core touches or covers one, `reach_m`
+    /// when none is nearer than that.
     pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         if self.vertices.is_empty() {
             return clearance.of_point(pose.point(), reach_m);
@@ -212,8 +213,8 @@ impl<'a> Placed<'a> {
 }
 
 impl Footprint {
-    /// Distance between two footprints at their poses \[m\]: 0 when they touch or one covers the other,
-    /// `reach_m` when they are at least that far apart.
+    /// Distance between two footprints at their poses \[m\]: 0 when they touch or one covers the
+    /// other, `reach_m` when they are at least that far apart.
     pub fn distance_to_footprint_m(
         &self,
         pose: Pose,
@@ -230,8 +231,9 @@ impl Footprint {
 }
 
 impl Core<'_> {
-    /// Distance between two cores: 0 when they touch or one covers the other, `reach_m` when they are at
-    /// least that far apart. Costs a few operations per pair of edges, and fewer beyond the reach.
+    /// Distance between two cores: 0 when they touch or one covers the other, `reach_m` when they
+    /// are at least that far apart. Costs a few operations per pair of edges, and fewer beyond the
+    /// reach.
     fn distance_to_core_m(
         &self,
         pose: Pose,
@@ -259,8 +261,8 @@ impl Core<'_> {
 }
 
 impl Placed<'_> {
-    /// Distance between two polygons: 0 when they meet. Two that do not are nearest at a vertex of one of
-    /// them, and two whose edges do not cross hold all vertices of each other or none.
+    /// Distance between two polygons: 0 when they meet. Two that do not are nearest at a vertex of
+    /// one of them, and two whose edges do not cross hold all vertices of each other or none.
     fn distance_to(&self, other: &Placed<'_>) -> f64 {
         let holds_first = |one: &Placed<'_>, two: &Placed<'_>| {
             two.vertices().next().is_some_and(|vertex| holds_point(one.edges(), vertex))
@@ -296,8 +298,8 @@ mod tests {
     use crate::robot::star;
     use proptest::prelude::*;
 
-    /// The least distance between a polygon and a square by comparing all their edges; 0 when one holds
-    /// a corner of the other.
+    /// The least distance between a polygon and a square by comparing all their edges; 0 when one
+    /// holds a corner of the other.
     fn to_square(vertices: &[Point], square: Square) -> f64 {
         let middle = square.corner + Point::new(0.5, 0.5);
         let is_inside = |p: Point| {

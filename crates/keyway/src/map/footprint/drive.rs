@@ -6,12 +6,13 @@ use crate::map::{Clearance, DistanceField};
 use crate::robot::{Footprint, Polygon};
 
 impl Footprint {
-    /// True when the footprint is certainly free ([`Self::is_free`]) at every pose of a straight drive from `pose` on,
-    /// by `length_m` along its heading, negative backwards. Also false where a polygon comes within a thousandth of a
-    /// cell of an obstacle or of the map's border in between, and for numbers that are not finite.
+    /// True when the footprint is certainly free ([`Self::is_free`]) at every pose of a straight
+    /// drive from `pose` on, by `length_m` along its heading, negative backwards. Also false where
+    /// a polygon comes within a thousandth of a cell of an obstacle or of the map's border in
+    /// between, and for numbers that are not finite.
     ///
-    /// No poses are sampled: around each that is looked at, no part of the footprint moves farther than
-    /// the robot, and where that is not less than the room it has, the drive is halved.
+    /// No poses are sampled: around each that is looked at, no part of the footprint moves farther
+    /// than the robot, and where that is not less than the room it has, the drive is halved.
     pub fn is_free_drive(&self, pose: Pose, length_m: f64, field: &DistanceField) -> bool {
         let end = driven(pose, length_m);
         if !length_m.is_finite() || !self.is_free(pose, field) || !self.is_free(end, field) {
@@ -102,7 +103,8 @@ mod tests {
     }
 
     proptest! {
-        /// What is called free is free at 200 poses; what is not comes near something at one of them.
+        /// What is called free is free at 200 poses; what is not comes near something at one of
+        /// them.
         #[test]
         fn agrees_with_dense_samples(cells in prop::collection::vec(prop::bool::weighted(0.05), 20 * 16),
                 radii in prop::collection::vec(0.05..0.5f64, 3..8), is_round in prop::bool::ANY,

@@ -23,9 +23,9 @@ impl Footprint {
     /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may
     /// touch one. False for a pose that is not finite.
     ///
-    /// Most poses are decided by one look into the field: free when the nearest obstacle is farther than the
-    /// circumscribed radius, not free when it is nearer than the inscribed one. In between the shape itself
-    /// is compared with the squares around it.
+    /// Most poses are decided by one look into the field: free when the nearest obstacle is farther
+    /// than the circumscribed radius, not free when it is nearer than the inscribed one. In between
+    /// the shape itself is compared with the squares around it.
     pub fn is_free(&self, pose: Pose, field: &DistanceField) -> bool {
         let point = pose.point();
         if !(point.is_finite() && pose.theta.is_finite()) {

@@ -57,8 +57,8 @@ impl Winding {
         }
     }
 
-    /// 1 for an outline that turns to the left, -1 for one that turns to the right: by this the normals of its edges
-    /// point outwards.
+    /// 1 for an outline that turns to the left, -1 for one that turns to the right: by this the
+    /// normals of its edges point outwards.
     pub(super) const fn outward(self) -> Option<f64> {
         match self {
             Self::Left => Some(1.0),
@@ -68,8 +68,8 @@ impl Winding {
     }
 }
 
-/// An upright rectangle around a core at both ends of a way. Each of its vertices goes straight from one to the other, so
-/// none leaves it on the way.
+/// An upright rectangle around a core at both ends of a way. Each of its vertices goes straight
+/// from one to the other, so none leaves it on the way.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     low: Point,
@@ -106,7 +106,8 @@ struct Part {
 impl Part {
     const WHOLE: Self = Self { begin: -1.0, end: 1.0 };
 
-    /// Keeps what of it is at least so far, when it goes on at this rate; `None` when nothing is left.
+    /// Keeps what of it is at least so far, when it goes on at this rate; `None` when nothing is
+    /// left.
     #[inline]
     fn keep(&mut self, rate: f64, at_least: f64) -> Option<()> {
         if rate > 0.0 {
@@ -145,7 +146,8 @@ fn length(way: Point) -> f64 {
     }
 }
 
-/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike [`f64::max`].
+/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike
+/// [`f64::max`].
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
@@ -170,10 +172,11 @@ impl NearBox {
 
     /// Bounds of the distance from a core on a short way, if it may be less than a limit there.
     ///
-    /// The distance between two convex shapes is a convex function of where they are. So it is nowhere less than its
-    /// tangent in the middle of the way, which says how much of the way leads towards the box. And the distance of a
-    /// convex part of the core, one vertex or edge, is nowhere more than the straight line between what it is at the two
-    /// ends of the way; no core is farther away than a part of it. Where a vertex stays beside one face, both are the
+    /// The distance between two convex shapes is a convex function of where they are. So it is
+    /// nowhere less than its tangent in the middle of the way, which says how much of the way leads
+    /// towards the box. And the distance of a convex part of the core, one vertex or edge, is
+    /// nowhere more than the straight line between what it is at the two ends of the way; no core
+    /// is farther away than a part of it. Where a vertex stays beside one face, both are the
     /// distance itself.
     #[inline]
     pub(super) fn apart(&self, sweep: &Sweep<'_>, winding: Winding, limit: f64) -> Option<Apart> {
@@ -213,7 +216,8 @@ impl NearBox {
         near.apart_from_convex(sweep, outward, is_apart, limit)
     }
 
-    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to the box, if one is found.
+    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to the box, if one
+    /// is found.
     pub(super) fn meets(
         &self,
         sweep: &Sweep<'_>,
@@ -229,8 +233,8 @@ impl NearBox {
         part.map(|Part { begin, end }| [begin, end])
     }
 
-    /// The same for the centre alone. The ground within the distance is convex and holds the box grown along either axis,
-    /// and grown less along both.
+    /// The same for the centre alone. The ground within the distance is convex and holds the box
+    /// grown along either axis, and grown less along both.
     fn meets_point(&self, sweep: &Sweep<'_>, distance: f64) -> Option<Part> {
         let Sweep { middle, half, .. } = sweep;
         let (low, high) = (self.low - middle.origin, self.high - middle.origin);
@@ -249,7 +253,8 @@ impl NearBox {
 
     /// The same for a convex core; for `outward` see [`Winding::outward`].
     ///
-    /// They meet where no line along a side of either parts them, and what is on one side of a line is a part of the way.
+    /// They meet where no line along a side of either parts them, and what is on one side of a line
+    /// is a part of the way.
     fn meets_convex(&self, sweep: &Sweep<'_>, outward: f64) -> Option<Part> {
         let Placement { origin, turned } = sweep.middle;
         let near = Self { low: self.low - origin, high: self.high - origin, ..*self };
@@ -269,13 +274,14 @@ impl NearBox {
         Some(part)
     }
 
-    /// The same where the nearest point of a core may be anywhere on its outline, the core is convex, and the box is
-    /// given around the centre of rotation. `outward` is 1 for an outline that turns to the left, -1 for one that
-    /// turns to the right.
+    /// The same where the nearest point of a core may be anywhere on its outline, the core is
+    /// convex, and the box is given around the centre of rotation. `outward` is 1 for an outline
+    /// that turns to the left, -1 for one that turns to the right.
     ///
-    /// A line along an edge that has the core on one side and the box on the other is as far from the box as its nearest
-    /// corner. Where that is beside the edge, nothing is nearer. Where it is at no edge, a vertex is the nearest, unless no
-    /// line along a side of either parts them: then they meet.
+    /// A line along an edge that has the core on one side and the box on the other is as far from
+    /// the box as its nearest corner. Where that is beside the edge, nothing is nearer. Where it is
+    /// at no edge, a vertex is the nearest, unless no line along a side of either parts them: then
+    /// they meet.
     fn apart_from_convex(
         &self,
         sweep: &Sweep<'_>,
@@ -370,7 +376,8 @@ impl NearBox {
         );
         let normal =
             if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
-        // How far the corner is from the line, times the edge's length; at most 0 where the line meets the box.
+        // How far the corner is from the line, times the edge's length; at most 0 where the line
+        // meets the box.
         let off = normal.dot(corner);
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
         if off > 0.0 && ahead > 0.0 && ahead < length_sq {
@@ -387,17 +394,19 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
-    /// Whether a frame is so far to the left, to the right, above or below: what is in it then keeps this distance.
+    /// Whether a frame is so far to the left, to the right, above or below: what is in it then
+    /// keeps this distance.
     #[inline]
     pub(super) fn is_beside(&self, frame: &Frame, distance: f64) -> bool {
         let (before, after) = (self.low - frame.high, frame.low - self.high);
         larger(larger(before.x, after.x), larger(before.y, after.y)) >= distance
     }
 
-    /// Whether a whole convex core surely keeps a distance on a way; for `outward` see [`Winding::outward`].
+    /// Whether a whole convex core surely keeps a distance on a way; for `outward` see
+    /// [`Winding::outward`].
     ///
-    /// It does where all its vertices are, at both ends, that far from the box on the other side of a line: along one of
-    /// its edges half-way, or across the shortest way from a vertex.
+    /// It does where all its vertices are, at both ends, that far from the box on the other side of
+    /// a line: along one of its edges half-way, or across the shortest way from a vertex.
     pub(super) fn is_kept_by_convex(
         &self,
         [from, to]: [&Placement<'_>; 2],

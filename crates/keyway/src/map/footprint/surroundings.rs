@@ -1,8 +1,9 @@
 //! Exact distances of a core at many places near each other.
 //!
-//! What can be nearest to a core depends little on where exactly it is. So for each small tile that its centre of
-//! rotation comes to, the obstacle squares that can be nearest are gathered once, joined to boxes, the nearest box first: from
-//! those of a larger block, whose rows are read once. After that a measurement is a few comparisons. All lengths are in cells.
+//! What can be nearest to a core depends little on where exactly it is. So for each small tile that
+//! its centre of rotation comes to, the obstacle squares that can be nearest are gathered once,
+//! joined to boxes, the nearest box first: from those of a larger block, whose rows are read once.
+//! After that a measurement is a few comparisons. All lengths are in cells.
 
 use super::core::Core;
 use super::line::Line;
@@ -14,7 +15,8 @@ use crate::map::{Cell, DistanceField};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-/// The boxes of the tiles visited so far: memory, which can be used again for other fields and cores.
+/// The boxes of the tiles visited so far: memory, which can be used again for other fields and
+/// cores.
 #[derive(Debug, Default)]
 pub(crate) struct NearBoxes {
     /// A hash table of tiles with open addressing; entries of an earlier round are free places.
@@ -68,9 +70,11 @@ struct Block {
 pub(crate) struct Reach {
     /// Distances of at least this are not told apart.
     pub(crate) distance: f64,
-    /// The distance and half the length of a way for which [`Surroundings::is_kept`] is asked, together.
+    /// The distance and half the length of a way for which [`Surroundings::is_kept`] is asked,
+    /// together.
     pub(crate) way: f64,
-    /// On a way that is no longer than this to both sides, what is nearest anywhere is around its middle.
+    /// On a way that is no longer than this to both sides, what is nearest anywhere is around its
+    /// middle.
     pub(crate) spread: f64,
 }
 
@@ -127,15 +131,16 @@ impl<'a> Surroundings<'a> {
         Self { left_out, ..self }
     }
 
-    /// True only when at no heading the core is nearer than `distance` to an obstacle square. One load.
+    /// True only when at no heading the core is nearer than `distance` to an obstacle square. One
+    /// load.
     #[inline]
     pub(crate) fn is_beyond(&self, origin: Point, distance: f64) -> bool {
         self.field.is_beyond(origin, distance + self.swing)
     }
 
-    /// Distance to the nearest obstacle square: 0 when an edge touches one, `most` when none is nearer than
-    /// that or than the reach. What lies wholly inside a polygon is not seen: for poses on a way that begins
-    /// free.
+    /// Distance to the nearest obstacle square: 0 when an edge touches one, `most` when none is
+    /// nearer than that or than the reach. What lies wholly inside a polygon is not seen: for poses
+    /// on a way that begins free.
     pub(crate) fn distance(&mut self, at: &Placement<'_>, most: f64) -> f64 {
         let around = self.around(at.origin);
         let still = Sweep::still(*at);
@@ -163,7 +168,8 @@ impl<'a> Surroundings<'a> {
         around.reach - self.slack()
     }
 
-    /// False when a box, and all after it, is at least as far as `distance` from a core in the tile of which it is around.
+    /// False when a box, and all after it, is at least as far as `distance` from a core in the tile
+    /// of which it is around.
     #[inline]
     pub(crate) fn may_be_nearer(&self, index: u32, distance: f64) -> bool {
         self.memory.boxes[index as usize].from_middle - self.slack() < distance
@@ -175,8 +181,8 @@ impl<'a> Surroundings<'a> {
         self.memory.boxes[index as usize].apart(sweep, self.winding, limit)
     }
 
-    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to a box, if one is found. Polygons that are
-    /// not convex are not looked at.
+    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to a box, if one is
+    /// found. Polygons that are not convex are not looked at.
     #[inline]
     pub(crate) fn meets(&self, index: u32, sweep: &Sweep<'_>, distance: f64) -> Option<[f64; 2]> {
         self.memory.boxes[index as usize].meets(sweep, self.winding, distance)
@@ -200,8 +206,8 @@ impl<'a> Surroundings<'a> {
         ]
     }
 
-    /// Bounds of this distance on a way. The distance is the least of four that change linearly: each of them is a bound
-    /// above, and a line between two places is one below.
+    /// Bounds of this distance on a way. The distance is the least of four that change linearly:
+    /// each of them is a bound above, and a line between two places is one below.
     pub(crate) fn border_apart(&self, sweep: &Sweep<'_>) -> Apart {
         let [before, middle, after] = [-sweep.half, Point::default(), sweep.half].map(|by| {
             let origin = sweep.middle.origin + by;
@@ -274,7 +280,8 @@ impl<'a> Surroundings<'a> {
             || self.field.clearance().crosses_nothing(way)
     }
 
-    /// No point of the core is farther from the middle of the tile in which its centre of rotation is.
+    /// No point of the core is farther from the middle of the tile in which its centre of rotation
+    /// is.
     fn slack(&self) -> f64 {
         self.swing + self.half_diagonal
     }
@@ -348,8 +355,8 @@ impl<'a> Surroundings<'a> {
         block
     }
 
-    /// What of a square of the grid, of 2 to the power of `bits` cells, has to be known. One of the core's points is not much
-    /// farther from the obstacle that is nearest to its middle.
+    /// What of a square of the grid, of 2 to the power of `bits` cells, has to be known. One of the
+    /// core's points is not much farther from the obstacle that is nearest to its middle.
     fn ground(&self, square: Cell, bits: u32) -> Ground {
         let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << bits);
         let middle = Point::new(middle(square.x), middle(square.y));

@@ -94,8 +94,9 @@ proptest! {
         }
     }
 
-    /// At many places of a way each box is between its bounds, a box without bounds is beyond the limit, and so is what is
-    /// not around; and so is the border. Where a box is said to be met, it is within the limit.
+    /// At many places of a way each box is between its bounds, a box without bounds is beyond the
+    /// limit, and so is what is not around; and so is the border. Where a box is said to be met, it
+    /// is within the limit.
     #[test]
     fn bounds_hold_on_the_whole_way(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
@@ -144,7 +145,8 @@ proptest! {
                 let (at, distance) = (2.0 * fraction - 1.0, to_box(near));
                 let is_on = |by: f64| part.is_some_and(|[begin, end]| at >= begin - by && at <= end + by);
                 prop_assert!(!is_on(0.0) || distance < limit + 1e-9, "{part:?} {at} {distance} {limit}");
-                // Where a convex core meets it, that is always found; half as far, at a corner, the centre alone, too.
+                // Where a convex core meets it, that is always found; half as far, at a corner, the
+                // centre alone, too.
                 let is_surely = if is_point { distance < 0.5 * limit } else { is_convex && distance == 0.0 };
                 prop_assert!(!is_surely || is_on(1e-9), "{part:?} {at} {distance} {limit}");
             }

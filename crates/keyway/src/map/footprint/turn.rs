@@ -11,12 +11,12 @@ pub(super) const LEAST_CELLS: f64 = 1e-3;
 impl Footprint {
     /// True when the footprint is certainly free ([`Self::is_free`]) at every heading of a turn on
     /// the spot, from `from_rad` on by `turn_rad`, positive to the left. Also false where it comes
-    /// within a thousandth of a cell of an obstacle or of the map's border in between, and for numbers
-    /// that are not finite.
+    /// within a thousandth of a cell of an obstacle or of the map's border in between, and for
+    /// numbers that are not finite.
     ///
-    /// No headings are sampled: around each that is
-    /// looked at, no part of the footprint moves farther than the circumscribed radius times the angle,
-    /// and where that is not less than the room it has, the turn is halved.
+    /// No headings are sampled: around each that is looked at, no part of the footprint moves
+    /// farther than the circumscribed radius times the angle, and where that is not less than the
+    /// room it has, the turn is halved.
     pub fn is_free_turn(
         &self,
         point: Point,
@@ -142,7 +142,8 @@ mod tests {
         assert!(is_free_turn(&ahead, [2.0, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(!is_free_turn(&ahead, [1.8, 2.0], 0.0, 2.0 * PI, &empty));
         assert!(is_free_turn(&ahead, [1.8, 2.0], 0.0, FRAC_PI_2, &empty));
-        // Its corners are 1.923 m away: beyond a border at 1.92 m only just before and after straight ahead.
+        // Its corners are 1.923 m away: beyond a border at 1.92 m only just before and after
+        // straight ahead.
         assert!(!is_free_turn(&ahead, [3.08, 2.0], -1.0, 2.0, &empty));
         assert!(is_free_turn(&ahead, [3.07, 2.0], -1.0, 2.0, &empty));
         for endless in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
@@ -153,7 +154,8 @@ mod tests {
         let tight = polygon(&[[1.0, 0.5], [-1.0, 0.5], [-1.0, -0.5], [1.0, -0.5]]);
         assert!(is_free_turn(&tight, [2.5, 1.5], 0.0, 0.0, &lane));
         assert!(!is_free_turn(&tight, [2.5, 1.5], 0.0, 0.01, &lane));
-        // A needle of 30 m sweeps over one cell at the very beginning: at about 0.02 to 0.05 of 0.6 rad.
+        // A needle of 30 m sweeps over one cell at the very beginning: at about 0.02 to 0.05 of 0.6
+        // rad.
         let frame = GridFrame::new(60, 60, 1.0, Pose::default()).unwrap();
         let post = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
             (43, 26) => CellState::Occupied,
@@ -169,8 +171,9 @@ mod tests {
         assert!(!is_free_turn(&disc, [2.5, 1.4], 0.0, PI, &lane));
     }
 
-    /// A needle of 300 m meets a post near the end of a turn by 0.2 rad: at headings of about 0.095 to 0.0995,
-    /// 28.4 m from where it is in the middle of the turn. Its tip moves by 30 m from there.
+    /// A needle of 300 m meets a post near the end of a turn by 0.2 rad: at headings of about 0.095
+    /// to 0.0995, 28.4 m from where it is in the middle of the turn. Its tip moves by 30 m from
+    /// there.
     #[test]
     fn no_part_moves_farther_than_is_reckoned_with() {
         let needle = polygon(&[[0.0, 0.1], [0.0, -0.1], [300.0, -0.1], [300.0, 0.1]]);

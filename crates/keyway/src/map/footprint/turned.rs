@@ -4,11 +4,13 @@ use super::core::Core;
 use crate::geometry::{Point, Pose, Segment, outline};
 use crate::map::GridFrame;
 
-/// A core turned to a heading: its vertices around the centre of rotation, along the grid's axes \[cells\].
+/// A core turned to a heading: its vertices around the centre of rotation, along the grid's axes
+/// \[cells\].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turned {
     pub(super) vertices: Vec<Point>,
-    /// The vertices that are farthest to the left, to the right, down and up; the centre where it is alone.
+    /// The vertices that are farthest to the left, to the right, down and up; the centre where it
+    /// is alone.
     pub(super) left: Point,
     pub(super) right: Point,
     pub(super) lowest: Point,

@@ -77,8 +77,8 @@ pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> 
 }
 
 /// Writes a YAML file and, next to it under the same name, its image. Both are complete on the disk
-/// before either gets its name, the YAML file first: should the program be killed just then, the image
-/// is named by a YAML file, and whoever writes the map again knows that it may be replaced.
+/// before either gets its name, the YAML file first: should the program be killed just then, the
+/// image is named by a YAML file, and whoever writes the map again knows that it may be replaced.
 ///
 /// Reading the YAML file gives the same grid (without its count of revisions). A grid without
 /// values is written in trinary mode, with the grey values of Nav2's map saver and thresholds that

@@ -25,8 +25,8 @@ fn refused(name: &str, content: impl AsRef<[u8]>) -> (MapFileError, String) {
     (error, text.replace(&folder.path("").display().to_string(), "/folder/"))
 }
 
-/// Killed between the two, a program leaves a YAML file that names the image; an image alone would look
-/// like somebody else's.
+/// Killed between the two, a program leaves a YAML file that names the image; an image alone would
+/// look like somebody else's.
 #[test]
 fn the_yaml_file_gets_its_name_before_its_image() {
     let grid = OccupancyGrid::from_ascii(&[".#"]);

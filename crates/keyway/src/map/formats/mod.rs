@@ -2,8 +2,8 @@
 //! images.
 //!
 //! [`read_map`] and [`write_map`] pick the format by the extension. Where there are no files,
-//! [`map_from_bytes`] and [`scenarios_from_bytes`] read the same, with the same errors, and each format has
-//! functions from bytes and to bytes.
+//! [`map_from_bytes`] and [`scenarios_from_bytes`] read the same, with the same errors, and each
+//! format has functions from bytes and to bytes.
 //!
 //! ```no_run
 //! use keyway::map::formats::{read_map, write_map};

@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapWarning {
-    /// `free_thresh` is above `occupied_thresh`: nothing is unknown, and what both claim is occupied.
+    /// `free_thresh` is above `occupied_thresh`: nothing is unknown, and what both claim is
+    /// occupied.
     Thresholds {
         /// The YAML file.
         path: PathBuf,

@@ -2,7 +2,8 @@
 
 pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// What is wrong with a file that cannot be decoded: the first of its chunks that is cut off or damaged.
+/// What is wrong with a file that cannot be decoded: the first of its chunks that is cut off or
+/// damaged.
 pub(super) fn fault(bytes: &[u8]) -> String {
     let mut at = SIGNATURE.len();
     loop {

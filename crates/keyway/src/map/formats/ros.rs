@@ -243,8 +243,8 @@ fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
-/// The line with a tab in its indentation, if it is the one at which the parser stopped, or one beside
-/// that: the parser blames the field whose value the tab breaks.
+/// The line with a tab in its indentation, if it is the one at which the parser stopped, or one
+/// beside that: the parser blames the field whose value the tab breaks.
 fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
     let has_tab = |line: &str| {
         line.chars().take_while(|letter| letter.is_whitespace()).any(|letter| letter == '\t')

@@ -192,7 +192,8 @@ mod tests {
         );
         // 205 of 255 is the grey of unknown cells; only thresholds below 0.19608 keep it so.
         assert_eq!(values(rule(MapMode::Trinary, 0.65, 0.25), &[205]), [0]);
-        // 1 - 204 / 255 is 0.2 and 1 - 102 / 255 is 0.6, up to rounding: on the threshold is neither.
+        // 1 - 204 / 255 is 0.2 and 1 - 102 / 255 is 0.6, up to rounding: on the threshold is
+        // neither.
         let rule = rule(MapMode::Trinary, 1.0 - 102.0 / 255.0, 1.0 - 204.0 / 255.0);
         assert_eq!(values(rule, &[101, 102, 204, 205]), [100, UNKNOWN, UNKNOWN, 0]);
     }

@@ -48,8 +48,8 @@ pub(crate) fn shown(text: &str, letters: usize) -> String {
     if text.chars().nth(letters).is_some() { short + "..." } else { short }
 }
 
-/// Lines with their numbers, from 1, without the ends (LF or CRLF). What ends with a line end has no
-/// further, empty line after that.
+/// Lines with their numbers, from 1, without the ends (LF or CRLF). What ends with a line end has
+/// no further, empty line after that.
 pub(super) fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.strip_suffix('\n')
         .unwrap_or(text)

@@ -21,7 +21,8 @@ pub enum UnknownPolicy {
     Penalised,
 }
 
-/// How the blocked cells of a [`crate::map::SearchMap`] follow from an [`crate::map::OccupancyGrid`].
+/// How the blocked cells of a [`crate::map::SearchMap`] follow from an
+/// [`crate::map::OccupancyGrid`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -36,10 +37,11 @@ pub struct LayerConfig {
     pub clearance_m: f64,
     /// Obstacle expansion \[cells\] \[Wang2019\]: 1 blocks the 8 neighbours of every obstacle.
     pub expansion_cells: u32,
-    /// Collision constraint L \[ZhuYin2024, eq. (2)\]: a cell is free only when its centre is at least
-    /// this far from every obstacle's centre in the L1 norm, in reference cells; 0 for none. With cells of
-    /// side s that keeps L - s / 2 from an obstacle's square straight ahead and (L - s) / sqrt(2) past its
-    /// corner: for L = 2, 1.5 and 0.71 m on cells of 1 m, 1.98 and 1.38 m on cells of 0.05 m.
+    /// Collision constraint L \[ZhuYin2024, eq. (2)\]: a cell is free only when its centre is at
+    /// least this far from every obstacle's centre in the L1 norm, in reference cells; 0 for none.
+    /// With cells of side s that keeps L - s / 2 from an obstacle's square straight ahead and (L -
+    /// s) / sqrt(2) past its corner: for L = 2, 1.5 and 0.71 m on cells of 1 m, 1.98 and 1.38 m on
+    /// cells of 0.05 m.
     pub l1_constraint: f64,
     /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
     pub reference_cell_m: f64,
@@ -80,8 +82,8 @@ impl Neighbourhoods {
 impl LayerConfig {
     /// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
     pub(crate) const MAX_REACH_CELLS: f64 = 100_000.0;
-    /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add two
-    /// such sums.
+    /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add
+    /// two such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
     /// On a map of this size.

@@ -42,8 +42,8 @@ impl BlockedNeighbourhood {
         })
     }
 
-    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours), on a map whose
-    /// longer side has `side` cells.
+    /// The square of cells at most `cells` columns and rows away (1: the 8 neighbours), on a map
+    /// whose longer side has `side` cells.
     pub(crate) fn square(cells: u32, side: i32) -> Self {
         let cells = cells.min(side as u32) as i32;
         Self { half_widths: vec![cells; cells as usize + 1] }

@@ -4,8 +4,8 @@ use crate::map::{Cell, Connectivity, SearchMap};
 
 impl SearchMap {
     /// The free cell whose centre is nearest to `cell`'s centre (ties: lower row, then lower
-    /// column), or for a cell outside the map to the nearest cell of the map; `None` when every cell
-    /// is blocked. Costs as many cells as lie within the distance.
+    /// column), or for a cell outside the map to the nearest cell of the map; `None` when every
+    /// cell is blocked. Costs as many cells as lie within the distance.
     pub fn nearest_free(&self, cell: Cell) -> Option<Cell> {
         let (width, height) = (self.frame().width() as i32, self.frame().height() as i32);
         let cell = self.clamped(cell);

@@ -12,8 +12,8 @@ use crate::map::{
     LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
 
-/// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by row
-/// and transposed, each with a blocked border around the map).
+/// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by
+/// row and transposed, each with a blocked border around the map).
 ///
 /// [`Self::apply`] keeps everything up to date; a plan rebuilds nothing but the components and, for
 /// prepared maps, the fingerprint, and these only after a change. Building costs a few operations
@@ -148,9 +148,10 @@ impl SearchMap {
     }
 
     /// Lifts clearance, expansion and constraint in the discs of
-    /// [`crate::map::LayerConfig::free_ends_m`] around these cells, in place of those given before: a
-    /// cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
-    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are ignored.
+    /// [`crate::map::LayerConfig::free_ends_m`] around these cells, in place of those given before:
+    /// a cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
+    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are
+    /// ignored.
     ///
     /// Whatever is prepared for a map takes its discs into account. Costs a test of each cell of
     /// the discs.

@@ -1,13 +1,13 @@
 //! Why no path joins two cells: ways that are too narrow, or none at all.
 //!
-//! A cell is free for a clearance when the room at its centre, the distance to the nearest obstacle or
-//! to the border, is at least that. So two cells are joined up to some clearance, and beyond it they
-//! are not: the room of the narrowest place of the widest way. It is the room of some cell, a whole
-//! number as a squared distance in half cells, and is found exactly, by bisection.
+//! A cell is free for a clearance when the room at its centre, the distance to the nearest obstacle
+//! or to the border, is at least that. So two cells are joined up to some clearance, and beyond it
+//! they are not: the room of the narrowest place of the widest way. It is the room of some cell, a
+//! whole number as a squared distance in half cells, and is found exactly, by bisection.
 //!
 //! # Cost
-//! A distance field, and for each of about 15 steps the components of the map: for use after a search
-//! has failed, not in every cycle. 4 bytes per cell beside the field.
+//! A distance field, and for each of about 15 steps the components of the map: for use after a
+//! search has failed, not in every cycle. 4 bytes per cell beside the field.
 
 use crate::given::Computed;
 use crate::map::layers::components::Components;
@@ -37,8 +37,8 @@ pub enum Separation {
         start_cells: u32,
         /// Cells of the goal's part.
         goal_cells: u32,
-        /// Whether steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with the
-        /// clearance as it is.
+        /// Whether steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with
+        /// the clearance as it is.
         meet_at_corners: bool,
     },
 }
@@ -115,10 +115,11 @@ impl SearchMap {
         })
     }
 
-    /// The largest clearance with which two cells are joined by the steps of `connectivity`
-    /// \[m\], everything else in the config as it is: the room of the narrowest place of the widest
-    /// way. Infinite where no clearance can separate them (in the same disc of
-    /// [`crate::map::LayerConfig::free_ends_m`]); `None` where they are not even joined without any.
+    /// The largest clearance with which two cells are joined by the steps of `connectivity` \[m\],
+    /// everything else in the config as it is: the room of the narrowest place of the widest way.
+    /// Infinite where no clearance can separate them (in the same disc of
+    /// [`crate::map::LayerConfig::free_ends_m`]); `None` where they are not even joined without
+    /// any.
     pub fn widest_clearance_m(
         &self,
         start: Cell,
@@ -179,8 +180,8 @@ impl SearchMap {
         Some(with)
     }
 
-    /// For each cell, row by row, the squared distance from its centre to the nearest obstacle or to
-    /// the border, in half cells.
+    /// For each cell, row by row, the squared distance from its centre to the nearest obstacle or
+    /// to the border, in half cells.
     fn rooms(&self) -> Vec<u32> {
         let frame = self.frame();
         let field = DistanceField::new(frame, self.obstacles(), &FieldConfig::default());

@@ -77,8 +77,8 @@ impl Controller {
         }
     }
 
-    /// A command of the controller's own, or braking where it leads into something that moves: its motions are certified
-    /// among what stands only.
+    /// A command of the controller's own, or braking where it leads into something that moves: its
+    /// motions are certified among what stands only.
     pub(super) fn beside_movers(
         &self,
         pose: Pose,

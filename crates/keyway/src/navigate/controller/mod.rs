@@ -28,9 +28,9 @@ use guarding::Guard;
 use looking::Look;
 use std::sync::Arc;
 
-/// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the guide points of its
-/// route with the local planner, plans again when the route turns out to be obstructed, and tries its recoveries
-/// when it gets no farther.
+/// Drives a robot to a goal: it plans on the known map, remembers what scans show, follows the
+/// guide points of its route with the local planner, plans again when the route turns out to be
+/// obstructed, and tries its recoveries when it gets no farther.
 ///
 /// It sees the known map, poses, velocities and scans, and nothing else; the same inputs give the
 /// same commands. Frames and units are those of the map: metres, radians, seconds.
@@ -52,7 +52,8 @@ pub struct Controller {
     obstacles: DistanceField,
     sensed: SensedLayer,
     seen: Option<SeenGround>,
-    /// What moves is in its list, not in the sensed layer; none where everything counts as standing.
+    /// What moves is in its list, not in the sensed layer; none where everything counts as
+    /// standing.
     tracker: Option<Tracker>,
     look: Look,
     edits: Vec<Edit>,
@@ -193,7 +194,8 @@ impl Controller {
         &self.route
     }
 
-    /// Where along the route the footprint does not fit, as far as is known and sensed; `None` where it fits.
+    /// Where along the route the footprint does not fit, as far as is known and sensed; `None`
+    /// where it fits.
     pub fn misfit(&self) -> Option<Misfit> {
         Misfit::first_along(&self.route.smoothed, &self.robot.footprint, &self.obstacles)
     }
@@ -209,8 +211,8 @@ impl Controller {
         self.guide.points(&self.route.smoothed)
     }
 
-    /// Where the last cycle drove to, and what was left of the way to the goal. Before the first cycle: the end of
-    /// the route, and all of the way.
+    /// Where the last cycle drove to, and what was left of the way to the goal. Before the first
+    /// cycle: the end of the route, and all of the way.
     pub const fn guidance(&self) -> &Guidance {
         &self.guidance
     }
@@ -236,8 +238,9 @@ impl Controller {
         &self.evaluation
     }
 
-    /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty when it was not asked.
-    /// Costs many times as much as the decision ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
+    /// Why the local planner decided as it did in the last cycle, candidate by candidate; empty
+    /// when it was not asked. Costs many times as much as the decision
+    /// ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
     pub fn explain(&self) -> Explanation {
         let Some(Asked { pose, velocity, memory }) = &self.asked else {
             return Explanation::default();
@@ -259,8 +262,9 @@ impl Controller {
         self.routes_planned
     }
 
-    /// How many different ways were taken, the first one included: a route that leads the same way as the one before
-    /// does not count. So progress can be measured along a way, however often it is planned.
+    /// How many different ways were taken, the first one included: a route that leads the same way
+    /// as the one before does not count. So progress can be measured along a way, however often it
+    /// is planned.
     pub const fn ways_taken(&self) -> u32 {
         self.ways_taken
     }
@@ -275,8 +279,8 @@ impl Controller {
         self.recovery.counts
     }
 
-    /// Why the stop rule changed the command of the last cycle; `None` when it did not, or there is none
-    /// (`controller.safe` of the stack).
+    /// Why the stop rule changed the command of the last cycle; `None` when it did not, or there is
+    /// none (`controller.safe` of the stack).
     pub const fn refusal(&self) -> Option<&Refusal> {
         self.guard.refusal()
     }

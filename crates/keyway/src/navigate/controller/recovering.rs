@@ -8,7 +8,8 @@ use crate::navigate::recovery::{Motion, OnTheSpot, TightPlace};
 use crate::navigate::watch::{RestOfRoute, Watch};
 
 impl Controller {
-    /// Begins the first kind of recovery in the order that can do something. Motions begin where the robot stands.
+    /// Begins the first kind of recovery in the order that can do something. Motions begin where
+    /// the robot stands.
     pub(super) fn recover(&mut self, pose: Pose, velocity: Velocity) {
         self.watch = Watch::NEW;
         self.recovery.end();
@@ -50,7 +51,8 @@ impl Controller {
         true
     }
 
-    /// Goes on with a recovery, if one is under way. After it the route begins where the robot then is.
+    /// Goes on with a recovery, if one is under way. After it the route begins where the robot then
+    /// is.
     pub(super) fn go_on_recovering(
         &mut self,
         pose: Pose,

@@ -20,8 +20,8 @@ pub(super) enum Replanned {
 }
 
 impl Controller {
-    /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in sight; begins a
-    /// recovery when the robot gets no farther.
+    /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in
+    /// sight; begins a recovery when the robot gets no farther.
     pub(super) fn look_after_route(&mut self, pose: Pose, velocity: Velocity) {
         let position = pose.point();
         self.hold.note(position, &self.robot);
@@ -50,8 +50,8 @@ impl Controller {
         }
     }
 
-    /// Takes another way around ground on which movers walk, once that takes no longer than the robot has been held up
-    /// beside it.
+    /// Takes another way around ground on which movers walk, once that takes no longer than the
+    /// robot has been held up beside it.
     fn go_around(&mut self, position: Point) -> bool {
         if !self.stack.controller.go_around {
             return false;
@@ -97,14 +97,16 @@ impl Controller {
         RestOfRoute { path: &self.route.smoothed, covered_m: self.covered_m }
     }
 
-    /// What the way along the route needs at least: the robot must be able to turn on the spot, as far as the route leaves
-    /// room for that. With less, a guide would cut corners that only the inscribed disc can pass.
+    /// What the way along the route needs at least: the robot must be able to turn on the spot, as
+    /// far as the route leaves room for that. With less, a guide would cut corners that only the
+    /// inscribed disc can pass.
     pub(super) fn needed_m(&self) -> f64 {
         turning_clearance_m(&self.stack, &self.robot).min(self.route.clearance_m)
     }
 
-    /// Plans again on what is known and sensed, around the ground that is avoided, if there is a way around. When that
-    /// fails, the old route stays, and the next attempt waits longer each time.
+    /// Plans again on what is known and sensed, around the ground that is avoided, if there is a
+    /// way around. When that fails, the old route stays, and the next attempt waits longer each
+    /// time.
     pub(super) fn replan(&mut self, position: Point) -> Replanned {
         self.routes_planned += 1;
         let mut avoided = self.walked.avoided().to_vec();

@@ -12,8 +12,9 @@ impl Controller {
     /// The robot faces its guide point when that is less far to either side than this \[rad\].
     const FACING_RAD: f64 = FRAC_PI_6;
 
-    /// Begins a turn towards the guide point where a command would lead off the ground on which a robot that is not round can
-    /// turn around, and the guide point is aside: beyond, it could do neither, and a local planner does not see that coming.
+    /// Begins a turn towards the guide point where a command would lead off the ground on which a
+    /// robot that is not round can turn around, and the guide point is aside: beyond, it could do
+    /// neither, and a local planner does not see that coming.
     pub(super) fn turn_before(&mut self, pose: Pose, command: Velocity) {
         let (robot, guide) = (&self.robot, self.guidance.point);
         let is_round = matches!(robot.footprint, Footprint::Circle(_));

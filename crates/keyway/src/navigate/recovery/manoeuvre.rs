@@ -1,12 +1,15 @@
-//! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along the route.
+//! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along
+//! the route.
 //!
-//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at its corners, it does:
-//! that needs no margin. Where only the inscribed disc fits, a longer robot may have to turn first, drive
-//! out, and turn again. This searches such sequences in the plane and the heading: best first by time, over squares
-//! of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified for the whole footprint. It ends where the robot
-//! has room to turn around again and sees a place of the route farther on, or at the end of the route. If there is no such
-//! place, as before a lane too narrow to turn in, a robot that stands aside of its route, where it cannot turn, goes to where it can, in
-//! sight of the place of the route at which it is, and faces that.
+//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at its
+//! corners, it does: that needs no margin. Where only the inscribed disc fits, a longer robot may
+//! have to turn first, drive out, and turn again. This searches such sequences in the plane and the
+//! heading: best first by time, over squares of a cell or less and headings that are [`STEP_RAD`]
+//! apart, each motion certified for the whole footprint. It ends where the robot has room to turn
+//! around again and sees a place of the route farther on, or at the end of the route. If there is
+//! no such place, as before a lane too narrow to turn in, a robot that stands aside of its route,
+//! where it cannot turn, goes to where it can, in sight of the place of the route at which it is,
+//! and faces that.
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
 
@@ -25,8 +28,8 @@ const HEADINGS: i32 = 36;
 /// Between two headings \[rad\].
 const STEP_RAD: f64 = TAU / HEADINGS as f64;
 
-/// Length of one straight drive, in sides of the squares in which positions count as one: it leads into another
-/// square whatever the heading.
+/// Length of one straight drive, in sides of the squares in which positions count as one: it leads
+/// into another square whatever the heading.
 const STEP_SQUARES: f64 = 1.5;
 
 /// Expansions after which the search gives up.
@@ -35,7 +38,8 @@ const MOST_NODES: usize = 50_000;
 /// A robot that faces its route within this can drive along it \[rad\].
 const ASIDE_RAD: f64 = FRAC_PI_6;
 
-/// How far from the robot the search goes \[circumscribed radii, or cells for a robot that is smaller than one\].
+/// How far from the robot the search goes \[circumscribed radii, or cells for a robot that is
+/// smaller than one\].
 const REACH_SIZES: f64 = 10.0;
 
 /// A robot in a tight place.
@@ -68,20 +72,20 @@ enum Place {
     OnTheWay(Point),
 }
 
-/// An entry of the open list: the least estimate first (as bits, which order like numbers of at least 0), then the
-/// oldest.
+/// An entry of the open list: the least estimate first (as bits, which order like numbers of at
+/// least 0), then the oldest.
 type Entry = Reverse<(u64, usize)>;
 
 impl TightPlace<'_> {
-    /// The motions that lead on, or to where the robot can turn, merged; `None` where there are none, or more would have to be
-    /// looked at.
+    /// The motions that lead on, or to where the robot can turn, merged; `None` where there are
+    /// none, or more would have to be looked at.
     pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
         let stations = self.stations();
         self.along_route(pose, &stations).or_else(|| self.searched(pose, &stations))
     }
 
-    /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is hardly wider than
-    /// the robot as exactly as the route does.
+    /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is
+    /// hardly wider than the robot as exactly as the route does.
     fn along_route(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
         let (mut pose, mut motions) = (pose, Vec::new());
         let rest = RestOfRoute { path: self.path, covered_m: self.covered_m };
@@ -151,7 +155,8 @@ impl TightPlace<'_> {
         self.robot.footprint.circumscribed_radius_m()
     }
 
-    /// The circumscribed radius; of a robot that is smaller than a cell, or a point, the side of a cell \[m\].
+    /// The circumscribed radius; of a robot that is smaller than a cell, or a point, the side of a
+    /// cell \[m\].
     fn size_m(&self) -> f64 {
         self.radius_m().max(self.obstacles.frame().resolution_m())
     }
@@ -254,7 +259,8 @@ impl TightPlace<'_> {
         (square(pose.x), square(pose.y), heading)
     }
 
-    /// Side of the squares in which positions count as one \[m\]: small against the footprint and the cells.
+    /// Side of the squares in which positions count as one \[m\]: small against the footprint and
+    /// the cells.
     fn square_m(&self) -> f64 {
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
         let small_m = (0.25 * inscribed_m).max(0.1 * self.size_m());
@@ -410,7 +416,8 @@ mod tests {
         assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
     }
 
-    /// A lane in which it could not turn, longer than the search reaches, and a robot that stands across its mouth.
+    /// A lane in which it could not turn, longer than the search reaches, and a robot that stands
+    /// across its mouth.
     #[test]
     fn back_to_where_it_can_face_a_lane() {
         let (wall, hall) = ("#".repeat(52), format!("#{}{}", ".".repeat(10), "#".repeat(41)));

@@ -1,7 +1,7 @@
 //! What a robot tries when it gets no farther: kinds of recoveries, in an order that is data.
 //!
-//! Each is a few [`Motion`]s, certified free of contact before they are begun and again in every cycle; or a new
-//! route; or time.
+//! Each is a few [`Motion`]s, certified free of contact before they are begun and again in every
+//! cycle; or a new route; or time.
 
 mod manoeuvre;
 mod motion;
@@ -29,10 +29,11 @@ pub enum RecoveryKind {
     Replan,
     /// A turn on the spot towards the guide point, to the nearer side with room.
     Turn,
-    /// Turns and straight drives to where it has room to turn around again, farther along the route, or where
-    /// it can face it. They need no margin, and no curve.
+    /// Turns and straight drives to where it has room to turn around again, farther along the
+    /// route, or where it can face it. They need no margin, and no curve.
     Manoeuvre,
-    /// Straight back to a place where the robot has been; a robot that cannot drive backwards turns around first.
+    /// Straight back to a place where the robot has been; a robot that cannot drive backwards turns
+    /// around first.
     BackUp,
     /// Standing still for a while.
     Wait,
@@ -102,7 +103,8 @@ pub(super) struct Recovery {
 }
 
 impl Recovery {
-    /// A way that is shorter by this than where the trouble began is progress: the order begins anew \[m\].
+    /// A way that is shorter by this than where the trouble began is progress: the order begins
+    /// anew \[m\].
     const PROGRESS_M: f64 = 0.3;
 
     /// Notes how far the robot has come.
@@ -149,8 +151,8 @@ impl Recovery {
         (self.under_way, self.stopping_for) = (None, None);
     }
 
-    /// Goes on with what is under way: its kind and the next command. `None` when nothing is, or it has just ended
-    /// or been refused.
+    /// Goes on with what is under way: its kind and the next command. `None` when nothing is, or it
+    /// has just ended or been refused.
     pub(super) fn step(
         &mut self,
         pose: Pose,
@@ -204,8 +206,8 @@ impl OnTheSpot<'_> {
         (bearing_rad.abs() >= Self::LEAST_TURN_RAD).then(|| vec![Motion::Turn(turn_rad)])
     }
 
-    /// Straight to one of the places of a track, the farthest that can be reached: backwards where the robot can,
-    /// otherwise after a turn.
+    /// Straight to one of the places of a track, the farthest that can be reached: backwards where
+    /// the robot can, otherwise after a turn.
     pub(super) fn back_up(
         &self,
         pose: Pose,

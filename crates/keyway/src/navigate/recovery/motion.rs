@@ -1,8 +1,10 @@
-//! Motions of recoveries: turns on the spot, straight drives and pauses, each certified before it is commanded.
+//! Motions of recoveries: turns on the spot, straight drives and pauses, each certified before it
+//! is commanded.
 //!
-//! In every cycle all that is left of a motion is certified free of contact by [`Footprint::is_free_turn`] or
-//! [`Footprint::is_free_drive`], and the velocity is one from which the robot can stop within what is left. So a
-//! motion can be broken off in any cycle: braking needs no more ground than was certified.
+//! In every cycle all that is left of a motion is certified free of contact by
+//! [`Footprint::is_free_turn`] or [`Footprint::is_free_drive`], and the velocity is one from which
+//! the robot can stop within what is left. So a motion can be broken off in any cycle: braking
+//! needs no more ground than was certified.
 //!
 //! [`Footprint::is_free_turn`]: crate::robot::Footprint::is_free_turn
 //! [`Footprint::is_free_drive`]: crate::robot::Footprint::is_free_drive
@@ -37,7 +39,8 @@ pub(in crate::navigate) enum Progress {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::navigate) struct MotionUnderWay {
     left: Motion,
-    /// Where the robot was when `left` was left; `None` before it begins, while the robot still brakes.
+    /// Where the robot was when `left` was left; `None` before it begins, while the robot still
+    /// brakes.
     from: Option<Pose>,
 }
 
@@ -117,8 +120,8 @@ impl Motion {
     }
 }
 
-/// The largest speed towards the end, up to `most`, from which a stop is possible within `left`: both with their
-/// signs. With the speed `now`, a cycle of T and a deceleration of b it is the u of
+/// The largest speed towards the end, up to `most`, from which a stop is possible within `left`:
+/// both with their signs. With the speed `now`, a cycle of T and a deceleration of b it is the u of
 /// (now + u) T / 2 + u² / (2 b) + u T / 2 = left, where the last cycle of braking counts whole.
 fn speed(left: f64, now: f64, brakes: f64, cycle_s: f64, most: f64) -> f64 {
     let ahead = left.abs() - 0.5 * now * left.signum() * cycle_s;

@@ -2,15 +2,17 @@
 //! 8-connected path without corner cutting, searched for from both ends.
 //!
 //! The intermediate design from which the paper starts: the same search as
-//! [`BidirectionalJps`](super::BidirectionalJps), but each side aims at the other's root all the time.
-//! The paper says of it that it finds two paths of equal cost and expands more nodes than necessary.
+//! [`BidirectionalJps`](super::BidirectionalJps), but each side aims at the other's root all the
+//! time. The paper says of it that it finds two paths of equal cost and expands more nodes than
+//! necessary.
 //!
 //! # Source
-//! See [`BidirectionalJps`](super::BidirectionalJps). In equation (2) the target is a root, so `b G2` is 0.
+//! See [`BidirectionalJps`](super::BidirectionalJps). In equation (2) the target is a root, so `b
+//! G2` is 0.
 //!
 //! # Where this differs from the paper
-//! As there. Keys need no renewal, as the targets do not move. With [`JumpMeeting::Literal`] only the other
-//! side's root stops a scan; this does not miss, as a side finds the root in the end.
+//! As there. Keys need no renewal, as the targets do not move. With [`JumpMeeting::Literal`] only
+//! the other side's root stops a scan; this does not miss, as a side finds the root in the end.
 //!
 //! # Errors / cost
 //! As there.
@@ -29,8 +31,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsFixedConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when the
-    /// same node is in both lists (`literal`).
+    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when
+    /// the same node is in both lists (`literal`).
     pub meeting: JumpMeeting,
     /// The estimate H of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
     /// `mean`, eq. (3).

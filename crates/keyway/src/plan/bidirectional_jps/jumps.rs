@@ -1,11 +1,11 @@
-//! Jump points of the textbook \[Harabor2011\], without corner cutting: a node and a direction -> the
-//! next node there.
+//! Jump points of the textbook \[Harabor2011\], without corner cutting: a node and a direction ->
+//! the next node there.
 //!
 //! A scan walks from a node in one of the 8 directions and ends at the first of these cells:
 //! - one of the *targets*, cells given from outside;
-//! - on a straight scan, a cell beside which something opens: the side neighbour of the cell before is
-//!   blocked and its own is free. As no corner is cut, the robot must come this one step further before
-//!   it can turn;
+//! - on a straight scan, a cell beside which something opens: the side neighbour of the cell before
+//!   is blocked and its own is free. As no corner is cut, the robot must come this one step further
+//!   before it can turn;
 //! - on a diagonal scan, a cell from which a straight scan in one of the diagonal's two directions
 //!   finds something. A diagonal step needs a free 2 x 2 block, so nothing opens beside it.
 //!
@@ -129,9 +129,9 @@ impl Jumps<'_> {
     /// The directions in which to expand a node that was reached in direction `arrival`; all of
     /// them for a root, which was reached in none.
     ///
-    /// Natural ones: straight on; after a diagonal its two parts as well. Forced ones, after a straight
-    /// scan: to the side that opens, and diagonally there. Every other neighbour is reached as cheaply
-    /// from the cell before, without the node.
+    /// Natural ones: straight on; after a diagonal its two parts as well. Forced ones, after a
+    /// straight scan: to the side that opens, and diagonally there. Every other neighbour is
+    /// reached as cheaply from the cell before, without the node.
     pub(super) fn onward(
         &self,
         at: Cell,

@@ -1,11 +1,11 @@
-//! Improved bidirectional jump point A* \[You2021\]: a map and two cells -> an 8-connected path without
-//! corner cutting, searched for from both ends.
+//! Improved bidirectional jump point A* \[You2021\]: a map and two cells -> an 8-connected path
+//! without corner cutting, searched for from both ends.
 //!
-//! Jump point search from the start and from the goal, in turn: a side expands nodes until it has put
-//! some into its open list, then the other side goes on, until both have a node in common. Each side
-//! aims at the node that the other one expanded last, so that the two searches draw each other
-//! together. [`BidirectionalJpsFixed`] is the design that the paper improves on: there each side aims
-//! at the other's root.
+//! Jump point search from the start and from the goal, in turn: a side expands nodes until it has
+//! put some into its open list, then the other side goes on, until both have a node in common. Each
+//! side aims at the node that the other one expanded last, so that the two searches draw each other
+//! together. [`BidirectionalJpsFixed`] is the design that the paper improves on: there each side
+//! aims at the other's root.
 //!
 //! # Source
 //! \[You2021\]: sections 1.2 and 1.3, equations (2) and (3), figs. 3 to 5, table 1. Jump points:
@@ -24,34 +24,37 @@
 //! - **Target.** "The jump point before" those just found is the node that the other side expanded
 //!   last; at first its root. In eq. (2) `H1` and `G2` belong to that one point.
 //! - **Meeting.** The paper ends when the same jump point is in both lists. Taken literally
-//!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/FINDINGS.md`. By default
-//!   ([`JumpMeeting::Generated`]) every node of the other side, open or closed, stops a scan and becomes
-//!   a node of this side, too, even where it is not a jump point of this one.
-//! - **Several meetings** in one expansion: the one with the cheapest path counts, in a tie the first.
-//! - **Keys** are computed when a node is put into the open list, with the target of that moment, and
-//!   kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the same number
-//!   for all open nodes, and b would have no meaning.
-//! - **Duplicates** are compared by g; closed nodes are not opened again. Ties: key, then larger g, then
-//!   lower cell index. The forward side begins.
+//!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/FINDINGS.md`. By
+//!   default ([`JumpMeeting::Generated`]) every node of the other side, open or closed, stops a
+//!   scan and becomes a node of this side, too, even where it is not a jump point of this one.
+//! - **Several meetings** in one expansion: the one with the cheapest path counts, in a tie the
+//!   first.
+//! - **Keys** are computed when a node is put into the open list, with the target of that moment,
+//!   and kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the same
+//!   number for all open nodes, and b would have no meaning.
+//! - **Duplicates** are compared by g; closed nodes are not opened again. Ties: key, then larger g,
+//!   then lower cell index. The forward side begins.
 //! - **An empty open list** of either side ends the search.
 //!
-//! The two halves of a path may share cells before they meet: the path then doubles back (6 of 92,513
-//! random queries; `docs/FINDINGS.md`). It is returned as the method makes it.
+//! The two halves of a path may share cells before they meet: the path then doubles back (6 of
+//! 92,513 random queries; `docs/FINDINGS.md`). It is returned as the method makes it.
 //!
-//! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the search
-//! ends at the first meeting: paths need not be shortest ones.
+//! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the
+//! search ends at the first meeting: paths need not be shortest ones.
 //!
 //! # Does it miss?
-//! With [`JumpMeeting::Generated`], a side whose list ran empty has looked at every cell that can be reached from
-//! its root, in jumps that end at the first node of the other side: it would have come upon the other
-//! root. That a node needs only one direction of arrival for this, in whatever order nodes are expanded, is
-//! not proved here, but tested: on 20 million small random maps with nodes in random order no cell was left
-//! out, and `tests/bidirectional_jps.rs` checks it with all kinds of weights.
+//! With [`JumpMeeting::Generated`], a side whose list ran empty has looked at every cell that can
+//! be reached from its root, in jumps that end at the first node of the other side: it would have
+//! come upon the other root. That a node needs only one direction of arrival for this, in whatever
+//! order nodes are expanded, is not proved here, but tested: on 20 million small random maps with
+//! nodes in random order no cell was left out, and `tests/bidirectional_jps.rs` checks it with all
+//! kinds of weights.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all cells.
-//! [`Miss::SidesPassed`](super::Miss::SidesPassed) with [`JumpMeeting::Literal`] only. Memory: 32 bytes and
-//! half a byte for stops of scans per cell of the padded map, of which only the pages of nodes are touched.
+//! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
+//! cells. [`Miss::SidesPassed`](super::Miss::SidesPassed) with [`JumpMeeting::Literal`] only.
+//! Memory: 32 bytes and half a byte for stops of scans per cell of the padded map, of which only
+//! the pages of nodes are touched.
 
 mod fixed;
 mod jumps;
@@ -80,8 +83,8 @@ pub enum JumpMeeting {
     /// When a scan comes upon any node of the other side.
     #[default]
     Generated,
-    /// When the same node is in both lists; of the other side's nodes only the target stops a scan. Can
-    /// miss.
+    /// When the same node is in both lists; of the other side's nodes only the target stops a scan.
+    /// Can miss.
     Literal,
 }
 
@@ -103,12 +106,13 @@ pub enum OpenKeys {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when the
-    /// same node is in both lists (`literal`, which can miss).
+    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when
+    /// the same node is in both lists (`literal`, which can miss).
     pub meeting: JumpMeeting,
     /// What becomes of the keys of open nodes when the target moves: `kept` or `renewed`.
     pub keys: OpenKeys,
-    /// The estimate H of the cost to the target: `octile`, `euclidean`, `manhattan` or `mean`, eq. (3).
+    /// The estimate H of the cost to the target: `octile`, `euclidean`, `manhattan` or `mean`, eq.
+    /// (3).
     pub heuristic: Heuristic,
     /// Weight of the estimate in eq. (2), at least 0.
     pub a: f64,

@@ -86,11 +86,11 @@ fn equations_2_and_3_by_hand() {
 
 #[test]
 fn around_a_wall_step_by_step() {
-    // The start sees both ends of the wall from the diagonals' cells (2, 4) and (2, 0): from there the
-    // scan eastwards finds the cell behind the wall's corner. The goal likewise: the scan westwards
-    // from (4, 4) ends at the node (2, 4), which the start has.
-    // Towards the goal both nodes of the start have F = 2.83 + 3 (4.47 + 6) / 2 + 0; the lower cell
-    // index goes first. Its scan to the east comes upon (4, 0), which the goal has.
+    // The start sees both ends of the wall from the diagonals' cells (2, 4) and (2, 0): from there
+    // the scan eastwards finds the cell behind the wall's corner. The goal likewise: the scan
+    // westwards from (4, 4) ends at the node (2, 4), which the start has. Towards the goal both
+    // nodes of the start have F = 2.83 + 3 (4.47 + 6) / 2 + 0; the lower cell index goes first. Its
+    // scan to the east comes upon (4, 0), which the goal has.
     let expected = [
         Expanded(FORWARD, 0, 2),
         Generated(2, 4),
@@ -126,10 +126,10 @@ fn the_literal_rule_passes_by() {
         "...",
     ];
     let (start, goal) = ((0, 0), (1, 3));
-    // The forward side turns at (1, 1), from where (1, 2) is seen, behind the obstacle's corner. The
-    // backward side aims at (0, 0): it sees it from (0, 2), and scans southwards over (1, 1), which is
-    // not its target, to (1, 0). Then its target is (1, 1), which it has passed: (1, 0) with
-    // F = 3 + 3 * 1 and (0, 2) with F = 1.41 + 3 * 2 no longer lead anywhere.
+    // The forward side turns at (1, 1), from where (1, 2) is seen, behind the obstacle's corner.
+    // The backward side aims at (0, 0): it sees it from (0, 2), and scans southwards over (1, 1),
+    // which is not its target, to (1, 0). Then its target is (1, 1), which it has passed: (1, 0)
+    // with F = 3 + 3 * 1 and (0, 2) with F = 1.41 + 3 * 2 no longer lead anywhere.
     let (result, events) = plan(&literal(), &rows, start, goal);
     let expected = [
         Expanded(FORWARD, 0, 0),
@@ -168,11 +168,11 @@ fn moving_targets_draw_the_sides_together() {
         "....",
     ];
     let (start, goal) = ((3, 4), (0, 0));
-    // Forward: around (2, 4) down to (2, 3). Backward: around (1, 0) to (2, 1) with G2 = 2.41 and to
-    // (1, 2) with G2 = 3, put in while the target is (2, 4) with G1 = 1, or, if fixed, (3, 4):
-    //   target   F2(2, 1)                           F2(1, 2)
-    //   (2, 4)   2.41 + 3 (3 + 3) / 2 + 1 = 12.41      3 + 3 (2.24 + 3) / 2 + 1 = 11.85
-    //   (3, 4)   2.41 + 3 (3.16 + 4) / 2 = 13.16       3 + 3 (2.83 + 4) / 2 = 13.24
+    // Forward: around (2, 4) down to (2, 3). Backward: around (1, 0) to (2, 1) with G2 = 2.41 and
+    // to (1, 2) with G2 = 3, put in while the target is (2, 4) with G1 = 1, or, if fixed, (3, 4):
+    // target   F2(2, 1)                           F2(1, 2) (2, 4)   2.41 + 3 (3 + 3) / 2 + 1 =
+    // 12.41      3 + 3 (2.24 + 3) / 2 + 1 = 11.85 (3, 4)   2.41 + 3 (3.16 + 4) / 2 = 13.16       3
+    // + 3 (2.83 + 4) / 2 = 13.24
     let both = [
         Expanded(FORWARD, 3, 4),
         Generated(2, 4),

@@ -85,8 +85,8 @@ impl<'m> Constraint<'m> {
         Ok(())
     }
 
-    /// This constraint, or the largest one in whole cells that leaves a path; without any constraint
-    /// there is one.
+    /// This constraint, or the largest one in whole cells that leaves a path; without any
+    /// constraint there is one.
     pub(super) fn relaxed(
         self,
         map: &SearchMap,

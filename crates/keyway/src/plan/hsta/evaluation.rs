@@ -14,8 +14,8 @@ pub(super) struct Terms {
     sides: f64,
 }
 
-/// The rule by which one side expands its current node: where it comes from, where it goes, and where
-/// the other side is.
+/// The rule by which one side expands its current node: where it comes from, where it goes, and
+/// where the other side is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evaluation<'m> {
     pub(super) map: &'m SearchMap,
@@ -44,10 +44,11 @@ impl Rule for Evaluation<'_> {
 
     /// Eq. (1): f = g + k h + c.
     ///
-    /// How large it gets: on a map of n x n cells, taken literally, k is at most 1 + (2 n)^2 / (4 * 2 n)
-    /// = 1 + n / 2 and h at most 1.42 n cells of 2^26.5 each. For n = 16384 that is 2^13 * 2^14.5 *
-    /// 2^26.5 = 2^54; g is below 2^55 without penalties, as no path has more than n^2 = 2^28 steps. Long
-    /// thin maps and tiny reference cells may lead beyond 2^64, where f saturates and only the ties order.
+    /// How large it gets: on a map of n x n cells, taken literally, k is at most 1 + (2 n)^2 / (4 *
+    /// 2 n) = 1 + n / 2 and h at most 1.42 n cells of 2^26.5 each. For n = 16384 that is 2^13 *
+    /// 2^14.5 * 2^26.5 = 2^54; g is below 2^55 without penalties, as no path has more than n^2 =
+    /// 2^28 steps. Long thin maps and tiny reference cells may lead beyond 2^64, where f saturates
+    /// and only the ties order.
     fn key(&self, at: CellIndex, g: u64) -> u64 {
         let at = self.map.cell(at);
         // Eq. (4).
@@ -111,8 +112,8 @@ mod tests {
         assert!((dynamic_weight(82.0, 84.0) - 21.011_904_76).abs() < 1e-8);
     }
 
-    /// Eq. (4), h, to (9, 7): 6 columns and 4 rows from (3, 3) are sqrt(52) = 7.211; 3 and 4 from (6, 3)
-    /// are 5. Eq. (5), c, to (6, 11): 8 rows from (6, 3) are 8.
+    /// Eq. (4), h, to (9, 7): 6 columns and 4 rows from (3, 3) are sqrt(52) = 7.211; 3 and 4 from
+    /// (6, 3) are 5. Eq. (5), c, to (6, 11): 8 rows from (6, 3) are 8.
     #[test]
     fn distances_by_hand() {
         let (other, goal) = (Cell::new(9, 7), Cell::new(6, 11));
@@ -138,7 +139,8 @@ mod tests {
         assert_eq!(key(HstaConfig { weight, correction, ..HstaConfig::PAPER }), g + 5 * Q);
     }
 
-    /// Twice as many cells per metre: distances in reference cells are half, those in cells are not.
+    /// Twice as many cells per metre: distances in reference cells are half, those in cells are
+    /// not.
     #[test]
     fn the_weight_does_not_depend_on_the_resolution() {
         let (coarse, fine) = (free_map(12, 12, 1.0), free_map(24, 24, 0.5));

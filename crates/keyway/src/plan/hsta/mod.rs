@@ -1,15 +1,15 @@
-//! HSTA* \[ZhuYin2024\]: a map and two cells -> some 8-connected path that keeps away from obstacles, where a
-//! search from the start and one from the goal meet.
+//! HSTA* \[ZhuYin2024\]: a map and two cells -> some 8-connected path that keeps away from
+//! obstacles, where a search from the start and one from the goal meet.
 //!
-//! Two searches expand one node each in turn. Each aims at the node that the other has just expanded
-//! (h), with a weight k that grows with the distance from its own root, and is drawn to the other's
-//! root as well (the correction factor c), so that the two do not miss each other. Nodes nearer to an
-//! obstacle than a constraint are left out. At first all weights are 1; later h dominates, and the two
-//! run into each other. Paths are not shortest ones.
+//! Two searches expand one node each in turn. Each aims at the node that the other has just
+//! expanded (h), with a weight k that grows with the distance from its own root, and is drawn to
+//! the other's root as well (the correction factor c), so that the two do not miss each other.
+//! Nodes nearer to an obstacle than a constraint are left out. At first all weights are 1; later h
+//! dominates, and the two run into each other. Paths are not shortest ones.
 //!
 //! # Source
-//! \[ZhuYin2024\]: section 1.2, equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and driving are
-//! other stages.
+//! \[ZhuYin2024\]: section 1.2, equations (1) to (5), steps 1 to 5 of section 2.3. Smoothing and
+//! driving are other stages.
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -26,26 +26,27 @@
 //! | open1, close1, open2, close2 | the open lists; a bit of each node | | |
 //!
 //! # Where this differs from the paper
-//! - Distances of (2) and (3) are in reference cells of 1 m, so that they are the same lengths on a finer
-//!   grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search would be a
+//! - Distances of (2) and (3) are in reference cells of 1 m, so that they are the same lengths on a
+//!   finer grid: counted in cells, k would reach 420 on an 840 x 840 map, and the search would be a
 //!   greedy one. For cells as they are: `distances = cells`. (The unit of g, h and c does not
 //!   change their order.)
-//! - L is between the centres of cells, as in (2). So what it keeps from an obstacle's *square* depends on the
-//!   map's cells, of side s: L - s / 2 straight ahead and (L - s) / sqrt(2) past a corner. With L = 2 m that
-//!   is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on cells of 0.05 m. No other L keeps both
-//!   of the paper's distances on a finer grid.
+//! - L is between the centres of cells, as in (2). So what it keeps from an obstacle's *square*
+//!   depends on the map's cells, of side s: L - s / 2 straight ahead and (L - s) / sqrt(2) past a
+//!   corner. With L = 2 m that is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on
+//!   cells of 0.05 m. No other L keeps both of the paper's distances on a finer grid.
 //! - The map's border is not an obstacle.
-//! - x2 moves. f is computed when a node is put into the open list or improved there, and then kept.
-//! - The sides have met when their best nodes are the same (step 5), and also when one takes a node that
-//!   the other has expanded before: otherwise they might never meet. The first is a case of the
-//!   second: the forward side expands the common best node, then the backward side takes it. That
-//!   node counts as expanded by both.
+//! - x2 moves. f is computed when a node is put into the open list or improved there, and then
+//!   kept.
+//! - The sides have met when their best nodes are the same (step 5), and also when one takes a node
+//!   that the other has expanded before: otherwise they might never meet. The first is a case of
+//!   the second: the forward side expands the common best node, then the backward side takes it.
+//!   That node counts as expanded by both.
 //! - A closed node is not opened again.
-//! - The paper does not say what to do where the constraint leaves no path. L = 2 in cells of 1 m keeps
-//!   up to 2 m from every wall: indoors hardly any start, goal or door has that much room, and
-//!   every query would fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole number
-//!   of the map's cells that leaves a path, at most L as it is set (start and goal included, whose
-//!   distances bound it), and [`Plan::relaxed`] says so. A smaller L leaves every path that a
+//! - The paper does not say what to do where the constraint leaves no path. L = 2 in cells of 1 m
+//!   keeps up to 2 m from every wall: indoors hardly any start, goal or door has that much room,
+//!   and every query would fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole
+//!   number of the map's cells that leaves a path, at most L as it is set (start and goal included,
+//!   whose distances bound it), and [`Plan::relaxed`] says so. A smaller L leaves every path that a
 //!   larger one leaves, so it is found by bisection. Statistics and observer then report the search
 //!   with that L, not those that found it, and a budget holds for each of them.
 //!   [`HstaConfig::PAPER`] keeps L as it is: there the error says that it is the constraint that
@@ -55,18 +56,18 @@
 //! - Equation (3) makes k grow with the distance from the side's own root, even where h is still
 //!   large. On open maps much larger than the paper's the search then wanders: see
 //!   `docs/FINDINGS.md`.
-//! - A start or goal nearer than L to an obstacle lowers L likewise (with [`IfNoPath::Fail`] it is an
-//!   error), unless L is lifted in discs around both ends with `free_ends_m`.
+//! - A start or goal nearer than L to an obstacle lowers L likewise (with [`IfNoPath::Fail`] it is
+//!   an error), unless L is lifted in discs around both ends with `free_ends_m`.
 //! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are
 //!   nearer than any larger L.
-//! - Order within a side: f, then larger g, then lower cell index. Costs are directed where unknown cells
-//!   are penalised, as in [`super::BidirectionalAStar`].
+//! - Order within a side: f, then larger g, then lower cell index. Costs are directed where unknown
+//!   cells are penalised, as in [`super::BidirectionalAStar`].
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a path that keeps the constraint is found if there is one. O(n log n) in the
-//! number n of reached cells, and for each of them a scan of every row within L of it; 32
-//! bytes per cell of the padded map, of which only the pages of reached cells are touched. Relaxing adds
-//! up to 1 + log2(L in cells) searches.
+//! number n of reached cells, and for each of them a scan of every row within L of it; 32 bytes per
+//! cell of the padded map, of which only the pages of reached cells are touched. Relaxing adds up
+//! to 1 + log2(L in cells) searches.
 
 mod constraint;
 mod evaluation;
@@ -90,10 +91,10 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct HstaConfig {
-    /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the L1
-    /// norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's square
-    /// straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, for which
-    /// hardly any building has room: see `if_no_path`.
+    /// Collision constraint L, eq. (2): no node is nearer than this to an obstacle's centre in the
+    /// L1 norm, in reference cells; 0 for none. On cells of 1 m, 2 keeps 1.5 m from an obstacle's
+    /// square straight ahead and 0.71 m past its corner; on cells of 0.05 m, 1.98 and 1.38 m, for
+    /// which hardly any building has room: see `if_no_path`.
     pub l1_constraint: f64,
     /// Side of a reference cell \[m\].
     pub reference_cell_m: f64,
@@ -103,13 +104,13 @@ pub struct HstaConfig {
     pub weight: Weight,
     /// The correction factor c, eq. (5): the `distance` to the other side's root, or `none`.
     pub correction: Correction,
-    /// What to do when the constraint leaves no path: `relax` it as little as possible, and say so, or
-    /// `fail`.
+    /// What to do when the constraint leaves no path: `relax` it as little as possible, and say so,
+    /// or `fail`.
     pub if_no_path: IfNoPath,
     /// Radius of the discs around start and goal in which there is no constraint \[m\]; 0 for none.
     pub free_ends_m: f64,
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`; matters only where the
-    /// constraint is at most one cell.
+    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`; matters only where
+    /// the constraint is at most one cell.
     pub corners: CornerRule,
 }
 
@@ -178,8 +179,8 @@ impl HstaConfig {
         corners: CornerRule::Forbid,
     };
 
-    /// The same with a constraint of as many safe distances \[m\] as it has cells: the paper's robot has a cell
-    /// for itself. The weight k is as it was.
+    /// The same with a constraint of as many safe distances \[m\] as it has cells: the paper's
+    /// robot has a cell for itself. The weight k is as it was.
     #[must_use]
     pub fn keeping(self, safe_distance_m: f64) -> Self {
         let l1_constraint = Self::PAPER.l1_constraint * safe_distance_m / self.reference_cell_m;
@@ -202,7 +203,8 @@ impl Default for HstaConfig {
     }
 }
 
-/// Bidirectional A* with a dynamic weight, a correction factor and a collision constraint; not optimal.
+/// Bidirectional A* with a dynamic weight, a correction factor and a collision constraint; not
+/// optimal.
 #[derive(Clone, Debug, Default)]
 pub struct Hsta {
     config: HstaConfig,
@@ -221,10 +223,10 @@ impl Hsta {
         Ok(Self { config })
     }
 
-    /// The smallest L1 distance of a path's nodes to an obstacle, in the unit of the constraint; nodes
-    /// in the free discs around its ends do not count. `None` when no node counts, or there is no
-    /// obstacle. A path of this planner keeps at least the constraint that it was searched with; it
-    /// keeps a relaxed one exactly.
+    /// The smallest L1 distance of a path's nodes to an obstacle, in the unit of the constraint;
+    /// nodes in the free discs around its ends do not count. `None` when no node counts, or there
+    /// is no obstacle. A path of this planner keeps at least the constraint that it was searched
+    /// with; it keeps a relaxed one exactly.
     pub fn distance_kept(&self, map: &SearchMap, path: &[Cell]) -> Option<f64> {
         let query = Query::new(*path.first()?, *path.last()?);
         let constraint = Constraint::new(&self.config, map, &query);

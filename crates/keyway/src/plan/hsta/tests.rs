@@ -8,15 +8,16 @@ fn hsta(config: HstaConfig) -> Hsta {
     Hsta::new(config).unwrap()
 }
 
-/// Constrained to a corridor: (3, 2) is beside the obstacle. l + m = 13, so k = 1 + d^2 / 52. Forward:
+/// Constrained to a corridor: (3, 2) is beside the obstacle. l + m = 13, so k = 1 + d^2 / 52.
+/// Forward:
 /// - S = (0, 2), other side at (6, 2): (1, 2) has f = 1 + 1.019 * 5 + 5 = 11.10, the best.
-/// - (1, 2), other still (6, 2): (2, 2) has 2 + 1.077 * 4 + 4 = 10.31, (2, 1) 2.41 + 1.173 * 4.12 + 4.12
-///   = 11.37.
+/// - (1, 2), other still (6, 2): (2, 2) has 2 + 1.077 * 4 + 4 = 10.31, (2, 1) 2.41 + 1.173 * 4.12 +
+///   4.12 = 11.37.
 /// - (2, 2), other now (5, 2): (3, 1) has 3.41 + 1.308 * 2.24 + 3.16 = 9.50.
 ///
-/// The backward side mirrors it: (5, 2), (4, 2); from there with the other at (2, 2) it reaches (3, 1)
-/// with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. Both best nodes are (3, 1), which the backward side then
-/// takes second.
+/// The backward side mirrors it: (5, 2), (4, 2); from there with the other at (2, 2) it reaches (3,
+/// 1) with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. Both best nodes are (3, 1), which the backward side
+/// then takes second.
 #[test]
 fn an_expansion_sequence_by_hand() {
     let rows = [".......", ".......", "...#...", "S.....G", ".......", "......."];

@@ -9,8 +9,8 @@
 /// again when a shorter way to it turns up, and must empty the bucket of its best solution before
 /// it stops; its answers are then still exact.
 ///
-/// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by more
-/// than the span given to [`Self::start`]. The buckets are a ring as long as this span; their
+/// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by
+/// more than the span given to [`Self::start`]. The buckets are a ring as long as this span; their
 /// entries are chains in one array, whose places are used again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BucketQueue {
@@ -32,14 +32,14 @@ impl BucketQueue {
     /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
     const MAX_BUCKETS: u64 = 1 << 22;
-    /// Keys of one bucket: about 0.18 cells in [`Cost::key`](crate::search::Cost::key) units. Measured: a quarter of
-    /// that is as good; whole cells expand a seventh more nodes in clutter.
+    /// Keys of one bucket: about 0.18 cells in [`Cost::key`](crate::search::Cost::key) units.
+    /// Measured: a quarter of that is as good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
     pub(super) const WIDTH: u64 = 1 << Self::SHIFT;
 
-    /// Empties the queue. The first key will be `first`, and no key will exceed the one that was last
-    /// popped by more than `span`; room is made for `capacity` entries, whose pages are not touched
-    /// before they are used.
+    /// Empties the queue. The first key will be `first`, and no key will exceed the one that was
+    /// last popped by more than `span`; room is made for `capacity` entries, whose pages are not
+    /// touched before they are used.
     pub(super) fn start(&mut self, first: u64, span: u64, capacity: usize) {
         self.clear();
         self.shift = Self::SHIFT;

@@ -1,10 +1,10 @@
 //! Jump points without corner cutting: what a jump point search generates from a node.
 //!
-//! A diagonal step needs the whole 2 x 2 block free, so diagonal moves have no forced neighbours: only
-//! straight scans end at jump points. The diagonal turning points between two straight jump points
-//! never become nodes: a diagonal is walked once, both straight directions are scanned at each of its
-//! cells, and what they find is generated with the expanded node as its parent (\[Harabor2014\], "JPS
-//! (B+P)": block-based scanning and pruning of intermediate nodes).
+//! A diagonal step needs the whole 2 x 2 block free, so diagonal moves have no forced neighbours:
+//! only straight scans end at jump points. The diagonal turning points between two straight jump
+//! points never become nodes: a diagonal is walked once, both straight directions are scanned at
+//! each of its cells, and what they find is generated with the expanded node as its parent
+//! (\[Harabor2014\], "JPS (B+P)": block-based scanning and pruning of intermediate nodes).
 //!
 //! The goal need not stop the scans: a shortest path leaves its last jump point for the goal along
 //! one diagonal and then straight, so it is enough to look for it once, in the direction in which

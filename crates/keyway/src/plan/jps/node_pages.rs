@@ -5,8 +5,8 @@
 /// A page is handed out at the first touch, so the nodes of one query lie close together, whatever
 /// the size of the map: a query after thousands of others finds its nodes in the cache, and the
 /// first queries do not pay for pages of memory that hold one node each. Nothing is cleared between
-/// queries. Memory: 1/8 byte per cell of the padded map, and 1 kB per page of the query that touched
-/// most; room for all pages is reserved, but not touched.
+/// queries. Memory: 1/8 byte per cell of the padded map, and 1 kB per page of the query that
+/// touched most; room for all pages is reserved, but not touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NodePages {
     /// For every 64 cells: epoch << 32 | number of the page.

@@ -123,7 +123,8 @@ mod tests {
     use super::*;
     use crate::map::{LayerConfig, OccupancyGrid};
 
-    /// By the definition: all octile ways between two cells are free, and no corner cell lies on one.
+    /// By the definition: all octile ways between two cells are free, and no corner cell lies on
+    /// one.
     fn is_direct(map: &SearchMap, corners: &Corners, from: Cell, to: Cell) -> bool {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let (sign_x, sign_y) = (dx.signum(), dy.signum());

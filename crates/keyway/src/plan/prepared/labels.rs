@@ -4,8 +4,9 @@
 //! have a hub in common that lies on a shortest path between their nodes. The distance of two nodes
 //! is then the smallest sum over the hubs that both labels hold: no search, two short lists.
 //!
-//! Each node in turn, the most important one first, is entered as a hub at all nodes that it reaches
-//! by a search, which goes no further where labels made so far give that distance or a smaller one.
+//! Each node in turn, the most important one first, is entered as a hub at all nodes that it
+//! reaches by a search, which goes no further where labels made so far give that distance or a
+//! smaller one.
 
 use super::PrepareError;
 use super::graph::Edge;
@@ -55,9 +56,9 @@ pub(super) struct Labels {
     pub(super) hops: Vec<Hop>,
 }
 
-/// The first leg of the way to a hub, in 32 bits: the place among all entries of the one for the same
-/// hub in the label of the next node << 3 | the octant in which that node lies. The difference of
-/// the two entries gives the length of the leg.
+/// The first leg of the way to a hub, in 32 bits: the place among all entries of the one for the
+/// same hub in the label of the next node << 3 | the octant in which that node lies. The difference
+/// of the two entries gives the length of the leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Hop(pub(super) u32);
 
@@ -77,8 +78,8 @@ impl Hop {
     }
 }
 
-/// Where `to` lies from `from`: bit 0 says to the west, bit 1 to the south, bit 2 further in rows than
-/// in columns.
+/// Where `to` lies from `from`: bit 0 says to the west, bit 1 to the south, bit 2 further in rows
+/// than in columns.
 pub(super) fn octant(from: Cell, to: Cell) -> u8 {
     let steep = from.y.abs_diff(to.y) > from.x.abs_diff(to.x);
     u8::from(to.x < from.x) | u8::from(to.y < from.y) << 1 | u8::from(steep) << 2
@@ -88,7 +89,8 @@ impl Labels {
     /// The labels of a graph whose nodes are numbered by importance and lie at `cells`.
     ///
     /// # Errors
-    /// When a way is too long for an [`Entry`], or there are too many entries; and those of `progress`.
+    /// When a way is too long for an [`Entry`], or there are too many entries; and those of
+    /// `progress`.
     pub(super) fn new(
         graph: &[Vec<Edge>],
         cells: &[Cell],
@@ -162,9 +164,9 @@ impl Labels {
     }
 
     /// Checks that queries can rely on the tables, whoever made them: each label ends with its own
-    /// node, and every hop leads nearer to its hub, to the cell of the node it names. `first` must be
-    /// ascending and end with the number of entries. Otherwise the error is the place of an entry
-    /// at fault.
+    /// node, and every hop leads nearer to its hub, to the cell of the node it names. `first` must
+    /// be ascending and end with the number of entries. Otherwise the error is the place of an
+    /// entry at fault.
     #[cfg(feature = "formats")]
     pub(super) fn check(&self, cells: &[Cell]) -> Result<(), usize> {
         let mut owners = vec![0; self.entries.len()];

@@ -4,13 +4,13 @@
 //! finds these corner cells, connects those that see each other (a subgoal graph \[Uras2013\]), and
 //! stores for each a hub label \[Abraham2012\]: a short list of nodes with exact distances, so that
 //! the distance of any two corner cells is the smallest sum over the nodes in both lists. A query
-//! looks from start and goal for the cells at which a path may turn first \[Harabor2011\], and joins
-//! their lists. There is no search, and the paths are exactly as short as those of A*.
+//! looks from start and goal for the cells at which a path may turn first \[Harabor2011\], and
+//! joins their lists. There is no search, and the paths are exactly as short as those of A*.
 //!
 //! # Source
-//! \[Uras2013\]: simple subgoal graphs, and algorithm 1 to find what is directly reachable. \[Harabor2011\]:
-//! where a path may turn. \[Geisberger2008\]: the order of the nodes. \[Abraham2012\], \[Akiba2013\]: the
-//! labels, and how they are made.
+//! \[Uras2013\]: simple subgoal graphs, and algorithm 1 to find what is directly reachable.
+//! \[Harabor2011\]: where a path may turn. \[Geisberger2008\]: the order of the nodes.
+//! \[Abraham2012\], \[Akiba2013\]: the labels, and how they are made.
 //!
 //! | papers | here |
 //! |---|---|
@@ -24,16 +24,16 @@
 //!   errors. Labels are exact for any order, and hardly longer for this one.
 //! - Start and goal are connected by jump points, not by subgoals: far fewer are of use. That this
 //!   is enough is shown at `query`.
-//! - Scans pass jump points; each is a turn of its own, which bounds the length of a path through it
-//!   from below.
+//! - Scans pass jump points; each is a turn of its own, which bounds the length of a path through
+//!   it from below.
 //!
 //! # Errors / cost
-//! A preparation is bound to the blocked cells it was made for: on any other map, and after an edit,
-//! [`PlanError::OtherMap`]. Memory and time of the preparation grow with the number of corner cells
-//! times the length of their labels, which is 10 to 30 on mazes and most game maps, 80 on a city map
-//! with 10,000 corner cells, and near 300 on a field of single obstacle cells with 67,000. A query
-//! costs its scans, the labels that it reads and the cells that it writes; it allocates nothing once
-//! warm. A budget counts labels that are read.
+//! A preparation is bound to the blocked cells it was made for: on any other map, and after an
+//! edit, [`PlanError::OtherMap`]. Memory and time of the preparation grow with the number of corner
+//! cells times the length of their labels, which is 10 to 30 on mazes and most game maps, 80 on a
+//! city map with 10,000 corner cells, and near 300 on a field of single obstacle cells with 67,000.
+//! A query costs its scans, the labels that it reads and the cells that it writes; it allocates
+//! nothing once warm. A budget counts labels that are read.
 
 mod corners;
 mod diagonals;

@@ -1,14 +1,14 @@
 //! A query on a prepared map.
 //!
 //! Start and goal look around for cells at which a path may turn first, or last; at first towards
-//! each other. One pair of these gives a path, and its length bounds all that follows. The labels of
-//! the turns through which a shorter path may lead are joined: those of the start's are entered into
-//! a table by hub, those of the goal's are looked up there.
+//! each other. One pair of these gives a path, and its length bounds all that follows. The labels
+//! of the turns through which a shorter path may lead are joined: those of the start's are entered
+//! into a table by hub, those of the goal's are looked up there.
 //!
-//! That finds a shortest path: let a be the first turn of one, made to run diagonally first wherever
-//! it can. Then look from the goal for a path of the same length to a, made in the same way. Its first
-//! turn is one that the goal has found, and the distance of both turns is in the labels; or it has
-//! no turn, and the goal sees a.
+//! That finds a shortest path: let a be the first turn of one, made to run diagonally first
+//! wherever it can. Then look from the goal for a path of the same length to a, made in the same
+//! way. Its first turn is one that the goal has found, and the distance of both turns is in the
+//! labels; or it has no turn, and the goal sees a.
 
 use super::hubs::{Access, HubMemory};
 use super::labels::Entry;
@@ -96,8 +96,8 @@ impl<'a, O: Observer> Search<'a, O> {
         }
     }
 
-    /// Finds the turns straight ahead in direction `quarter`, and on both sides of the diagonal after
-    /// it.
+    /// Finds the turns straight ahead in direction `quarter`, and on both sides of the diagonal
+    /// after it.
     fn look(&mut self, i: usize, quarter: usize, (from, to): (Cell, Cell), most: usize) {
         let sight = self.sight;
         sight.along(from, quarter, 0, |turn| self.enter(i, turn, to));
@@ -205,8 +205,8 @@ impl<'a, O: Observer> Search<'a, O> {
     }
 }
 
-/// The least length of a path that turns at a cell to one of the sides that open, as a key: its next
-/// step is diagonal to that side, or straight there.
+/// The least length of a path that turns at a cell to one of the sides that open, as a key: its
+/// next step is diagonal to that side, or straight there.
 fn least_after_turn(at: Cell, ahead: (i32, i32), opens: [bool; 2], to: Cell) -> u64 {
     let left = (-ahead.1, ahead.0);
     let least = |(x, y): (i32, i32)| {

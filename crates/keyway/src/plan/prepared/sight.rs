@@ -113,8 +113,9 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// Calls `visit` for the cells of the diagonal after straight direction `quarter` from which there
-    /// is something to be seen, with the steps to them, until it says that it has seen enough.
+    /// Calls `visit` for the cells of the diagonal after straight direction `quarter` from which
+    /// there is something to be seen, with the steps to them, until it says that it has seen
+    /// enough.
     pub(super) fn diagonal(
         &self,
         from: Cell,

@@ -1,5 +1,5 @@
-//! From a route to the cells of its path. Its jump points are the cells that a query knows of it: its
-//! turns, and the nodes that it leads over.
+//! From a route to the cells of its path. Its jump points are the cells that a query knows of it:
+//! its turns, and the nodes that it leads over.
 
 use super::Prepared;
 use super::labels::octant;

@@ -39,7 +39,8 @@ impl CellTree {
         self.push(root, 0, 0)
     }
 
-    /// Adds a cell that is not in the tree, at the end of a line of length `length` from its parent.
+    /// Adds a cell that is not in the tree, at the end of a line of length `length` from its
+    /// parent.
     pub(super) fn add(&mut self, cell: Cell, parent: TreeNode, length: u64) -> TreeNode {
         self.push(cell, parent.number, parent.g + length)
     }
@@ -61,8 +62,8 @@ impl CellTree {
         self.by_place.contains(cell)
     }
 
-    /// The node whose centre is nearest to that of a cell, in a tie the oldest one; `None` before the
-    /// first [`Self::start`].
+    /// The node whose centre is nearest to that of a cell, in a tie the oldest one; `None` before
+    /// the first [`Self::start`].
     pub(super) fn nearest(&self, to: Cell) -> Option<TreeNode> {
         let number = self.by_place.nearest(to)?;
         Some(self.nodes[number as usize].0)

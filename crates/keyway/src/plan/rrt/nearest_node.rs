@@ -5,9 +5,9 @@ use crate::map::Cell;
 /// Numbered cells of a map, in squares of squares: level l has a mark for every square of 2^l x 2^l
 /// cells that holds one.
 ///
-/// The nearest one is looked for from the largest square down, the nearer quarters first; squares that
-/// are farther than what is found are left out. Memory: 4 bytes and a third per cell of the map, of
-/// which only what is near a numbered cell is touched.
+/// The nearest one is looked for from the largest square down, the nearer quarters first; squares
+/// that are farther than what is found are left out. Memory: 4 bytes and a third per cell of the
+/// map, of which only what is near a numbered cell is touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NearestNode {
     width: u32,
@@ -141,7 +141,8 @@ impl Level {
     }
 }
 
-/// The square of the distance from a cell to the nearest one of a square of 2^level x 2^level cells.
+/// The square of the distance from a cell to the nearest one of a square of 2^level x 2^level
+/// cells.
 fn distance_sq(level: usize, (x, y): (i64, i64), to: Cell) -> u64 {
     let along = |at: i32, square: i64| {
         let (at, first) = (i64::from(at), square << level);

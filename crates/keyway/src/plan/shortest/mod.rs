@@ -1,16 +1,16 @@
 //! The shortest line there is: what any path can be compared with.
 //!
-//! A shortest line among obstacles is taut: it goes straight from corner to corner of blocked cells. So
-//! it is found by A* over those corners that see each other, and never over a grid of directions
-//! \[LozanoPerez1979\]. Only corners that the line can turn around are followed, in the direction in
-//! which it bends around the obstacle.
+//! A shortest line among obstacles is taut: it goes straight from corner to corner of blocked
+//! cells. So it is found by A* over those corners that see each other, and never over a grid of
+//! directions \[LozanoPerez1979\]. Only corners that the line can turn around are followed, in the
+//! direction in which it bends around the obstacle.
 //!
 //! # Source
 //! \[LozanoPerez1979\]. Corners in sight are found row by row, as in \[Harabor2013\].
 //!
 //! # What counts as free
-//! The line may run along the edges of blocked cells and touch their corners. Between two blocked cells
-//! that share a corner it passes only where corners may be cut ([`CornerRule::Allow`]).
+//! The line may run along the edges of blocked cells and touch their corners. Between two blocked
+//! cells that share a corner it passes only where corners may be cut ([`CornerRule::Allow`]).
 //!
 //! # Cost
 //! That of an oracle, not of a planner: a query expands the corners nearer than the goal, each of
@@ -30,8 +30,8 @@ const MAX_SIDE: u32 = 1 << 16;
 
 /// The shortest line between two positions that stays out of the blocked cells of a map.
 ///
-/// Positions are rounded to 2^-14 cells. `None` when there is no such line, a position lies in a blocked
-/// cell or outside the map, or the map has more than 65,536 columns or rows.
+/// Positions are rounded to 2^-14 cells. `None` when there is no such line, a position lies in a
+/// blocked cell or outside the map, or the map has more than 65,536 columns or rows.
 pub fn shortest_line(
     map: &SearchMap,
     corners: CornerRule,
@@ -139,8 +139,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Whether a taut line that came to a node may go on to `to`: it bends towards the obstacle, or not
-    /// at all.
+    /// Whether a taut line that came to a node may go on to `to`: it bends towards the obstacle, or
+    /// not at all.
     fn may_turn(&self, at: u32, to: Spot) -> bool {
         let parent = self.nodes[at as usize].parent;
         let Some(inner) = self.obstacle_at(self.spot(at)) else { return true };
@@ -153,7 +153,8 @@ impl<'m> Search<'m> {
         bend == 0 || bend.signum() * side.signum() >= 0
     }
 
-    /// Whether a line in this direction runs into the obstacle of a corner: it cannot bend around it.
+    /// Whether a line in this direction runs into the obstacle of a corner: it cannot bend around
+    /// it.
     fn is_head_on(&self, corner: Spot, ahead: Spot) -> bool {
         self.obstacle_at(corner)
             .is_some_and(|inner| (ahead.x.signum(), ahead.y.signum()) == (inner.x, inner.y))

@@ -41,22 +41,24 @@ impl Spot {
 
 /// What is seen.
 pub(super) trait Viewer {
-    /// A corner of an obstacle around which a shortest line may turn; (x, y) is the lower left corner of
-    /// that cell. May be reported twice.
+    /// A corner of an obstacle around which a shortest line may turn; (x, y) is the lower left
+    /// corner of that cell. May be reported twice.
     fn corner(&mut self, x: i32, y: i32);
     /// The target.
     fn target(&mut self);
 }
 
-/// Looks from `eye` in all directions. Obstacles are the blocked cells' squares without their border:
-/// a line of sight may run along an edge and touch a corner, but does not pass between two squares
-/// that share a corner.
+/// Looks from `eye` in all directions. Obstacles are the blocked cells' squares without their
+/// border: a line of sight may run along an edge and touch a corner, but does not pass between two
+/// squares that share a corner.
 ///
-/// The plane is scanned row by row, upwards and then (mirrored) downwards: what is seen of a row is a set
-/// of windows between two rays, each limited by the run of free cells that it passes. Windows of no
-/// width are left out: whatever lies behind a corner that they touch is seen from that corner.
+/// The plane is scanned row by row, upwards and then (mirrored) downwards: what is seen of a row is
+/// a set of windows between two rays, each limited by the run of free cells that it passes. Windows
+/// of no width are left out: whatever lies behind a corner that they touch is seen from that
+/// corner.
 ///
-/// Cost: a few operations for each run of free cells in view, and for each 64 cells of a row in view.
+/// Cost: a few operations for each run of free cells in view, and for each 64 cells of a row in
+/// view.
 pub(super) fn look(
     blocked: &BitGrid,
     corners: CornerRule,
@@ -203,7 +205,8 @@ fn leftmost(a: Spot, b: Spot) -> Spot {
     if b == Spot::new(0, 0) || a.cross(b) <= 0 { a } else { b }
 }
 
-/// Calls `visit` with the ends of all runs of free cells that overlap the columns from `first` to `last`.
+/// Calls `visit` with the ends of all runs of free cells that overlap the columns from `first` to
+/// `last`.
 fn for_each_run(row: &[u64], first: i32, last: i32, mut visit: impl FnMut(i32, i32)) {
     let is_blocked = |x: i32| row[(x + 1) as usize / 64] >> ((x + 1) as usize % 64) & 1 == 1;
     let mut x = first.max(-1);

@@ -1,15 +1,15 @@
 //! The disc of which hits of a range sensor show the near side.
 //!
 //! # Source
-//! The circle through hits is the algebraic least-squares fit of \[Kasa1976\]: linear, without a start value, and
-//! exact for hits without noise, however much of the circle they show.
+//! The circle through hits is the algebraic least-squares fit of \[Kasa1976\]: linear, without a
+//! start value, and exact for hits without noise, however much of the circle they show.
 //!
 //! # How certain it is
 //! A hit in the direction e from the centre, off by d along it, moves the radius and the centre by
 //! r and c with r + e c = d in the sense of least squares. So errors with the variance v give the
 //! centre the covariance v S⁻¹, where S is the sum of (e - mean e) (e - mean e)ᵀ over all hits.
-//! That holds to first order: for errors that are small beside the depth of the arc, which is r
-//! (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than it
+//! That holds to first order: for errors that are small beside the depth of the arc, which is r (1
+//! - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than it
 //! is.
 
 use crate::geometry::Point;
@@ -22,8 +22,8 @@ pub(super) struct Fit {
     /// Twice the standard deviation of the centre where it is known worst \[m\], to first order in
     /// the errors of the hits; never less than what one hit may be off.
     pub(super) off_m: f64,
-    /// Whether the hits lie on an arc; otherwise the disc is the smallest one around their ends, and what is hidden of
-    /// the thing may be as large.
+    /// Whether the hits lie on an arc; otherwise the disc is the smallest one around their ends,
+    /// and what is hidden of the thing may be as large.
     pub(super) is_round: bool,
 }
 
@@ -70,8 +70,9 @@ fn scatter(hits: &[Point], centre: Point) -> f64 {
     (xx * yy - xy * xy).max(0.0) / larger
 }
 
-/// The disc of a known radius that fits hits best while its centre is expected somewhere: Gauss-Newton steps on the sum
-/// of the squared distances to the circle and, with `weight`, of the one to where it is expected.
+/// The disc of a known radius that fits hits best while its centre is expected somewhere:
+/// Gauss-Newton steps on the sum of the squared distances to the circle and, with `weight`, of the
+/// one to where it is expected.
 pub(super) fn fit_of_radius(hits: &[Point], expected: Disc, weight: f64) -> Disc {
     const STEPS: u32 = 4;
     let mut centre = expected.centre;
@@ -102,7 +103,8 @@ pub(super) fn fit_of_radius(hits: &[Point], expected: Disc, weight: f64) -> Disc
     Disc { centre, ..expected }
 }
 
-/// The disc with the two hits that are farthest apart on its border, of those that begin at either end.
+/// The disc with the two hits that are farthest apart on its border, of those that begin at either
+/// end.
 fn around(hits: &[Point], noise_m: f64) -> Option<Fit> {
     let (&first, &last) = (hits.first()?, hits.last()?);
     let centre = first.lerp(last, 0.5);

@@ -31,8 +31,8 @@ struct Hit {
 pub(super) struct Hits(Vec<Hit>);
 
 impl Hits {
-    /// The hits of a scan; those within `explained_m` of an occupied cell of the known map are explained, and those outside the
-    /// map as well.
+    /// The hits of a scan; those within `explained_m` of an occupied cell of the known map are
+    /// explained, and those outside the map as well.
     pub(super) fn take_in(
         &mut self,
         known: &OccupancyGrid,

@@ -21,8 +21,8 @@ impl OldScan {
     }
 }
 
-/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps between standing things are
-/// wider, as a rule.
+/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps
+/// between standing things are wider, as a rule.
 const WIDEST_GAP_NOISES: f64 = 3.0;
 
 /// How many beams of one of the remembered scans have seen through what is seen of a track now.
@@ -53,8 +53,8 @@ struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     fn of(track: &Track, hits: &'a [Point], scan: &ProjectedScan, config: &TrackerConfig) -> Self {
-        // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two that are far apart there may
-        // be a gap that no beam met.
+        // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two
+        // that are far apart there may be a gap that no beam met.
         let far_m = track.centre.distance(scan.pose().point()) + track.radius_m;
         let noise_m = config.range_noise_m;
         let seen_m = noise_m + 2.5 * far_m * scan.step_rad();
@@ -64,8 +64,8 @@ impl<'a> Surface<'a> {
     /// A beam this flat on a surface may miss it: the sine of about 25 degrees.
     const FLATTEST: f64 = 0.4;
 
-    /// How many beams of a scan made at `pose` pass through the surface: between its ends as they are seen from there, not along
-    /// it, and by more than errors explain.
+    /// How many beams of a scan made at `pose` pass through the surface: between its ends as they
+    /// are seen from there, not along it, and by more than errors explain.
     fn beams_through(&self, scan: &ProjectedScan) -> u32 {
         let runs = self.hits.chunk_by(|a, b| a.distance(*b) <= self.gap_m);
         runs.map(|run| self.beams_through_run(run, scan)).sum()
@@ -98,8 +98,8 @@ impl<'a> Surface<'a> {
         count
     }
 
-    /// Whether a line has parts of the surface to both sides of it, farther from it than errors explain: of a thing
-    /// that stands there, it then meets something.
+    /// Whether a line has parts of the surface to both sides of it, farther from it than errors
+    /// explain: of a thing that stands there, it then meets something.
     fn is_inside(&self, run: &[Point], from: Point, direction: Point) -> bool {
         let aside = run.iter().map(|&hit| direction.cross(hit - from));
         let (low, high) =

@@ -73,7 +73,8 @@ fn slalom(cycle: u32) -> Pose {
 
 const RADIUS_M: f64 = 0.25;
 
-/// Follows walkers of one size and checks everything that is known of them: cycles until each was found.
+/// Follows walkers of one size and checks everything that is known of them: cycles until each was
+/// found.
 fn follow(
     drive: &mut Drive,
     pose: impl Fn(u32) -> Pose,
@@ -239,7 +240,8 @@ fn who_turns_at_once_stays_a_mover() {
     }
 }
 
-/// A walker goes behind a wall. A post that is known to stand where it may come out again is marked, also by a layer that begins.
+/// A walker goes behind a wall. A post that is known to stand where it may come out again is
+/// marked, also by a layer that begins.
 #[test]
 fn what_stands_where_a_mover_is_expected_is_marked() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
@@ -277,8 +279,8 @@ fn where_a_mover_is_only_expected_nothing_is_forgotten() {
     assert!(count >= 2 && covered);
 }
 
-/// Beside the way stand posts, boxes, a long wall, and a wall with a slot through which a part of another one comes into
-/// view: no map shows them.
+/// Beside the way stand posts, boxes, a long wall, and a wall with a slot through which a part of
+/// another one comes into view: no map shows them.
 #[test]
 fn what_stands_is_no_mover() {
     let posts: Vec<(Point, f64)> = (0..8)
@@ -302,7 +304,8 @@ fn what_stands_is_no_mover() {
     }
 }
 
-/// From afar the gaps between posts are narrower than those between beams; from nearby they are seen through.
+/// From afar the gaps between posts are narrower than those between beams; from nearby they are
+/// seen through.
 #[test]
 fn a_fence_of_posts_is_no_mover() {
     let diagonal = |i: i32| Point::new(0.15 * f64::from(i), 0.8 + 0.15 * f64::from(i % 2));
@@ -326,7 +329,8 @@ fn a_fence_of_posts_is_no_mover() {
     }
 }
 
-/// While a robot drives along them, parts of standing things can seem to be one that grows and moves.
+/// While a robot drives along them, parts of standing things can seem to be one that grows and
+/// moves.
 #[test]
 fn what_has_grown_wider_than_a_mover_is_none() {
     let mut drive = Drive::new(map(&[]), &[]);

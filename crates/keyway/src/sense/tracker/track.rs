@@ -9,8 +9,8 @@ use arrayvec::ArrayVec;
 
 /// A thing that no map shows: its state, and what shows whether it moves.
 ///
-/// Position and velocity are estimated by a Kalman filter of constant velocity \[BarShalom2001, section 6.3\], with the same
-/// covariance along both axes, so that three numbers are enough.
+/// Position and velocity are estimated by a Kalman filter of constant velocity \[BarShalom2001,
+/// section 6.3\], with the same covariance along both axes, so that three numbers are enough.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     pub(super) id: u64,
@@ -24,9 +24,11 @@ pub(super) struct Track {
     age_s: f64,
     pub(super) unseen_s: f64,
     pub(super) is_mover: bool,
-    /// Scans in which what stood at the anchor was seen through, or what is here now stands in what was seen through.
+    /// Scans in which what stood at the anchor was seen through, or what is here now stands in what
+    /// was seen through.
     pub(super) evidence: u32,
-    /// How long ago something was last seen to speak against its standing still; infinite when nothing has \[s\].
+    /// How long ago something was last seen to speak against its standing still; infinite when
+    /// nothing has \[s\].
     pub(super) since_doubted_s: f64,
     /// Where it was first seen, or stands since.
     pub(super) anchor: Anchor,
@@ -65,14 +67,15 @@ impl Track {
     /// Hits of a surface that are remembered; of more, every second one, and so on.
     pub(super) const MOST_HITS: usize = 48;
 
-    /// Who has been out of view for longer may be anywhere: it is not looked for where it could have turned to, and its rest
-    /// begins anew \[s\].
+    /// Who has been out of view for longer may be anywhere: it is not looked for where it could
+    /// have turned to, and its rest begins anew \[s\].
     const TURNED_S: f64 = 0.3;
 
     /// Cells of a trail that are remembered, the oldest ones last.
     const MOST_CELLS: usize = 96;
 
-    /// For so many hits one beam has to speak against its standing still: errors larger than expected make single beams do so.
+    /// For so many hits one beam has to speak against its standing still: errors larger than
+    /// expected make single beams do so.
     const HITS_PER_BEAM_AGAINST: usize = 8;
 
     /// Standard deviations within which an error is taken to be.
@@ -133,7 +136,8 @@ impl Track {
         Self::SIGMAS * self.spread.position.sqrt()
     }
 
-    /// Its hits are no farther than this from where it is expected \[m\]. A mover may have turned around since it was last seen.
+    /// Its hits are no farther than this from where it is expected \[m\]. A mover may have turned
+    /// around since it was last seen.
     pub(super) fn reach_m(&self, noise_m: f64) -> f64 {
         let seen_s = if self.is_mover { self.unseen_s.min(Self::TURNED_S) } else { 0.0 };
         self.radius_m + self.off_m() + 2.0 * (noise_m + self.velocity_mps.norm() * seen_s)
@@ -177,7 +181,8 @@ impl Track {
         self.centre.distance(self.anchor.centre) > off_m
     }
 
-    /// Of the surface on which there are so many hits now, so many beams of a remembered scan have seen through it.
+    /// Of the surface on which there are so many hits now, so many beams of a remembered scan have
+    /// seen through it.
     pub(super) const fn note_seen_through(&mut self, beams: u32, hits: usize) {
         if beams >= EVIDENCE_BEAMS && beams as usize * Self::HITS_PER_BEAM_AGAINST >= hits {
             self.since_doubted_s = 0.0;
@@ -190,10 +195,12 @@ impl Track {
         left.extend(self.marked.drain(..));
     }
 
-    /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this scan.
+    /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this
+    /// scan.
     pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
         let speed_mps = self.velocity_mps.norm();
-        // Who was out of view may have been anywhere, and from a place that was known much worse it may have come: that shows no rest.
+        // Who was out of view may have been anywhere, and from a place that was known much worse it
+        // may have come: that shows no rest.
         let is_in_view =
             self.anchor.unseen_s <= Self::TURNED_S && self.anchor.off_m <= 2.0 * self.off_m();
         let is_known = is_in_view || self.off_m() + self.anchor.off_m <= config.gap_m;

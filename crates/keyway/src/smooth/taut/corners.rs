@@ -69,8 +69,8 @@ impl<'m> Corners<'m> {
         })
     }
 
-    /// Visits all corners whose discs may meet the convex hull of the segments \[cells\], and some more.
-    /// On the border of the map a path cannot bend around anything.
+    /// Visits all corners whose discs may meet the convex hull of the segments \[cells\], and some
+    /// more. On the border of the map a path cannot bend around anything.
     pub(super) fn for_each_near<const N: usize>(
         &self,
         hull: [Segment; N],

@@ -1,29 +1,30 @@
-//! The taut path: a line -> the locally shortest path at a clearance, as if the line were a string that
-//! is pulled tight around the obstacles.
+//! The taut path: a line -> the locally shortest path at a clearance, as if the line were a string
+//! that is pulled tight around the obstacles.
 //!
-//! The end of a string is led along the line, and the string is kept tight: its last leg sweeps over the
-//! plane. Where it meets a corner of an obstacle, the string bends around it from then on; where it has
-//! become straight at a corner, it leaves it. So no obstacle ever changes sides: the path is the shortest
-//! one of all into which the line can be pulled (of its homotopy class). With a clearance the string
-//! winds around discs of that radius: its legs are tangents, its bends are arcs.
+//! The end of a string is led along the line, and the string is kept tight: its last leg sweeps
+//! over the plane. Where it meets a corner of an obstacle, the string bends around it from then on;
+//! where it has become straight at a corner, it leaves it. So no obstacle ever changes sides: the
+//! path is the shortest one of all into which the line can be pulled (of its homotopy class). With
+//! a clearance the string winds around discs of that radius: its legs are tangents, its bends are
+//! arcs.
 //!
 //! # Source
-//! \[Hershberger1994\], whose funnel needs a triangulation; here the corners in the triangle that a leg sweeps
-//! are found in the map's bits, row by row.
+//! \[Hershberger1994\], whose funnel needs a triangulation; here the corners in the triangle that a
+//! leg sweeps are found in the map's bits, row by row.
 //!
 //! # What the clearance means
-//! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all that
-//!   is kept away from; all else follows.
-//! - Around a corner that the line itself is nearer to than the clearance, the radius is the line's own
-//!   distance, and what is missing is reported. A line may begin or end so.
-//! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares stays
-//!   as it is; what is before and after it is pulled tight.
+//! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all
+//!   that is kept away from; all else follows.
+//! - Around a corner that the line itself is nearer to than the clearance, the radius is the line's
+//!   own distance, and what is missing is reported. A line may begin or end so.
+//! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares
+//!   stays as it is; what is before and after it is pulled tight.
 //!
 //! # Once more
-//! Without clearance the taut path of a taut path is that path. With a clearance it is, too, for a line
-//! that keeps the clearance, such as tangents around the arcs. Points *on* the arcs joined by straight
-//! lines are not such a line: they cut into the discs, so that less than the clearance is kept, and
-//! that is reported.
+//! Without clearance the taut path of a taut path is that path. With a clearance it is, too, for a
+//! line that keeps the clearance, such as tangents around the arcs. Points *on* the arcs joined by
+//! straight lines are not such a line: they cut into the discs, so that less than the clearance is
+//! kept, and that is reported.
 //!
 //! # Errors / cost
 //! None. The result is measured exactly; where it is not as good as the line, which only comes from

@@ -25,9 +25,9 @@ fn groups(grid: &OccupancyGrid) -> Vec<Cell> {
     groups
 }
 
-/// How a line passes the groups: the rays upwards from each that it crosses, with the direction, and
-/// crossings there and back again cancelled. Two lines with the same ends can be pulled into each
-/// other if and only if these are the same.
+/// How a line passes the groups: the rays upwards from each that it crosses, with the direction,
+/// and crossings there and back again cancelled. Two lines with the same ends can be pulled into
+/// each other if and only if these are the same.
 fn word(line: &Polyline, groups: &[Cell]) -> Vec<(usize, bool)> {
     let ray = |number: usize| {
         let shift = 1e-3 * (number as f64 + 0.37);

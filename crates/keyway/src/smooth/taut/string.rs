@@ -4,12 +4,12 @@ use super::TOUCH_CELLS;
 use super::corners::{Corner, Corners, position};
 use crate::geometry::{Point, Segment};
 
-/// Steps for each point of the line after which a string is given up: no more than this many corners
-/// are met or left on the way to a point of any map that was tried, by far.
+/// Steps for each point of the line after which a string is given up: no more than this many
+/// corners are met or left on the way to a point of any map that was tried, by far.
 const STEPS_PER_POINT: usize = 10_000;
 
-/// A circle that a path passes as a tangent. Its radius is positive where the path turns left around
-/// it, negative where it turns right, and 0 for a point.
+/// A circle that a path passes as a tangent. Its radius is positive where the path turns left
+/// around it, negative where it turns right, and 0 for a point.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     centre: Point,
@@ -95,8 +95,8 @@ struct Sweep {
     angle_rad: f64,
 }
 
-/// The contacts of the taut string that can be pulled from a line \[cells\], the first point among them.
-/// `None` when the line has no point or the string did not come to its end.
+/// The contacts of the taut string that can be pulled from a line \[cells\], the first point among
+/// them. `None` when the line has no point or the string did not come to its end.
 pub(super) fn pull(corners: &Corners<'_>, line: &[Point]) -> Option<Vec<Contact>> {
     let (&start, rest) = line.split_first()?;
     let mut string = TautString { corners, contacts: vec![Contact::start(start)], end: start };
@@ -162,7 +162,8 @@ impl TautString<'_, '_> {
         Some(())
     }
 
-    /// From a pivot without extent, at which the end is, the leg begins in the direction of the goal.
+    /// From a pivot without extent, at which the end is, the leg begins in the direction of the
+    /// goal.
     fn leave(&mut self, goal: Point) {
         if let Some(pivot) = self.contacts.last_mut() {
             let turned = signed_angle(pivot.arrival, goal - pivot.centre);
@@ -255,7 +256,8 @@ impl TautString<'_, '_> {
         (!is_grazed || self.turns_inwards(sweep, &hit, is_at_end)).then_some(hit)
     }
 
-    /// Whether a corner that is grazed, by the leg or by its end, has an obstacle where the leg turns to.
+    /// Whether a corner that is grazed, by the leg or by its end, has an obstacle where the leg
+    /// turns to.
     fn turns_inwards(&self, sweep: &Sweep, hit: &Hit, is_at_end: bool) -> bool {
         let ahead = hit.leg.direction;
         let next = if is_at_end { sweep.to - sweep.from } else { ahead };
@@ -263,8 +265,9 @@ impl TautString<'_, '_> {
     }
 }
 
-/// The leg that leaves one disc as its tangent and arrives at another as its tangent: with the vector
-/// v between the centres, J v (v turned left by 90 degrees), and r the difference of the bends,
+/// The leg that leaves one disc as its tangent and arrives at another as its tangent: with the
+/// vector v between the centres, J v (v turned left by 90 degrees), and r the difference of the
+/// bends,
 /// |v|^2 direction = length v + r J v. `None` where one disc lies in the other.
 fn tangent(from: Disc, to: Disc) -> Option<Leg> {
     let v = to.centre - from.centre;
@@ -280,7 +283,8 @@ fn tangent(from: Disc, to: Disc) -> Option<Leg> {
     Some(Leg { from: from.centre + right * from.bend, direction, length })
 }
 
-/// The last leg of a string that ends at a point. Where that is rounded into the disc, it touches it.
+/// The last leg of a string that ends at a point. Where that is rounded into the disc, it touches
+/// it.
 fn leg_to(pivot: &Contact, end: Point) -> Option<Leg> {
     let bend = pivot.disc().bend;
     let limit = end.distance(pivot.centre);
@@ -288,7 +292,8 @@ fn leg_to(pivot: &Contact, end: Point) -> Option<Leg> {
     tangent(disc, Disc { centre: end, bend: 0.0 })
 }
 
-/// The side to which the last leg turns when its end goes straight to `goal`; 0 when it does not turn.
+/// The side to which the last leg turns when its end goes straight to `goal`; 0 when it does not
+/// turn.
 fn turning_side(pivot: &Contact, leg: &Leg, goal: Point) -> f64 {
     let ahead = goal - leg.from;
     let off = leg.direction.cross(ahead);

@@ -57,8 +57,9 @@ fn stays_on_its_side_of_an_obstacle() {
 
 #[test]
 fn a_corner_that_the_line_grazes_on_its_other_side_bends_nothing() {
-    // The line x = 3 y - 13 touches the corner (5, 6) of the obstacle below it, and (2, 5) of the one above
-    // it. From (9, 7.5) the string passes 0.07 m above (5, 6), and bends around (2, 5) only.
+    // The line x = 3 y - 13 touches the corner (5, 6) of the obstacle below it, and (2, 5) of the
+    // one above it. From (9, 7.5) the string passes 0.07 m above (5, 6), and bends around (2, 5)
+    // only.
     let free = "...........";
     let rows = [free, free, ".#...#.....", free, free, free, free, free];
     let grazing = [[9.0, 7.5], [8.0, 7.0], [0.5, 4.5]];
@@ -68,8 +69,8 @@ fn a_corner_that_the_line_grazes_on_its_other_side_bends_nothing() {
 #[test]
 fn through_a_maze() {
     let rows = ["......", ".####.", "....#.", ".##.#.", "....#."];
-    // From inside the hook at (2.5, 2.5) around it to its outside (5.5, 2.5): over the top is not its way in,
-    // the line leaves the hook at the left and goes over (1, 4) and (5, 4).
+    // From inside the hook at (2.5, 2.5) around it to its outside (5.5, 2.5): over the top is not
+    // its way in, the line leaves the hook at the left and goes over (1, 4) and (5, 4).
     let way = [[2.5, 2.5], [0.5, 2.5], [0.5, 4.5], [5.5, 4.5], [5.5, 2.5]];
     let expected = [[2.5, 2.5], [1.0, 3.0], [1.0, 4.0], [5.0, 4.0], [5.5, 2.5]];
     assert_eq!(corners(&rows, &way), expected);
@@ -113,8 +114,8 @@ fn bends_also_where_the_border_is_nearer_than_the_clearance() {
 
 #[test]
 fn a_line_that_comes_back_unwinds_the_disc() {
-    // Up and left around the corner (1, 2), and back to below it: what is left is straight. The legs touch
-    // the disc on the way back.
+    // Up and left around the corner (1, 2), and back to below it: what is left is straight. The
+    // legs touch the disc on the way back.
     let rows = ["....", "....", "#...", "#..."];
     for r in [0.01, 0.1, 0.25, 0.5] {
         let (x, y) = (1.0 + r, 2.0 + r);
@@ -130,7 +131,8 @@ fn a_line_that_comes_back_unwinds_the_disc() {
         let done = pulled_on(&["....", "..#.", "...."], line, clearance_m);
         assert!(done.path.length_m() < 1e-9 && done.sharp_corners.is_empty(), "{done:?}");
     }
-    // Through the corner (2, 2), around (2, 1) and back: as far as possible from both that is nothing.
+    // Through the corner (2, 2), around (2, 1) and back: as far as possible from both that is
+    // nothing.
     let line = [[1.0, 3.0], [3.0, 1.0], [1.0, 0.0], [3.0, 1.0]];
     let done = pulled_on(&["....", ".#..", "...."], &line, 1.0);
     assert!((done.path.length_m() - 8f64.sqrt()).abs() < 1e-9, "{done:?}");
@@ -211,8 +213,8 @@ fn a_slight_bend_is_an_arc_too() {
 
 #[test]
 fn a_disc_that_is_entered_by_a_hair_bends_the_path() {
-    // The straight line between both ends passes the corner (1, 2) at less than 0.5 m, by less than a
-    // micrometre, at right angles to the diagonal.
+    // The straight line between both ends passes the corner (1, 2) at less than 0.5 m, by less than
+    // a micrometre, at right angles to the diagonal.
     let rows = ["......", "......", "......", "#.....", "#....."];
     let diagonal = Point::new(0.5f64.sqrt(), 0.5f64.sqrt());
     let at = |far: f64, along: f64| {
@@ -229,8 +231,8 @@ fn a_disc_that_is_entered_by_a_hair_bends_the_path() {
 
 #[test]
 fn what_is_only_touched_is_no_corner() {
-    // Down the left edges of two squares, which the line touches, and to the left around (3, 1) at 0.5 m:
-    // between them the path goes straight on.
+    // Down the left edges of two squares, which the line touches, and to the left around (3, 1) at
+    // 0.5 m: between them the path goes straight on.
     let rows = ["....", ".#..", "....", "...."];
     let line = [[1.0, 3.5], [1.0, 0.5], [3.5, 0.5], [3.5, 2.5]];
     let done = pulled_on(&rows, &line, 0.5);
@@ -243,8 +245,8 @@ fn what_is_only_touched_is_no_corner() {
 
 #[test]
 fn the_least_distance_of_the_line_is_kept_around_a_corner() {
-    // The line passes (1, 2) at 0.25 m, and comes as near as 0.35 m once more: the smaller one counts.
-    // Straight up to (1.25, 2), around to where the tangent to (0.5, 3) leaves, and on.
+    // The line passes (1, 2) at 0.25 m, and comes as near as 0.35 m once more: the smaller one
+    // counts. Straight up to (1.25, 2), around to where the tangent to (0.5, 3) leaves, and on.
     let rows = ["....", "....", "#...", "#..."];
     let line = [[1.25, 0.5], [1.25, 2.25], [0.5, 3.0]];
     let to_goal = 1.25f64.sqrt();
@@ -252,14 +254,16 @@ fn the_least_distance_of_the_line_is_kept_around_a_corner() {
     let expected = 1.5 + 0.25 * arc_rad + (1.25f64 - 0.0625).sqrt();
     let done = pulled_on(&rows, &line, 1.0);
     assert!((done.path.length_m() - expected).abs() < 1e-6, "{expected}: {done:?}");
-    // At (4, 3) the line is 0.5 m away, at (4, 2) 1 m: 60 degrees around the first, 30 around the second.
+    // At (4, 3) the line is 0.5 m away, at (4, 2) 1 m: 60 degrees around the first, 30 around the
+    // second.
     let rows = ["......", "....#.", "......", "......"];
     let done = pulled_on(&rows, &[[5.5, 3.5], [3.0, 3.5], [3.0, 1.0]], 1.3);
     let third = std::f64::consts::FRAC_PI_3;
     let expected = 1.5 + 0.5 * third + 0.75f64.sqrt() + 0.5 * third + 1.0;
     assert!((done.path.length_m() - expected).abs() < 1e-6, "{expected}: {done:?}");
     assert_eq!(done.path.pieces().len(), 5, "{done:?}");
-    // Along an upper edge from (2, 4) to (1, 4), a quarter of a circle of 1 m around (1, 3), straight down.
+    // Along an upper edge from (2, 4) to (1, 4), a quarter of a circle of 1 m around (1, 3),
+    // straight down.
     let rows = ["...", "...", "...", ".#.", "...", "...", "..."];
     let done = pulled_on(&rows, &[[2.0, 4.0], [0.0, 4.0], [0.0, 1.0]], 1.8);
     assert!((done.path.length_m() - 3.0 - FRAC_PI_2).abs() < 1e-4, "{done:?}");
@@ -288,7 +292,8 @@ fn an_end_that_slides_along_an_obstacle() {
     let line = [[0.5, 0.5], [2.5, 0.5], [2.5, 1.5], [1.5, 0.5], [3.5, 0.2]];
     assert_eq!(corners(&rows, &line), [line[0], line[4]]);
     assert!((pulled_on(&rows, &line[..4], 1.0).path.length_m() - 1.0).abs() < 1e-9);
-    // To a place on the edge, and back from it: (0, 2) is left of the line from (1, 4) that it began with.
+    // To a place on the edge, and back from it: (0, 2) is left of the line from (1, 4) that it
+    // began with.
     let rows = ["...", ".#.", "...", "..."];
     assert_eq!(
         corners(&rows, &[[1.0, 4.0], [0.0, 2.0], [3.0, 2.0], [0.0, 2.0]]),

@@ -61,8 +61,8 @@ fn who_waits_for_a_mover_says_so() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// Whatever stands and moves around it: a candidate is refused for one reason, no refused one drives, and remedies are
-    /// given where none drives.
+    /// Whatever stands and moves around it: a candidate is refused for one reason, no refused one
+    /// drives, and remedies are given where none drives.
     #[test]
     fn every_candidate_is_counted_once(
         world in blocks(), heading in -3.0..3.0_f64, end in (0.1..3.9_f64, 0.1..3.9_f64), v_mps in 0.0..2.0_f64,

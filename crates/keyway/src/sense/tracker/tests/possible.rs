@@ -7,7 +7,8 @@ fn posts(off_m: f64) -> Vec<(Point, f64)> {
     (0..4).map(|i| (Point::new(1.2 - off_m, 0.7 * f64::from(i) - 1.0), 0.15)).collect()
 }
 
-/// Posts seen in the wrong place, 0.1 m off, by one scan, and posts that are pushed as far: both may be movers for a while.
+/// Posts seen in the wrong place, 0.1 m off, by one scan, and posts that are pushed as far: both
+/// may be movers for a while.
 #[test]
 fn what_stands_after_all_is_no_mover_for_long() {
     for is_pushed in [false, true] {
@@ -46,7 +47,8 @@ fn single_beams_are_errors() {
     assert!(cycles <= 10, "{cycles}");
 }
 
-/// Too narrow for its shape to be known, so that nothing shows that it has left its place: beams see through that for ever.
+/// Too narrow for its shape to be known, so that nothing shows that it has left its place: beams
+/// see through that for ever.
 #[test]
 fn what_was_pushed_away_stands_again() {
     let mut drive = Drive::new(map(&[]), &[]);
