@@ -6,8 +6,8 @@
 
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::local::{
-    Decision, DriveMemory, DynamicWindow, LocalPlanner, NoCommand, Rollout, Scene, Scratch, Term,
-    TermValue, Weighing, WindowConfig,
+    Decision, DriveMemory, DynamicWindow, Explanation, LocalPlanner, NoCommand, Rollout, Scene,
+    Scratch, Term, TermValue, Weighing, WindowConfig,
 };
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
@@ -29,11 +29,21 @@ impl NearRoute {
         let window = DynamicWindow::new(WindowConfig::for_robot(robot), robot.clone())?;
         let weighing = Weighing([
             Term::of("heading", 0.1),
-            Term::of("clearance", 0.05),
+            Term::of("distance", 0.05),
             Term::of("speed", 0.1),
             Term::cost("route", route_weight),
         ]);
         Ok(Self { window, weighing })
+    }
+
+    /// The values of all terms, in the order of the weighing.
+    fn terms(scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [TermValue; 4] {
+        [
+            TermValue::of(rollout.heading),
+            TermValue::of(rollout.distance_m),
+            TermValue::of(velocity.v.abs()),
+            TermValue::of(Self::off_route_m(scene, rollout)),
+        ]
     }
 
     /// The term: the distance from the route to where a candidate leads \[m\].
@@ -51,14 +61,13 @@ impl LocalPlanner for NearRoute {
         _: &mut DriveMemory,
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        self.window.decide(scene, scratch, &self.weighing, |velocity: Velocity, rollout| {
-            [
-                TermValue::of(rollout.heading),
-                TermValue::of(rollout.distance_m),
-                TermValue::of(velocity.v.abs()),
-                TermValue::of(Self::off_route_m(scene, rollout)),
-            ]
-        })
+        let terms = |velocity, rollout: &Rollout| Self::terms(scene, velocity, rollout);
+        self.window.decide(scene, scratch, &self.weighing, terms)
+    }
+
+    fn explain(&self, scene: &Scene<'_>, _: &DriveMemory) -> Explanation {
+        let terms = |velocity, rollout: &Rollout| Self::terms(scene, velocity, rollout);
+        self.window.explain(scene, &self.weighing, terms)
     }
 }
 
@@ -78,7 +87,8 @@ fn run(route_weight: f64) -> Result<EpisodeReport, Box<dyn Error>> {
 /// The mean distance from the middle of the hall over all cycles \[m\].
 fn mean_off_route_m(report: &EpisodeReport) -> f64 {
     let rows = report.trajectory.as_deref().unwrap_or_default();
-    let off_m = rows.iter().map(|row| (row[2] - 2.0).abs());
+    // A row is [t, x, y, theta, v, omega].
+    let off_m = rows.iter().map(|[_, _, y, ..]| (y - 2.0).abs());
     off_m.sum::<f64>() / rows.len() as f64
 }
 

@@ -1,4 +1,4 @@
-//! Errors of scenes that are made from published files.
+//! Errors of scenes that are made from files.
 
 use super::table::TableError;
 use keyway::ConfigError;

@@ -1,6 +1,6 @@
 //! Scenes of the field's benchmarks, of tables of starts and goals, and of the papers' maps.
 //!
-//! Each request reads the published files that it names, and gives scenes with the names of their
+//! Each request reads the files that it names, if any, and gives scenes with the names of their
 //! files. Nothing is written. [`scene_schema`] describes the fields of all scene files.
 
 mod barn;

@@ -7,8 +7,8 @@
 //! Read as complex numbers, |D(z)|² is D(z) times its conjugate. Neither has a zero where
 //! |d1| |z| + |d2| |z|² < |d0|, that is, in a disc of some radius R around the middle, and there |D(z)| has
 //! an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1, the disc
-//! holds the ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R + sqrt(R²
-//! - 1). So the coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k
+//! holds the ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R +
+//! sqrt(R² - 1). So the coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k
 //! (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1). Gauss's formula with
 //! N points is exact up to degree 2 N - 1 and for odd degrees, and its error for a Chebyshev
 //! polynomial is at most 2 + 2 / (k² - 1) < 2.5. Sum:

@@ -150,10 +150,10 @@ impl Limits {
     /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with
     /// g(t) = max(0, 1 - t / T) and the time to stop T; in between it changes linearly. Speed and
     /// turn rate fall in proportion, so the robot stays on its arc and covers of it what u covers
-    /// in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c (g(c) + g(2 c)
-    /// + ...). As g falls, c g(k c) is at most the integral of g over the k-th cycle, so S <= c / 2
-    /// + T / 2. Both terms are needed: a robot that could stop at once still needs a cycle, in
-    /// which it drives half as far as at u.
+    /// in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ...
+    /// = c / 2 + c (g(c) + g(2 c) + ...). As g falls, c g(k c) is at most the integral of g over the
+    /// k-th cycle, so S <= c / 2 + T / 2. Both terms are needed: a robot that could stop at once
+    /// still needs a cycle, in which it drives half as far as at u.
     pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
         0.5 * (self.stop_s() + cycle_s)
     }

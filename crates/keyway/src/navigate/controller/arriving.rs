@@ -2,7 +2,7 @@
 
 use super::Controller;
 use crate::geometry::{Point, Pose, Velocity};
-use crate::navigate::recovery::{Motion, MotionUnderWay, OnTheSpot, Progress};
+use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot};
 use crate::navigate::watch::Watch;
 use crate::navigate::{Blocked, Step};
 
@@ -52,11 +52,11 @@ impl Controller {
         }
         if let Some(turn) = &mut self.final_turn {
             match turn.step(pose, velocity, &self.robot, &self.obstacles) {
-                Progress::Moving(command) => {
+                MotionStep::Moving(command) => {
                     let command = self.beside_movers(pose, velocity, command);
                     return Some(Step::Drive(command));
                 }
-                Progress::Done | Progress::Refused => self.final_turn = None,
+                MotionStep::Done | MotionStep::Refused => self.final_turn = None,
             }
         }
         Some(Step::Drive(self.robot.limits.braked(velocity, self.robot.cycle_s)))

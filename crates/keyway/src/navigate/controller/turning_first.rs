@@ -3,7 +3,7 @@
 use super::Controller;
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::RecoveryKind;
-use crate::navigate::recovery::{Motion, MotionUnderWay, OnTheSpot, Progress};
+use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot};
 use crate::navigate::route::turning_clearance_m;
 use crate::robot::Footprint;
 use std::f64::consts::FRAC_PI_6;
@@ -41,7 +41,8 @@ impl Controller {
     /// Goes on with that turn, if one is under way.
     pub(super) fn turn_first(&mut self, pose: Pose, velocity: Velocity) -> Option<Velocity> {
         let turn = self.first_turn.as_mut()?;
-        if let Progress::Moving(command) = turn.step(pose, velocity, &self.robot, &self.obstacles) {
+        if let MotionStep::Moving(command) = turn.step(pose, velocity, &self.robot, &self.obstacles)
+        {
             self.find_guide_point(pose.point());
             return Some(command);
         }

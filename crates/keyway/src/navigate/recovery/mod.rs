@@ -8,7 +8,7 @@ mod motion;
 mod track;
 
 pub(super) use manoeuvre::TightPlace;
-pub(super) use motion::{Motion, MotionUnderWay, Progress};
+pub(super) use motion::{Motion, MotionStep, MotionUnderWay};
 pub(super) use track::Track;
 
 use crate::geometry::{Point, Pose, Velocity, wrap_angle};
@@ -162,9 +162,9 @@ impl Recovery {
     ) -> Option<(RecoveryKind, Velocity)> {
         while let Some((kind, motion)) = &mut self.under_way {
             match motion.step(pose, velocity, robot, obstacles) {
-                Progress::Moving(command) => return Some((*kind, command)),
-                Progress::Refused => self.under_way = None,
-                Progress::Done => {
+                MotionStep::Moving(command) => return Some((*kind, command)),
+                MotionStep::Refused => self.under_way = None,
+                MotionStep::Done => {
                     let next = self.motions.pop_front();
                     self.under_way = next.map(|motion| (*kind, MotionUnderWay::new(motion)));
                 }

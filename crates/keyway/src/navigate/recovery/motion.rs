@@ -24,9 +24,9 @@ pub(in crate::navigate) enum Motion {
     Wait(f64),
 }
 
-/// What came of a motion in a cycle.
+/// The step of a motion in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::navigate) enum Progress {
+pub(in crate::navigate) enum MotionStep {
     /// Command this velocity.
     Moving(Velocity),
     /// The robot stands at the end of the motion.
@@ -62,23 +62,23 @@ impl MotionUnderWay {
         velocity: Velocity,
         robot: &Robot,
         obstacles: &DistanceField,
-    ) -> Progress {
+    ) -> MotionStep {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
         let is_standing = robot.stands(velocity);
         if self.from.is_none() && !is_standing {
-            return Progress::Moving(limits.braked(velocity, cycle_s));
+            return MotionStep::Moving(limits.braked(velocity, cycle_s));
         }
         let from = self.from.replace(pose).unwrap_or(pose);
         self.left = self.left.after(from, pose, cycle_s);
         if is_standing && self.left.size() <= Self::NOTHING {
-            return Progress::Done;
+            return MotionStep::Done;
         }
         let footprint = &robot.footprint;
         let command = match self.left {
             Motion::Wait(_) => Velocity::ZERO,
             Motion::Turn(left_rad) => {
                 if !footprint.is_free_turn(pose.point(), pose.theta, left_rad, obstacles) {
-                    return Progress::Refused;
+                    return MotionStep::Refused;
                 }
                 let most = SPEED_SHARE * limits.omega_max_radps;
                 let brakes = limits.angular_deceleration_radps2;
@@ -87,7 +87,7 @@ impl MotionUnderWay {
             }
             Motion::Drive(left_m) => {
                 if !footprint.is_free_drive(pose, left_m, obstacles) {
-                    return Progress::Refused;
+                    return MotionStep::Refused;
                 }
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
                 let most = fastest.min(SPEED_SHARE * limits.v_max_mps);
@@ -95,7 +95,7 @@ impl MotionUnderWay {
                 Velocity::new(v, 0.0)
             }
         };
-        Progress::Moving(command)
+        MotionStep::Moving(command)
     }
 }
 
@@ -139,14 +139,14 @@ mod tests {
     use proptest::prelude::*;
 
     /// Obeys a motion as a robot does; where it ended, and the fastest it was.
-    fn obey(motion: Motion, robot: &Robot, start: (Pose, Velocity)) -> (Pose, Progress, f64) {
+    fn obey(motion: Motion, robot: &Robot, start: (Pose, Velocity)) -> (Pose, MotionStep, f64) {
         let map = OccupancyGrid::from_ascii(&["........"; 8]);
         let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
         let (mut pose, mut velocity) = start;
         let (mut under_way, mut fastest) = (MotionUnderWay::new(motion), 0.0f64);
         for _ in 0..2000 {
             match under_way.step(pose, velocity, robot, &obstacles) {
-                Progress::Moving(command) => {
+                MotionStep::Moving(command) => {
                     let reached = robot.limits.reached(velocity, command, robot.cycle_s);
                     pose = pose.after_ramp(velocity, reached, robot.cycle_s);
                     velocity = reached;
@@ -164,20 +164,20 @@ mod tests {
         let robot = Robot { limits: backwards, ..Robot::small() };
         let start = (Pose::new(4.0, 4.0, 0.0), Velocity::ZERO);
         let (pose, ended, fastest) = obey(Motion::Drive(1.0), &robot, start);
-        assert!(ended == Progress::Done && (pose.x - 5.0).abs() < 0.01, "{pose:?}");
+        assert!(ended == MotionStep::Done && (pose.x - 5.0).abs() < 0.01, "{pose:?}");
         assert!((fastest - 0.125).abs() < 1e-9, "a quarter of full speed: {fastest}");
         let (pose, ended, _) = obey(Motion::Drive(-0.5), &robot, start);
-        assert!(ended == Progress::Done && (pose.x - 3.5).abs() < 0.01, "{pose:?}");
+        assert!(ended == MotionStep::Done && (pose.x - 3.5).abs() < 0.01, "{pose:?}");
         for turn_rad in [1.0, -2.0, 5.0, -6.0] {
             let (pose, ended, _) = obey(Motion::Turn(turn_rad), &robot, start);
             let off_rad = wrap_angle(pose.theta - turn_rad);
-            assert!(ended == Progress::Done && off_rad.abs() < 0.01, "{turn_rad}: {pose:?}");
+            assert!(ended == MotionStep::Done && off_rad.abs() < 0.01, "{turn_rad}: {pose:?}");
             assert!(pose.point().distance(start.0.point()) < 1e-12);
         }
         let (pose, ended, _) = obey(Motion::Wait(2.0), &robot, start);
-        assert_eq!((pose, ended), (start.0, Progress::Done));
+        assert_eq!((pose, ended), (start.0, MotionStep::Done));
         let outside = obey(Motion::Drive(9.0), &robot, start);
-        assert_eq!((outside.0, outside.1), (start.0, Progress::Refused));
+        assert_eq!((outside.0, outside.1), (start.0, MotionStep::Refused));
     }
 
     proptest! {
@@ -189,7 +189,7 @@ mod tests {
             let stop_m = 0.5 * v * v / robot.limits.deceleration_mps2 + 0.5 * v * robot.cycle_s;
             let (pose, ended, _) = obey(Motion::Drive(length_m), &robot, start);
             let driven_m = pose.point().distance(start.0.point());
-            prop_assert_eq!(ended, Progress::Done);
+            prop_assert_eq!(ended, MotionStep::Done);
             prop_assert!(driven_m <= length_m + stop_m + 1e-9 && driven_m >= length_m - 0.01, "{}", driven_m);
         }
     }

@@ -15,8 +15,8 @@ fn hsta(config: HstaConfig) -> Hsta {
 ///   4.12 = 11.37.
 /// - (2, 2), other now (5, 2): (3, 1) has 3.41 + 1.308 * 2.24 + 3.16 = 9.50.
 ///
-/// The backward side mirrors it: (5, 2), (4, 2); from there with the other at (2, 2) it reaches (3,
-/// 1) with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. Both best nodes are (3, 1), which the backward side
+/// The backward side mirrors it: (5, 2), (4, 2); from there with the other at (2, 2) it reaches
+/// (3, 1) with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. Both best nodes are (3, 1), which the backward side
 /// then takes second.
 #[test]
 fn an_expansion_sequence_by_hand() {
