@@ -137,13 +137,13 @@ def test_progress_is_called_and_may_stop_it(name: str, long_scene: keyway.Scene,
 
     def progress(done: int, expected: int | None) -> None:
         seen.append((done, expected))
-        if len(seen) == 6:
+        if len(seen) >= 6 and done > 0:
             raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
         call(progress=progress)
     done = [at for at, _ in seen]
-    assert len(seen) == 6 and done == sorted(done) and done[-1] > 0
+    assert done == sorted(done) and done[-1] > 0
     expected = {"simulate": None, "plan_many": 20000, "compare": 10000, "batch": 5000}[name]
     assert seen[-1][1] == expected
 
