@@ -116,7 +116,8 @@ fn errors_name_the_whole_path_of_a_field() {
             *at.unwrap() = part;
         }
         let stack: Stack = serde_json::from_value(json).unwrap();
-        match Controller::new(&map, &stack.fit(robot).unwrap(), START, GOAL).err().unwrap() {
+        let controller = |fitted| Controller::new(&map, &fitted, START, GOAL);
+        match stack.fit(robot).map_err(NavigateError::from).and_then(controller).err().unwrap() {
             NavigateError::Config(error) => (error.path, error.reason),
             other => panic!("{other}"),
         }
