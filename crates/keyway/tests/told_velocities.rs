@@ -46,7 +46,8 @@ proptest! {
         let mut driven = 0;
         for stack in stacks(&robot) {
             let ends = (Point::new(1.5, 2.0), Point::new(8.5, 1.5));
-            let Ok(mut controller) = Controller::new(&map, &stack.fit(&robot).unwrap(), ends.0, ends.1) else { continue };
+            let Ok(fitted) = stack.fit(&robot) else { continue };
+            let Ok(mut controller) = Controller::new(&map, &fitted, ends.0, ends.1) else { continue };
             driven += 1;
             for &(v, omega) in &velocities {
                 let step = controller.step(Pose::new(x, 2.0, theta), Velocity::new(v, omega), &scan);

@@ -101,10 +101,9 @@ fn nobody_comes_nearer_to_a_wall_that_he_is_told_to_be_too_near_to() {
 fn a_start_that_is_too_near_by_more_is_refused() {
     let (map, robot) = (hall(), Robot::small());
     let mut stack = Stack::keyway(&robot);
-    let ask = |stack: &Stack, y: f64| {
-        let controller =
-            Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(2.0, y), GOAL);
-        controller.map(|controller| controller.too_near().cloned())
+    let ask = |stack: &Stack, y: f64| -> Result<_, NavigateError> {
+        let controller = Controller::new(&map, &stack.fit(&robot)?, Point::new(2.0, y), GOAL)?;
+        Ok(controller.too_near().cloned())
     };
     assert_eq!(stack.controller.start_error_m, 0.05);
     assert_eq!(ask(&stack, 0.24), Ok(None));
