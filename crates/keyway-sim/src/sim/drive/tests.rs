@@ -202,9 +202,9 @@ fn stuck_at_the_exact_time() {
     let swinging = |n: u64| 5.0 + 0.1 * libm::sin(n as f64 * 0.05);
     assert_eq!(stuck_at(&swinging).0, Outcome::Stuck);
     assert_eq!(stuck_at(&|n| if n == 150 { 4.9 } else { 5.0 }), (Outcome::Stuck, 350));
-    // 0.09 m in 20 s is not enough, 0.11 m is: the time limit comes first.
-    assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.09 / 200.0), (Outcome::Stuck, 200));
-    assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.11 / 200.0), (Outcome::Timeout, 600));
+    // 0.04 m in 20 s is not enough, 0.06 m is: the time limit comes first.
+    assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.04 / 200.0), (Outcome::Stuck, 200));
+    assert_eq!(stuck_at(&|n| 5.0 - n as f64 * 0.06 / 200.0), (Outcome::Timeout, 600));
 }
 
 #[test]
