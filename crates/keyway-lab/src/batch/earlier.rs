@@ -4,8 +4,7 @@ use super::files::{PART, ROBOTS, RUNS, TIMES, TimeLine};
 use super::part::Part;
 use super::{PartsError, Record, Row};
 use crate::results::{JOURNAL_NAME, LinesError, OutDir, ResultsError, entries, read_lines};
-use keyway::file_system::read_file;
-use keyway::map::formats::text_from_bytes;
+use crate::text_file::read_text;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -91,10 +90,8 @@ fn read_part(folder: &Path) -> Result<Option<Part>, PartsError> {
     if !path.exists() {
         return Ok(None);
     }
-    let bytes = read_file(&path, MAX_PART_BYTES)?;
-    let text = text_from_bytes(&bytes)
-        .map_err(|reason| PartsError::Text { path: path.clone(), reason })?;
-    let part = serde_json::from_str(text).ok().filter(Part::is_sound);
+    let text = read_text(&path, MAX_PART_BYTES)?;
+    let part = serde_json::from_str(&text).ok().filter(Part::is_sound);
     part.map(Some).ok_or(PartsError::NoPart { path })
 }
 

@@ -6,7 +6,8 @@
 use super::{BatchError, Keep, PartsError, Record, RunId};
 use crate::replay::RunRecord;
 use crate::results::{ResultsError, digest, json_text};
-use keyway::file_system::{WriteError, read_file, write_atomically};
+use crate::text_file::read_text;
+use keyway::file_system::{WriteError, write_atomically};
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -80,8 +81,8 @@ impl Kept {
         if !begins(&path, Some(run.digest)) || self.has(run) {
             return Ok(());
         }
-        let text = read_file(&path, RunRecord::MAX_BYTES).map_err(PartsError::Read)?;
-        Ok(self.write_text(run, &text)?)
+        let text = read_text(&path, RunRecord::MAX_BYTES).map_err(PartsError::File)?;
+        Ok(self.write_text(run, text.as_bytes())?)
     }
 
     /// Removes records of runs that are not, or no longer, among the results.

@@ -2,8 +2,7 @@
 
 use super::Shard;
 use crate::results::LinesError;
-use keyway::file_system::ReadError;
-use keyway::map::formats::TextError;
+use crate::text_file::TextFileError;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -41,17 +40,9 @@ pub enum PartsError {
         /// The line, from 1.
         line: usize,
     },
-    /// A file cannot be read.
+    /// The description of a part, or a record, cannot be read.
     #[error(transparent)]
-    Read(#[from] ReadError),
-    /// The description of a part is no text.
-    #[error("{}: {reason}", path.display())]
-    Text {
-        /// The file.
-        path: PathBuf,
-        /// The fault.
-        reason: TextError,
-    },
+    File(#[from] TextFileError),
     /// The description of a part is something else.
     #[error(
         "{}: it does not say which part of a batch this is, of at most {} parts",

@@ -26,9 +26,9 @@ pub struct Robot {
     /// which its command acts, and simulated motors are as late.
     #[serde(default)]
     pub actuation_delay_s: f64,
-    /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from 0.0001
-    /// to 10. Routes, the parameters of stacks for a robot and the stop rule follow from it. Without
-    /// it, it is a tenth of what the robot drives in a cycle at full speed.
+    /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from
+    /// 0.0001 to 10. Routes, the parameters of stacks for a robot and the stop rule follow from it.
+    /// Unless it is given, it is a tenth of what the robot drives in a cycle at full speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safety_margin_m: Option<f64>,
     /// Velocity and acceleration limits.
