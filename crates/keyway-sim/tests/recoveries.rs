@@ -309,6 +309,24 @@ fn way_points_are_passed_in_their_order() {
     assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
 }
 
+/// A disc reaches by less than a millimetre into a square that the robot covers. It turns away from
+/// the disc, not into the squares beside.
+#[test]
+fn a_square_of_which_a_disc_fills_a_corner_is_no_way_into_the_disc() {
+    let frame = GridFrame::new(26, 26, 0.1, keyway::geometry::Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let position = Point::new(1.7777876387635483, 0.8986579673134885);
+    let start = Start { position, heading_rad: Some(42.838492453699445f64.to_radians()) };
+    let discs = [
+        (Point::new(1.222690321526745, 1.627457776084252), 0.03),
+        (Point::new(1.804287097035653, 0.490519262549652), 0.11029267291816278),
+    ];
+    let obstacles = discs.map(|(centre, radius_m)| Circle::standing(centre, radius_m)).to_vec();
+    let episode = Episode::new(map, long_robot(0.0), position, Point::new(0.5, 0.5));
+    let report = run_episode(&Episode { start, obstacles, ..episode }).unwrap();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is

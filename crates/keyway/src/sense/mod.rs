@@ -9,7 +9,7 @@ mod scan;
 mod seen;
 mod spread;
 #[cfg(test)]
-mod test_scan;
+pub(crate) mod test_scan;
 mod tracker;
 
 pub use layer::SensedLayer;

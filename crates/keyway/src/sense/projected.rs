@@ -132,6 +132,36 @@ impl ProjectedScan {
         self.beams.iter().enumerate().filter_map(|(number, beam)| Some((number, beam.hit?)))
     }
 
+    /// Notes the places near a point at which it met something: the hits, and what lies between
+    /// those of two neighbouring beams that are no farther apart than `joined_m`.
+    pub(crate) fn note_places(
+        &self,
+        centre: Point,
+        radius_m: f64,
+        joined_m: f64,
+        places: &mut Vec<Point>,
+    ) {
+        let count = self.beams.len();
+        let is_turn = self.beams_of_a_turn().is_some();
+        for (beam, Hit { point, .. }) in self.hits() {
+            if point.distance(centre) > radius_m {
+                continue;
+            }
+            places.push(point);
+            let next = if beam + 1 < count { beam + 1 } else { 0 };
+            let Some(next) = self.hit(next).filter(|_| next > 0 || is_turn) else { continue };
+            let apart_m = next.point.distance(point);
+            if apart_m <= joined_m {
+                let parts = (apart_m / joined_m * Self::PLACES_JOINED).ceil();
+                let part = |i: u32| point.lerp(next.point, f64::from(i) / parts);
+                places.extend((1..parts as u32).map(part));
+            }
+        }
+    }
+
+    /// Hits that are just joined have this many places less one in between.
+    const PLACES_JOINED: f64 = 15.0;
+
     /// The direction in which a beam looks, in the world frame, of length 1.
     pub(super) fn direction(&self, beam: usize) -> Point {
         let bearing_rad = self.angle_min_rad + beam as f64 * self.angle_increment_rad;

@@ -14,11 +14,14 @@ pub struct SeenCells<'a> {
     pub ahead: Option<&'a BitGrid>,
     /// Cells over which it may back up; `None`: anywhere.
     pub behind: Option<&'a BitGrid>,
+    /// The latest scan, which knows better than cells where it met something; `None`: only cells
+    /// are known.
+    pub scan: Option<&'a ProjectedScan>,
 }
 
 impl SeenCells<'_> {
     /// No cell need be seen.
-    pub const ANYWHERE: Self = Self { ahead: None, behind: None };
+    pub const ANYWHERE: Self = Self { ahead: None, behind: None, scan: None };
 }
 
 /// Which seen ground is kept ([`SeenGround::new`]).
@@ -128,6 +131,7 @@ impl SeenGround {
         SeenCells {
             ahead: self.looks_ahead.then_some(&self.seen),
             behind: self.backs_up.then_some(behind),
+            scan: None,
         }
     }
 

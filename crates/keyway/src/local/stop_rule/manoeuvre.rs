@@ -1,11 +1,10 @@
 //! What happens when a command is issued and the robot then brakes, and what that may touch.
 
+use super::start::{Covered, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
-use crate::geometry::{Point, Pose, Velocity};
+use crate::geometry::{Point, Pose, Velocity, wrap_angle};
 use crate::local::rear::{Seen, SeenAhead};
-use crate::map::{
-    self, BitGrid, Cell, Clearance, Core, DistanceField, NearBoxes, Placement, Turned, on_grid,
-};
+use crate::map::{self, Cell, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
 use crate::robot::Robot;
 use crate::sense::{Disc, Mover, MoverBounds};
 use arrayvec::ArrayVec;
@@ -15,7 +14,7 @@ use arrayvec::ArrayVec;
 pub(super) struct Work {
     near: Vec<Mover>,
     shrunk: Vec<Point>,
-    touched: Vec<Cell>,
+    touched: Touched,
     /// Of each body.
     boxes: [NearBoxes; 2],
     turned: [Turned; 2],
@@ -23,14 +22,14 @@ pub(super) struct Work {
 
 /// The part of the robot that must not come near to what stands.
 #[derive(Clone, Copy, Debug)]
-struct Body<'a> {
-    core: Core<'a>,
+pub(super) struct Body<'a> {
+    pub(super) core: Core<'a>,
     /// The body is all ground this near to the core \[m\].
-    radius_m: f64,
+    pub(super) radius_m: f64,
     /// What it must keep from that \[m\].
-    kept_m: f64,
+    pub(super) kept_m: f64,
     /// Whether it must keep that from the map's border, too.
-    keeps_border: bool,
+    pub(super) keeps_border: bool,
 }
 
 /// A body among what stands around it.
@@ -53,6 +52,9 @@ pub(super) struct Manoeuvres<'a> {
     /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches
     /// something.
     grounds: ArrayVec<Ground<'a>, 2>,
+    touched: &'a Touched,
+    /// Where the room from places of the scan was computed last, and what was to spare \[m\].
+    looked: Option<(Pose, f64)>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].
     least_step_m: f64,
@@ -116,10 +118,10 @@ impl<'a> Manoeuvres<'a> {
 
     /// The most that rounding may take from a distance \[m\]: what is no farther away than this is
     /// touched, because less than nothing could be kept from it.
-    const ROUNDING_M: f64 = 1e-9;
+    pub(super) const ROUNDING_M: f64 = 1e-9;
 
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
-    const HALVINGS: u32 = 16;
+    pub(super) const HALVINGS: u32 = 16;
 
     /// Those whose first velocity lies between braking and what was asked for.
     pub(super) fn new(
@@ -132,13 +134,15 @@ impl<'a> Manoeuvres<'a> {
         let reach = Reach::new(robot, &core, around.velocity, asked);
         collect_near(near, config, robot, around, &reach);
         let start = Start { robot, around, margin_m: config.margin_m };
+        touched.clear();
         let (bodies, is_covered) = match start.bodies(reach.moves_m, shrunk, touched) {
             Ok(bodies) => (bodies, false),
             Err(Covered) => (ArrayVec::new(), true),
         };
-        let kept_m = bodies.iter().map(|body| body.kept_m);
+        let touched = &*touched;
+        let kept_m = bodies.iter().map(|body| body.kept_m).chain([touched.places_kept_m]);
         let least_kept_m = kept_m.fold(config.margin_m, f64::min);
-        let left_out: [&[Cell]; 2] = [&[], touched];
+        let left_out: [&[Cell]; 2] = [&[], &touched.squares];
         let places = boxes.iter_mut().zip(turned).zip(left_out);
         let grounds = bodies.into_iter().zip(places).map(|(body, ((boxes, turned), left_out))| {
             let farthest_m = body.radius_m + config.margin_m + reach.moves_m;
@@ -156,6 +160,8 @@ impl<'a> Manoeuvres<'a> {
             behind: around.seen.behind.map(|cells| rear.over(cells, around.obstacles.frame())),
             near,
             grounds,
+            touched,
+            looked: None,
             is_covered,
             least_step_m: least_kept_m.max(Self::LEAST_STEP_M),
         }
@@ -282,8 +288,31 @@ impl<'a> Manoeuvres<'a> {
         let obstacles = self.around.obstacles;
         let spare_m =
             self.grounds.iter_mut().map(|ground| ground.spare_m(pose, obstacles, wanted_m));
-        let by_squares = spare_m.fold(f64::INFINITY, f64::min);
-        if by_squares >= 0.0 { Ok(by_squares) } else { Err(Refusal::Standing { after_s }) }
+        let by_squares_m = spare_m.fold(f64::INFINITY, f64::min);
+        let by_places_m = self.from_places_m(pose, wanted_m.min(by_squares_m));
+        let spare_m = by_squares_m.min(by_places_m);
+        if spare_m >= 0.0 { Ok(spare_m) } else { Err(Refusal::Standing { after_s }) }
+    }
+
+    /// A lower bound of the room from the places that the scan met, beyond what must be kept
+    /// \[m\]. Not computed again where it is more than `wanted_m`, nor, like other steps, within
+    /// what must be kept.
+    fn from_places_m(&mut self, pose: Pose, wanted_m: f64) -> f64 {
+        if self.touched.places.is_empty() {
+            return f64::INFINITY;
+        }
+        let (core, radius_m) = self.robot.footprint.core();
+        if let Some((last, spare_m)) = self.looked {
+            let turned_rad = wrap_angle(pose.theta - last.theta);
+            let moved_m = core.moves_m(pose.point().distance(last.point()), turned_rad);
+            let step_m = self.touched.places_kept_m.max(Self::LEAST_STEP_M);
+            if spare_m - moved_m > wanted_m || (wanted_m > 0.0 && moved_m <= step_m) {
+                return (spare_m - moved_m).max(0.0);
+            }
+        }
+        let spare_m = self.touched.spare_m((&core, radius_m), pose);
+        self.looked = (spare_m >= 0.0).then_some((pose, spare_m));
+        spare_m
     }
 
     /// Shows that a mover cannot touch the footprint on a stretch, unless nothing moves on it.
@@ -336,112 +365,6 @@ impl Ground<'_> {
         let room = if *keeps_border { room.min(self.squares.to_border(&at)) } else { room };
         room * cell_m - least_m
     }
-}
-
-/// The centre of rotation is inside an obstacle or outside the map.
-struct Covered;
-
-/// A robot at the beginning of a cycle.
-struct Start<'a> {
-    robot: &'a Robot,
-    around: &'a Surroundings<'a>,
-    margin_m: f64,
-}
-
-impl<'a> Start<'a> {
-    /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where
-    /// the robot touches something, first the part of it that may touch nothing at all, then the
-    /// whole, which may touch nothing but what is `touched`.
-    fn bodies(
-        &self,
-        moves_m: f64,
-        shrunk: &'a mut Vec<Point>,
-        touched: &mut Vec<Cell>,
-    ) -> Result<ArrayVec<Body<'a>, 2>, Covered> {
-        let Surroundings { pose, obstacles, .. } = *self.around;
-        let clearance = obstacles.clearance();
-        let (core, radius_m) = self.robot.footprint.core();
-        let reach_m = radius_m + self.margin_m + moves_m;
-        let centre_m = obstacles.square_bounds_m(pose.point()).0;
-        if centre_m.min(clearance.to_border(pose.point())) - core.swing_m() >= reach_m {
-            return Ok(ArrayVec::new());
-        }
-        let core_room_m = room_m(&core, pose, &clearance, reach_m);
-        let room_m = core_room_m - radius_m;
-        let first = Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border: true };
-        if room_m > Manoeuvres::ROUNDING_M {
-            return Ok(ArrayVec::from_iter([first]));
-        }
-        let centre = Core::polygon(&[]);
-        if self::room_m(&centre, pose, &clearance, reach_m) <= Manoeuvres::ROUNDING_M {
-            return Err(Covered);
-        }
-        let part = if core.vertices().is_empty() {
-            first
-        } else {
-            let core = self.shrink(core.vertices(), shrunk, reach_m);
-            let room_m = self::room_m(&core, pose, &clearance, reach_m);
-            Body { core, radius_m: 0.0, kept_m: self.kept_m(room_m), keeps_border: true }
-        };
-        Ok(ArrayVec::from([part, self.whole(touched)]))
-    }
-
-    /// All of the robot, beside what it does not touch now: but for the squares beside those that
-    /// it touches, which are taken for the same thing, so that a robot that touches a wall may go
-    /// along it.
-    fn whole(&self, touched: &mut Vec<Cell>) -> Body<'a> {
-        let Surroundings { pose, obstacles, .. } = *self.around;
-        let clearance = obstacles.clearance();
-        let (core, radius_m) = self.robot.footprint.core();
-        let touch_m = radius_m + Manoeuvres::ROUNDING_M;
-        core.touched(pose, &clearance, touch_m, touched);
-        add_neighbours(touched, clearance.obstacles());
-        let reach_m = touch_m.max(radius_m + self.margin_m);
-        let to_others_m = core.distance_without_m(pose, &clearance, reach_m, touched) - radius_m;
-        let to_border_m = core.to_border_m(pose, &clearance) - radius_m;
-        let keeps_border = to_border_m > Manoeuvres::ROUNDING_M;
-        let room_m = if keeps_border { to_others_m.min(to_border_m) } else { to_others_m };
-        Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border }
-    }
-
-    /// The margin, or what there is now, where that is less.
-    fn kept_m(&self, room_m: f64) -> f64 {
-        self.margin_m.min(room_m - Manoeuvres::ROUNDING_M)
-    }
-
-    /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
-    fn shrink(&self, vertices: &[Point], shrunk: &'a mut Vec<Point>, reach_m: f64) -> Core<'a> {
-        let Surroundings { pose, obstacles, .. } = *self.around;
-        let mut fill = |scale: f64| {
-            shrunk.clear();
-            shrunk.extend(vertices.iter().map(|&vertex| vertex * scale));
-            let room_m = room_m(&Core::polygon(shrunk), pose, &obstacles.clearance(), reach_m);
-            room_m > Manoeuvres::ROUNDING_M
-        };
-        let (mut free, mut covering) = (0.0, 1.0);
-        for _ in 0..Manoeuvres::HALVINGS {
-            let middle = 0.5 * (free + covering);
-            *(if fill(middle) { &mut free } else { &mut covering }) = middle;
-        }
-        fill(free);
-        Core::polygon(shrunk)
-    }
-}
-
-/// Adds the squares beside some, corners included; all of them row by row.
-fn add_neighbours(squares: &mut Vec<Cell>, obstacles: &BitGrid) {
-    for index in 0..squares.len() {
-        let Cell { x, y } = squares[index];
-        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| Cell::new(x, y)));
-        squares.extend(around.filter(|&cell| obstacles.get(cell)));
-    }
-    squares.sort_unstable_by_key(|cell| (cell.y, cell.x));
-    squares.dedup();
-}
-
-/// Room at a pose from obstacles and border \[m\], negative outside the map.
-fn room_m(core: &Core<'_>, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
-    core.distance_m(pose, clearance, reach_m).min(core.to_border_m(pose, clearance))
 }
 
 /// Distance between a footprint and a disc \[m\]; negative when a round footprint overlaps it.

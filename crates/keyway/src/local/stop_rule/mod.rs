@@ -88,10 +88,11 @@
 //! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
 //!
 //! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may
-//! touch nothing else until the next one is. The squares beside those that it touches are taken for
-//! the same thing, so that it may go along a wall. From what it touches, a disc may be as far as it
-//! is, while a polygon is shrunk around its centre of rotation until it touches nothing, and that
-//! part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside
+//! touch nothing else until the next one is, but for the squares beside those that it touches in
+//! which the latest scan met something ([`SeenCells::scan`]). There it keeps away from the very
+//! places that the scan met, as it does from obstacles, so that it may go along a wall whose squares
+//! it touches. From what it touches, a disc may be as far as it is, while a polygon is shrunk around
+//! its centre of rotation until it touches nothing, and that part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside
 //! the map is stopped: no way out can be told from a way in. When not even braking is admissible
 //! (something came into view too late, or a mover broke the bounds), the robot brakes.
 //!
@@ -119,6 +120,7 @@ mod manoeuvre;
 mod mover_tests;
 #[cfg(test)]
 mod seen_tests;
+mod start;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use super::*;
 use crate::geometry::Point;
-use crate::map::{BitGrid, Cell, FieldConfig, GridFrame};
+use crate::map::{BitGrid, FieldConfig, GridFrame};
 use crate::robot::{Footprint, star};
 use proptest::prelude::*;
 
@@ -373,12 +373,8 @@ proptest! {
             let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
             if !brakes(&robot, velocity, next) {
-                // What is nearer cannot be told from contact; what is beside it is the same thing.
+                // What is nearer cannot be told from contact.
                 allowed = near_at(pose, 1e-4 + drifts_m(&robot, velocity, next));
-                let beside = |a: &Cell, b: &Cell| (a.x - b.x).abs() <= 1 && (a.y - b.y).abs() <= 1;
-                let all = ground.field.obstacles();
-                let is_joined = |cell: &Cell| all.get(*cell) && allowed.iter().any(|one| beside(cell, one));
-                allowed = frame().cells().filter(is_joined).collect();
             }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
                 let touched = near_at(on_way, 0.0);

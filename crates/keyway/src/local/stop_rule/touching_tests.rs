@@ -1,10 +1,13 @@
 //! Robots that hardly touch what is beside them, and what is ahead of them.
 
-use super::tests::{Ground, gate, rule};
+use super::tests::{Ground, commands, every_cycle, gate, instants, robots, rule};
 use super::*;
 use crate::geometry::Point;
-use crate::map::GridFrame;
+use crate::map::{CellState, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::Footprint;
+use crate::sense::test_scan::scan_among;
+use crate::sense::{ProjectedScan, SensedLayer};
+use proptest::prelude::*;
 
 /// A map of 10 m x 8 m with walls 0.2 m thick below y = 0.2 m and from x = 5 m on.
 fn corner() -> Ground {
@@ -32,5 +35,79 @@ fn what_is_beside_a_robot_by_less_than_rounding_opens_no_way_ahead() {
             assert!(gated.changed(), "{:?} {room_m}", robot.footprint);
             assert_eq!(gated.command, robot.limits.braked(ahead, robot.cycle_s));
         }
+    }
+}
+
+/// A robot among discs that it knows by its lidar only, cell by cell.
+struct AmongDiscs {
+    robot: Robot,
+    discs: Vec<(Point, f64)>,
+    map: OccupancyGrid,
+    layer: SensedLayer,
+}
+
+impl AmongDiscs {
+    fn new(robot: Robot, discs: &[(f64, f64, f64)]) -> Self {
+        let frame = GridFrame::new(26, 26, 0.1, Pose::default()).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+        let layer = SensedLayer::new(&frame);
+        let discs = discs.iter().map(|&(x, y, radius_m)| (Point::new(x, y), radius_m)).collect();
+        Self { robot, discs, map, layer }
+    }
+
+    /// Distance to the nearest disc \[m\].
+    fn room_m(&self, pose: Pose) -> f64 {
+        let (core, radius_m) = self.robot.footprint.core();
+        let gap_m = |&(centre, disc_m): &(Point, f64)| core.distance_to_m(pose, centre) - disc_m;
+        self.discs.iter().map(gap_m).fold(f64::INFINITY, f64::min) - radius_m
+    }
+
+    /// A cycle of the stop rule after a scan.
+    fn gate(&mut self, pose: Pose, velocity: Velocity, command: Velocity) -> Gated {
+        let frame = *self.map.frame();
+        let scan = scan_among((&frame, &[]), &self.discs, pose, &self.robot.sensor);
+        let scan = ProjectedScan::new(&frame, &self.robot.footprint, pose, &scan);
+        self.layer.update(&self.map, &scan, None, &mut Vec::new());
+        let field = DistanceField::new(&frame, self.layer.sensed(), &FieldConfig::default());
+        let seen = SeenCells { scan: Some(&scan), ..SeenCells::ANYWHERE };
+        let around =
+            Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity };
+        gate(&rule(&self.robot), &around, command)
+    }
+
+    /// The least room on the way while a planner asks for these commands.
+    fn drive(&mut self, mut pose: Pose, commands: &[Velocity]) -> f64 {
+        let mut velocity = Velocity::ZERO;
+        let mut least_m = self.room_m(pose);
+        for &command in commands {
+            let gated = self.gate(pose, velocity, command);
+            let Robot { limits, cycle_s, .. } = &self.robot;
+            let next = limits.reached(velocity, gated.command, *cycle_s);
+            for (on_way, ..) in instants(&self.robot, pose, velocity, next) {
+                least_m = least_m.min(self.room_m(on_way));
+            }
+            (pose, velocity) = (pose.after_ramp(velocity, next, *cycle_s), next);
+        }
+        least_m
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// A robot that covers a part of an obstacle's squares, but not of the obstacle, may go on.
+    #[test]
+    fn what_squares_hide_is_not_touched(
+        robot in robots(), theta in -3.1..3.1f64, commands in commands(),
+        discs in prop::collection::vec((0.4..2.2f64, 0.4..2.2f64, 0.03..0.15f64), 0..6),
+    ) {
+        // It looks all around.
+        let robot = Robot { sensor: Robot::small().sensor, ..robot };
+        let mut among = AmongDiscs::new(robot, &discs);
+        let pose = Pose::new(1.3, 1.3, theta);
+        prop_assume!(among.room_m(pose) > 1e-3);
+        let commands = every_cycle(&among.robot, &commands);
+        let least_m = among.drive(pose, &commands);
+        prop_assert!(least_m > 0.0, "{least_m}");
     }
 }

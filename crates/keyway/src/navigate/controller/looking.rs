@@ -80,8 +80,9 @@ impl Controller {
             .then_some(Blocked::SensorSilent { silent_s })
     }
 
-    /// The ground that has been seen.
+    /// The ground that has been seen, and the latest scan.
     pub(super) fn seen_cells(&self) -> SeenCells<'_> {
-        self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells)
+        let cells = self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells);
+        SeenCells { scan: Some(&self.look.scan), ..cells }
     }
 }
