@@ -73,7 +73,10 @@ impl<'a> Drive<'a> {
         look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
-            seen: crate::sense::SeenCells { behind: seen.as_ref(), ..crate::sense::SeenCells::ANYWHERE },
+            seen: crate::sense::SeenCells {
+                behind: seen.as_ref(),
+                ..crate::sense::SeenCells::ANYWHERE
+            },
             movers,
             walked: &[],
             pose: *pose,

@@ -91,10 +91,12 @@
 //! touch nothing else until the next one is, but for the squares beside those that it touches in
 //! which the latest scan met something ([`SeenCells::scan`]). There it keeps away from the very
 //! places that the scan met, as it does from obstacles, so that it may go along a wall whose squares
-//! it touches. From what it touches, a disc may be as far as it is, while a polygon is shrunk around
-//! its centre of rotation until it touches nothing, and that part of it may touch nothing. A robot whose centre of rotation is inside an obstacle or outside
-//! the map is stopped: no way out can be told from a way in. When not even braking is admissible
-//! (something came into view too late, or a mover broke the bounds), the robot brakes.
+//! it touches. What such squares hold is met by no more than two beams are apart there. From what it
+//! touches, a disc may be as far as it is, while a polygon is shrunk around its centre of rotation
+//! until it touches nothing, and that part of it may touch nothing. A robot whose centre of rotation
+//! is inside an obstacle or outside the map is stopped: no way out can be told from a way in. When
+//! not even braking is admissible (something came into view too late, or a mover broke the bounds),
+//! the robot brakes.
 //!
 //! # Where this differs from the paper
 //! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to

@@ -24,7 +24,10 @@ fn it_backs_up_over_seen_ground_only() {
         let around = ground.around(Pose::new(0.0, 0.0, theta), velocity, &[]);
         gate(
             &rule,
-            &Surroundings { seen: SeenCells { behind: Some(seen), ..SeenCells::ANYWHERE }, ..around },
+            &Surroundings {
+                seen: SeenCells { behind: Some(seen), ..SeenCells::ANYWHERE },
+                ..around
+            },
             command,
         )
     };

@@ -179,4 +179,3 @@ impl<'a> Start<'a> {
 fn room_m(core: &Core<'_>, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
     core.distance_m(pose, clearance, reach_m).min(core.to_border_m(pose, clearance))
 }
-
