@@ -10,13 +10,13 @@ use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
     animate_frames, series_style, speed_curve,
 };
-use keyway_sim::episode::{Team, TeamRobot};
+use keyway_sim::episode::{Episode, EpisodeRobot};
 use keyway_sim::sim::{Circle, Mover, StandingPolygon};
 
 /// A team and what each of its robots drove; nothing without a route.
 #[derive(Clone, Copy)]
 pub(crate) struct TeamPicture<'a> {
-    pub(crate) team: &'a Team,
+    pub(crate) team: &'a Episode,
     pub(crate) driven: &'a [Vec<DrivenPoint>],
     /// What moves, as it did.
     pub(crate) movers: &'a [Mover],
@@ -39,7 +39,7 @@ impl<'a> TeamPicture<'a> {
     const MOST_FRAMES: usize = 120;
 
     fn shown(&self, t_s: f64, movers: &[Mover]) -> Shown<'a> {
-        let Team { robots, obstacles, polygons, .. } = self.team;
+        let Episode { robots, obstacles, polygons, .. } = self.team;
         let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
         let parts: Vec<&[DrivenPoint]> =
             self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
@@ -63,7 +63,7 @@ impl<'a> TeamPicture<'a> {
     where
         'a: 'b,
     {
-        let Team { known, robots, hidden_cells, .. } = self.team;
+        let Episode { known, robots, hidden_cells, .. } = self.team;
         let mut picture = MapPicture::new(known)
             .with(Discs::unknown_obstacles(&shown.discs))
             .with(Discs::moving_obstacles(&shown.moving))
@@ -107,7 +107,7 @@ impl<'a> TeamPicture<'a> {
             .zip(self.driven)
             .map(|(name, points)| SpeedSeries { name, points })
             .collect();
-        let shared = |limit: fn(&TeamRobot) -> f64| {
+        let shared = |limit: fn(&EpisodeRobot) -> f64| {
             let first = robots.first().map(limit);
             first.filter(|&first| robots.iter().all(|robot| limit(robot) == first))
         };

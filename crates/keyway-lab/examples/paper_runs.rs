@@ -9,7 +9,7 @@ use keyway::files::find_robot;
 use keyway::map::formats::read_map;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, RobotReport, run_episode};
 use keyway_sim::report::RunPart;
 use keyway_sim::scene_files::{SceneFile, read_scene};
 use serde::Serialize;
@@ -57,9 +57,9 @@ impl Scene {
         let Some(stack) = stack else { return Ok(None) };
         let map = self.file.map.as_ref().ok_or("the scenes of the papers have map files")?;
         let map = read_map(&folder_of(&self.path).join(map), None)?;
-        let episode: Episode = self.file.episode(map, self.robot.clone(), stack)?;
-        let (outcome, reason, run) = match run_episode(&episode) {
-            Ok(EpisodeReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),
+        let episode: Episode = self.file.episode_with(map, &self.robot, &stack)?;
+        let (outcome, reason, run) = match run_episode(&episode).map(EpisodeReport::first) {
+            Ok(RobotReport { outcome, reason, run, .. }) => (Some(outcome), reason, run),
             Err(error) => (None, Some(error.to_string()), None),
         };
         Ok(Some(Row { scene: self.name.clone(), stack: name, as_published, outcome, reason, run }))

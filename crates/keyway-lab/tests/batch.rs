@@ -3,7 +3,7 @@
 
 use keyway_lab::batch::{BatchError, BatchRequest, BatchWarning, Keep, MergeRequest, Shard};
 use keyway_lab::progress::Progress;
-use keyway_lab::replay::{Difference, RecordedRun, ReplayError, ReplayRequest};
+use keyway_lab::replay::{Difference, ReplayError, ReplayRequest};
 use keyway_sim::episode::{EpisodeOutcome, run_episode};
 use std::fmt::Display;
 use std::fs;
@@ -115,8 +115,8 @@ fn a_record_gives_the_same_run_again() {
         ReplayRequest { record, map_dir: None, max_cells: request.max_cells }.read(&()).unwrap()
     };
     let again = replay(&path);
-    let RecordedRun::One(episode) = &again.run else { panic!("it is a run of one robot") };
-    let made = run_episode(episode).unwrap();
+    assert!(!again.has_robots);
+    let made = run_episode(&again.episode).unwrap().first();
     assert_eq!(made.outcome, EpisodeOutcome::Reached);
     again.check(&made).unwrap();
     let text = fs::read_to_string(&path).unwrap();

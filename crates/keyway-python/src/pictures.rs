@@ -7,7 +7,7 @@ use keyway_draw::layers::{
     CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Movers, PathLine, Polygons, Start,
 };
 use keyway_draw::{MapPicture, Svg};
-use keyway_sim::episode::EpisodeReport;
+use keyway_sim::episode::RobotReport;
 use keyway_sim::sim::StandingPolygon;
 use pyo3::PyResult;
 
@@ -31,7 +31,7 @@ pub(crate) fn of_path(grid: &OccupancyGrid, path: &Polyline, smoothed: Option<&P
 }
 
 /// Where a robot drove on a map, and among what.
-pub(crate) fn of_run(grid: &OccupancyGrid, report: &EpisodeReport) -> Svg {
+pub(crate) fn of_run(grid: &OccupancyGrid, report: &RobotReport) -> Svg {
     let inputs = &report.inputs;
     let at = |numbers: &[f64]| Point::new(numbers[0], numbers[1]);
     let disc = |&[x, y, radius_m]: &[f64; 3]| Disc { centre: Point::new(x, y), radius_m };

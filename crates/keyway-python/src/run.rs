@@ -8,7 +8,7 @@ use crate::watched::{Cycles, Progress, watched};
 use keyway::geometry::Polyline;
 use keyway::map::OccupancyGrid;
 use keyway_draw::Svg;
-use keyway_sim::episode::{EpisodeError, EpisodeReport, watch_episode, watch_team};
+use keyway_sim::episode::{RobotReport, RunError, RunOptions, watch_episode};
 use keyway_sim::parallel::processors;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use std::time::Instant;
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Run {
     grid: Arc<OccupancyGrid>,
-    report: EpisodeReport,
+    report: RobotReport,
 }
 
 impl Run {
@@ -96,9 +96,9 @@ impl Run {
     }
 }
 
-pub(crate) fn episode_error(error: &EpisodeError) -> PyErr {
+pub(crate) fn run_error(error: &RunError) -> PyErr {
     match error {
-        EpisodeError::Navigate(error) => navigate_error(error),
+        RunError::Navigate(error) => navigate_error(error),
         error => bad_value(error),
     }
 }
@@ -124,12 +124,13 @@ pub(crate) fn simulate(
 ) -> PyResult<Run> {
     let scene = scene.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let episode = scene.episode()?;
+        let episode = scene.episode_of_one()?;
         let begin = Instant::now();
         let clock = || begin.elapsed().as_secs_f64();
         let clock: Option<&(dyn Fn() -> f64 + Sync)> = if times { Some(&clock) } else { None };
-        let report = watch_episode(&episode, clock, &mut Cycles(watch));
-        let report = report.map_err(|error| episode_error(&error))?;
+        let options = RunOptions { clock, ..RunOptions::default() };
+        let report = watch_episode(&episode, options, &mut [Cycles(watch)]);
+        let report = report.map_err(|error| run_error(&error.why))?.first();
         Ok(Run { grid: Arc::new(episode.known), report })
     })?
 }
@@ -161,13 +162,13 @@ pub(crate) fn simulate_team(
 ) -> PyResult<Vec<Run>> {
     let scene = scene.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let team = scene.team()?;
-        let ended = watch_team(&team, None, processors(), |_| Cycles(watch));
-        let (report, _) = ended.map_err(|error| {
-            let is_alone = error.robot.is_none();
-            if is_alone { episode_error(&error.why) } else { bad_value(&error) }
+        let episode = scene.episode()?;
+        let mut cycles: Vec<Cycles<'_>> = episode.robots.iter().map(|_| Cycles(watch)).collect();
+        let options = RunOptions { threads: processors(), ..RunOptions::default() };
+        let report = watch_episode(&episode, options, &mut cycles).map_err(|error| {
+            if error.robot.is_none() { run_error(&error.why) } else { bad_value(&error) }
         })?;
-        let grid = Arc::new(team.known);
+        let grid = Arc::new(episode.known);
         Ok(report
             .robots
             .into_iter()

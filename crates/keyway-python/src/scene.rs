@@ -9,7 +9,7 @@ use keyway::map::OccupancyGrid;
 use keyway::map::formats::read_map;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, Team};
+use keyway_sim::episode::Episode;
 use keyway_sim::report::MapSource;
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap, read_scene};
 use pyo3::prelude::*;
@@ -67,15 +67,15 @@ impl Scene {
     }
 
     /// The run of its robot.
-    pub(crate) fn episode(&self) -> PyResult<Episode> {
-        let (robot, stack) = self.found(&self.file.robot, &self.file.stack)?;
-        self.file.episode(self.scene_map()?, robot, stack).map_err(|error| scene_error(&error))
+    pub(crate) fn episode_of_one(&self) -> PyResult<Episode> {
+        let has_robots = !self.file.robots.is_empty();
+        if has_robots { Err(scene_error(&SceneError::SeveralRobots)) } else { self.episode() }
     }
 
-    /// The runs of all its robots.
-    pub(crate) fn team(&self) -> PyResult<Team> {
+    /// The run of all its robots.
+    pub(crate) fn episode(&self) -> PyResult<Episode> {
         let find = |robot: &str, stack: &str| self.found(robot, stack).map_err(Raised);
-        self.file.team(self.scene_map()?, find).map_err(|Raised(error)| error)
+        self.file.episode(self.scene_map()?, find).map_err(|Raised(error)| error)
     }
 }
 

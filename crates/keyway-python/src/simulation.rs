@@ -1,13 +1,13 @@
 //! A run that Python drives.
 
 use crate::errors::bad_value;
-use crate::run::episode_error;
+use crate::run::run_error;
 use crate::scan::Scan;
 use crate::scene::Scene;
 use crate::watched::{Progress, watched};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Limits;
-use keyway_sim::episode::Episode;
+use keyway_sim::episode::{Episode, EpisodeRobot};
 use keyway_sim::sim::{Action, Arrival, Control, Outcome, Stepper};
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
@@ -56,13 +56,13 @@ impl Simulation {
     #[pyo3(signature = (scene, progress=None))]
     fn new(py: Python<'_>, scene: &Scene, progress: Option<Progress>) -> PyResult<Self> {
         let scene = scene.clone();
-        let (stepper, episode) = watched(py, progress.as_ref(), move |_| {
-            let mut episode: Episode = scene.episode()?;
+        let (stepper, mut episode) = watched(py, progress.as_ref(), move |_| {
+            let mut episode: Episode = scene.episode_of_one()?;
             episode.rules.arrival = Arrival::Passing;
-            let stepper = episode.stepper().map_err(|error| episode_error(&error))?;
+            let stepper = episode.stepper().map_err(|error| run_error(&error.why))?;
             Ok::<_, PyErr>((stepper, episode))
         })??;
-        let Episode { goal, robot, .. } = episode;
+        let EpisodeRobot { goal, robot, .. } = episode.robots.swap_remove(0);
         Ok(Self {
             stepper: Mutex::new(stepper),
             goal: goal.position,

@@ -10,9 +10,9 @@ use keyway::local::{
     Scratch, Term, TermValue, Weighing, WindowConfig,
 };
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::Stack;
+use keyway::navigate::{FittedStack, Stack};
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_with_parts};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, RunOptions, Start, watch_episode};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -72,20 +72,22 @@ impl LocalPlanner for NearRoute {
 }
 
 /// A hall of 8 m x 4 m, along its middle.
-fn run(route_weight: f64) -> Result<EpisodeReport, Box<dyn Error>> {
+fn run(route_weight: f64) -> Result<RobotReport, Box<dyn Error>> {
     let frame = GridFrame::new(160, 80, 0.05, Pose::default())?;
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
     let robot = Robot::small();
     let mut episode = Episode::new(map, robot.clone(), Point::new(1.0, 2.0), Point::new(7.0, 2.0));
-    episode.start = Start { heading_rad: Some(FRAC_PI_2), ..episode.start };
-    episode.stack = Stack::key_point_fusion(&robot);
-    "near-route".clone_into(&mut episode.stack_name);
+    episode.robots[0].start = Start { heading_rad: Some(FRAC_PI_2), ..episode.robots[0].start };
+    episode.robots[0].stack = Stack::key_point_fusion(&robot);
+    "near-route".clone_into(&mut episode.robots[0].stack_name);
     let planner = Arc::new(NearRoute::new(&robot, route_weight)?);
-    Ok(run_with_parts(&episode, |stack| stack.with_local(planner), None, &mut ())?)
+    let exchange = |_, stack: FittedStack| stack.with_local(planner.clone());
+    let options = RunOptions { exchange: Some(&exchange), ..RunOptions::default() };
+    Ok(watch_episode(&episode, options, &mut [(); 0])?.first())
 }
 
 /// The mean distance from the middle of the hall over all cycles \[m\].
-fn mean_off_route_m(report: &EpisodeReport) -> f64 {
+fn mean_off_route_m(report: &RobotReport) -> f64 {
     let rows = report.trajectory.as_deref().unwrap_or_default();
     // A row is [t, x, y, theta, v, omega].
     let off_m = rows.iter().map(|[_, _, y, ..]| (y - 2.0).abs());

@@ -6,8 +6,11 @@
 use keyway::geometry::{Point, Velocity};
 use keyway::local::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::FittedStack;
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_with_parts};
+use keyway_sim::episode::{
+    Episode, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, watch_episode,
+};
 use keyway_sim::sim::Circle;
 use std::error::Error;
 use std::sync::Arc;
@@ -39,22 +42,25 @@ impl LocalPlanner for Bee {
 }
 
 /// A hall of 8 m x 4 m with a disc in the middle of the way that is on no map.
-fn run(has_stop_rule: bool) -> Result<EpisodeReport, Box<dyn Error>> {
+fn run(has_stop_rule: bool) -> Result<RobotReport, Box<dyn Error>> {
     let frame = GridFrame::new(160, 80, 0.05, keyway::geometry::Pose::default())?;
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
     let robot = Robot::small();
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
-    let episode = Episode::new(map, robot.clone(), start, goal);
-    let mut episode = Episode { stack_name: "bee".to_owned(), ..episode };
+    let mut episode = Episode::new(map, robot.clone(), start, goal);
     episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
     // It plans no way around what it sees: only the stop rule is left.
-    episode.stack.controller.watch_route = false;
-    episode.stack.controller.recoveries = vec![].into();
+    let EpisodeRobot { stack, stack_name, .. } = &mut episode.robots[0];
+    "bee".clone_into(stack_name);
+    stack.controller.watch_route = false;
+    stack.controller.recoveries = vec![].into();
     if has_stop_rule {
-        episode.stack.controller = episode.stack.controller.with_stop_rule(&robot);
+        *stack = stack.clone().with_stop_rule(&robot);
     }
     let bee = Arc::new(Bee { robot });
-    Ok(run_with_parts(&episode, |stack| stack.with_local(bee), None, &mut ())?)
+    let exchange = |_, stack: FittedStack| stack.with_local(bee.clone());
+    let options = RunOptions { exchange: Some(&exchange), ..RunOptions::default() };
+    Ok(watch_episode(&episode, options, &mut [(); 0])?.first())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -8,7 +8,7 @@
 //! | measure | [`metrics`] | a path or a run -> figures |
 //! | report | [`report`] | a route or a run -> what JSON reports say of it |
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
-//! | files | `scene_files` | a text -> an episode or a team |
+//! | files | `scene_files` | a text -> an episode |
 //! | threads | [`parallel`] | items -> results, in their order |
 //!
 //! Everything is deterministic: equal inputs and seeds give equal bytes. No function prints or

@@ -12,8 +12,8 @@ use keyway::plan::PlannerConfig;
 use keyway::robot::Robot;
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::SmootherConfig;
-use keyway_sim::episode::{Episode, RandomMoving, RandomObstacles, RandomUnknown, Team, TeamRobot};
-use keyway_sim::episode::{EpisodeReport, run_episode, run_team};
+use keyway_sim::episode::{Episode, EpisodeRobot, RandomMoving, RandomObstacles, RandomUnknown};
+use keyway_sim::episode::{RobotReport, run_episode};
 use keyway_sim::metrics::statistics::{Confidence, McNemarTest, Rate, Sample, SignedRankTest};
 use keyway_sim::report::RouteRequest;
 use keyway_sim::worlds::{Clutter, Corridors, GeneratedMap, Maze, Pattern, Rooms};
@@ -118,7 +118,7 @@ fn plans() -> Digests {
     digests
 }
 
-fn run_digest(reports: &[EpisodeReport]) -> String {
+fn run_digest(reports: &[RobotReport]) -> String {
     let mut digest = Digest::new();
     for report in reports {
         digest.bytes(format!("{:?}", report.outcome).as_bytes());
@@ -130,10 +130,10 @@ fn run_digest(reports: &[EpisodeReport]) -> String {
 }
 
 /// An episode among things that no map shows, with a robot that is not ideal.
-fn episode(known: &OccupancyGrid, robot: &Robot, stack: &str, moving: u32) -> EpisodeReport {
+fn episode(known: &OccupancyGrid, robot: &Robot, stack: &str, moving: u32) -> RobotReport {
     let [start, goal] = ENDS.map(Point::from);
     let mut episode = Episode::new(known.clone(), robot.clone(), start, goal);
-    episode.stack = Stack::by_name(stack, robot).unwrap();
+    episode.robots[0].stack = Stack::by_name(stack, robot).unwrap();
     let obstacles = RandomObstacles {
         unknown: Some(RandomUnknown { count: 3, radius_m: [0.1, 0.2] }),
         moving: Some(RandomMoving { count: moving, radius_m: [0.2, 0.3], speed_mps: [0.2, 0.6] }),
@@ -141,13 +141,13 @@ fn episode(known: &OccupancyGrid, robot: &Robot, stack: &str, moving: u32) -> Ep
         free_ends_m: RandomObstacles::USUAL_FREE_ENDS_M,
     };
     obstacles.put_into(&mut episode, 5).unwrap();
-    let disturbances = &mut episode.disturbances;
+    let disturbances = &mut episode.robots[0].disturbances;
     disturbances.sensor.range_m = 0.01;
     disturbances.actuation.v_relative = 0.05;
     disturbances.actuation.delay_s = 0.05;
     disturbances.localisation.position_m = 0.02;
     episode.rules.time_limit_s = Some(60.0);
-    run_episode(&episode).unwrap()
+    run_episode(&episode).unwrap().first()
 }
 
 fn runs() -> Digests {
@@ -175,9 +175,9 @@ fn team() -> String {
     let jackal = || Robot { cycle_s: Robot::small().cycle_s, ..Robot::jackal() };
     let robot = |robot, from: [f64; 2], to: [f64; 2]| {
         let goal = Goal { position: Point::from(to), heading_rad: Some(1.0) };
-        TeamRobot::new(robot, Point::from(from), goal)
+        EpisodeRobot::new(robot, Point::from(from), goal)
     };
-    let team = Team::new(
+    let team = Episode::of_robots(
         known,
         vec![
             robot(Robot::small(), [2.0, 2.0], [9.0, 6.0]),
@@ -186,7 +186,7 @@ fn team() -> String {
             robot(jackal(), [9.5, 2.5], [2.5, 7.0]),
         ],
     );
-    run_digest(&run_team(&team).unwrap().robots)
+    run_digest(&run_episode(&team).unwrap().robots)
 }
 
 fn statistics() -> Digests {

@@ -6,7 +6,8 @@ use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
 use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Cycle, Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, run_episode, watch_episode,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, RunError, RunOptions, run_episode,
+    watch_episode,
 };
 use keyway_sim::report::PlanOutcome;
 use keyway_sim::sim::{
@@ -63,8 +64,8 @@ impl EpisodeObserver for Counts {
 
 #[test]
 fn equal_episodes_have_equal_reports_without_times() {
-    let report = run_episode(&episode(OPEN)).unwrap();
-    assert_eq!(report, run_episode(&episode(OPEN)).unwrap());
+    let report = run_episode(&episode(OPEN)).unwrap().first();
+    assert_eq!(report, run_episode(&episode(OPEN)).unwrap().first());
     assert_eq!((report.outcome, &report.reason), (EpisodeOutcome::Reached, &None));
     let smoothed = report.smoothed.as_ref().unwrap();
     assert_eq!((report.plan.time_s, smoothed.time_s), (None, None));
@@ -77,7 +78,10 @@ fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
     // A millisecond passes between two readings.
     let now_s = || f64::from(readings.fetch_add(1, Ordering::Relaxed)) * 1e-3;
     let mut counts = Counts::default();
-    let report = watch_episode(&episode(OPEN), Some(&now_s), &mut counts).unwrap();
+    let report = {
+        let options = RunOptions { clock: Some(&now_s), ..RunOptions::default() };
+        watch_episode(&episode(OPEN), options, std::slice::from_mut(&mut counts)).unwrap().first()
+    };
     let run = report.run.as_ref().unwrap();
     // The last decision is that the robot has arrived, after which no cycle is driven.
     assert_eq!((counts.started, counts.decided, counts.ended), (1, run.cycles + 1, 1));
@@ -94,15 +98,16 @@ fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
 fn what_is_not_on_the_map_is_real() {
     let mut blocked = episode(OPEN);
     blocked.obstacles = vec![Circle::standing(Point::new(3.0, 1.4), 0.3)];
-    let (free, around) = (run_episode(&episode(OPEN)).unwrap(), run_episode(&blocked).unwrap());
+    let (free, around) =
+        (run_episode(&episode(OPEN)).unwrap().first(), run_episode(&blocked).unwrap().first());
     assert_eq!(around.outcome, EpisodeOutcome::Reached);
     let length_m =
-        |report: &keyway_sim::episode::EpisodeReport| report.run.as_ref().unwrap().length_m;
+        |report: &keyway_sim::episode::RobotReport| report.run.as_ref().unwrap().length_m;
     assert!(length_m(&around) > length_m(&free) + 0.01);
     assert_eq!(around.inputs.obstacles, [[3.0, 1.4, 0.3]]);
     // An obstacle over the start is touched at once.
-    blocked.obstacles[0].centre = blocked.start.position;
-    let touched = run_episode(&blocked).unwrap();
+    blocked.obstacles[0].centre = blocked.robots[0].start.position;
+    let touched = run_episode(&blocked).unwrap().first();
     assert_eq!(touched.outcome, EpisodeOutcome::Collided);
     assert_eq!(touched.reason.unwrap(), "touched unknown obstacle 0 at (0.600, 1.500)");
     assert_eq!(touched.run.unwrap().cycles, 0);
@@ -111,10 +116,10 @@ fn what_is_not_on_the_map_is_real() {
 #[test]
 fn unknown_cells_are_real_where_they_are_planned_around() {
     let with_gap = ["...?..", "...?..", "......"];
-    let around = run_episode(&episode(with_gap)).unwrap();
+    let around = run_episode(&episode(with_gap)).unwrap().first();
     let mut through = episode(with_gap);
-    through.stack.map.unknown = UnknownPolicy::Free;
-    let through = run_episode(&through).unwrap();
+    through.robots[0].stack.map.unknown = UnknownPolicy::Free;
+    let through = run_episode(&through).unwrap().first();
     let outcomes = (around.outcome, through.outcome);
     assert_eq!(outcomes, (EpisodeOutcome::Reached, EpisodeOutcome::Reached));
     let (around, through) = (around.run.unwrap(), through.run.unwrap());
@@ -126,8 +131,9 @@ fn unknown_cells_are_real_where_they_are_planned_around() {
 #[test]
 fn no_route_is_a_report() {
     let mut counts = Counts::default();
-    let report =
-        watch_episode(&episode(["..#...", "..#...", "..#..."]), None, &mut counts).unwrap();
+    let closed = episode(["..#...", "..#...", "..#..."]);
+    let observers = std::slice::from_mut(&mut counts);
+    let report = watch_episode(&closed, RunOptions::default(), observers).unwrap().first();
     assert_eq!(
         (report.outcome, report.plan.outcome),
         (EpisodeOutcome::NoPath, PlanOutcome::NoPath)
@@ -179,9 +185,10 @@ impl EpisodeObserver for Errors {
 #[test]
 fn a_disturbed_robot_gets_through_a_hall() {
     let mut errors = Errors::default();
-    let ideal = run_episode(&episode(OPEN)).unwrap();
-    let noisy = Episode { disturbances: disturbed(1), ..episode(OPEN) };
-    let report = watch_episode(&noisy, None, &mut errors).unwrap();
+    let ideal = run_episode(&episode(OPEN)).unwrap().first();
+    let noisy = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbed(1));
+    let report = watch_episode(&noisy, RunOptions::default(), std::slice::from_mut(&mut errors));
+    let report = report.unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let run = report.run.as_ref().unwrap();
     assert!(run.time_s > ideal.run.unwrap().time_s, "it begins later");
@@ -193,42 +200,43 @@ fn a_disturbed_robot_gets_through_a_hall() {
     assert_eq!((rows[1][4], rows[1][1]), (0.0, 0.6));
     assert!(rows[2][4] > 0.0);
     // Its inputs reproduce it.
-    assert_eq!(report.inputs.disturbances, Some(noisy.disturbances));
+    assert_eq!(report.inputs.disturbances, Some(noisy.robots[0].disturbances));
     let text = serde_json::to_string(&report.inputs.disturbances).unwrap();
     let disturbances = serde_json::from_str(&text).unwrap();
-    assert_eq!(run_episode(&Episode { disturbances, ..episode(OPEN) }).unwrap(), report);
-    let other = Episode { disturbances: disturbed(2), ..episode(OPEN) };
-    assert_ne!(run_episode(&other).unwrap().trajectory, report.trajectory);
+    let again = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbances);
+    assert_eq!(run_episode(&again).unwrap().first(), report);
+    let other = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbed(2));
+    assert_ne!(run_episode(&other).unwrap().first().trajectory, report.trajectory);
 }
 
 /// The map alone is not enough: something that is not on it may stand there.
 #[test]
 fn a_robot_without_any_scan_stands() {
     let mut blind = episode(["......", "..##..", "......"]);
-    blind.disturbances.sensor.dropped_scans = 1.0;
-    let report = run_episode(&blind).unwrap();
+    blind.robots[0].disturbances.sensor.dropped_scans = 1.0;
+    let report = run_episode(&blind).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
     assert_eq!(report.run.unwrap().length_m, 0.0);
     // A stack that does not ask drives by its map, and runs into what nobody sees.
-    blind.stack = Stack::key_point_fusion(&blind.robot);
-    blind.stack.controller.stop_when_blind = false;
-    assert_eq!(run_episode(&blind).unwrap().outcome, EpisodeOutcome::Reached);
+    blind.robots[0].stack = Stack::key_point_fusion(&blind.robots[0].robot);
+    blind.robots[0].stack.controller.stop_when_blind = false;
+    assert_eq!(run_episode(&blind).unwrap().first().outcome, EpisodeOutcome::Reached);
     blind.obstacles = vec![Circle::standing(Point::new(3.0, 0.5), 0.4)];
     blind.obstacles.push(Circle::standing(Point::new(3.0, 2.5), 0.4));
-    assert_eq!(run_episode(&blind).unwrap().outcome, EpisodeOutcome::Collided);
+    assert_eq!(run_episode(&blind).unwrap().first().outcome, EpisodeOutcome::Collided);
 }
 
 #[test]
 fn rules_end_a_run() {
     let mut short = episode(OPEN);
     short.rules.time_limit_s = Some(1.5);
-    let report = run_episode(&short).unwrap();
+    let report = run_episode(&short).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Timeout);
     assert_eq!(report.inputs.time_limit_s, Some(1.5));
     assert!((report.run.unwrap().time_s - 1.5).abs() < 1e-9);
     short.rules.stuck_window_s = 0.1;
     short.rules.stuck_progress_m = Some(5.0);
-    let report = run_episode(&short).unwrap();
+    let report = run_episode(&short).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck);
     assert_eq!(report.inputs.stuck_window_s, Some(0.1));
 }
@@ -242,12 +250,12 @@ fn who_may_wait_longer_is_not_stuck() {
     let frames = vec![frame(0.0, 2.5), frame(30.0, 2.5), frame(38.0, 5.5)];
     let motion = Motion::KeyFrames(KeyFrames::new(frames).unwrap());
     lane.movers = vec![Mover::new(0.45, motion).unwrap()];
-    lane.goal = Point::new(4.0, 1.5).into();
-    let report = run_episode(&lane).unwrap();
+    lane.robots[0].goal = Point::new(4.0, 1.5).into();
+    let report = run_episode(&lane).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
     assert!(report.reason.unwrap().contains("within 20 s"));
     lane.rules.stuck_window_s = 40.0;
-    let report = run_episode(&lane).unwrap();
+    let report = run_episode(&lane).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
 }
 
@@ -255,10 +263,11 @@ fn who_may_wait_longer_is_not_stuck() {
 fn a_slow_robot_is_not_stuck() {
     let mut slow = episode(OPEN);
     // 4 cm in 10 s: less than what is progress for others.
-    slow.robot.limits.v_max_mps = 0.004;
-    (slow.start.position, slow.goal) = (Point::new(2.5, 1.5), Point::new(3.2, 1.5).into());
-    slow.stack = Stack::key_point_fusion(&slow.robot);
-    let report = run_episode(&slow).unwrap();
+    slow.robots[0].robot.limits.v_max_mps = 0.004;
+    (slow.robots[0].start.position, slow.robots[0].goal) =
+        (Point::new(2.5, 1.5), Point::new(3.2, 1.5).into());
+    slow.robots[0].stack = Stack::key_point_fusion(&slow.robots[0].robot);
+    let report = run_episode(&slow).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert_eq!(report.run.unwrap().recoveries, RecoveryCounts::default());
 }
@@ -266,18 +275,18 @@ fn a_slow_robot_is_not_stuck() {
 #[test]
 fn bad_input_is_an_error() {
     let mut bad = episode(["......", ".#....", "......"]);
-    bad.start.position = Point::new(1.5, 1.5);
+    bad.robots[0].start.position = Point::new(1.5, 1.5);
     let error = run_episode(&bad).unwrap_err();
-    assert!(matches!(error, EpisodeError::Navigate(NavigateError::NoRoom { .. })), "{error}");
+    assert!(matches!(error.why, RunError::Navigate(NavigateError::NoRoom { .. })), "{error}");
     bad = episode(OPEN);
     bad.obstacles = vec![Circle::standing(Point::new(1.0, f64::NAN), 1.0)];
-    assert!(matches!(run_episode(&bad), Err(EpisodeError::World(_))));
+    assert!(matches!(run_episode(&bad).unwrap_err().why, RunError::World(_)));
     bad = episode(OPEN);
     bad.rules.time_limit_s = Some(-1.0);
     let error = run_episode(&bad).unwrap_err();
     assert_eq!(error.to_string(), "rules.time_limit_s must be a positive number, got -1");
     bad = episode(OPEN);
-    bad.disturbances.actuation.delay_s = -0.1;
+    bad.robots[0].disturbances.actuation.delay_s = -0.1;
     let error = run_episode(&bad).unwrap_err();
     let expected = "disturbances.actuation.delay_s must be a time from 0 to 10 s, got -0.1";
     assert_eq!(error.to_string(), expected);
@@ -285,7 +294,7 @@ fn bad_input_is_an_error() {
 
 #[test]
 fn reports_have_the_documented_members_in_their_order() {
-    let report = run_episode(&episode(OPEN)).unwrap();
+    let report = run_episode(&episode(OPEN)).unwrap().first();
     let text = serde_json::to_string(&report).unwrap();
     let members = [
         "{\"schema\":\"keyway.navigate/4\",\"outcome\":\"reached\",\"reason\":null,\"plan\":{\"outcome\":\"found\"",

@@ -5,7 +5,7 @@ use keyway::geometry::{Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::Circle;
 
 /// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
@@ -23,8 +23,8 @@ fn episode(robot: Robot) -> Episode {
     Episode::new(hall(), robot, start, goal)
 }
 
-fn driven(episode: &Episode) -> EpisodeReport {
-    run_episode(episode).unwrap()
+fn driven(episode: &Episode) -> RobotReport {
+    run_episode(episode).unwrap().first()
 }
 
 /// In a world that is all known, nothing depends on when it is seen: but for a stack that stops
@@ -39,7 +39,7 @@ fn the_same_run_later() {
         let delay_s = cycles as f64 * robot.cycle_s;
         let driven = |robot: Robot| {
             let stack = Stack::by_name(stack, &robot).unwrap();
-            driven(&Episode { stack, ..episode(robot) })
+            driven(&episode(robot).with_each_robot(|robot| robot.stack = stack.clone()))
         };
         let late = driven(Robot { actuation_delay_s: delay_s, ..robot.clone() });
         let prompt = driven(robot);
@@ -70,7 +70,7 @@ fn what_is_seen_on_the_way_is_not_touched() {
     let outcome = |known_s: f64, unknown_s: f64, name: &str| {
         let robot = Robot { actuation_delay_s: known_s, ..Robot::by_name(name).unwrap() };
         let mut episode = episode(robot);
-        episode.disturbances.actuation.delay_s = unknown_s;
+        episode.robots[0].disturbances.actuation.delay_s = unknown_s;
         let places = [(2.4, 3.6), (3.2, 5.8), (6.2, 4.4), (6.6, 2.2), (9.3, 3.5), (9.6, 4.9)];
         let disc = |(x, y)| Circle::standing(Point::new(x, y), 0.2);
         episode.obstacles = places.map(disc).to_vec();
@@ -89,10 +89,10 @@ fn what_is_seen_on_the_way_is_not_touched() {
 fn a_part_of_the_delay_may_be_known() {
     let run = |known_s: f64, unknown_s: f64| {
         let mut episode = episode(Robot { actuation_delay_s: known_s, ..Robot::small() });
-        episode.disturbances.actuation.delay_s = unknown_s;
+        episode.robots[0].disturbances.actuation.delay_s = unknown_s;
         driven(&episode)
     };
-    let first_motion_s = |report: EpisodeReport| {
+    let first_motion_s = |report: RobotReport| {
         let trajectory = report.trajectory.unwrap();
         let moves = trajectory.iter().position(|row| row[1..3] != trajectory[0][1..3]).unwrap();
         trajectory[moves - 1][0]

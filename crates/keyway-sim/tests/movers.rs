@@ -5,8 +5,8 @@ use keyway::geometry::{Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, run_episode,
-    watch_episode,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
+    run_episode, watch_episode,
 };
 use keyway_sim::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, WayPoints};
 
@@ -19,7 +19,13 @@ fn across(movers: Vec<Mover>) -> Episode {
     });
     let start = Start { position: Point::new(1.0, 3.0), heading_rad: Some(0.0) };
     let goal = Point::new(9.0, 3.0);
-    Episode { start, movers, ..Episode::new(map, Robot::small(), start.position, goal) }
+    let episode = Episode::new(map, Robot::small(), start.position, goal);
+    Episode { movers, ..episode }.with_each_robot(|robot| robot.start = start)
+}
+
+/// Puts the stop rule behind a robot's stack.
+fn guard(robot: &mut EpisodeRobot) {
+    robot.stack = robot.stack.clone().with_stop_rule(&robot.robot);
 }
 
 fn walker(at: [f64; 2], velocity_mps: [f64; 2]) -> Mover {
@@ -56,7 +62,7 @@ impl EpisodeObserver for Believed<'_> {
 }
 
 struct Seen {
-    report: EpisodeReport,
+    report: RobotReport,
     cycles: u32,
     sensed: u64,
     waited: u32,
@@ -64,7 +70,8 @@ struct Seen {
 
 fn watched(episode: &Episode) -> Seen {
     let mut believed = Believed { movers: &episode.movers, cycles: 0, sensed: 0, waited: 0 };
-    let report = watch_episode(episode, None, &mut believed).unwrap();
+    let report = watch_episode(episode, RunOptions::default(), std::slice::from_mut(&mut believed));
+    let report = report.unwrap().first();
     let Believed { cycles, sensed, waited, .. } = believed;
     Seen { report, cycles, sensed, waited }
 }
@@ -85,7 +92,7 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
         for is_safe in [false, true] {
             let mut episode = across(movers.clone());
             if is_safe {
-                episode.stack.controller = episode.stack.controller.with_stop_rule(&episode.robot);
+                episode = episode.with_each_robot(guard);
             }
             let Seen { report, cycles, sensed, waited } = watched(&episode);
             let contact = report.run.as_ref().and_then(|run| run.contact.as_ref());
@@ -146,9 +153,8 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
         let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
         let way = [1.5, 2.85, 0.15].map(|y| Point::new(x, y)).to_vec();
         let walker = Motion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
-        let start = Start { position: Point::new(0.5, 1.5), heading_rad: None };
+        let start = Point::new(0.5, 1.5);
         let mut episode = Episode {
-            start,
             obstacles: vec![
                 post(2.847, 1.584, 0.089),
                 post(3.454, 2.301, 0.05),
@@ -156,10 +162,10 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
                 post(2.112, 2.149, 0.199),
             ],
             movers: vec![Mover::new(0.138, walker).unwrap()],
-            ..Episode::new(map.clone(), Robot::small(), start.position, Point::new(3.5, 1.5))
+            ..Episode::new(map.clone(), Robot::small(), start, Point::new(3.5, 1.5))
         };
-        episode.stack.controller = episode.stack.controller.with_stop_rule(&episode.robot);
-        if let Some(contact) = run_episode(&episode).unwrap().run.unwrap().contact {
+        episode = episode.with_each_robot(guard);
+        if let Some(contact) = run_episode(&episode).unwrap().first().run.unwrap().contact {
             *(if contact.robot_stood { &mut standing } else { &mut driving }) += 1;
         }
     }

@@ -6,7 +6,7 @@ use keyway::geometry::{Point, wrap_angle};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Controller, Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
 use keyway::robot::{Footprint, Limits, Robot};
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
 use keyway_sim::sim::Circle;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -49,16 +49,16 @@ fn fence(from: [f64; 2], to: [f64; 2]) -> Vec<Circle> {
     (0..=count as i32).map(|i| Circle::standing(place(i), 0.1)).collect()
 }
 
-fn clearance_m(report: &EpisodeReport) -> f64 {
+fn clearance_m(report: &RobotReport) -> f64 {
     report.run.as_ref().unwrap().min_clearance_m.unwrap()
 }
 
-fn tried(report: &EpisodeReport) -> RecoveryCounts {
+fn tried(report: &RobotReport) -> RecoveryCounts {
     report.run.as_ref().unwrap().recoveries
 }
 
 /// The pose and the velocity at the end: x, y, yaw, v, omega.
-fn end(report: &EpisodeReport) -> [f64; 5] {
+fn end(report: &RobotReport) -> [f64; 5] {
     let [_, end @ ..] = *report.trajectory.as_ref().unwrap().last().unwrap();
     end
 }
@@ -71,7 +71,7 @@ fn across(obstacles: Vec<Circle>) -> Episode {
 #[test]
 fn a_corridor_that_is_closed_is_left_for_the_other_one() {
     // At the far end of the lower corridor, out of the sensor's range from its mouth.
-    let report = run_episode(&across(fence([7.5, 0.5], [7.5, 1.5]))).unwrap();
+    let report = run_episode(&across(fence([7.5, 0.5], [7.5, 1.5]))).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
     let rows = report.trajectory.as_ref().unwrap();
@@ -86,7 +86,7 @@ fn a_corridor_that_is_closed_is_left_for_the_other_one() {
 fn where_both_corridors_are_closed_the_run_ends_soon_and_says_why() {
     let mut fences = fence([7.5, 0.5], [7.5, 1.5]);
     fences.extend(fence([7.5, 2.5], [7.5, 3.5]));
-    let report = run_episode(&across(fences)).unwrap();
+    let report = run_episode(&across(fences)).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck);
     assert!(clearance_m(&report) > 0.0);
     let reason = report.reason.as_ref().unwrap();
@@ -112,11 +112,12 @@ fn a_key_point_under_an_obstacle_is_replaced() {
         5,
     );
     let (start, goal) = (Point::new(1.0, 0.9), Point::new(1.0, 2.6));
-    let clear = run_episode(&Episode::new(map.clone(), Robot::small(), start, goal)).unwrap();
+    let clear =
+        run_episode(&Episode::new(map.clone(), Robot::small(), start, goal)).unwrap().first();
     let corner = clear.key_points_m.as_ref().unwrap()[0];
     let obstacles = vec![Circle::standing(corner, 0.12)];
     let episode = Episode { obstacles, ..Episode::new(map, Robot::small(), start, goal) };
-    let report = run_episode(&episode).unwrap();
+    let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
     // No waiting in front of it.
@@ -158,23 +159,27 @@ fn long_robot(v_min_mps: f64) -> Robot {
     Robot { footprint: Footprint::rectangle(0.56, 0.34).unwrap(), limits, ..small }
 }
 
+fn facing(episode: Episode, start: Start) -> Episode {
+    episode.with_each_robot(|robot| robot.start = start)
+}
+
 fn out_of_the_slot(robot: Robot, yaw_deg: f64) -> Episode {
     let (position, goal) = (Point::new(0.35, 0.45), Point::new(1.7, 1.2));
     let start = Start { position, heading_rad: Some(yaw_deg.to_radians()) };
-    Episode { start, ..Episode::new(slot(), robot, position, goal) }
+    facing(Episode::new(slot(), robot, position, goal), start)
 }
 
 #[test]
 fn a_wrong_heading_at_the_start() {
-    let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap();
+    let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
     // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and
     // time by themselves.
     let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
     for (stack, is_recovery) in [("key-point-fusion", true), ("keyway", false)] {
-        backs_out.stack = Stack::by_name(stack, &backs_out.robot).unwrap();
-        let report = run_episode(&backs_out).unwrap();
+        backs_out.robots[0].stack = Stack::by_name(stack, &backs_out.robots[0].robot).unwrap();
+        let report = run_episode(&backs_out).unwrap().first();
         assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
         assert!(clearance_m(&report) > 0.0);
         assert_eq!(tried(&report).manoeuvre > 0, is_recovery, "{:?}", tried(&report));
@@ -186,7 +191,7 @@ fn a_wrong_heading_at_the_start() {
 #[test]
 fn a_dead_end_that_nothing_leads_out_of() {
     // It can neither turn around nor drive backwards.
-    let report = run_episode(&out_of_the_slot(long_robot(0.0), -90.0)).unwrap();
+    let report = run_episode(&out_of_the_slot(long_robot(0.0), -90.0)).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck);
     assert!(clearance_m(&report) > 0.0);
     let run = report.run.as_ref().unwrap();
@@ -196,14 +201,14 @@ fn a_dead_end_that_nothing_leads_out_of() {
 #[test]
 fn recoveries_are_data() {
     let mut episode = out_of_the_slot(long_robot(-0.3), -90.0);
-    episode.stack = Stack::key_point_fusion(&episode.robot);
-    episode.stack.controller.recoveries = vec![RecoveryKind::Wait].into();
-    let report = run_episode(&episode).unwrap();
+    episode.robots[0].stack = Stack::key_point_fusion(&episode.robots[0].robot);
+    episode.robots[0].stack.controller.recoveries = vec![RecoveryKind::Wait].into();
+    let report = run_episode(&episode).unwrap().first();
     let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, .. } = tried(&report);
     assert_eq!((replan, turn, manoeuvre, back_up), (0, 0, 0, 0));
     assert!(wait > 1, "{wait}");
-    episode.stack.controller.recoveries = vec![].into();
-    assert_eq!(tried(&run_episode(&episode).unwrap()), RecoveryCounts::default());
+    episode.robots[0].stack.controller.recoveries = vec![].into();
+    assert_eq!(tried(&run_episode(&episode).unwrap().first()), RecoveryCounts::default());
 }
 
 #[test]
@@ -215,15 +220,15 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
             let goal = Goal { position: Point::new(8.6, 1.1), heading_rad };
             let map = two_corridors();
             let episode = Episode::new(map, robot.clone(), Point::new(6.0, 1.0), goal);
-            let report = run_episode(&episode).unwrap();
+            let report = run_episode(&episode).unwrap().first();
             assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
             let [x, y, yaw, v, omega] = end(&report);
             assert_eq!([v, omega], [0.0, 0.0], "it stands");
-            let tolerance_m = episode.stack.controller.goal_tolerance_m;
+            let tolerance_m = episode.robots[0].stack.controller.goal_tolerance_m;
             assert!(Point::new(x, y).distance(goal.position) <= tolerance_m);
             let Some(heading_rad) = heading_rad else { continue };
             let off_rad = wrap_angle(yaw - heading_rad);
-            assert!(off_rad.abs() <= episode.stack.controller.goal_yaw_tolerance_rad);
+            assert!(off_rad.abs() <= episode.robots[0].stack.controller.goal_yaw_tolerance_rad);
             // Once it stands at the goal, it turns to one side only, and no farther than half
             // around.
             let rows = report.trajectory.as_ref().unwrap();
@@ -247,7 +252,7 @@ fn a_goal_without_room_for_its_heading_is_not_reached() {
     let known = OccupancyGrid::from_fn(*slot.frame(), |_| CellState::Free);
     let hidden_cells = slot.frame().cells().filter(|&cell| slot.occupied().get(cell)).collect();
     let episode = Episode::new(known, robot, position, goal);
-    let report = run_episode(&Episode { start, hidden_cells, ..episode }).unwrap();
+    let report = run_episode(&Episode { hidden_cells, ..facing(episode, start) }).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", end(&report));
     let reason = report.reason.unwrap();
     assert!(reason.contains("no room at the goal to turn"), "{reason}");
@@ -285,13 +290,13 @@ fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
 #[test]
 fn way_points_are_passed_in_their_order() {
     let via = vec![Point::new(9.0, 3.0), Point::new(1.0, 3.0)];
-    let episode = Episode { via: via.clone(), ..across(vec![]) };
-    let report = run_episode(&episode).unwrap();
+    let episode = across(vec![]).with_each_robot(|robot| robot.via = via.clone());
+    let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let passed = report.run.as_ref().unwrap().way_points.as_ref().unwrap();
     let times: Vec<f64> = passed.iter().map(|part| part.passed_s.unwrap()).collect();
     assert!(times[0] > 10.0 && times[1] > times[0] + 10.0, "{times:?}");
-    let tolerance_m = episode.stack.controller.goal_tolerance_m;
+    let tolerance_m = episode.robots[0].stack.controller.goal_tolerance_m;
     let rows = report.trajectory.as_ref().unwrap();
     for (point, time_s) in via.iter().zip(&times) {
         let row = rows.iter().find(|row| (row[0] - time_s).abs() < 1e-6).unwrap();
@@ -299,13 +304,13 @@ fn way_points_are_passed_in_their_order() {
         assert!(row[4] > 0.0, "a way-point is no stop");
     }
     assert_eq!(report.inputs.via, Some(via));
-    assert_eq!(run_episode(&across(vec![])).unwrap().run.unwrap().way_points, None);
-    let inside =
-        Episode { via: vec![Point::new(9.0, 3.0), Point::new(5.0, 2.0)], ..across(vec![]) };
+    assert_eq!(run_episode(&across(vec![])).unwrap().first().run.unwrap().way_points, None);
+    let inside = vec![Point::new(9.0, 3.0), Point::new(5.0, 2.0)];
+    let inside = across(vec![]).with_each_robot(|robot| robot.via = inside.clone());
     let error = run_episode(&inside).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("way-point 2: goal (5, 2) leaves no room"), "{text}");
-    let keyway_sim::episode::EpisodeError::Navigate(error) = error else { panic!("{text}") };
+    let keyway_sim::episode::RunError::Navigate(error) = error.why else { panic!("{text}") };
     assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
 }
 
@@ -315,15 +320,12 @@ fn way_points_are_passed_in_their_order() {
 fn a_square_of_which_a_disc_fills_a_corner_is_no_way_into_the_disc() {
     let frame = GridFrame::new(26, 26, 0.1, keyway::geometry::Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
-    let position = Point::new(1.7777876387635483, 0.8986579673134885);
-    let start = Start { position, heading_rad: Some(42.838492453699445f64.to_radians()) };
-    let discs = [
-        (Point::new(1.222690321526745, 1.627457776084252), 0.03),
-        (Point::new(1.804287097035653, 0.490519262549652), 0.11029267291816278),
-    ];
+    let position = Point::new(1.7778, 0.8987);
+    let start = Start { position, heading_rad: Some(42.84f64.to_radians()) };
+    let discs = [(Point::new(1.2227, 1.6275), 0.03), (Point::new(1.8043, 0.4905), 0.1103)];
     let obstacles = discs.map(|(centre, radius_m)| Circle::standing(centre, radius_m)).to_vec();
     let episode = Episode::new(map, long_robot(0.0), position, Point::new(0.5, 0.5));
-    let report = run_episode(&Episode { start, obstacles, ..episode }).unwrap();
+    let report = run_episode(&Episode { obstacles, ..facing(episode, start) }).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
 }
 
@@ -346,9 +348,11 @@ proptest! {
         let start = Start { position, heading_rad: Some(start.2.to_radians()) };
         let hidden = hidden.iter().map(|&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
         let goal = Point::new(goal.0, goal.1);
-        let episode = Episode { start, obstacles: hidden.collect(), ..Episode::new(map, robot, position, goal) };
+        let episode = facing(Episode::new(map, robot, position, goal), start);
+        let episode = Episode { obstacles: hidden.collect(), ..episode };
         // Ends without room are refused.
         let Ok(report) = run_episode(&episode) else { return Err(TestCaseError::reject("no room")) };
+        let report = report.first();
         let rows = report.trajectory.as_ref().map_or(0, Vec::len);
         prop_assume!(rows != 1);
         prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);

@@ -9,7 +9,7 @@ use keyway::local::{
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Limits, Robot};
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, Start, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
 use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
 use proptest::prelude::*;
 
@@ -66,8 +66,8 @@ fn locals() -> impl Strategy<Value = usize> {
 fn safe_episode(map: OccupancyGrid, robot: &Robot, which: usize, ends: [(f64, f64); 2]) -> Episode {
     let [start, goal] = ends.map(|(x, y)| Point::new(x, y));
     let mut episode = Episode::new(map, robot.clone(), start, goal);
-    episode.stack.local = local(which, robot);
-    episode.stack.controller = episode.stack.controller.with_stop_rule(robot);
+    episode.robots[0].stack.local = local(which, robot);
+    episode.robots[0].stack = episode.robots[0].stack.clone().with_stop_rule(robot);
     episode.rules.time_limit_s = Some(15.0);
     episode
 }
@@ -78,9 +78,9 @@ fn ends() -> impl Strategy<Value = [(f64, f64); 2]> {
 }
 
 /// Whether an episode can be driven at all.
-fn driven(episode: &Episode) -> Option<EpisodeReport> {
+fn driven(episode: &Episode) -> Option<RobotReport> {
     // Ends without room are refused.
-    let report = run_episode(episode).ok()?;
+    let report = run_episode(episode).ok()?.first();
     (report.run.as_ref()?.cycles > 0).then_some(report)
 }
 
@@ -92,9 +92,9 @@ fn the_safety_margin_of_a_robot_is_kept() {
         let map = room(&[(14, 9), (14, 16)]);
         let mut episode =
             Episode::new(map, robot.clone(), Point::new(1.0, 2.6), Point::new(5.0, 2.6));
-        episode.stack = Stack::by_name(stack, &robot).unwrap();
+        episode.robots[0].stack = Stack::by_name(stack, &robot).unwrap();
         episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.6), 0.1)];
-        let report = run_episode(&episode).unwrap();
+        let report = run_episode(&episode).unwrap().first();
         assert_eq!(report.outcome, EpisodeOutcome::Reached, "{stack} {safety_margin_m:?}");
         report.run.unwrap().min_clearance_m.unwrap()
     };
@@ -116,13 +116,13 @@ proptest! {
         discs in prop::collection::vec((0.5..WIDTH_M - 0.5, 0.5..HEIGHT_M - 0.5, 0.1..0.3f64), 0..5),
     ) {
         let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses, delay_s), which, ends);
-        episode.start = Start { heading_rad: Some(yaw_deg.to_radians()), ..episode.start };
+        episode.robots[0].start = Start { heading_rad: Some(yaw_deg.to_radians()), ..episode.robots[0].start };
         let disc = |(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
         episode.obstacles = discs.into_iter().map(disc).collect();
-        let between = episode.start.position.lerp(episode.goal.position, on_way.0);
+        let between = episode.robots[0].start.position.lerp(episode.robots[0].goal.position, on_way.0);
         episode.obstacles.push(Circle::standing(between, on_way.1));
         // Otherwise a new route leads around what is seen.
-        episode.stack.controller.watch_route = watches;
+        episode.robots[0].stack.controller.watch_route = watches;
         let Some(report) = driven(&episode) else { return Err(TestCaseError::reject("no room")) };
         prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
     }
@@ -141,7 +141,7 @@ proptest! {
         };
         let movers: Option<Vec<Mover>> = ways.iter().map(mover).collect();
         let Some(movers) = movers else { return Err(TestCaseError::reject("no way")) };
-        let start = episode.start.position;
+        let start = episode.robots[0].start.position;
         prop_assume!(movers.iter().all(|mover| mover.at(0.0).centre.distance(start) > 2.5));
         episode.movers = movers;
         let Some(report) = driven(&episode) else { return Err(TestCaseError::reject("no room")) };

@@ -6,7 +6,7 @@ use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Blocked, Controller, Stack, Step};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::{
     Action, Circle, Control, Disturbances, Outcome, Participant, RunRules, StandingPolygon, World,
     simulate,
@@ -53,8 +53,8 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
             let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
             let mut episode = Episode::new(hall(), robot.clone(), start, goal);
             episode.polygons = vec![StandingPolygon::new(wall.clone()).unwrap()];
-            episode.stack = stack;
-            let EpisodeReport { outcome, trajectory, .. } = run_episode(&episode).unwrap();
+            episode.robots[0].stack = stack;
+            let RobotReport { outcome, trajectory, .. } = run_episode(&episode).unwrap().first();
             assert_ne!(outcome, EpisodeOutcome::Collided, "{name} {v_max_mps} {brakes_mps2}");
             if name == "keyway" {
                 assert_eq!(outcome, EpisodeOutcome::Reached, "{v_max_mps} {brakes_mps2}");
@@ -175,9 +175,9 @@ fn slow_and_lossy_sensors_drive() {
         let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
         let mut episode = Episode::new(hall(), robot, start, goal);
         episode.obstacles = vec![Circle::standing(Point::new(8.0, 2.1), 0.3)];
-        episode.disturbances = Disturbances { seed: 3, ..Disturbances::default() };
-        episode.disturbances.sensor.dropped_scans = dropped_scans;
-        let EpisodeReport { outcome, run, .. } = run_episode(&episode).unwrap();
+        episode.robots[0].disturbances = Disturbances { seed: 3, ..Disturbances::default() };
+        episode.robots[0].disturbances.sensor.dropped_scans = dropped_scans;
+        let RobotReport { outcome, run, .. } = run_episode(&episode).unwrap().first();
         assert_eq!(outcome, EpisodeOutcome::Reached, "{period_s:?} {dropped_scans}");
         // 14 m at 0.5 m/s.
         let time_s = run.unwrap().time_s;
@@ -262,8 +262,8 @@ fn large_cells_of_open_ground_hold_nobody_up() {
         for robot in [Robot::small(), Robot::jackal()] {
             let (start, goal) = (Point::new(2.5, 2.5), Point::new(9.5, 8.5));
             let mut episode = Episode::new(known.clone(), robot.clone(), start, goal);
-            episode.stack = episode.stack.with_stop_rule(&robot);
-            let EpisodeReport { outcome, run, .. } = run_episode(&episode).unwrap();
+            episode.robots[0].stack = episode.robots[0].stack.clone().with_stop_rule(&robot);
+            let RobotReport { outcome, run, .. } = run_episode(&episode).unwrap().first();
             assert_eq!(outcome, EpisodeOutcome::Reached, "{cell_m}");
             let refused = run.unwrap().unsafe_commands.unwrap().out_of_sight;
             assert_eq!(refused, 0, "{cell_m} {}", robot.footprint);

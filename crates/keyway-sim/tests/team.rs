@@ -6,8 +6,8 @@ use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{NavigateError, Stack};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, Start, Team, TeamRobot,
-    run_episode, run_team, watch_team,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
+    run_episode, watch_episode,
 };
 use keyway_sim::report::ContactPart;
 use keyway_sim::sim::{Circle, Disturbances, Mover, Obstacle, StandingPolygon};
@@ -20,41 +20,8 @@ fn hall(has_wall: bool) -> OccupancyGrid {
     })
 }
 
-fn robot(from: [f64; 2], to: [f64; 2]) -> TeamRobot {
-    TeamRobot::new(Robot::small(), Point::from(from), Point::from(to))
-}
-
-#[test]
-fn a_team_of_one_is_an_episode() {
-    let mut disturbances = Disturbances { seed: 4, ..Disturbances::default() };
-    disturbances.actuation.v_relative = 0.05;
-    let mut one = robot([1.0, 1.0], [5.0, 4.0]);
-    (one.disturbances, one.via) = (disturbances, vec![Point::new(4.0, 1.5)]);
-    one.start = Start { heading_rad: Some(30f64.to_radians()), ..one.start };
-    let mut team = Team::new(hall(false), vec![one.clone()]);
-    team.obstacles = vec![Circle::standing(Point::new(2.6, 1.3), 0.2)];
-    let corners = [[3.0, 2.6], [3.4, 2.6], [3.2, 2.9]].map(Point::from).to_vec();
-    team.polygons = vec![StandingPolygon::new(corners).unwrap()];
-    team.hidden_cells = vec![Cell::new(45, 20), Cell::new(45, 21)];
-    team.movers = vec![Mover::straight(Point::new(5.0, 0.5), 0.2, Point::new(0.0, 0.2)).unwrap()];
-    team.rules.time_limit_s = Some(50.0);
-    let report = run_team(&team).unwrap();
-    let episode = Episode {
-        obstacles: team.obstacles,
-        polygons: team.polygons,
-        hidden_cells: team.hidden_cells,
-        movers: team.movers,
-        rules: team.rules,
-        disturbances,
-        start: one.start,
-        via: one.via,
-        ..Episode::new(hall(false), one.robot, one.start.position, one.goal)
-    };
-    let alone = run_episode(&episode).unwrap();
-    assert_eq!(alone.outcome, EpisodeOutcome::Reached, "{:?}", alone.reason);
-    assert_eq!(report.makespan_s, Some(alone.run.as_ref().unwrap().time_s));
-    assert_eq!(report.min_robot_clearance_m, None);
-    assert_eq!((report.outcomes, report.robots), (vec![alone.outcome], vec![alone]));
+fn robot(from: [f64; 2], to: [f64; 2]) -> EpisodeRobot {
+    EpisodeRobot::new(Robot::small(), Point::from(from), Point::from(to))
 }
 
 #[test]
@@ -68,11 +35,12 @@ fn a_team_drives_the_same_on_any_number_of_threads() {
     ];
     // One has no route, and stands.
     robots.push(robot([4.0, 6.0], [4.0, 6.0]));
-    let mut team = Team::new(hall(false), robots);
+    let mut team = Episode::of_robots(hall(false), robots);
     team.rules.time_limit_s = Some(30.0);
-    let alone = run_team(&team).unwrap();
+    let alone = run_episode(&team).unwrap();
     for threads in [2, 3, 16] {
-        let (report, _) = watch_team(&team, None, threads, |_| ()).unwrap();
+        let options = RunOptions { threads, ..RunOptions::default() };
+        let report = watch_episode(&team, options, &mut [(); 0]).unwrap();
         assert_eq!(report, alone, "{threads} threads");
     }
 }
@@ -96,9 +64,9 @@ fn each_robot_has_its_own_stack_report_and_observer() {
     let mut second = robot([7.0, 6.0], [1.0, 6.0]);
     second.stack_name = "s0-key-point".to_owned();
     second.stack = Stack::by_name("s0-key-point", &second.robot).unwrap();
-    let team = Team::new(hall(false), vec![robot([1.0, 2.0], [5.0, 2.0]), second]);
-    let watch = |index| Watched { index, ..Watched::default() };
-    let (report, watched) = watch_team(&team, None, 1, watch).unwrap();
+    let team = Episode::of_robots(hall(false), vec![robot([1.0, 2.0], [5.0, 2.0]), second]);
+    let mut watched = [0, 1].map(|index| Watched { index, ..Watched::default() });
+    let report = watch_episode(&team, RunOptions::default(), &mut watched).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::Reached; 2]);
     let runs: Vec<_> = report.robots.iter().map(|robot| robot.run.as_ref().unwrap()).collect();
     assert_eq!(report.makespan_s, Some(runs[1].time_s));
@@ -113,14 +81,14 @@ fn each_robot_has_its_own_stack_report_and_observer() {
     }
     let stacks: Vec<_> = report.robots.iter().map(|robot| robot.inputs.stack.clone()).collect();
     assert_eq!(stacks, [Some(Stack::DEFAULT.to_owned()), Some("s0-key-point".to_owned())]);
-    assert_eq!(run_team(&team).unwrap(), report);
+    assert_eq!(run_episode(&team).unwrap(), report);
 }
 
 #[test]
 fn a_robot_without_a_route_stands_in_the_way_of_the_others() {
     // On the way of the second robot, with the goal behind the wall.
     let robots = vec![robot([2.0, 4.0], [7.0, 4.0]), robot([2.0, 1.0], [2.0, 7.0])];
-    let report = run_team(&Team::new(hall(true), robots)).unwrap();
+    let report = run_episode(&Episode::of_robots(hall(true), robots)).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::NoPath, EpisodeOutcome::Reached]);
     assert_eq!((report.makespan_s, &report.robots[0].run), (None, &None));
     let run = report.robots[1].run.as_ref().unwrap();
@@ -129,7 +97,7 @@ fn a_robot_without_a_route_stands_in_the_way_of_the_others() {
     assert!(clearance_m > 0.0 && clearance_m < 0.5, "{clearance_m}");
     // Where none has a route, nothing is driven.
     let none = vec![robot([2.0, 4.0], [7.0, 4.0]), robot([2.0, 4.1], [7.0, 1.0])];
-    let report = run_team(&Team::new(hall(true), none)).unwrap();
+    let report = run_episode(&Episode::of_robots(hall(true), none)).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::NoPath; 2]);
     assert_eq!(report.min_robot_clearance_m, None);
 }
@@ -137,7 +105,7 @@ fn a_robot_without_a_route_stands_in_the_way_of_the_others() {
 #[test]
 fn contacts_name_the_other_robot() {
     let robots = vec![robot([2.0, 4.0], [7.0, 4.0]), robot([2.0, 4.3], [7.0, 1.0])];
-    let report = run_team(&Team::new(hall(false), robots)).unwrap();
+    let report = run_episode(&Episode::of_robots(hall(false), robots)).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::Collided; 2]);
     assert_eq!(report.min_robot_clearance_m, Some(0.0));
     for (robot, other) in report.robots.iter().zip([1, 0]) {
@@ -151,7 +119,7 @@ fn contacts_name_the_other_robot() {
 #[test]
 fn what_no_map_shows_is_in_the_way_of_every_robot() {
     let robots = vec![robot([2.0, 2.0], [7.0, 2.0]), robot([2.0, 6.0], [7.0, 6.0])];
-    let mut team = Team::new(hall(false), robots);
+    let mut team = Episode::of_robots(hall(false), robots);
     let around = |x: f64, y: f64| {
         let corners = [[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]];
         let corners = corners.map(|[dx, dy]| Point::new(x + dx, y + dy)).to_vec();
@@ -159,9 +127,9 @@ fn what_no_map_shows_is_in_the_way_of_every_robot() {
     };
     team.polygons = vec![around(2.0, 2.0)];
     team.hidden_cells = vec![Cell::new(20, 60)];
-    let report = run_team(&team).unwrap();
+    let report = run_episode(&team).unwrap();
     let with = |index: usize| {
-        let robot: &EpisodeReport = &report.robots[index];
+        let robot: &RobotReport = &report.robots[index];
         assert_eq!(robot.inputs.polygons, team.polygons);
         assert_eq!(robot.inputs.hidden_cells, team.hidden_cells);
         robot.run.as_ref().unwrap().contact.unwrap().with
@@ -171,14 +139,14 @@ fn what_no_map_shows_is_in_the_way_of_every_robot() {
     assert!(reason(0).starts_with("touched unknown polygon 0 at "), "{}", reason(0));
     assert!(reason(1).starts_with("touched an unknown cell at "), "{}", reason(1));
     team.hidden_cells.push(Cell::new(80, 0));
-    assert_eq!(run_team(&team).unwrap_err().robot, None);
+    assert_eq!(run_episode(&team).unwrap_err().robot, None);
 }
 
 #[test]
 fn who_waits_has_as_much_time_as_the_longest_way_takes() {
-    let limits_s = |robots: Vec<TeamRobot>| {
-        let report = run_team(&Team::new(hall(false), robots)).unwrap();
-        let limit_s = |robot: &EpisodeReport| robot.inputs.time_limit_s.unwrap();
+    let limits_s = |robots: Vec<EpisodeRobot>| {
+        let report = run_episode(&Episode::of_robots(hall(false), robots)).unwrap();
+        let limit_s = |robot: &RobotReport| robot.inputs.time_limit_s.unwrap();
         report.robots.iter().map(limit_s).collect::<Vec<_>>()
     };
     let (short, long) = (robot([1.0, 1.0], [2.0, 1.0]), robot([1.0, 6.0], [6.0, 6.0]));
@@ -189,7 +157,7 @@ fn who_waits_has_as_much_time_as_the_longest_way_takes() {
 
 #[test]
 fn what_cannot_be_driven_is_refused_with_the_robot() {
-    let error = |robots| run_team(&Team::new(hall(true), robots)).unwrap_err();
+    let error = |robots| run_episode(&Episode::of_robots(hall(true), robots)).unwrap_err();
     let free = robot([1.0, 1.0], [2.0, 1.0]);
     assert_eq!(error(vec![]).to_string(), "robots must be one or more, got none");
     let mut slow = free.clone();
@@ -203,10 +171,10 @@ fn what_cannot_be_driven_is_refused_with_the_robot() {
     assert_eq!(in_the_wall.robot, Some(1));
     let is_no_room = matches!(
         in_the_wall.why,
-        keyway_sim::episode::EpisodeError::Navigate(NavigateError::NoRoom { .. })
+        keyway_sim::episode::RunError::Navigate(NavigateError::NoRoom { .. })
     );
     assert!(is_no_room, "{in_the_wall}");
-    let mut team = Team::new(hall(false), vec![free]);
+    let mut team = Episode::of_robots(hall(false), vec![free]);
     team.obstacles = vec![Circle::standing(Point::new(1.0, 1.0), -1.0)];
-    assert_eq!(run_team(&team).unwrap_err().robot, None);
+    assert_eq!(run_episode(&team).unwrap_err().robot, None);
 }

@@ -54,7 +54,7 @@ fn bundled(out: &OutDir) -> Result<Episode, CliError> {
     let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];
     match Cli::try_parse_from(argv) {
         Ok(Cli { command: Command::Navigate(args) }) => {
-            given(&args, given_scene(&args)?).map(|given| given.episode)
+            given(&args, given_scene(&args)?.as_ref()).map(|given| given.episode)
         }
         Ok(_) => Err(CliError::new(Kind::Usage, "the demo is a drive")),
         Err(error) => Err(CliError::from_clap(&error)),

@@ -9,8 +9,8 @@ use keyway::map::formats::read_map;
 use keyway::navigate::{Misfit, RecoveryCounts};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Cycle, CycleReport, Episode, EpisodeObserver, EpisodeOutcome, EpisodeReport, StepName,
-    run_episode, watch_episode,
+    Cycle, CycleReport, Episode, EpisodeObserver, EpisodeOutcome, RobotReport, RunOptions,
+    StepName, run_episode, watch_episode,
 };
 use keyway_sim::scene_files::read_scene;
 use std::path::{Path, PathBuf};
@@ -27,13 +27,13 @@ fn episode(name: &str) -> Episode {
     );
     let robot = find_robot(&scene.robot, &folder()).unwrap();
     let stack = find_stack(&scene.stack, &folder(), &robot).unwrap();
-    scene.episode(map, robot, stack).unwrap()
+    scene.episode_with(map, &robot, &stack).unwrap()
 }
 
 /// A run that reaches its goal without contact.
-fn reached(name: &str) -> (Episode, EpisodeReport) {
+fn reached(name: &str) -> (Episode, RobotReport) {
     let episode = episode(name);
-    let report = run_episode(&episode).unwrap();
+    let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{name}: {:?}", report.reason);
     (episode, report)
 }
@@ -47,7 +47,7 @@ struct At {
     omega_radps: f64,
 }
 
-fn drive(report: &EpisodeReport) -> Vec<At> {
+fn drive(report: &RobotReport) -> Vec<At> {
     let rows = report.trajectory.as_ref().unwrap().iter();
     let at = |&[_, x, y, yaw_rad, v_mps, omega_radps]: &[f64; 6]| At {
         place: Point::new(x, y),
@@ -58,7 +58,7 @@ fn drive(report: &EpisodeReport) -> Vec<At> {
     rows.map(at).collect()
 }
 
-fn end(report: &EpisodeReport) -> At {
+fn end(report: &RobotReport) -> At {
     *drive(report).last().unwrap()
 }
 
@@ -77,7 +77,7 @@ fn near(drive: &[At], place: Point, within_m: f64) -> Vec<At> {
 fn shaking_near_the_goal_and_near_an_obstacle() {
     let (episode, report) = reached("shaking");
     let drive = drive(&report);
-    let at_goal = near(&drive, episode.goal.position, 1.0);
+    let at_goal = near(&drive, episode.robots[0].goal.position, 1.0);
     let at_obstacle = near(&drive, episode.obstacles[0].centre, 1.2);
     assert!(at_goal.len() > 10 && at_obstacle.len() > 10);
     assert!(turning_back(&at_goal) <= 1, "{}", turning_back(&at_goal));
@@ -101,7 +101,7 @@ fn reasons(name: &str, time_limit_s: f64) -> Vec<CycleReport> {
     let mut episode = episode(name);
     episode.rules.time_limit_s = Some(time_limit_s);
     let mut reasons = Reasons::default();
-    watch_episode(&episode, None, &mut reasons).unwrap();
+    watch_episode(&episode, RunOptions::default(), std::slice::from_mut(&mut reasons)).unwrap();
     reasons.0
 }
 
@@ -116,7 +116,7 @@ fn no_valid_trajectory_says_which_rule_and_what_would_free_the_robot() {
     assert!(reason.contains("touch something"), "{reason}");
     // Each was tried; the tests of the explanations apply them.
     assert!(first.remedies.iter().any(|remedy| remedy.frees), "{:?}", first.remedies);
-    let ends = run_episode(&episode("boxed_in")).unwrap();
+    let ends = run_episode(&episode("boxed_in")).unwrap().first();
     assert_eq!(ends.outcome, EpisodeOutcome::Stuck);
     assert!(ends.run.unwrap().time_s < 30.0);
     let why = ends.reason.unwrap();
@@ -224,8 +224,8 @@ fn who_walks_to_and_fro_is_gone_around() {
         run.recoveries
     );
     let mut waits = episode("pacing");
-    waits.stack.controller.go_around = false;
-    let outcome = run_episode(&waits).unwrap().outcome;
+    waits.robots[0].stack.controller.go_around = false;
+    let outcome = run_episode(&waits).unwrap().first().outcome;
     assert_eq!(outcome, EpisodeOutcome::Stuck, "otherwise the scene shows nothing");
 }
 
@@ -242,9 +242,12 @@ impl EpisodeObserver for Walked {
 #[test]
 fn what_is_gone_around_is_said() {
     let (episode, mut walked) = (episode("pacing"), Walked::default());
-    watch_episode(&episode, None, &mut walked).unwrap();
+    watch_episode(&episode, RunOptions::default(), std::slice::from_mut(&mut walked)).unwrap();
     let first = walked.0.iter().position(|discs| !discs.is_empty()).unwrap();
-    assert!(first as f64 * episode.robot.cycle_s > 3.0, "only after it has waited: {first}");
+    assert!(
+        first as f64 * episode.robots[0].robot.cycle_s > 3.0,
+        "only after it has waited: {first}"
+    );
     for [x, y, radius_m] in &walked.0[first] {
         assert!((x - 5.45).abs() < 0.2 && (2.3..4.1).contains(y), "{x} {y}");
         assert!((radius_m - 0.25).abs() < 0.1, "{radius_m}");
@@ -254,8 +257,11 @@ fn what_is_gone_around_is_said() {
 #[test]
 fn the_whole_footprint_turns_without_contact() {
     let (episode, report) = reached("turning_room");
-    let room_m = episode.start.position.x - 0.1;
-    assert!(room_m < episode.robot.footprint.circumscribed_radius_m(), "no room on the spot");
+    let room_m = episode.robots[0].start.position.x - 0.1;
+    assert!(
+        room_m < episode.robots[0].robot.footprint.circumscribed_radius_m(),
+        "no room on the spot"
+    );
     assert!(report.run.unwrap().min_clearance_m.unwrap() > 0.0);
 }
 
@@ -263,8 +269,8 @@ fn the_whole_footprint_turns_without_contact() {
 fn a_rectangle_turns_while_it_has_room_to() {
     let mut episode = episode("open_hall");
     // Backing up would help it, too.
-    episode.robot.limits.v_min_mps = 0.0;
-    let report = run_episode(&episode).unwrap();
+    episode.robots[0].robot.limits.v_min_mps = 0.0;
+    let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let run = report.run.unwrap();
     assert!(run.min_clearance_m.unwrap() > 0.0 && run.time_s < 40.0);
@@ -281,17 +287,17 @@ fn a_rectangle_close_beside_a_wall_gets_away() {
 #[test]
 fn the_goal_is_met_with_its_heading() {
     let (episode, report) = reached("final_turn");
-    let (end, controller) = (end(&report), &episode.stack.controller);
+    let (end, controller) = (end(&report), &episode.robots[0].stack.controller);
     assert_eq!((end.v_mps, end.omega_radps), (0.0, 0.0));
-    assert!(end.place.distance(episode.goal.position) <= controller.goal_tolerance_m);
-    let off_rad = wrap_angle(end.yaw_rad - episode.goal.heading_rad.unwrap());
+    assert!(end.place.distance(episode.robots[0].goal.position) <= controller.goal_tolerance_m);
+    let off_rad = wrap_angle(end.yaw_rad - episode.robots[0].goal.heading_rad.unwrap());
     assert!(off_rad.abs() <= controller.goal_yaw_tolerance_rad, "{off_rad}");
     // The final turn goes one way, and no farther than half around.
     let drive = drive(&report);
     let stands = drive.iter().rposition(|at| at.v_mps != 0.0).unwrap() + 1;
     assert_eq!(turning_back(&drive[stands..]), 0);
-    let turned_rad: f64 =
-        drive[stands..].iter().map(|at| at.omega_radps.abs()).sum::<f64>() * episode.robot.cycle_s;
+    let turned_rad: f64 = drive[stands..].iter().map(|at| at.omega_radps.abs()).sum::<f64>()
+        * episode.robots[0].robot.cycle_s;
     assert!(turned_rad < std::f64::consts::PI + 0.1, "{turned_rad}");
 }
 

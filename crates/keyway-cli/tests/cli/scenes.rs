@@ -11,7 +11,7 @@ use keyway::plan::{
     shortest_line,
 };
 use keyway::search::{CornerRule, Cost, Query, Workspace};
-use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeReport, run_episode};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::scene_files::read_scene;
 use keyway_sim::sim::Circle;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ fn episode(name: &str) -> Episode {
     let map = read_map(&beside.join(scene.map.as_ref().unwrap()), None).unwrap();
     let robot = find_robot(&scene.robot, beside).unwrap();
     let stack = find_stack(&scene.stack, beside, &robot).unwrap();
-    scene.episode(map, robot, stack).unwrap()
+    scene.episode_with(map, &robot, &stack).unwrap()
 }
 
 /// The planners of the papers' comparisons, with each paper's corner rule.
@@ -79,8 +79,8 @@ fn bare(episode: &Episode) -> SearchMap {
 fn plan(episode: &Episode, map: &SearchMap, planner: &str) -> Plan {
     let frame = map.frame();
     let query = Query::new(
-        frame.cell_from_world(episode.start.position).unwrap(),
-        frame.cell_from_world(episode.goal.position).unwrap(),
+        frame.cell_from_world(episode.robots[0].start.position).unwrap(),
+        frame.cell_from_world(episode.robots[0].goal.position).unwrap(),
     );
     let mut plan = Plan::default();
     baseline(planner)
@@ -150,11 +150,12 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
         ("zhuyin2024/lab_unknown", "A*, cutting corners"),
     ] {
         let episode = episode(name);
-        let radius_m = episode.robot.footprint.inscribed_radius_m();
+        let radius_m = episode.robots[0].robot.footprint.inscribed_radius_m();
         let inflated = LayerConfig { clearance_m: radius_m, ..LayerConfig::default() };
         let map = SearchMap::new(&episode.known, inflated).unwrap();
         let plan = plan(&episode, &map, planner);
-        let line = plan.line(&map, episode.start.position, episode.goal.position);
+        let line =
+            plan.line(&map, episode.robots[0].start.position, episode.robots[0].goal.position);
         let segments: Vec<Segment> = line.polyline().segments().collect();
         let is_touched = episode.obstacles.iter().any(|circle| {
             let reach_m = circle.radius_m + radius_m;
@@ -170,7 +171,7 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
 fn shortest_lines() {
     let shortest_m = |name: &str| {
         let episode = episode(name);
-        let (start, goal) = (episode.start.position, episode.goal.position);
+        let (start, goal) = (episode.robots[0].start.position, episode.robots[0].goal.position);
         shortest_line(&bare(&episode), CornerRule::Allow, start, goal).unwrap().length_m()
     };
     for (name, rrt_m) in [
@@ -199,7 +200,7 @@ fn random_obstacles_are_added() {
     for pair in scenes.windows(2) {
         let [(fewer, before), (_, after)] = pair else { unreachable!() };
         assert_eq!(before.obstacles, after.obstacles[..*fewer]);
-        assert_eq!((&before.known, before.start), (&after.known, after.start));
+        assert_eq!((&before.known, before.robots[0].start), (&after.known, after.robots[0].start));
     }
 }
 
@@ -220,7 +221,8 @@ fn movers_pass_through_nothing() {
             let standing = episode.obstacles.iter();
             let from_standing_m =
                 standing.map(|other| away_m(other.centre) - other.radius_m).fold(1.0, f64::min);
-            let from_ends_m = away_m(episode.start.position).min(away_m(episode.goal.position));
+            let from_ends_m = away_m(episode.robots[0].start.position)
+                .min(away_m(episode.robots[0].goal.position));
             assert!(from_walls_m.min(from_standing_m).min(from_ends_m) > 0.0, "{name}, {centre:?}");
         }
     }
@@ -255,8 +257,9 @@ fn documented(scene: &str) -> EpisodeOutcome {
 fn drive(paper: &str) {
     for name in names().iter().filter(|name| name.starts_with(paper)) {
         let episode = episode(name);
-        let report = run_episode(&episode).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let EpisodeReport { outcome, reason, run, .. } = report;
+        let report =
+            run_episode(&episode).unwrap_or_else(|error| panic!("{name}: {error}")).first();
+        let RobotReport { outcome, reason, run, .. } = report;
         assert!(run.is_some(), "{name}: {reason:?}");
         assert_eq!(outcome, documented(name.split('/').next_back().unwrap()), "{name}: {reason:?}");
         let has_contact = outcome == EpisodeOutcome::Collided;

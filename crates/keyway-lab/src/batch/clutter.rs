@@ -1,22 +1,22 @@
 //! Obstacle density of the world of a run.
 
 use keyway::geometry::Point;
-use keyway_sim::episode::Team;
+use keyway_sim::episode::Episode;
 use std::f64::consts::PI;
 
 /// Share of the known map area that obstacles cover at the beginning: occupied cells, and the
 /// obstacles outside the map, static and moving. Overlaps, and parts beyond the map, count in full,
 /// so the share is capped at 1. It is the same for all stacks, and `None` for a map without a known
 /// cell.
-pub(super) fn occupied_share(team: &Team) -> Option<f64> {
-    let (map, frame) = (&team.known, team.known.frame());
+pub(super) fn occupied_share(episode: &Episode) -> Option<f64> {
+    let (map, frame) = (&episode.known, episode.known.frame());
     let cell_m2 = frame.resolution_m().powi(2);
     let cells = u64::from(frame.width()) * u64::from(frame.height()) - map.unknown().count_ones();
-    let movers = team.movers.iter().map(|mover| mover.at(0.0));
-    let circles = team.obstacles.iter().copied().chain(movers);
+    let movers = episode.movers.iter().map(|mover| mover.at(0.0));
+    let circles = episode.obstacles.iter().copied().chain(movers);
     let hidden_m2: f64 = circles.map(|circle| PI * circle.radius_m.powi(2)).sum();
-    let polygons_m2: f64 = team.polygons.iter().map(|polygon| area_m2(polygon.vertices())).sum();
-    let occupied = map.occupied().count_ones() + team.hidden_cells.len() as u64;
+    let polygons_m2: f64 = episode.polygons.iter().map(|polygon| area_m2(polygon.vertices())).sum();
+    let occupied = map.occupied().count_ones() + episode.hidden_cells.len() as u64;
     let occupied_m2 = occupied as f64 * cell_m2 + hidden_m2 + polygons_m2;
     (cells > 0).then(|| (occupied_m2 / (cells as f64 * cell_m2)).min(1.0))
 }
@@ -39,19 +39,19 @@ mod tests {
         // 12 cells of 1 m2, of which 2 are unknown and 3 occupied.
         let map = OccupancyGrid::from_ascii(&["..#?", "..#?", "..#."]);
         let (start, goal) = (Point::new(0.5, 0.5), Point::new(1.5, 0.5));
-        let mut team = Team::new(map, Vec::new());
-        assert_eq!(occupied_share(&team), Some(0.3));
-        team.obstacles = vec![Circle::standing(goal, 0.5)];
-        team.movers = vec![Mover::straight(start, 1.0, start).unwrap()];
-        let share = occupied_share(&team).unwrap();
+        let mut episode = Episode::of_robots(map, Vec::new());
+        assert_eq!(occupied_share(&episode), Some(0.3));
+        episode.obstacles = vec![Circle::standing(goal, 0.5)];
+        episode.movers = vec![Mover::straight(start, 1.0, start).unwrap()];
+        let share = occupied_share(&episode).unwrap();
         assert!((share - (3.0 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
         // A triangle of half a square metre, and a cell.
         let corners = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(x, y)| Point::new(x, y));
-        team.polygons = vec![StandingPolygon::new(corners.to_vec()).unwrap()];
-        team.hidden_cells = vec![Cell::new(0, 2)];
-        let share = occupied_share(&team).unwrap();
+        episode.polygons = vec![StandingPolygon::new(corners.to_vec()).unwrap()];
+        episode.hidden_cells = vec![Cell::new(0, 2)];
+        let share = occupied_share(&episode).unwrap();
         assert!((share - (4.5 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
-        team.known = OccupancyGrid::from_ascii(&["??"]);
-        assert_eq!(occupied_share(&team), None);
+        episode.known = OccupancyGrid::from_ascii(&["??"]);
+        assert_eq!(occupied_share(&episode), None);
     }
 }

@@ -6,7 +6,7 @@ use crate::results::ResultsError;
 use keyway::file_system::system_error_in_words;
 use keyway::files::ConfigFileError;
 use keyway::map::formats::MapFileError;
-use keyway_sim::episode::TeamError;
+use keyway_sim::episode::EpisodeError;
 use keyway_sim::scene_files::{SceneError, SceneFileError};
 use std::error::Error;
 use std::io;
@@ -97,7 +97,7 @@ pub enum BatchError {
         /// The seed.
         seed: u64,
         /// Error of the robots.
-        reason: TeamError,
+        reason: EpisodeError,
     },
     /// A file that is no record stands in `out` where a record is to be written.
     #[error("{}: it is in the way, and no record of a run; move it away", path.display())]

@@ -8,7 +8,7 @@ use crate::measure::wall_clock;
 use crate::progress::Progress;
 use crate::replay::{RecordedInputs, RunRecord};
 use crate::results::digest;
-use keyway_sim::episode::{Team, TeamError, TeamReport, watch_team};
+use keyway_sim::episode::{Episode, EpisodeReport, RunOptions, watch_episode};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap};
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -39,8 +39,8 @@ pub(super) struct Planned {
 /// A run that was made.
 pub(super) struct DrivenRun<'a> {
     planned: &'a Planned,
-    team: Team,
-    report: TeamReport,
+    episode: Episode,
+    report: EpisodeReport,
     /// Wall clock \[s\].
     wall_s: f64,
 }
@@ -144,21 +144,21 @@ impl Planned {
         scene
     }
 
-    /// Returns the robots that drive; one robot is a team, too.
-    fn team(&self) -> Result<Team, BatchError> {
-        let world = self.world.take(|| self.made_team()).map_err(|reason| {
+    /// Returns the run with its stacks.
+    fn episode(&self) -> Result<Episode, BatchError> {
+        let world = self.world.take(|| self.made_episode()).map_err(|reason| {
             let scene = self.scene.name.clone();
             BatchError::World { scene, reason }
         })?;
-        let mut team = Arc::unwrap_or_clone(world);
-        for (robot, stack) in team.robots.iter_mut().zip(&*self.stacks) {
+        let mut episode = Arc::unwrap_or_clone(world);
+        for (robot, stack) in episode.robots.iter_mut().zip(&*self.stacks) {
             (robot.stack, robot.stack_name) = (stack.config.clone(), stack.name.clone());
         }
-        Ok(team)
+        Ok(episode)
     }
 
-    /// Makes the team of all stacks, but for their names and parameters.
-    fn made_team(&self) -> Result<Team, SceneError> {
+    /// Makes the run of all stacks, but for their names and parameters.
+    fn made_episode(&self) -> Result<Episode, SceneError> {
         let (scene, BatchScene { robots, map, .. }) = (self.scene_file(), &*self.scene);
         let map = match (map, scene.generated_map()) {
             (Some(map), _) => SceneMap::clone(map),
@@ -169,29 +169,29 @@ impl Planned {
         let mut drivers = robots.iter().cloned().zip(stacks);
         // There are as many as the scene has robots.
         let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
-        scene.team(map, next)
+        scene.episode(map, next)
     }
 
     /// Makes the run.
     pub(super) fn drive(&self) -> Result<DrivenRun<'_>, BatchError> {
-        let team = self.team()?;
+        let episode = self.episode()?;
         let clock = wall_clock();
-        let (report, _) = watch_team(&team, Some(&clock), 1, |_| ()).map_err(|error| {
-            let robot = error.robot.filter(|_| team.robots.len() > 1);
+        let options = RunOptions { clock: Some(&clock), ..RunOptions::default() };
+        let report = watch_episode(&episode, options, &mut [(); 0]).map_err(|reason| {
             let RunId { scene, stack, seed, .. } = self.id();
             let (scene, stack) = (scene.to_owned(), stack.to_owned());
-            BatchError::Run { scene, stack, seed, reason: TeamError { robot, ..error } }
+            BatchError::Run { scene, stack, seed, reason }
         })?;
-        Ok(DrivenRun { planned: self, team, report, wall_s: clock() })
+        Ok(DrivenRun { planned: self, episode, report, wall_s: clock() })
     }
 }
 
 impl DrivenRun<'_> {
     /// Returns the results.
     pub(super) fn record(&self) -> Record {
-        let Self { planned, team, report, wall_s } = self;
+        let Self { planned, episode, report, wall_s } = self;
         let reference_time_s = planned.scene.file.rules.reference_time_s;
-        Record::of(planned.id(), (team, report), reference_time_s, *wall_s)
+        Record::of(planned.id(), (episode, report), reference_time_s, *wall_s)
     }
 
     /// Returns everything that it takes to make the run again.
@@ -203,6 +203,6 @@ impl DrivenRun<'_> {
             scene_file: self.planned.scene_file(),
             folder: &scene.folder,
         };
-        RunRecord::new(inputs, &self.team, &self.report)
+        RunRecord::new(inputs, &self.episode, &self.report)
     }
 }

@@ -4,7 +4,7 @@ use super::clutter::occupied_share;
 use super::row::{Row, RunId, World};
 use super::team_row::of_all;
 use crate::results::Entry;
-use keyway_sim::episode::{Team, TeamReport};
+use keyway_sim::episode::{Episode, EpisodeReport};
 use serde::{Deserialize, Serialize};
 
 /// A finished run.
@@ -30,7 +30,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    fn of(report: &TeamReport, wall_s: f64) -> Self {
+    fn of(report: &EpisodeReport, wall_s: f64) -> Self {
         let runs = || report.robots.iter().filter_map(|robot| robot.run.as_ref());
         let cycles: f64 = runs().map(|run| run.cycles as f64).sum();
         let all_us = runs().filter_map(|run| Some(run.mean_cycle_us? * run.cycles as f64));
@@ -44,12 +44,12 @@ impl Record {
     /// route at top speed, by which runs are scored; `wall_s` is the wall clock.
     pub fn of(
         id: RunId<'_>,
-        (team, report): (&Team, &TeamReport),
+        (episode, report): (&Episode, &EpisodeReport),
         reference_time_s: Option<f64>,
         wall_s: f64,
     ) -> Self {
         let measured = Measured::of(report, wall_s);
-        let world = World { occupied_share: occupied_share(team), reference_time_s };
+        let world = World { occupied_share: occupied_share(episode), reference_time_s };
         let rows = report.robots.iter().map(|robot| Row::of(id, robot, &world));
         let mut robots: Vec<Row> = rows.collect();
         if let [_] = robots[..] {

@@ -1,6 +1,6 @@
 //! Row of the results of a batch.
 
-use keyway_sim::episode::{EpisodeOutcome, EpisodeReport};
+use keyway_sim::episode::{EpisodeOutcome, RobotReport};
 use keyway_sim::report::RunPart;
 use serde::{Deserialize, Serialize};
 
@@ -118,7 +118,7 @@ pub(super) struct World {
 
 impl Row {
     /// Returns the row of one robot.
-    pub(super) fn of(id: RunId<'_>, report: &EpisodeReport, world: &World) -> Self {
+    pub(super) fn of(id: RunId<'_>, report: &RobotReport, world: &World) -> Self {
         let outcome = report.outcome;
         let run = report.run.as_ref();
         let time_s = run.map(|run| run.time_s);

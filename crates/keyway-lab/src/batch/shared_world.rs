@@ -4,7 +4,7 @@
 //! follow each other, and the last one that waits for it takes it away. So however long a batch is,
 //! there is at most one world more than there are runs under way.
 
-use keyway_sim::episode::Team;
+use keyway_sim::episode::Episode;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A world that is made when the first run asks for it.
@@ -18,7 +18,7 @@ pub(super) struct SharedWorld {
 struct State {
     /// Number of runs that will ask for it.
     waiting: usize,
-    made: Option<Arc<Team>>,
+    made: Option<Arc<Episode>>,
 }
 
 impl SharedWorld {
@@ -32,7 +32,10 @@ impl SharedWorld {
     }
 
     /// Returns the world, with the stacks of the run that made it. A run that asks meanwhile waits.
-    pub(super) fn take<E>(&self, make: impl FnOnce() -> Result<Team, E>) -> Result<Arc<Team>, E> {
+    pub(super) fn take<E>(
+        &self,
+        make: impl FnOnce() -> Result<Episode, E>,
+    ) -> Result<Arc<Episode>, E> {
         let mut state = self.state();
         state.waiting = state.waiting.saturating_sub(1);
         let made = state.made.take();
@@ -59,7 +62,7 @@ mod tests {
         let mut take = || {
             let made = world.take(|| {
                 times_made += 1;
-                Ok::<_, ()>(Team::new(OccupancyGrid::from_ascii(&["."]), Vec::new()))
+                Ok::<_, ()>(Episode::of_robots(OccupancyGrid::from_ascii(&["."]), Vec::new()))
             });
             made.unwrap()
         };
@@ -81,7 +84,8 @@ mod tests {
         let world = SharedWorld::new(0);
         (0..2).for_each(|_| world.expect_run());
         assert_eq!(world.take(|| Err("no")), Err("no"));
-        let made = || Ok::<_, &str>(Team::new(OccupancyGrid::from_ascii(&["."]), Vec::new()));
+        let made =
+            || Ok::<_, &str>(Episode::of_robots(OccupancyGrid::from_ascii(&["."]), Vec::new()));
         assert!(world.take(made).is_ok());
     }
 }

@@ -31,7 +31,7 @@ impl Part {
         let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
             return Vec::new();
         };
-        let limits = &episode.robot.limits;
+        let limits = &episode.robots[0].robot.limits;
         let run_up_m = 0.5 * limits.v_max_mps.powi(2) / limits.acceleration_mps2;
         let ends = [first, last].map(|sample| sample.pose.point());
         let is_under_way = |at: Point| ends.iter().all(|end| end.distance(at) > run_up_m);

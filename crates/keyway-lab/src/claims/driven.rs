@@ -7,8 +7,8 @@ use keyway::map::{Cell, OccupancyGrid};
 use keyway::navigate::{Controller, NavigateError, Stack};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeReport, RandomObstacles,
-    watch_episode,
+    Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, RandomObstacles, RobotReport, RunError,
+    RunOptions, watch_episode,
 };
 use keyway_sim::metrics::count_run_heading_jumps;
 use keyway_sim::metrics::statistics::Sample;
@@ -119,8 +119,8 @@ impl Driving {
         grid: &OccupancyGrid,
         (ends, seed): ([Cell; 2], u64),
         clock: Clock<'_>,
-        watcher: &mut dyn EpisodeObserver,
-    ) -> Result<Option<(Episode, EpisodeReport)>, EpisodeError> {
+        watcher: &mut impl EpisodeObserver,
+    ) -> Result<Option<(Episode, RobotReport)>, EpisodeError> {
         let stack = self.vehicle.stack(self.stack);
         let mut stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
         if let Some(local) = &self.local {
@@ -128,24 +128,29 @@ impl Driving {
         }
         let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
         let mut episode = Episode::new(grid.clone(), self.vehicle.robot(), start, goal);
-        episode.stack = stack;
-        self.stack.clone_into(&mut episode.stack_name);
+        episode.robots[0].stack = stack;
+        self.stack.clone_into(&mut episode.robots[0].stack_name);
         if let Some(unknown) = &self.unknown {
             unknown.put_into(&mut episode, seed)?;
         }
-        match watch_episode(&episode, clock, watcher) {
-            Ok(report) => Ok(Some((episode, report))),
+        let options = RunOptions { clock, ..RunOptions::default() };
+        match watch_episode(&episode, options, std::slice::from_mut(watcher)) {
+            Ok(report) => Ok(Some((episode, report.first()))),
             // Without room at an end, there is no run.
-            Err(EpisodeError::Navigate(
-                NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. },
-            )) => Ok(None),
+            Err(EpisodeError {
+                why:
+                    RunError::Navigate(
+                        NavigateError::NoRoom { .. } | NavigateError::StartTouches { .. },
+                    ),
+                ..
+            }) => Ok(None),
             Err(error) => Err(error),
         }
     }
 }
 
 impl Driven {
-    fn new(report: &EpisodeReport, part: &RunPart, run: &Run) -> Self {
+    fn new(report: &RobotReport, part: &RunPart, run: &Run) -> Self {
         let cycle_s = part.mean_cycle_us.map(|us| us * 1e-6);
         let route_s = report.plan.time_s.map(|plan_s| {
             plan_s + report.smoothed.as_ref().and_then(|smoothed| smoothed.time_s).unwrap_or(0.0)

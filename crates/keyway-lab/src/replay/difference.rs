@@ -1,6 +1,6 @@
 //! Differences between a run and its record.
 
-use keyway_sim::episode::EpisodeReport;
+use keyway_sim::episode::RobotReport;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -41,7 +41,7 @@ pub enum Difference {
 impl Difference {
     /// Compares outcome and trajectory, byte for byte: these are the run, and everything else in a
     /// report follows from them.
-    pub(super) fn between(recorded: &Value, made: &EpisodeReport) -> Option<Self> {
+    pub(super) fn between(recorded: &Value, made: &RobotReport) -> Option<Self> {
         let outcome = recorded["outcome"].as_str().unwrap_or("missing");
         if outcome != made.outcome.name() {
             let made = made.outcome.name().to_owned();

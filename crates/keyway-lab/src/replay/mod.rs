@@ -12,7 +12,7 @@ mod request;
 pub use difference::Difference;
 pub use error::ReplayError;
 pub(crate) use record::{RecordedInputs, RunRecord};
-pub use request::{RecordedRun, Replay, ReplayRequest};
+pub use request::{Replay, ReplayRequest};
 
 /// Name and version of the form of a record.
 const SCHEMA: &str = "keyway.record/1";

@@ -4,7 +4,7 @@ use super::{ReplayError, SCHEMA};
 use keyway::file_system::read_file;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
-use keyway_sim::episode::{EpisodeReport, Team, TeamReport, TeamRobot};
+use keyway_sim::episode::{Episode, EpisodeReport, EpisodeRobot, RobotReport};
 use keyway_sim::report::MapSource;
 use keyway_sim::scene_files::SceneFile;
 use serde::{Deserialize, Serialize};
@@ -79,24 +79,28 @@ impl RunRecord {
         digest.map_or(schema.clone(), |digest| schema + &format!("  \"digest\": \"{digest}\",\n"))
     }
 
-    pub(crate) fn new(inputs: RecordedInputs<'_>, team: &Team, report: &TeamReport) -> Self {
+    pub(crate) fn new(
+        inputs: RecordedInputs<'_>,
+        episode: &Episode,
+        report: &EpisodeReport,
+    ) -> Self {
         let RecordedInputs { digest, scene, scene_file, folder } = inputs;
         let map = scene_file.map.as_ref().map(|map| {
             let path = folder.join(map);
             let path = absolute(&path).unwrap_or(path).display().to_string();
-            let MapSource { name, digest, .. } = team.source.clone();
+            let MapSource { name, digest, .. } = episode.source.clone();
             MapFile { name, path, digest }
         });
         let driver =
-            |one: &TeamRobot| Driver { robot: one.robot.clone(), config: one.stack.clone() };
-        let mut robots: Vec<Driver> = team.robots.iter().map(driver).collect();
+            |one: &EpisodeRobot| Driver { robot: one.robot.clone(), config: one.stack.clone() };
+        let mut robots: Vec<Driver> = episode.robots.iter().map(driver).collect();
         let alone = if scene_file.robots.is_empty() { robots.pop() } else { None };
         let (robot, config) = alone.map(|one| (one.robot, one.config)).unzip();
-        let mut reports: Vec<EpisodeReport> = report.robots.iter().map(without_times).collect();
+        let mut reports: Vec<RobotReport> = report.robots.iter().map(without_times).collect();
         // A report is plain data with string keys, so this cannot fail.
         let report = match reports.pop_if(|_| robot.is_some()) {
             Some(one) => serde_json::to_value(one),
-            None => serde_json::to_value(TeamReport { robots: reports, ..report.clone() }),
+            None => serde_json::to_value(EpisodeReport { robots: reports, ..report.clone() }),
         };
         Self {
             schema: SCHEMA.to_owned(),
@@ -154,7 +158,7 @@ impl RunRecord {
 }
 
 /// Measured times are never the same twice.
-fn without_times(report: &EpisodeReport) -> EpisodeReport {
+fn without_times(report: &RobotReport) -> RobotReport {
     let mut report = report.clone();
     report.plan.time_s = None;
     if let Some(smoothed) = &mut report.smoothed {

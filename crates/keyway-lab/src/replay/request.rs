@@ -4,7 +4,7 @@ use super::record::{MapFile, RunRecord};
 use super::{Difference, ReplayError};
 use crate::progress::Progress;
 use keyway::map::formats::MapReader;
-use keyway_sim::episode::{Episode, EpisodeReport, Team, TeamReport};
+use keyway_sim::episode::{Episode, EpisodeReport, RobotReport};
 use keyway_sim::report::MapSource;
 use keyway_sim::scene_files::{SceneError, SceneMap};
 use serde_json::Value;
@@ -25,21 +25,15 @@ pub struct ReplayRequest {
 #[derive(Debug)]
 pub struct Replay {
     /// The run.
-    pub run: RecordedRun,
+    pub episode: Episode,
+    /// True if the scene has `[[robots]]`: then the report is that of an episode
+    /// ([`Self::check_episode`]), otherwise that of its one robot ([`Self::check`]).
+    pub has_robots: bool,
     /// The files that were read: the record and its map.
     pub sources: Vec<PathBuf>,
     path: PathBuf,
     /// The results in the record.
     report: Value,
-}
-
-/// The robots of a recorded run.
-#[derive(Debug)]
-pub enum RecordedRun {
-    /// One robot.
-    One(Episode),
-    /// Several robots.
-    Several(Team),
 }
 
 impl ReplayRequest {
@@ -59,16 +53,11 @@ impl ReplayRequest {
             (None, None) => return Err(ReplayError::NoMap { path: path.clone() }),
         };
         let mut drivers = record.drivers().into_iter().map(|one| (one.robot, one.config));
-        let run = if scene.robots.is_empty()
-            && let Some((robot, stack)) = drivers.next()
-        {
-            RecordedRun::One(scene.episode(map, robot, stack).map_err(blame)?)
-        } else {
-            // There are as many as the scene has robots.
-            let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
-            RecordedRun::Several(scene.team(map, next).map_err(blame)?)
-        };
-        Ok(Replay { run, sources, path: path.clone(), report: record.report })
+        // There are as many as the scene has robots.
+        let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
+        let episode = scene.episode(map, next).map_err(blame)?;
+        let has_robots = !scene.robots.is_empty();
+        Ok(Replay { episode, has_robots, sources, path: path.clone(), report: record.report })
     }
 
     /// Reads the map, which must be as it was.
@@ -101,15 +90,15 @@ impl Replay {
     ///
     /// # Errors
     /// Tells the first difference.
-    pub fn check(&self, made: &EpisodeReport) -> Result<(), ReplayError> {
+    pub fn check(&self, made: &RobotReport) -> Result<(), ReplayError> {
         self.compare(&self.report, made, None)
     }
 
-    /// Checks that a run of several robots is the recorded one.
+    /// Checks that the run of a scene with `[[robots]]` is the recorded one.
     ///
     /// # Errors
     /// Tells the first difference of the first robot that drove otherwise.
-    pub fn check_team(&self, made: &TeamReport) -> Result<(), ReplayError> {
+    pub fn check_episode(&self, made: &EpisodeReport) -> Result<(), ReplayError> {
         let mut robots = made.robots.iter().enumerate();
         robots.try_for_each(|(index, made)| {
             self.compare(&self.report["robots"][index], made, Some(index))
@@ -119,7 +108,7 @@ impl Replay {
     fn compare(
         &self,
         recorded: &Value,
-        made: &EpisodeReport,
+        made: &RobotReport,
         robot: Option<usize>,
     ) -> Result<(), ReplayError> {
         let Some(difference) = Difference::between(recorded, made) else { return Ok(()) };

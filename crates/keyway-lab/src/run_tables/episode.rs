@@ -5,11 +5,11 @@ use super::smoothing_targets::SmoothingTargets;
 use crate::table::{facts, quantity};
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
-use keyway_sim::episode::EpisodeReport;
+use keyway_sim::episode::RobotReport;
 use keyway_sim::report::{RunPart, WayPointPart};
 
 /// Table of an episode for the terminal; `targets` are those of the first route, if there is one.
-pub fn episode_table(report: &EpisodeReport, targets: Option<SmoothingTargets>) -> String {
+pub fn episode_table(report: &RobotReport, targets: Option<SmoothingTargets>) -> String {
     let inputs = &report.inputs;
     let mut rows = vec![("outcome", report.outcome.name().to_owned())];
     rows.extend(report.reason.iter().map(|reason| ("reason", reason.clone())));

@@ -1,7 +1,7 @@
 //! Table of a team.
 
 use crate::table::{facts, number, paragraph, quantity, rows};
-use keyway_sim::episode::{EpisodeOutcome, EpisodeReport, TeamReport};
+use keyway_sim::episode::{EpisodeOutcome, EpisodeReport, RobotReport};
 use std::fmt::Write as _;
 
 const HEADER: [&str; 9] = [
@@ -17,7 +17,7 @@ const HEADER: [&str; 9] = [
 ];
 
 /// Table of the robots of a team for the terminal.
-pub fn team_table(report: &TeamReport) -> String {
+pub fn team_table(report: &EpisodeReport) -> String {
     let reached = report.outcomes.iter().filter(|&&one| one == EpisodeOutcome::Reached).count();
     let of_all = facts([
         ("reached", format!("{reached} of {}", report.outcomes.len())),
@@ -35,7 +35,7 @@ pub fn team_table(report: &TeamReport) -> String {
     text
 }
 
-fn row(index: usize, robot: &EpisodeReport) -> Vec<String> {
+fn row(index: usize, robot: &RobotReport) -> Vec<String> {
     let run = robot.run.as_ref();
     vec![
         index.to_string(),

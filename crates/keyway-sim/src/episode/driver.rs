@@ -1,7 +1,9 @@
 //! Simulation of one robot or several in one world, with their controllers, up to their reports.
 
 use super::task::Task;
-use super::{Cycle, EpisodeObserver, EpisodeOutcome, EpisodeReport, TeamError};
+use super::{
+    Cycle, Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport,
+};
 use crate::metrics::Mrpb;
 use crate::report::{
     Clock, Controlled, RunPart, SmoothedPart, WayPointPart, timed, trajectory_row,
@@ -26,41 +28,40 @@ pub(super) struct Entry<'a> {
 
 /// A robot after its run, or without a route.
 pub(super) struct Ended {
-    pub(super) report: EpisodeReport,
+    pub(super) report: RobotReport,
     /// Smallest distance from another robot \[m\].
     pub(super) min_robot_clearance_m: Option<f64>,
 }
 
-/// Drives robots in one world at the same time, and returns a report of each. All their tasks have
-/// the same world and rules.
+/// Drives the robots of an episode, and returns a report of each.
 pub(super) fn run_all<'a>(
     entries: Vec<Entry<'a>>,
     clock: Clock<'a>,
     threads: usize,
-) -> Result<Vec<Ended>, TeamError> {
+) -> Result<Vec<Ended>, EpisodeError> {
     let tasks: Vec<Task<'_>> = entries.iter().map(|entry| entry.task).collect();
-    let world = world_of(&tasks).map_err(TeamError::of_all)?;
+    let world = world_of(&tasks).map_err(EpisodeError::of_all)?;
     let mut robots = Vec::with_capacity(entries.len());
-    for (index, entry) in entries.into_iter().enumerate() {
-        robots.push(Ready::new(entry, &world, clock, index)?);
+    for entry in entries {
+        robots.push(Ready::new(entry, &world, clock)?);
     }
     let runs = simulated(threads, &world, &tasks, &mut robots)?;
-    let ended = |(index, robot): (usize, Ready<'_>)| {
+    let ended = |((index, task), robot): ((usize, Task<'_>), Ready<'_>)| {
         let ended = robot.ended(runs.get(index), &world)?;
-        Some(ended.map_err(|error| TeamError::of_robot(index, error)))
+        Some(ended.map_err(|error| task.blame(error)))
     };
-    robots.into_iter().enumerate().filter_map(ended).collect()
+    tasks.into_iter().enumerate().zip(robots).filter_map(ended).collect()
 }
 
 /// Returns the real obstacles: those of the map, those that no map has, and the moving ones.
 /// Unknown cells are obstacles if all robots plan around them.
 pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
-    let Task { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0];
+    let Episode { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0].episode;
     let frame = *known.frame();
     let through_unknown =
-        tasks.iter().find(|task| task.stack.map.unknown != UnknownPolicy::Blocked);
+        tasks.iter().find(|task| task.robot.stack.map.unknown != UnknownPolicy::Blocked);
     let squares = through_unknown.unwrap_or(&tasks[0]).known_squares();
-    let mut world = World::new(frame, squares, obstacles.to_vec())?;
+    let mut world = World::new(frame, squares, obstacles.clone())?;
     if !hidden_cells.is_empty() {
         let mut hidden = BitGrid::new(frame.width(), frame.height(), false);
         for &cell in hidden_cells {
@@ -72,7 +73,7 @@ pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
         }
         world = world.with_hidden(&hidden)?;
     }
-    Ok(world.with_polygons(polygons.to_vec()).with_movers(movers.to_vec()))
+    Ok(world.with_polygons(polygons.clone()).with_movers(movers.clone()))
 }
 
 /// Simulates the runs of all robots; returns none if no robot has a route.
@@ -81,7 +82,7 @@ fn simulated(
     world: &World,
     tasks: &[Task<'_>],
     robots: &mut [Ready<'_>],
-) -> Result<Vec<Run>, TeamError> {
+) -> Result<Vec<Run>, EpisodeError> {
     // A robot that waits for another one is not given up before the other one.
     let limits_s = robots.iter().filter_map(|robot| Some(robot.driver()?.rules.time_limit_s));
     let Some(time_limit_s) = limits_s.reduce(f64::max) else {
@@ -96,15 +97,15 @@ fn simulated(
     let participants = tasks.iter().zip(places).zip(controllers);
     let mut participants: Vec<Participant<'_>> = participants
         .map(|((task, (start, rules)), controller)| Participant {
-            robot: task.robot,
+            robot: &task.robot.robot,
             start,
-            goal: task.goal.position,
-            disturbances: task.disturbances,
+            goal: task.robot.goal.position,
+            disturbances: task.robot.disturbances,
             rules,
             controller,
         })
         .collect();
-    simulate_on(threads, world, &mut participants).map_err(TeamError::of_all)
+    simulate_on(threads, world, &mut participants).map_err(EpisodeError::of_all)
 }
 
 /// Controller of a robot.
@@ -115,30 +116,28 @@ enum Ready<'a> {
     /// A robot with a route.
     Drives(Box<Driver<'a>>),
     /// A robot without a route, which stands in the way of the others.
-    Stands { at: Pose, report: Box<EpisodeReport> },
+    Stands { at: Pose, report: Box<RobotReport> },
 }
 
 impl<'a> Ready<'a> {
-    fn new(
-        entry: Entry<'a>,
-        world: &World,
-        clock: Clock<'a>,
-        index: usize,
-    ) -> Result<Self, TeamError> {
+    fn new(entry: Entry<'a>, world: &World, clock: Clock<'a>) -> Result<Self, EpisodeError> {
         let Entry { task, stack, observer } = entry;
-        let of_robot = |error| TeamError::of_robot(index, error);
-        let Task { known, start, via, goal, .. } = task;
-        let controller = match Controller::by_way_of(known, &stack, start.position, via, goal) {
+        let EpisodeRobot { start, via, goal, .. } = task.robot;
+        let known = &task.episode.known;
+        let controller = match Controller::by_way_of(known, &stack, start.position, via, *goal) {
             Ok(controller) => controller,
             Err(error) => {
-                let Some(report) = task.without_route(&error) else { return Err(of_robot(error)) };
+                let Some(report) = task.without_route(&error) else {
+                    return Err(task.blame(error));
+                };
                 observer.no_route(&error);
                 let Point { x, y } = start.position;
                 let at = Pose::new(x, y, start.heading_rad.unwrap_or_default());
                 return Ok(Self::Stands { at, report: Box::new(report) });
             }
         };
-        let start = task.start_pose(world, controller.route()).map_err(of_robot)?;
+        let start =
+            task.start_pose(world, controller.route()).map_err(|error| task.blame(error))?;
         observer.started(&controller);
         let rules = task.run_rules(controller.guidance().remaining_m);
         Ok(Self::Drives(Box::new(Driver {
@@ -226,7 +225,7 @@ impl Driver<'_> {
         self.decisions_s += step_s.unwrap_or_default();
         let controller = &self.controller;
         let index = self.cycles;
-        let t_s = index as f64 * self.task.robot.cycle_s;
+        let t_s = index as f64 * self.task.robot.robot.cycle_s;
         let cycle = Cycle { index, t_s, pose, velocity, scan, step: &step, controller };
         self.observer.decided(&cycle);
         self.passed_s.resize(controller.way_points_passed(), t_s);
@@ -248,7 +247,7 @@ impl Driver<'_> {
     }
 
     /// Returns the report of the run.
-    fn report(self, run: &Run, world: &World) -> Result<EpisodeReport, ConfigError> {
+    fn report(self, run: &Run, world: &World) -> Result<RobotReport, ConfigError> {
         let Self { task, clock, ref rules, ref route, ref controller, .. } = self;
         self.observer.ended(run, &self.controller);
         let map = task.layer_of(route)?;
@@ -260,9 +259,9 @@ impl Driver<'_> {
             way_points: self.way_points(),
             mean_cycle_us: is_measured.then(|| self.decisions_s * 1e6 / self.cycles as f64),
         };
-        let mrpb = Mrpb::of_run(run, world, Mrpb::safe_distance_m(task.robot));
-        Ok(EpisodeReport {
-            schema: EpisodeReport::SCHEMA,
+        let mrpb = Mrpb::of_run(run, world, Mrpb::safe_distance_m(&task.robot.robot));
+        Ok(RobotReport {
+            schema: RobotReport::SCHEMA,
             outcome: EpisodeOutcome::of(run.outcome),
             reason: self.reason(run),
             plan: task.plan_part(route, &map, clock),
@@ -280,7 +279,7 @@ impl Driver<'_> {
             position,
             passed_s: self.passed_s.get(index).copied(),
         };
-        self.task.via.iter().enumerate().map(part).collect()
+        self.task.robot.via.iter().enumerate().map(part).collect()
     }
 
     /// Reason why the goal was not reached.

@@ -8,8 +8,19 @@ use thiserror::Error;
 /// Reason why an episode cannot be run. A start without a route to the goal is not an error but a
 /// report.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}{why}", robot.map_or_else(String::new, |index| format!("robot {index}: ")))]
+pub struct EpisodeError {
+    /// Index of the robot; `None` where no single one is to blame, or there is only one.
+    pub robot: Option<usize>,
+    /// Error of the robot or the episode.
+    #[source]
+    pub why: RunError,
+}
+
+/// Reason why a robot cannot be driven.
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum EpisodeError {
+pub enum RunError {
     /// The robot, the stack, the start or the goal cannot be used.
     #[error(transparent)]
     Navigate(#[from] NavigateError),
@@ -24,23 +35,24 @@ pub enum EpisodeError {
     Sim(#[from] SimError),
 }
 
-/// Reason why the robots of a [`Team`](super::Team) cannot be driven.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}{why}", robot.map_or_else(String::new, |index| format!("robot {index}: ")))]
-pub struct TeamError {
-    /// Index of the robot; `None` where no single one is to blame.
-    pub robot: Option<usize>,
-    /// Error of the robot or the team.
-    #[source]
-    pub why: EpisodeError,
-}
-
-impl TeamError {
-    pub(super) fn of_robot(index: usize, why: impl Into<EpisodeError>) -> Self {
-        Self { robot: Some(index), why: why.into() }
+impl EpisodeError {
+    pub(super) fn of_robot(robot: Option<usize>, why: impl Into<RunError>) -> Self {
+        Self { robot, why: why.into() }
     }
 
-    pub(super) fn of_all(why: impl Into<EpisodeError>) -> Self {
-        Self { robot: None, why: why.into() }
+    pub(super) fn of_all(why: impl Into<RunError>) -> Self {
+        Self::of_robot(None, why)
+    }
+}
+
+impl From<ConfigError> for EpisodeError {
+    fn from(error: ConfigError) -> Self {
+        Self::of_all(error)
+    }
+}
+
+impl From<NavigateError> for EpisodeError {
+    fn from(error: NavigateError) -> Self {
+        Self::of_all(error)
     }
 }

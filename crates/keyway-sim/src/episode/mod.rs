@@ -1,11 +1,11 @@
-//! A whole run: from a world, a robot and a stack to a drive and its figures.
+//! A whole run: from a world, robots and their stacks to a drive and its figures.
 //!
-//! [`run_episode`] plans, simulates and measures; it needs nothing else and writes nothing. The
-//! same episode gives the same report: all randomness in a run follows from a seed
-//! ([`Episode::disturbances`]), and times are measured only by a clock of the caller's
-//! ([`watch_episode`], which also shows every cycle to an [`EpisodeObserver`]). [`run_with_parts`]
-//! drives with your own local planner or guide. Several robots in one world, each with its own
-//! stack, are a [`Team`], driven by [`run_team`].
+//! An [`Episode`] is one robot or several in one world, each with its own stack. [`run_episode`]
+//! plans, simulates and measures; it needs nothing else and writes nothing. The same episode gives
+//! the same report: all randomness in a run follows from a seed ([`EpisodeRobot::disturbances`]).
+//! [`watch_episode`] shows every cycle to an [`EpisodeObserver`], measures times by a clock of the
+//! caller's, and drives with local planners or guides of the caller's own ([`RunOptions`]).
+//! [`Episode::stepper`] gives the robot to a controller from outside.
 //!
 //! ```
 //! use keyway_sim::episode::{Episode, EpisodeOutcome, run_episode};
@@ -19,11 +19,11 @@
 //! let mut episode = Episode::new(map, Robot::small(), start, goal);
 //! // In the middle of the way, and not on the map.
 //! episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
-//! let report = run_episode(&episode)?;
+//! let report = run_episode(&episode)?.first();
 //! assert_eq!(report.outcome, EpisodeOutcome::Reached);
 //! let run = report.run.as_ref().expect("there was a route to drive");
 //! assert!(run.length_m > 6.7 && run.min_clearance_m > Some(0.0));
-//! assert_eq!(run_episode(&episode)?, report);
+//! assert_eq!(run_episode(&episode)?.first(), report);
 //! # Ok::<(), keyway_sim::episode::EpisodeError>(())
 //! ```
 
@@ -33,35 +33,59 @@ mod error;
 mod observer;
 mod random_obstacles;
 mod report;
+mod robot;
+mod rules;
 mod run;
 mod start;
 mod stepper;
 mod task;
-mod team;
-mod team_report;
 
 pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
-pub use error::{EpisodeError, TeamError};
+pub use error::{EpisodeError, RunError};
 pub use observer::{Cycle, EpisodeObserver};
 pub use random_obstacles::{RandomMoving, RandomObstacles, RandomUnknown};
-pub use report::{EpisodeOutcome, EpisodeReport};
-pub use run::{run_episode, run_with_parts, watch_episode};
+pub use report::{EpisodeOutcome, EpisodeReport, RobotReport};
+pub use robot::EpisodeRobot;
+pub use rules::EpisodeRules;
+pub use run::{RunOptions, run_episode, watch_episode};
 pub use start::Start;
-pub use team::{Team, TeamRobot, run_team, watch_team};
-pub use team_report::TeamReport;
 
 use crate::report::{MapSource, Placed};
-use crate::sim::{Arrival, Circle, Disturbances, Mover, RunRules, StandingPolygon};
+use crate::sim::{Circle, Mover, StandingPolygon};
+use keyway::ConfigError;
 use keyway::geometry::Point;
+use keyway::given::Given;
 use keyway::map::{Cell, OccupancyGrid};
-use keyway::navigate::{Goal, Stack};
+use keyway::navigate::Goal;
 use keyway::robot::Robot;
 
-/// Description of a run.
+/// One robot or several that drive in one world at the same time, each with its own stack and to
+/// its own goal. To each other they are moving obstacles: no robot knows the plans of another, and
+/// has to sense it.
+///
+/// A robot whose run has ended, with any outcome, stands in the way of the others from then on; a
+/// robot without a route does so from the beginning. All robots have the same control cycle.
+///
+/// ```
+/// use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeRobot, run_episode};
+/// use keyway::geometry::Point;
+/// use keyway::map::OccupancyGrid;
+/// use keyway::robot::Robot;
+///
+/// let map = OccupancyGrid::from_ascii(&["........"; 8]);
+/// let robot = |from: [f64; 2], to: [f64; 2]| {
+///     EpisodeRobot::new(Robot::small(), Point::from(from), Point::from(to))
+/// };
+/// let robots = vec![robot([0.6, 2.0], [7.4, 2.0]), robot([7.4, 6.0], [0.6, 6.0])];
+/// let report = run_episode(&Episode::of_robots(map, robots))?;
+/// assert_eq!(report.outcomes, [EpisodeOutcome::Reached; 2]);
+/// assert!(report.min_robot_clearance_m > Some(3.0));
+/// # Ok::<(), keyway_sim::episode::EpisodeError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
-    /// Map that the robot knows. Its occupied cells are real obstacles, and so are its unknown
-    /// cells if `stack.map.unknown` plans around them.
+    /// Map that all robots know. Its occupied cells are real obstacles, and so are its unknown
+    /// cells if `stack.map.unknown` of all robots plans around them.
     pub known: OccupancyGrid,
     /// Identification of the map in the report.
     pub source: MapSource,
@@ -76,59 +100,22 @@ pub struct Episode {
     /// Number of random ones among these obstacles, and of those not placed
     /// ([`RandomObstacles::put_into`]).
     pub random: Option<Placed>,
-    /// The robot.
-    pub robot: Robot,
-    /// Errors of its sensor, its motors and its localisation.
-    pub disturbances: Disturbances,
-    /// Stack that plans and drives.
-    pub stack: Stack,
-    /// Name of the stack in the report.
-    pub stack_name: String,
-    /// Start of the robot.
-    pub start: Start,
-    /// Way-points, in order \[m\].
-    pub via: Vec<Point>,
-    /// Goal of the robot.
-    pub goal: Goal,
-    /// Rules that end the run.
+    /// The robots: one or several.
+    pub robots: Vec<EpisodeRobot>,
+    /// Rules that end each robot's run. Without a time limit, all robots have the longest limit
+    /// that one of them would have alone: a robot that lets another one pass first needs the time.
     pub rules: EpisodeRules,
 }
 
-/// Rules that end a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EpisodeRules {
-    /// Goal tolerance \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
-    pub goal_tolerance_m: Option<f64>,
-    /// Arrival rule: whether the robot has to stop at the goal, with the goal's heading, or may
-    /// pass.
-    pub arrival: Arrival,
-    /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at top
-    /// speed.
-    pub time_limit_s: Option<f64>,
-    /// See [`RunRules::stuck_window_s`] \[s\].
-    pub stuck_window_s: f64,
-    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: what its controller takes for
-    /// progress in that time ([`Progress::step_m`](keyway::navigate::Progress::step_m)).
-    pub stuck_progress_m: Option<f64>,
-}
-
-impl Default for EpisodeRules {
-    fn default() -> Self {
-        let RunRules { stuck_window_s, .. } = RunRules::default();
-        Self {
-            goal_tolerance_m: None,
-            arrival: Arrival::Standing,
-            time_limit_s: None,
-            stuck_window_s,
-            stuck_progress_m: None,
-        }
-    }
-}
-
 impl Episode {
-    /// Creates an episode with a correct map and an ideal robot, with the usual stack for the
-    /// robot. The robot starts facing along the path.
+    /// Creates an episode of one robot with a correct map and an ideal robot, with the usual stack
+    /// for it. The robot starts facing along the path.
     pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
+        Self::of_robots(known, vec![EpisodeRobot::new(robot, start, goal)])
+    }
+
+    /// Creates an episode with a correct map.
+    pub fn of_robots(known: OccupancyGrid, robots: Vec<EpisodeRobot>) -> Self {
         Self {
             known,
             source: MapSource::default(),
@@ -137,14 +124,32 @@ impl Episode {
             hidden_cells: Vec::new(),
             movers: Vec::new(),
             random: None,
-            stack: Stack::keyway(&robot),
-            stack_name: Stack::DEFAULT.to_owned(),
-            robot,
-            disturbances: Disturbances::default(),
-            start: Start { position: start, heading_rad: None },
-            via: Vec::new(),
-            goal: goal.into(),
+            robots,
             rules: EpisodeRules::default(),
         }
+    }
+
+    /// Returns the same with each robot changed.
+    #[must_use]
+    pub fn with_each_robot(mut self, change: impl FnMut(&mut EpisodeRobot)) -> Self {
+        self.robots.iter_mut().for_each(change);
+        self
+    }
+
+    /// Checks that there are robots, and that all have the same cycle; returns the first.
+    fn check(&self) -> Result<&EpisodeRobot, EpisodeError> {
+        let Some(first) = self.robots.first() else {
+            let error = ConfigError::new("robots", "must be one or more, got none");
+            return Err(EpisodeError::of_all(error));
+        };
+        let first_s = first.robot.cycle_s;
+        for (index, EpisodeRobot { robot, .. }) in self.robots.iter().enumerate() {
+            if robot.cycle_s != first_s {
+                let expected = format!("{}, the cycle of robot 0", Given(first_s));
+                let error = ConfigError::must_be("robot.cycle_s", &expected, robot.cycle_s);
+                return Err(EpisodeError::of_robot(Some(index), error));
+            }
+        }
+        Ok(first)
     }
 }

@@ -22,7 +22,7 @@
 
 mod lane;
 
-use super::{Episode, Start, Team, TeamRobot};
+use super::{Episode, EpisodeRobot, Start};
 use crate::report::Placed;
 use crate::sim::{Circle, Motion, Mover, WayPoints};
 use keyway::ConfigError;
@@ -122,30 +122,16 @@ impl RandomObstacles {
         ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)
     }
 
-    /// Adds the obstacles of a seed to an episode, and records their number there.
-    ///
-    /// # Errors
-    /// When a value cannot be used, or the robot is too large for any map.
-    pub fn put_into(&self, episode: &mut Episode, seed: u64) -> Result<(), ConfigError> {
-        let Episode { known, robot, start, via, goal, .. } = &*episode;
-        let way = Way { robot, start: *start, via, goal: *goal };
-        let drawn = self.drawn(known, &[way], seed)?;
-        episode.obstacles.extend(drawn.discs);
-        episode.movers.extend(drawn.movers);
-        episode.random = Some(drawn.placed);
-        Ok(())
-    }
-
-    /// Adds the obstacles of a seed to the world of a team, and records their number there.
+    /// Adds the obstacles of a seed to the world of an episode, and records their number there.
     ///
     /// # Errors
     /// When a value cannot be used, or a robot is too large for any map.
-    pub fn put_into_team(&self, team: &mut Team, seed: u64) -> Result<(), ConfigError> {
-        let ways: Vec<Way<'_>> = team.robots.iter().map(Way::of).collect();
-        let drawn = self.drawn(&team.known, &ways, seed)?;
-        team.obstacles.extend(drawn.discs);
-        team.movers.extend(drawn.movers);
-        team.random = Some(drawn.placed);
+    pub fn put_into(&self, episode: &mut Episode, seed: u64) -> Result<(), ConfigError> {
+        let ways: Vec<Way<'_>> = episode.robots.iter().map(Way::of).collect();
+        let drawn = self.drawn(&episode.known, &ways, seed)?;
+        episode.obstacles.extend(drawn.discs);
+        episode.movers.extend(drawn.movers);
+        episode.random = Some(drawn.placed);
         Ok(())
     }
 
@@ -198,8 +184,8 @@ struct Way<'a> {
 }
 
 impl<'a> Way<'a> {
-    fn of(robot: &'a TeamRobot) -> Self {
-        let TeamRobot { robot, start, via, goal, .. } = robot;
+    fn of(robot: &'a EpisodeRobot) -> Self {
+        let EpisodeRobot { robot, start, via, goal, .. } = robot;
         Self { robot, start: *start, via, goal: *goal }
     }
 

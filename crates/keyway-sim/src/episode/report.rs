@@ -1,13 +1,13 @@
-//! Report of an episode: `keyway.navigate/4`.
+//! Reports of an episode: `keyway.team/1`, and of each robot: `keyway.navigate/4`.
 
 use crate::report::{Inputs, PlanPart, RunPart, SmoothedPart};
 use keyway::geometry::Point;
 use keyway::navigate::Misfit;
 use serde::{Deserialize, Serialize};
 
-/// `keyway.navigate/4`.
+/// `keyway.navigate/4`: the run of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EpisodeReport {
+pub struct RobotReport {
     /// Name and version of this form.
     pub schema: &'static str,
     /// Outcome of the episode.
@@ -49,7 +49,7 @@ pub enum EpisodeOutcome {
     NoPath,
 }
 
-impl EpisodeReport {
+impl RobotReport {
     /// Name and version of this form.
     pub const SCHEMA: &'static str = "keyway.navigate/4";
 }
@@ -64,5 +64,42 @@ impl EpisodeOutcome {
             Self::Stuck => "stuck",
             Self::NoPath => "no_path",
         }
+    }
+}
+
+/// `keyway.team/1`: the runs of all robots in one world.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EpisodeReport {
+    /// Name and version of this form.
+    pub schema: &'static str,
+    /// Outcome of each robot's run, in the order of the robots.
+    pub outcomes: Vec<EpisodeOutcome>,
+    /// Time at which the last robot reached its goal \[s\]; `None` unless all did.
+    pub makespan_s: Option<f64>,
+    /// Smallest distance between two footprints while at least one of the two robots was under way
+    /// \[m\]; `None` for a single robot, or without any route.
+    pub min_robot_clearance_m: Option<f64>,
+    /// Report of each robot, as if it had driven alone; one or more.
+    pub robots: Vec<RobotReport>,
+}
+
+impl EpisodeReport {
+    /// Name and version of this form.
+    pub const SCHEMA: &'static str = "keyway.team/1";
+
+    /// Returns the report of the first robot: the only one, or that of index 0.
+    ///
+    /// # Panics
+    /// Without robots; an episode always has some.
+    pub fn first(mut self) -> RobotReport {
+        self.robots.swap_remove(0)
+    }
+
+    pub(super) fn of(robots: Vec<RobotReport>, min_robot_clearance_m: Option<f64>) -> Self {
+        let outcomes: Vec<EpisodeOutcome> = robots.iter().map(|robot| robot.outcome).collect();
+        let have_reached = outcomes.iter().all(|&outcome| outcome == EpisodeOutcome::Reached);
+        let ends_s = robots.iter().filter_map(|robot| Some(robot.run.as_ref()?.time_s));
+        let makespan_s = ends_s.reduce(f64::max).filter(|_| have_reached);
+        Self { schema: Self::SCHEMA, outcomes, makespan_s, min_robot_clearance_m, robots }
     }
 }

@@ -1,52 +1,71 @@
 //! From an episode to its report.
 
-use super::driver::{Entry, run_all};
+use super::driver::{Ended, Entry, run_all};
+use super::task::Task;
 use super::{Episode, EpisodeError, EpisodeObserver, EpisodeReport};
-use crate::report::{Clock, Inputs};
+use crate::report::Clock;
 use keyway::navigate::FittedStack;
+
+/// How an episode is run beyond what it says itself.
+#[derive(Clone, Copy)]
+pub struct RunOptions<'a> {
+    /// Clock that measures times; `None`: times are not measured.
+    pub clock: Clock<'a>,
+    /// Number of threads over which the decisions of a cycle are spread; the reports are the same
+    /// for any number.
+    pub threads: usize,
+    /// Exchanges parts of a robot's stack for parts of the caller's own
+    /// ([`FittedStack::with_local`], [`FittedStack::with_guide`]), by the robot's index. The report
+    /// does not name them: its `inputs` contain the stack, and
+    /// [`EpisodeRobot::stack_name`](super::EpisodeRobot::stack_name).
+    pub exchange: Option<&'a dyn Fn(usize, FittedStack) -> FittedStack>,
+}
+
+impl Default for RunOptions<'_> {
+    /// No clock, one thread, the stacks as they are.
+    fn default() -> Self {
+        Self { clock: None, threads: 1, exchange: None }
+    }
+}
 
 /// Runs an episode. Equal episodes give equal reports; times are not measured.
 ///
 /// # Errors
 /// When the episode cannot be run. No route, a collision or a timeout are results.
 pub fn run_episode(episode: &Episode) -> Result<EpisodeReport, EpisodeError> {
-    watch_episode(episode, None, &mut ())
+    watch_episode(episode, RunOptions::default(), &mut [(); 0])
 }
 
-/// Runs an episode with an observer, and measures times by the caller's clock.
+/// Runs an episode with an observer for each robot, in their order; robots beyond the last observer
+/// are not observed.
 ///
 /// # Errors
 /// As for [`run_episode`].
-pub fn watch_episode(
+pub fn watch_episode<O: EpisodeObserver>(
     episode: &Episode,
-    clock: Clock<'_>,
-    observer: &mut dyn EpisodeObserver,
+    options: RunOptions<'_>,
+    observers: &mut [O],
 ) -> Result<EpisodeReport, EpisodeError> {
-    run_with_parts(episode, |stack| stack, clock, observer)
-}
-
-/// Runs an episode with the caller's own local planner or guide: `exchange` puts them in the place
-/// of those of its stack ([`FittedStack::with_local`], [`FittedStack::with_guide`]). The report
-/// does not name them: its `inputs` contain the stack, and [`Episode::stack_name`].
-///
-/// # Errors
-/// As for [`run_episode`].
-pub fn run_with_parts(
-    episode: &Episode,
-    exchange: impl FnOnce(FittedStack) -> FittedStack,
-    clock: Clock<'_>,
-    observer: &mut dyn EpisodeObserver,
-) -> Result<EpisodeReport, EpisodeError> {
-    let task = episode.task();
-    let entry = Entry { task, stack: exchange(task.fit()?), observer };
-    let mut ended = run_all(vec![entry], clock, 1).map_err(|error| error.why)?;
-    // One robot has one report.
-    Ok(ended.swap_remove(0).report)
-}
-
-impl Episode {
-    /// Returns all inputs of the result; `time_limit_s` is the limit of this run.
-    pub fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
-        self.task().inputs(time_limit_s)
+    episode.check()?;
+    let RunOptions { clock, threads, exchange } = options;
+    let mut nobody = vec![(); episode.robots.len()];
+    let observers = observers.iter_mut().map(|observer| observer as &mut dyn EpisodeObserver);
+    let others = nobody.iter_mut().map(|nobody| nobody as &mut dyn EpisodeObserver);
+    let others = others.skip(observers.len());
+    let mut entries = Vec::with_capacity(episode.robots.len());
+    for (index, observer) in (0..episode.robots.len()).zip(observers.chain(others)) {
+        let task = Task::new(episode, index);
+        let stack = task.fit()?;
+        let stack = match exchange {
+            Some(exchange) => exchange(index, stack),
+            None => stack,
+        };
+        entries.push(Entry { task, stack, observer });
     }
+    let (reports, clearances_m): (Vec<_>, Vec<_>) = run_all(entries, clock, threads)?
+        .into_iter()
+        .map(|Ended { report, min_robot_clearance_m }| (report, min_robot_clearance_m))
+        .unzip();
+    let min_robot_clearance_m = clearances_m.into_iter().flatten().reduce(f64::min);
+    Ok(EpisodeReport::of(reports, min_robot_clearance_m))
 }

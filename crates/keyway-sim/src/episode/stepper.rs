@@ -1,8 +1,10 @@
 //! The world of an episode, for an external controller.
 
 use super::driver::world_of;
-use super::{Episode, EpisodeError};
+use super::task::Task;
+use super::{Episode, EpisodeError, EpisodeRobot};
 use crate::sim::{RunRules, Stepper};
+use keyway::ConfigError;
 use keyway::geometry::Pose;
 use keyway::navigate::Controller;
 
@@ -12,17 +14,23 @@ impl Episode {
     /// nothing.
     ///
     /// # Errors
-    /// When the episode cannot be run, or has no route.
+    /// When the episode cannot be run, has no route, or has several robots.
     pub fn stepper(&self) -> Result<Stepper, EpisodeError> {
-        let task = self.task();
-        let world = world_of(&[task])?;
-        let (position, goal) = (self.start.position, self.goal);
+        let EpisodeRobot { robot, disturbances, start, via, goal, .. } = self.check()?;
+        if self.robots.len() > 1 {
+            let expected =
+                format!("must be one to be driven from outside, got {}", self.robots.len());
+            return Err(ConfigError::new("robots", expected).into());
+        }
+        let task = Task::new(self, 0);
+        let world = world_of(&[task]).map_err(EpisodeError::of_all)?;
         let stack = task.fit()?;
-        let controller = Controller::by_way_of(&self.known, &stack, position, &self.via, goal)?;
+        let controller = Controller::by_way_of(&self.known, &stack, start.position, via, *goal)?;
         let start: Pose = task.start_pose(&world, controller.route())?;
         let rules: RunRules = task.run_rules(controller.guidance().remaining_m);
         let ends = (start, goal.position);
-        Ok(Stepper::new(world, self.robot.clone(), ends, self.disturbances, rules)?)
+        let stepper = Stepper::new(world, robot.clone(), ends, *disturbances, rules);
+        stepper.map_err(EpisodeError::of_all)
     }
 }
 
@@ -45,9 +53,9 @@ mod tests {
         let mut episode = Episode::new(map, Robot::small(), start, goal);
         episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
         let mut run = episode.stepper().unwrap();
-        let Episode { known, robot, stack, .. } = &episode;
+        let EpisodeRobot { robot, stack, .. } = &episode.robots[0];
         let mut controller =
-            Controller::new(known, &stack.fit(robot).unwrap(), start, goal).unwrap();
+            Controller::new(&episode.known, &stack.fit(robot).unwrap(), start, goal).unwrap();
         while run.outcome().is_none() {
             let (pose, velocity) = run.told();
             let action = match controller.step(pose, velocity, run.scan()) {
@@ -58,7 +66,7 @@ mod tests {
             run.step(&Control { action, remaining_m, route }).unwrap();
         }
         let samples = run.into_run().unwrap().samples;
-        let expected = run_episode(&episode).unwrap().trajectory.unwrap();
+        let expected = run_episode(&episode).unwrap().first().trajectory.unwrap();
         assert_eq!(samples.iter().map(trajectory_row).collect::<Vec<_>>(), expected);
     }
 }

@@ -2,7 +2,7 @@
 //! caller as well. `docs/JSON.md` lists all fields with their units.
 //!
 //! [`RouteReport`] is `keyway.plan/3`, [`CurveReport`] `keyway.curve/3`,
-//! [`crate::episode::EpisodeReport`] `keyway.navigate/4`. Figures are computed in
+//! [`crate::episode::RobotReport`] `keyway.navigate/4`. Figures are computed in
 //! [`crate::metrics`]; times are measured only if the caller has a [`Clock`], since the library
 //! reads none. Within a version of a schema, members are only ever added.
 

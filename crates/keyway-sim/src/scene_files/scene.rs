@@ -5,7 +5,7 @@ use super::scene_robots::SceneRobot;
 use super::scene_rules::SceneRules;
 use super::scene_version::{VERSION, Versioned};
 use super::unknown::{Standing, UnknownObstacle};
-use crate::episode::{Episode, RandomObstacles, Start, Team, TeamRobot};
+use crate::episode::{Episode, EpisodeRobot, RandomObstacles, Start};
 use crate::report::MapSource;
 use crate::sim::{Disturbances, Mover};
 use crate::worlds::GeneratedMap;
@@ -194,57 +194,23 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Returns the run that the scene describes, on its map, with its robot and its stack. The
-    /// caller reads them, as they may be files (see [`keyway::files::find_robot`] and
-    /// [`keyway::files::find_stack`]).
-    ///
-    /// # Errors
-    /// When the scene has several robots ([`Self::team`]), or was not read from a file and has no
-    /// start or goal; when an obstacle is not on the map, or a random one cannot be drawn.
-    pub fn episode(
-        &self,
-        map: impl Into<SceneMap>,
-        robot: Robot,
-        stack: Stack,
-    ) -> Result<Episode, SceneError> {
-        self.check_robots()?;
-        let (Some(start), Some(goal)) = (self.start, self.goal) else {
-            return Err(SceneError::SeveralRobots);
-        };
-        let map = map.into();
-        let source = map.source;
-        let episode = Episode::new(map.grid, robot, start.position, goal);
-        let stack = stack.safe_if(self.safe, &episode.robot);
-        let stack_name = self.stack.clone();
-        let (via, movers) = (self.via.clone(), self.seeded_movers());
-        let rules = self.rules.of_episode();
-        let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
-        let Standing { obstacles, polygons, hidden_cells } =
-            Standing::of(&self.unknown, episode.known.frame()).map_err(SceneError::Obstacle)?;
-        let episode = Episode { obstacles, polygons, hidden_cells, movers, ..episode };
-        let episode = Episode { source, stack, stack_name, ..episode };
-        let mut episode = Episode { disturbances, start, via, rules, ..episode };
-        if let Some(random) = &self.random {
-            random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
-        }
-        Ok(episode)
-    }
-
     /// Moving obstacles, with the seed of the scene where they need one.
     fn seeded_movers(&self) -> Vec<Mover> {
         (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
     }
 
-    /// Returns the runs of all robots of the scene, one or several, on its map. `find` reads a
-    /// robot and its stack by their names, which may be files.
+    /// Returns the run that the scene describes, on its map. `find` reads a robot and its stack by
+    /// their names, which may be files (see [`keyway::files::find_robot`] and
+    /// [`keyway::files::find_stack`]).
     ///
     /// # Errors
     /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
-    pub fn team<E: From<SceneError>>(
+    pub fn episode<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,
         mut find: impl FnMut(&str, &str) -> Result<(Robot, Stack), E>,
-    ) -> Result<Team, E> {
+    ) -> Result<Episode, E> {
+        self.check_robots()?;
         let SceneMap { grid, source } = map.into();
         let mut robots = Vec::new();
         for (way, (robot, stack)) in self.ways().into_iter().zip(self.robots_and_stacks()) {
@@ -252,17 +218,30 @@ impl SceneFile {
             let (robot, stack) = find(robot, stack)?;
             let stack = stack.safe_if(self.safe, &robot);
             let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
-            robots.push(TeamRobot { robot, disturbances, stack, stack_name, start, via, goal });
+            robots.push(EpisodeRobot { robot, disturbances, stack, stack_name, start, via, goal });
         }
         let Standing { obstacles, polygons, hidden_cells } =
             Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
         let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
-        let team = Team { source, movers, rules, ..Team::new(grid, robots) };
-        let mut team = Team { obstacles, polygons, hidden_cells, ..team };
+        let episode = Episode { source, movers, rules, ..Episode::of_robots(grid, robots) };
+        let mut episode = Episode { obstacles, polygons, hidden_cells, ..episode };
         if let Some(random) = &self.random {
-            random.put_into_team(&mut team, self.seed).map_err(SceneError::Random)?;
+            random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
         }
-        Ok(team)
+        Ok(episode)
+    }
+
+    /// Returns the same with this robot and this stack, whatever the scene calls them.
+    ///
+    /// # Errors
+    /// When an obstacle is not on the map, or a random one cannot be drawn.
+    pub fn episode_with(
+        &self,
+        map: impl Into<SceneMap>,
+        robot: &Robot,
+        stack: &Stack,
+    ) -> Result<Episode, SceneError> {
+        self.episode(map, |_, _| Ok((robot.clone(), stack.clone())))
     }
 
     /// Names of each robot and its stack, in the order of the robots: the robot's own names, or

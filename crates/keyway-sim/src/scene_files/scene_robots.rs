@@ -51,7 +51,7 @@ impl SceneRobot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::episode::Team;
+    use crate::episode::Episode;
     use crate::scene_files::{SceneError, SceneFile};
     use crate::sim::{Circle, Disturbances};
     use keyway::map::formats::map_from_bytes;
@@ -84,7 +84,7 @@ mod tests {
             let stack = Stack::key_point_fusion(&robot);
             Ok::<_, Box<dyn Error>>((robot, stack))
         };
-        let Team { robots, .. } = scene.team(map(), found).unwrap();
+        let Episode { robots, .. } = scene.episode(map(), found).unwrap();
         let name = |robot: &str, stack: &str| (robot.to_owned(), stack.to_owned());
         assert_eq!(asked, [name("small", "s0-key-point"), name("jackal", "mine.toml")]);
         assert_eq!(
@@ -95,15 +95,17 @@ mod tests {
         assert_eq!(robots[1].stack_name, "mine.toml");
         let noisy = |Disturbances { seed, actuation, .. }| (seed, actuation.delay_s);
         assert!(robots.iter().all(|robot| noisy(robot.disturbances) == (7, 0.1)));
-        let refused = scene.team(map(), |_, _| Err::<_, Box<dyn Error>>("no such robot".into()));
+        let refused = scene.episode(map(), |_, _| Err::<_, Box<dyn Error>>("no such robot".into()));
         assert_eq!(refused.unwrap_err().to_string(), "no such robot");
-        let robot = Robot::small();
-        let one = scene.episode(map(), robot.clone(), Stack::key_point_fusion(&robot));
-        assert_eq!(one, Err(SceneError::SeveralRobots));
+        // The same robot and stack for all of them.
+        let (robot, stack) = (Robot::jackal(), Stack::by_name("keyway", &Robot::jackal()).unwrap());
+        let same = scene.episode_with(map(), &robot, &stack).unwrap();
+        assert!(same.robots.iter().all(|one| one.robot == robot && one.stack == stack));
+        assert_eq!(same.robots.len(), 2);
     }
 
     #[test]
-    fn a_scene_of_one_robot_is_a_team_of_one() {
+    fn a_scene_of_one_robot_is_an_episode_of_one() {
         let text =
             "version = 2\nmap = \"a.map\"\nstart = [1, 2]\nvia = [[2, 2]]\ngoal = [3.5, 4]\n";
         let scene = SceneFile::from_toml(text).unwrap();
@@ -114,9 +116,9 @@ mod tests {
             let stack = Stack::key_point_fusion(&robot);
             Ok::<_, SceneError>((robot, stack))
         };
-        let team = scene.team(map, small).unwrap();
-        assert_eq!(team.robots.len(), 1);
-        assert_eq!((Some(team.robots[0].start), team.robots[0].via.len()), (scene.start, 1));
+        let episode = scene.episode(map, small).unwrap();
+        assert_eq!(episode.robots.len(), 1);
+        assert_eq!((Some(episode.robots[0].start), episode.robots[0].via.len()), (scene.start, 1));
     }
 
     #[test]
@@ -132,32 +134,32 @@ mod tests {
             let stack = Stack::key_point_fusion(&robot);
             Ok::<_, SceneError>((robot, stack))
         };
-        let team = |text: &str| SceneFile::from_toml(text).unwrap().team(map(), small);
-        let shown = team(&format!("{TWO}{walk}{shapes}")).unwrap();
+        let episode = |text: &str| SceneFile::from_toml(text).unwrap().episode(map(), small);
+        let shown = episode(&format!("{TWO}{walk}{shapes}")).unwrap();
         assert_eq!(shown.obstacles, [Circle::standing(Point::new(2.0, 3.0), 0.5)]);
         assert_eq!(shown.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
         assert_eq!(shown.polygons[0].vertices().len(), 3);
         // As for one robot, the walk follows from the seed of the scene.
         let other = TWO.replace("seed = 7", "seed = 8");
-        assert_ne!(team(&format!("{other}{walk}")).unwrap().movers, shown.movers);
+        assert_ne!(episode(&format!("{other}{walk}")).unwrap().movers, shown.movers);
         let one = "version = 2\nmap = \"a.map\"\nseed = 7\nstart = [1, 2]\ngoal = [3.5, 4]\n";
         let robot = Robot::small();
         let stack = Stack::key_point_fusion(&robot);
         let alone = SceneFile::from_toml(&format!("{one}{walk}")).unwrap();
-        assert_eq!(alone.episode(map(), robot, stack).unwrap().movers, shown.movers);
-        let off = team(&format!("{TWO}[[unknown]]\ncells = [[1, 1], [5, 0]]\n")).unwrap_err();
+        assert_eq!(alone.episode_with(map(), &robot, &stack).unwrap().movers, shown.movers);
+        let off = episode(&format!("{TWO}[[unknown]]\ncells = [[1, 1], [5, 0]]\n")).unwrap_err();
         assert!(off.to_string().starts_with("`unknown[0].cells[1]` must be a cell"), "{off}");
         let random =
             "[random]\nfree_ends_m = 0.1\n[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
-        let drawn = team(&format!("{TWO}{random}")).unwrap();
+        let drawn = episode(&format!("{TWO}{random}")).unwrap();
         assert_eq!(drawn.random.map(|placed| placed.unknown_placed), Some(1));
-        assert_ne!(drawn.obstacles, team(&format!("{other}{random}")).unwrap().obstacles);
-        // A team of one robot has the obstacles of this robot.
+        assert_ne!(drawn.obstacles, episode(&format!("{other}{random}")).unwrap().obstacles);
+        // An episode of one robot in `robots` has the obstacles of this robot.
         let robot = Robot::small();
         let stack = Stack::key_point_fusion(&robot);
         let alone = SceneFile::from_toml(&format!("{one}{random}")).unwrap();
-        let alone = alone.episode(map(), robot, stack).unwrap();
-        let of_one = team(&format!("{one}{random}")).unwrap();
+        let alone = alone.episode_with(map(), &robot, &stack).unwrap();
+        let of_one = episode(&format!("{one}{random}")).unwrap();
         assert_eq!((of_one.obstacles, of_one.random), (alone.obstacles, alone.random));
     }
 

@@ -114,7 +114,7 @@ fn within(index: usize, error: ConfigError) -> ConfigError {
 }
 
 /// All unknown obstacles, by kind, as in [`Episode`](crate::episode::Episode) and
-/// [`Team`](crate::episode::Team).
+/// [`Episode`](crate::episode::Episode).
 #[derive(Default)]
 pub(super) struct Standing {
     pub(super) obstacles: Vec<Circle>,
@@ -235,7 +235,7 @@ mod tests {
         let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
         let robot = Robot::small();
         let stack = Stack::key_point_fusion(&robot);
-        SceneFile::from_toml(text).unwrap().episode(map, robot, stack)
+        SceneFile::from_toml(text).unwrap().episode_with(map, &robot, &stack)
     }
 
     #[test]

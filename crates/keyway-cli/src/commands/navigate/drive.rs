@@ -9,12 +9,12 @@ use keyway::plan::PlanError;
 use keyway::route::Route;
 use keyway::sense::Disc;
 use keyway_lab::measure::wall_clock;
-use keyway_sim::episode::{Episode, EpisodeError, EpisodeReport, watch_episode};
+use keyway_sim::episode::{Episode, RobotReport, RunError, RunOptions, watch_episode};
 use keyway_sim::sim::Mover;
 
 /// What came of an episode.
 pub(crate) struct Driven {
-    pub(crate) report: EpisodeReport,
+    pub(crate) report: RobotReport,
     /// What moves, as it did.
     pub(crate) movers: Vec<Mover>,
     /// `None` when there was no route to drive.
@@ -39,8 +39,10 @@ pub(crate) struct Drive {
 
 pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliError> {
     let mut watcher = Watcher::new(wanted);
-    let report = watch_episode(episode, Some(&wall_clock()), &mut watcher);
-    let mut report = report.map_err(|error| bad_input(&error))?;
+    let clock = wall_clock();
+    let options = RunOptions { clock: Some(&clock), ..RunOptions::default() };
+    let report = watch_episode(episode, options, std::slice::from_mut(&mut watcher));
+    let mut report = report.map_err(|error| bad_input(&error.why))?.first();
     let Watcher { route, sensed, why, explanations, fan, film, walked, .. } = watcher;
     if why.is_some() {
         report.plan.why.clone_from(&why);
@@ -60,13 +62,11 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
     Ok(Driven { report, movers, drive })
 }
 
-pub(super) fn bad_input(error: &EpisodeError) -> CliError {
+pub(super) fn bad_input(error: &RunError) -> CliError {
     match error {
-        EpisodeError::Navigate(error) => no_start(error),
-        EpisodeError::World(error) => CliError::new(Kind::Input, error).field("--obstacle"),
-        EpisodeError::Config(error) => {
-            CliError::new(Kind::Config, error).field(error.path.as_str())
-        }
+        RunError::Navigate(error) => no_start(error),
+        RunError::World(error) => CliError::new(Kind::Input, error).field("--obstacle"),
+        RunError::Config(error) => CliError::new(Kind::Config, error).field(error.path.as_str()),
         _ => CliError::new(Kind::Input, error),
     }
 }

@@ -12,14 +12,14 @@ use keyway::geometry::Point;
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeRules, Start, Team};
+use keyway_sim::episode::{Episode, EpisodeRobot, Start};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
 use keyway_sim::sim::{Circle, Disturbances, Mover};
 use std::path::{Path, PathBuf};
 
-/// An episode, or a team, and the files from which it was read.
-pub(crate) struct Given<E> {
-    pub(crate) episode: E,
+/// An episode, and the files from which it was read.
+pub(crate) struct Given {
+    pub(crate) episode: Episode,
     pub(crate) sources: Vec<PathBuf>,
 }
 
@@ -57,67 +57,41 @@ pub(crate) fn given_scene(args: &NavigateArgs) -> Result<Option<SceneFile>, CliE
     Ok(scene)
 }
 
-pub(crate) fn given(
-    args: &NavigateArgs,
-    scene: Option<SceneFile>,
-) -> Result<Given<Episode>, CliError> {
+/// The run of a scene, or of the arguments. What the arguments say of the robot and its stack holds
+/// for each robot of a scene.
+pub(crate) fn given(args: &NavigateArgs, scene: Option<&SceneFile>) -> Result<Given, CliError> {
     let folder = scene_folder(args);
-    let in_scene = |name: fn(&SceneFile) -> &String| scene.as_ref().map(|it| name(it).as_str());
-    let robot = given_robot(args, in_scene(|scene| &scene.robot), folder)?;
-    let is_safe = scene.as_ref().is_some_and(|scene| scene.safe);
-    let named_stack = (in_scene(|scene| &scene.stack), is_safe);
-    let (stack_name, stack) = given_stack(args, named_stack, folder, &robot)?;
     let time_limit_s = check_time_limit(args.time_limit)?;
-    let (map, map_files) = given_map(args, scene.as_ref(), folder)?;
-    let sources = sources(args, map_files);
-    let frame = *map.grid.frame();
-    refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
-    let source = map.source.clone();
-    let episode = if let Some(scene) = scene {
-        let blame = |error| CliError::new(Kind::Input, error).field("--scene");
-        scene.episode(map, robot, stack.clone()).map_err(blame)?
+    let is_safe = scene.is_some_and(|scene| scene.safe);
+    let (map, map_files) = given_map(args, scene, folder)?;
+    let (frame, source) = (*map.grid.frame(), map.source.clone());
+    let mut stack_names = Vec::new();
+    let mut find = |robot: Option<&str>, stack: Option<&str>| {
+        let robot = given_robot(args, robot, folder)?;
+        refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
+        let (stack_name, stack) = given_stack(args, (stack, is_safe), folder, &robot)?;
+        stack_names.push(stack_name);
+        Ok::<_, CliError>((robot, stack))
+    };
+    let mut episode = if let Some(scene) = scene {
+        scene.episode(map, |robot, stack| find(Some(robot), Some(stack)))?
     } else {
+        let (robot, stack) = find(None, None)?;
         let (start, goal) = ends_from_args(args, &frame)?;
         let to_point = |via: &PositionArg| position(&frame, via.0, args.cells, "--via");
         let via = args.via.iter().map(to_point).collect::<Result<_, _>>()?;
-        Episode { start, via, ..Episode::new(map.grid, robot, start.position, goal) }
+        let robot = EpisodeRobot::new(robot, start.position, goal);
+        Episode::of_robots(map.grid, vec![EpisodeRobot { stack, start, via, ..robot }])
     };
-    let mut obstacles = episode.obstacles;
-    obstacles.extend(added_obstacles(args, &frame)?);
-    let mut movers = episode.movers;
-    movers.extend(added_movers(args, &frame)?);
-    let disturbances = given_disturbances(args, episode.disturbances)?;
-    let time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
-    let rules = EpisodeRules { time_limit_s, ..episode.rules };
-    let episode = Episode { source, obstacles, movers, disturbances, ..episode };
-    let episode = Episode { stack, stack_name, rules, ..episode };
-    Ok(Given { episode, sources })
-}
-
-/// The runs of all robots of a scene. What the arguments say of the robot and its stack holds for
-/// each of them.
-pub(super) fn given_team(args: &NavigateArgs, scene: &SceneFile) -> Result<Given<Team>, CliError> {
-    let folder = scene_folder(args);
-    let time_limit_s = check_time_limit(args.time_limit)?;
-    let (map, map_files) = given_map(args, Some(scene), folder)?;
-    let (frame, source) = (*map.grid.frame(), map.source.clone());
-    let mut stack_names = Vec::new();
-    let mut team = scene.team(map, |robot, stack| {
-        let robot = given_robot(args, Some(robot), folder)?;
-        refuse_a_radius_beyond_the_map(robot.footprint.inscribed_radius_m(), &frame, "--radius")?;
-        let (stack_name, stack) = given_stack(args, (Some(stack), scene.safe), folder, &robot)?;
-        stack_names.push(stack_name);
-        Ok::<_, CliError>((robot, stack))
-    })?;
-    for (robot, stack_name) in team.robots.iter_mut().zip(stack_names) {
+    for (robot, stack_name) in episode.robots.iter_mut().zip(stack_names) {
         robot.stack_name = stack_name;
         robot.disturbances = given_disturbances(args, robot.disturbances)?;
     }
-    team.source = source;
-    team.obstacles.extend(added_obstacles(args, &frame)?);
-    team.movers.extend(added_movers(args, &frame)?);
-    team.rules.time_limit_s = time_limit_s.or(team.rules.time_limit_s);
-    Ok(Given { episode: team, sources: sources(args, map_files) })
+    episode.source = source;
+    episode.obstacles.extend(added_obstacles(args, &frame)?);
+    episode.movers.extend(added_movers(args, &frame)?);
+    episode.rules.time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
+    Ok(Given { episode, sources: sources(args, map_files) })
 }
 
 fn scene_folder(args: &NavigateArgs) -> &Path {

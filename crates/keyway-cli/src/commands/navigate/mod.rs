@@ -25,7 +25,7 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     if let Some(scene) = scene.as_ref().filter(|scene| !scene.robots.is_empty()) {
         return team::run(args, scene);
     }
-    let Given { episode, sources } = given(args, scene)?;
+    let Given { episode, sources } = given(args, scene.as_ref())?;
     warn_of_those_left_out(episode.random);
     // Before the run, which may take long, not after it.
     let out = prepared(&args.files, &sources)?;
@@ -54,7 +54,7 @@ fn warn_of_those_left_out(random: Option<Placed>) {
 pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
     let targets = driven.drive.as_ref().map(|drive| {
         let (clearance_m, cell_m) = (drive.route.clearance_m, episode.known.frame().resolution_m());
-        SmoothingTargets::new(&episode.stack.smoother, clearance_m, cell_m)
+        SmoothingTargets::new(&episode.robots[0].stack.smoother, clearance_m, cell_m)
     });
     episode_table(&driven.report, targets)
 }

@@ -130,17 +130,18 @@ fn write_own_files(
     Ok(())
 }
 
-const fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
+fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
+    let robot = &episode.robots[0];
     Stage {
         map: &episode.known,
-        robot: &episode.robot,
+        robot: &robot.robot,
         obstacles: episode.obstacles.as_slice(),
         polygons: episode.polygons.as_slice(),
         hidden_cells: episode.hidden_cells.as_slice(),
         movers,
-        start: episode.start.position,
-        goal: episode.goal.position,
-        tolerance_m: episode.stack.controller.goal_tolerance_m,
+        start: robot.start.position,
+        goal: robot.goal.position,
+        tolerance_m: robot.stack.controller.goal_tolerance_m,
     }
 }
 
@@ -177,7 +178,8 @@ pub(crate) fn write_files(
     out.write(map_svg, svg.as_str().as_bytes())?;
     out.write(map_png, &png(&svg)?)?;
     if let Some(drive) = drive {
-        let svg = speed_svg(&episode.stack_name, &points, &episode.robot);
+        let robot = &episode.robots[0];
+        let svg = speed_svg(&robot.stack_name, &points, &robot.robot);
         out.write(speed, svg.as_str().as_bytes())?;
         out.write(speed_png, &png(&svg)?)?;
         out.write(trajectory_csv, csv(rows).as_bytes())?;

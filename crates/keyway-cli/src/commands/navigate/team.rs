@@ -1,7 +1,7 @@
 //! Several robots in one world: a scene with `[[robots]]`.
 
 use super::drive::bad_input;
-use super::episode::{Given, given_team};
+use super::episode::{Given, given};
 use super::result_files::{COLUMNS, FILES, prepared};
 use super::{Wanted, warn_of_those_left_out, watch::Watcher};
 use crate::args::{DriveFileArgs, Format, NavigateArgs};
@@ -16,7 +16,9 @@ use keyway_draw::layers::DrivenPoint;
 use keyway_lab::measure::wall_clock;
 use keyway_lab::results::OutDir;
 pub(crate) use keyway_lab::run_tables::team_table as table;
-use keyway_sim::episode::{EpisodeOutcome, EpisodeReport, Team, TeamError, TeamReport, watch_team};
+use keyway_sim::episode::{
+    Episode, EpisodeError, EpisodeOutcome, EpisodeReport, RobotReport, RunOptions, watch_episode,
+};
 use keyway_sim::parallel::processors;
 use keyway_sim::scene_files::SceneFile;
 use keyway_sim::sim::Mover;
@@ -25,7 +27,7 @@ use std::fmt::Write as _;
 /// Drives all robots of a scene.
 pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliError> {
     refuse_what_is_for_one(&args.files)?;
-    let Given { episode: team, sources } = given_team(args, scene)?;
+    let Given { episode: team, sources } = given(args, Some(scene))?;
     warn_of_those_left_out(team.random);
     let out = prepared(&args.files, &sources)?;
     let report = drive(&team)?;
@@ -44,8 +46,8 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
 /// Writes the files that were asked for; gives their paths.
 pub(crate) fn write_all(
     args: &DriveFileArgs,
-    team: &Team,
-    report: &TeamReport,
+    team: &Episode,
+    report: &EpisodeReport,
     out: Option<OutDir>,
 ) -> Result<Vec<String>, CliError> {
     let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
@@ -82,10 +84,13 @@ pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliErro
     }
 }
 
-pub(crate) fn drive(team: &Team) -> Result<TeamReport, CliError> {
-    let watch = |_| Watcher::new(Wanted::default());
-    let driven = watch_team(team, Some(&wall_clock()), processors(), watch);
-    let (mut report, watchers) = driven.map_err(|error| blame(&error))?;
+pub(crate) fn drive(team: &Episode) -> Result<EpisodeReport, CliError> {
+    let mut watchers: Vec<Watcher> =
+        team.robots.iter().map(|_| Watcher::new(Wanted::default())).collect();
+    let clock = wall_clock();
+    let options =
+        RunOptions { clock: Some(&clock), threads: processors(), ..RunOptions::default() };
+    let mut report = watch_episode(team, options, &mut watchers).map_err(|error| blame(&error))?;
     for (robot, Watcher { why, .. }) in report.robots.iter_mut().zip(watchers) {
         if why.is_some() {
             robot.plan.why.clone_from(&why);
@@ -96,14 +101,14 @@ pub(crate) fn drive(team: &Team) -> Result<TeamReport, CliError> {
 }
 
 /// What moves, as it did until the last run had ended.
-fn moved(team: &Team, report: &TeamReport) -> Vec<Mover> {
+fn moved(team: &Episode, report: &EpisodeReport) -> Vec<Mover> {
     let runs = report.robots.iter().filter_map(|robot| robot.run.as_ref());
     let last = runs.max_by_key(|run| run.cycles);
     last.map_or_else(|| team.movers.clone(), |run| run.movers(&team.movers))
 }
 
 /// An error of one robot names its table in the scene.
-fn blame(error: &TeamError) -> CliError {
+fn blame(error: &EpisodeError) -> CliError {
     let CliError { kind, message, field } = bad_input(&error.why);
     let Some(index) = error.robot else { return CliError { kind, message, field } };
     let in_scene = |field: String| match field.as_str() {
@@ -114,22 +119,22 @@ fn blame(error: &TeamError) -> CliError {
     CliError { kind, message, field: field.map(in_scene) }
 }
 
-fn points(report: &EpisodeReport) -> Vec<DrivenPoint> {
+fn points(report: &RobotReport) -> Vec<DrivenPoint> {
     report.trajectory.iter().flatten().map(driven_point).collect()
 }
 
-fn has_run(report: &TeamReport) -> bool {
+fn has_run(report: &EpisodeReport) -> bool {
     report.robots.iter().any(|robot| robot.run.is_some())
 }
 
 /// Names of the files that [`write_files`] will write.
-fn written(report: &TeamReport) -> &'static [&'static str] {
+fn written(report: &EpisodeReport) -> &'static [&'static str] {
     &FILES[..if has_run(report) { 6 } else { 3 }]
 }
 
 fn write_files(
     picture: &TeamPicture<'_>,
-    report: &TeamReport,
+    report: &EpisodeReport,
     files: &[String],
     out: &mut OutDir,
 ) -> Result<(), CliError> {
@@ -149,7 +154,7 @@ fn write_files(
 }
 
 /// The trajectories of all robots, one after the other.
-fn csv(report: &TeamReport) -> String {
+fn csv(report: &EpisodeReport) -> String {
     let mut text = format!("robot,{COLUMNS}\n");
     for (index, robot) in report.robots.iter().enumerate() {
         for [t, x, y, yaw, v, omega] in robot.trajectory.iter().flatten() {

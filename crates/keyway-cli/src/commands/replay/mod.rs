@@ -9,7 +9,7 @@ use crate::error::{CliError, Kind};
 use crate::progress::RunBar;
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
-use keyway_lab::replay::{RecordedRun, ReplayRequest};
+use keyway_lab::replay::ReplayRequest;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
@@ -55,26 +55,22 @@ fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     let name = path.file_stem().unwrap_or_default();
     let out = args.files.out.as_ref().map(|folder| folder.join(name));
     let files = DriveFileArgs { out, ..args.files.clone() };
-    match &replay.run {
-        RecordedRun::One(episode) => {
-            let out = prepared(&files, sources)?;
-            let driven = drive(episode, wanted(&files))?;
-            replay.check(&driven.report)?;
-            let files = write_all(&files, episode, &driven, out)?;
-            shown(args, path, WithFiles { report: &driven.report, files: &files }, || {
-                table(episode, &driven)
-            })
-        }
-        RecordedRun::Several(team) => {
-            team::refuse_what_is_for_one(&files)?;
-            let out = prepared(&files, sources)?;
-            let report = team::drive(team)?;
-            replay.check_team(&report)?;
-            let files = team::write_all(&files, team, &report, out)?;
-            let shown_report = WithFiles { report: &report, files: &files };
-            shown(args, path, shown_report, || team::table(&report))
-        }
+    let episode = &replay.episode;
+    if replay.has_robots {
+        team::refuse_what_is_for_one(&files)?;
+        let out = prepared(&files, sources)?;
+        let report = team::drive(episode)?;
+        replay.check_episode(&report)?;
+        let files = team::write_all(&files, episode, &report, out)?;
+        let shown_report = WithFiles { report: &report, files: &files };
+        return shown(args, path, shown_report, || team::table(&report));
     }
+    let out = prepared(&files, sources)?;
+    let driven = drive(episode, wanted(&files))?;
+    replay.check(&driven.report)?;
+    let files = write_all(&files, episode, &driven, out)?;
+    let shown_report = WithFiles { report: &driven.report, files: &files };
+    shown(args, path, shown_report, || table(episode, &driven))
 }
 
 /// What is to be said of a run that was the same again.

@@ -209,9 +209,10 @@ mod tests {
             let [start, goal] = ends;
             let grid = family.generate(seed, &ends).unwrap();
             let mut episode = Episode::new(grid, Robot::small(), start, goal);
-            episode.stack = Stack::by_name(ASTAR_FOLLOW, &episode.robot).unwrap();
-            let Episode { known, robot, stack, .. } = &episode;
-            let controller = Controller::new(known, &stack.fit(robot).ok()?, start, goal).ok()?;
+            let robot = &mut episode.robots[0];
+            robot.stack = Stack::by_name(ASTAR_FOLLOW, &robot.robot).unwrap();
+            let stack = robot.stack.fit(&robot.robot).ok()?;
+            let controller = Controller::new(&episode.known, &stack, start, goal).ok()?;
             Some(controller.route().line.polyline().turns_rad().len() as f64)
         });
         let turns: Vec<f64> = turns.collect();

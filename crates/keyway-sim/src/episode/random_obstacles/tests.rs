@@ -56,7 +56,7 @@ fn has_way(episode: &Episode, radius_m: f64, beside_discs_m: f64) -> bool {
             && episode.obstacles.iter().all(is_beside)
             && to_squares_m(&squares, at) >= radius_m - 1e-9
     };
-    let [from, to] = [episode.start.position, episode.goal.position]
+    let [from, to] = [episode.robots[0].start.position, episode.robots[0].goal.position]
         .map(|end| frame.cell_from_world(end).unwrap());
     let (mut seen, mut open) = (std::collections::BTreeSet::from([from]), vec![from]);
     while let Some(Cell { x, y }) = open.pop() {
@@ -98,7 +98,7 @@ fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
             for &Circle { centre, radius_m } in &episode.obstacles {
                 assert!((0.1..=0.4).contains(&radius_m));
                 assert!(with_door || (centre.y - 2.55).abs() <= 0.4, "{centre:?}");
-                for end in [episode.start.position, episode.goal.position] {
+                for end in [episode.robots[0].start.position, episode.robots[0].goal.position] {
                     let gap_m = end.distance(centre) - radius_m - circumscribed_m;
                     assert!(gap_m >= 0.6, "{gap_m}");
                 }
@@ -122,8 +122,8 @@ fn beside_a_disc_there_is_room_to_spare() {
     let mut count = 0;
     for seed in 0..30 {
         let mut episode = episode(true, Robot::small());
-        episode.start.position = Point::new(4.55, 2.55);
-        episode.goal.position = Point::new(7.65, 2.55);
+        episode.robots[0].start.position = Point::new(4.55, 2.55);
+        episode.robots[0].goal.position = Point::new(7.65, 2.55);
         narrow.put_into(&mut episode, seed).unwrap();
         count += episode.obstacles.len();
         assert!(
@@ -150,7 +150,7 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
                 assert!(to_squares_m(&squares, centre) >= radius_m - 1e-9, "{centre:?}");
                 let is_beside = |disc: &Circle| disc.distance(centre) >= radius_m - 1e-9;
                 assert!(episode.obstacles.iter().all(is_beside), "{centre:?}");
-                for end in [episode.start.position, episode.goal.position] {
+                for end in [episode.robots[0].start.position, episode.robots[0].goal.position] {
                     assert!(end.distance(centre) - radius_m - 0.18 >= 0.6 - 1e-9, "{centre:?}");
                 }
             }
@@ -170,8 +170,8 @@ fn what_finds_no_place_is_counted() {
     // The door is 1.2 m wide, too narrow for a disc of 0.6 m and the robot, and the whole path is
     // within the door.
     let mut episode = episode(true, Robot::small());
-    episode.start.position = Point::new(5.05, 2.55);
-    episode.goal.position = Point::new(7.05, 2.55);
+    episode.robots[0].start.position = Point::new(5.05, 2.55);
+    episode.robots[0].goal.position = Point::new(7.05, 2.55);
     let wide = RandomObstacles {
         unknown: Some(RandomUnknown { count: 2, radius_m: [0.4, 0.4] }),
         moving: Some(RandomMoving { count: 3, radius_m: [0.5, 0.5], speed_mps: [1.0, 1.0] }),
@@ -184,7 +184,7 @@ fn what_finds_no_place_is_counted() {
     assert!(episode.obstacles.is_empty() && episode.movers.is_empty());
     // Without a path, nothing is near it.
     let mut closed = self::episode(true, Robot::small());
-    closed.goal.position = Point::new(0.05, 0.05);
+    closed.robots[0].goal.position = Point::new(0.05, 0.05);
     config(2, 1).put_into(&mut closed, 1).unwrap();
     assert_eq!(closed.random.unwrap().left_out(), 3);
 }
@@ -192,10 +192,10 @@ fn what_finds_no_place_is_counted() {
 #[test]
 fn way_points_are_on_the_way_and_kept_free() {
     let mut episode = episode(false, Robot::small());
-    episode.via = vec![Point::new(6.05, 4.95)];
+    episode.robots[0].via = vec![Point::new(6.05, 4.95)];
     let config = RandomObstacles { near_way_m: 0.2, ..config(12, 0) };
     config.put_into(&mut episode, 3).unwrap();
-    let via = episode.via[0];
+    let via = episode.robots[0].via[0];
     assert!(episode.obstacles.iter().all(|disc| disc.distance(via) >= 0.6 + 0.18));
     assert!(episode.obstacles.iter().any(|disc| disc.centre.y > 3.0), "{:?}", episode.obstacles);
 }
@@ -219,16 +219,16 @@ fn bad_values_are_named() {
 
 /// A wide robot that stays on the left, and two robots that pass through the door from opposite
 /// sides.
-fn team(with_door: bool) -> Team {
+fn team(with_door: bool) -> Episode {
     let robot = |robot: Robot, from: [f64; 2], to: [f64; 2]| {
-        TeamRobot::new(robot, Point::from(from), Point::from(to))
+        EpisodeRobot::new(robot, Point::from(from), Point::from(to))
     };
     let robots = vec![
         robot(Robot::jackal(), [3.05, 1.05], [3.05, 5.05]),
         robot(Robot::small(), [1.05, 2.55], [11.05, 2.55]),
         robot(Robot::small(), [11.05, 4.55], [1.05, 4.55]),
     ];
-    Team::new(hall(with_door), robots)
+    Episode::of_robots(hall(with_door), robots)
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn one_robot_or_a_team_of_one_has_the_same_obstacles() {
         let alone = drawn(&config, true, Robot::small(), seed);
         let mut team = team(true);
         team.robots = vec![team.robots.swap_remove(1)];
-        config.put_into_team(&mut team, seed).unwrap();
+        config.put_into(&mut team, seed).unwrap();
         assert_eq!(team.obstacles, alone.obstacles);
         assert_eq!((team.movers, team.random), (alone.movers, alone.random));
     }
@@ -249,16 +249,16 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
     let (mut near, mut crossing) = ([0; 3], 0);
     for seed in 0..6 {
         let mut team = team(true);
-        config(8, 3).put_into_team(&mut team, seed).unwrap();
+        config(8, 3).put_into(&mut team, seed).unwrap();
         let placed = team.random.unwrap();
         assert_eq!(
             (placed.unknown_placed as usize, placed.moving_placed as usize),
             (team.obstacles.len(), team.movers.len())
         );
         crossing += team.movers.len();
-        for (i, TeamRobot { robot, start, goal, .. }) in team.robots.iter().enumerate() {
+        for (i, EpisodeRobot { robot, start, goal, .. }) in team.robots.iter().enumerate() {
             let mut alone = episode(true, robot.clone());
-            (alone.start, alone.goal) = (*start, *goal);
+            (alone.robots[0].start, alone.robots[0].goal) = (*start, *goal);
             alone.obstacles.clone_from(&team.obstacles);
             let radius_m = robot.footprint.inscribed_radius_m();
             assert!(has_way(&alone, radius_m, radius_m + RandomObstacles::MARGIN_M), "{seed}: {i}");
@@ -299,7 +299,7 @@ fn a_robot_without_a_way_keeps_its_ends_free() {
         if is_wall { CellState::Occupied } else { open.state(cell).unwrap() }
     });
     let config = RandomObstacles { near_way_m: 3.0, ..config(20, 0) };
-    config.put_into_team(&mut team, 1).unwrap();
+    config.put_into(&mut team, 1).unwrap();
     assert!(team.obstacles.len() > 10);
     let reach_m = Robot::small().footprint.circumscribed_radius_m() + 0.6 - 1e-9;
     let apart_m = |disc: &Circle| disc.centre.distance(goal) - disc.radius_m;

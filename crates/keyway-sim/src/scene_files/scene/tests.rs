@@ -52,15 +52,19 @@ fn a_scene_is_an_episode_on_its_map() {
     let map = || map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
     let (digest, robot) = (map().digest, Robot::small());
     let stack = Stack::by_name("s1-adaptive", &robot).unwrap();
-    let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
+    let episode = scene.episode_with(map(), &robot, &stack).unwrap();
     assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
-    assert_eq!((Some(episode.start), Some(episode.goal)), (scene.start, scene.goal));
+    let one = episode.robots[0].clone();
+    assert_eq!((Some(one.start), Some(one.goal)), (scene.start, scene.goal));
     let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
-    assert_eq!((episode.obstacles, episode.robot), (vec![circle], robot.clone()));
-    assert_eq!((episode.stack, episode.movers), (stack, vec![mover()]));
+    assert_eq!((episode.obstacles, one.robot), (vec![circle], robot.clone()));
+    assert_eq!((one.stack, episode.movers), (stack, vec![mover()]));
     let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };
     let stack = Stack::key_point_fusion(&robot);
-    assert_eq!(other.episode(map(), robot, stack).unwrap().stack_name, "mine.toml");
+    assert_eq!(
+        other.episode_with(map(), &robot, &stack).unwrap().robots[0].stack_name,
+        "mine.toml"
+    );
 }
 
 #[test]
@@ -96,8 +100,8 @@ fn disturbances_draw_from_the_seed_of_the_scene() {
     let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
     let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
     let robot = Robot::small();
-    let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
-    let Disturbances { seed, actuation, .. } = episode.disturbances;
+    let episode = scene.episode_with(map, &robot, &Stack::key_point_fusion(&robot)).unwrap();
+    let Disturbances { seed, actuation, .. } = episode.robots[0].disturbances;
     assert_eq!((seed, actuation.delay_s), (7, 0.1));
     let late = error(&text.replace("0.1", "-1"));
     assert!(late.starts_with("`disturbances.actuation.delay_s` must be"), "{late}");
@@ -122,7 +126,7 @@ fn a_world_is_made_from_the_seed() {
     let other = SceneFile { seed: 4, ..scene.clone() }.generated_map().unwrap().unwrap();
     assert_ne!(map.source.digest, other.source.digest);
     let robot = Robot::small();
-    let episode = scene.episode(map, robot.clone(), Stack::key_point_fusion(&robot)).unwrap();
+    let episode = scene.episode_with(map, &robot, &Stack::key_point_fusion(&robot)).unwrap();
     let rules = EpisodeRules {
         goal_tolerance_m: Some(1.0),
         arrival: Arrival::Passing,
@@ -174,11 +178,11 @@ fn a_safe_scene_puts_the_stop_rule_behind_every_stack() {
         let scene = format!("{line}{}", LEAST.replace("version = 1", "version = 2"));
         let scene = SceneFile::from_toml(&scene).unwrap();
         assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
-        let episode = scene.episode(map(), robot.clone(), stack.clone()).unwrap();
-        assert_eq!(episode.stack.controller.safe.is_some(), is_safe, "{line}");
+        let episode = scene.episode_with(map(), &robot, &stack).unwrap();
+        assert_eq!(episode.robots[0].stack.controller.safe.is_some(), is_safe, "{line}");
         let found = |_: &str, _: &str| Ok::<_, SceneError>((robot.clone(), stack.clone()));
-        let team = scene.team(map(), found).unwrap();
-        assert_eq!(team.robots[0].stack, episode.stack, "{line}");
+        let team = scene.episode(map(), found).unwrap();
+        assert_eq!(team.robots[0].stack, episode.robots[0].stack, "{line}");
     }
     assert_eq!(error(&format!("safe = true\n{LEAST}")), "`safe` needs `version = 2`");
 }

@@ -289,7 +289,7 @@ impl<'a> Manoeuvres<'a> {
         let spare_m =
             self.grounds.iter_mut().map(|ground| ground.spare_m(pose, obstacles, wanted_m));
         let by_squares_m = spare_m.fold(f64::INFINITY, f64::min);
-        let by_places_m = self.from_places_m(pose, wanted_m.min(by_squares_m));
+        let by_places_m = self.places_spare_m(pose, wanted_m.min(by_squares_m));
         let spare_m = by_squares_m.min(by_places_m);
         if spare_m >= 0.0 { Ok(spare_m) } else { Err(Refusal::Standing { after_s }) }
     }
@@ -297,7 +297,7 @@ impl<'a> Manoeuvres<'a> {
     /// A lower bound of the room from the places that the scan met, beyond what must be kept
     /// \[m\]. Not computed again where it is more than `wanted_m`, nor, like other steps, within
     /// what must be kept.
-    fn from_places_m(&mut self, pose: Pose, wanted_m: f64) -> f64 {
+    fn places_spare_m(&mut self, pose: Pose, wanted_m: f64) -> f64 {
         if self.touched.places.is_empty() {
             return f64::INFINITY;
         }

@@ -127,7 +127,9 @@ proptest! {
         let robot = Robot { sensor: Robot::small().sensor, ..robot };
         let mut among = AmongDiscs::new(robot, &discs);
         let pose = Pose::new(x, y, theta);
-        beside.iter().for_each(|disc| among.add_beside(pose, disc));
+        for disc in &beside {
+            among.add_beside(pose, disc);
+        }
         prop_assume!(among.room_m(pose) >= 0.5e-3);
         let commands = every_cycle(&among.robot, &commands);
         let least_m = among.drive(pose, &commands);

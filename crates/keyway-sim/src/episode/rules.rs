@@ -1,0 +1,34 @@
+//! Rules that end a run.
+
+use crate::sim::{Arrival, RunRules};
+
+/// Rules that end a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EpisodeRules {
+    /// Goal tolerance \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
+    pub goal_tolerance_m: Option<f64>,
+    /// Arrival rule: whether the robot has to stop at the goal, with the goal's heading, or may
+    /// pass.
+    pub arrival: Arrival,
+    /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at top
+    /// speed.
+    pub time_limit_s: Option<f64>,
+    /// See [`RunRules::stuck_window_s`] \[s\].
+    pub stuck_window_s: f64,
+    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: what its controller takes for
+    /// progress in that time ([`Progress::step_m`](keyway::navigate::Progress::step_m)).
+    pub stuck_progress_m: Option<f64>,
+}
+
+impl Default for EpisodeRules {
+    fn default() -> Self {
+        let RunRules { stuck_window_s, .. } = RunRules::default();
+        Self {
+            goal_tolerance_m: None,
+            arrival: Arrival::Standing,
+            time_limit_s: None,
+            stuck_window_s,
+            stuck_progress_m: None,
+        }
+    }
+}
