@@ -6,7 +6,8 @@ mod support;
 
 use keyway::geometry::Pose;
 use keyway::map::{
-    Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy,
+    Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, PublishedConstraints, SearchMap,
+    UnknownPolicy,
 };
 use keyway::plan::{
     Bidirectional24, Bidirectional24Config, GlobalPlanner, Heuristic, Hsta, HstaConfig, IfNoPath,
@@ -189,7 +190,10 @@ fn the_constraint_keeps_more_on_a_finer_grid() {
         let middle = Cell::new(side / 2, side / 2);
         let state = |cell| if cell == middle { CellState::Occupied } else { CellState::Free };
         let grid = OccupancyGrid::from_fn(frame, state);
-        let with = |l1_constraint| LayerConfig { l1_constraint, ..LayerConfig::default() };
+        let with = |l1_constraint| LayerConfig {
+            published: PublishedConstraints { l1_constraint, ..PublishedConstraints::NONE },
+            ..LayerConfig::default()
+        };
         let plain = SearchMap::new(&grid, with(0.0)).unwrap();
         let constrained = SearchMap::new(&grid, with(2.0)).unwrap();
         let hsta = PlannerConfig::Hsta(HstaConfig::PAPER).build(&plain).unwrap();

@@ -75,8 +75,8 @@ const CONFIGS: [Bad; 15] = [
     ("--set map.clearance_m=1e308", "map.clearance_m"),
     ("--set map.unknown=maybe", "map.unknown"),
     ("--set map.unknown_penalty=1e300", "map.unknown_penalty"),
-    ("--set map.expansion_cells=-1", "map.expansion_cells"),
-    ("--set map.expansion_cells=99999999999", "map.expansion_cells"),
+    ("--set map.published.expansion_cells=-1", "map.published.expansion_cells"),
+    ("--set map.published.expansion_cells=99999999999", "map.published.expansion_cells"),
 ];
 
 #[test]

@@ -220,10 +220,10 @@ fn positions() {
 fn positions_in_a_zone() {
     let folder = folder();
     let beside = "plan walled.map --start 0.5,0.5 --goal 2.5,0.5";
-    let expanded = format!("{beside} --set map.expansion_cells=1");
+    let expanded = format!("{beside} --set map.published.expansion_cells=1");
     let parts = ["goal (2.500, 0.500)", "expanded zone", "expansion_cells is 1", "(1.500, 0.500)"];
     refused(&folder, &expanded, &parts, "position", Some("--goal"));
-    let constrained = format!("{beside} --set map.l1_constraint=2");
+    let constrained = format!("{beside} --set map.published.l1_constraint=2");
     let parts = ["goal (2.500, 0.500)", "l1_constraint is 2", "map.free_ends_m"];
     refused(&folder, &constrained, &parts, "position", Some("--goal"));
     // A disc around the goal helps, but not into the wall.
@@ -239,7 +239,7 @@ fn positions_in_a_zone() {
     assert!(report["goals"].as_array().unwrap().iter().all(|goal| goal["outcome"] == "found"));
 
     let robot = "navigate walled.map --start 1.5,2.5 --goal 5.5,2.5";
-    let everywhere = format!("{robot} --set map.expansion_cells=3");
+    let everywhere = format!("{robot} --set map.published.expansion_cells=3");
     let parts = ["start (1, 2)", "expanded zone", "no cell of this map is free"];
     refused(&folder, &everywhere, &parts, "position", Some("--start"));
     let freed = format!("{robot} --set map.free_ends_m=0.5");

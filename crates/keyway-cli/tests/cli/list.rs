@@ -153,7 +153,9 @@ fn methods_of_the_papers_are_options_that_work() {
     assert_eq!(tried.len(), 28, "{tried:?}");
     let shown = keyway(folder.path(), "list shortcut").expect_code(0).out;
     assert!(
-        shown.contains("--planner ratio-astar --smoother shortcut --set map.expansion_cells=1"),
+        shown.contains(
+            "--planner ratio-astar --smoother shortcut --set map.published.expansion_cells=1"
+        ),
         "{shown}"
     );
 }

@@ -61,13 +61,13 @@ fn parameters_say_what_a_field_should_be() {
         ("[map]\nclearance_m = \"a\"", &["`map.clearance_m` must be a number", "the text \"a\""]),
         ("[map]\nclearance_m = [1]", &["`map.clearance_m` must be a number", "got a list"]),
         (
-            "[map]\nexpansion_cells = -1",
-            &["`map.expansion_cells`", "a whole number from 0 to 4294967295", "-1"],
+            "[map.published]\nexpansion_cells = -1",
+            &["`map.published.expansion_cells`", "a whole number from 0 to 4294967295", "-1"],
         ),
-        ("[map]\nexpansion_cells = 5000000000", &["a whole number", "4294967295"]),
+        ("[map.published]\nexpansion_cells = 5000000000", &["a whole number", "4294967295"]),
         (
-            "[map]\nexpansion_cells = 1.5",
-            &["`map.expansion_cells` must be a whole number, got 1.5"],
+            "[map.published]\nexpansion_cells = 1.5",
+            &["`map.published.expansion_cells` must be a whole number, got 1.5"],
         ),
         ("[map]\nunknown = \"grey\"", &["`map.unknown`", "`grey`", "`blocked`"]),
         ("[map]\nunknown = true", &["`map.unknown` must be a text, got true"]),
@@ -298,12 +298,15 @@ fn lengths_in_millimetres_are_answered() {
             "navigate --scene small_house.toml --radius 180".into(),
             &["a radius of 180 m", "millimetres"],
         ),
-        (format!("{rooms} --set map.expansion_cells=100000"), &["expansion_cells is 100000"]),
-        (format!("{rooms} --set map.l1_constraint=100000"), &["l1_constraint is 100000"]),
+        (
+            format!("{rooms} --set map.published.expansion_cells=100000"),
+            &["expansion_cells is 100000"],
+        ),
+        (format!("{rooms} --set map.published.l1_constraint=100000"), &["l1_constraint is 100000"]),
     ] {
         refused(&folder, &line, parts);
     }
-    let ends = "--set map.expansion_cells=100000 --set map.free_ends_m=100000";
+    let ends = "--set map.published.expansion_cells=100000 --set map.free_ends_m=100000";
     keyway(folder.path(), &format!("{rooms} {ends}")).expect_code(0);
     for setting in [
         "key-points --set smoother.safe_distance_m=100000",

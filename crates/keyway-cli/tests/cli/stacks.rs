@@ -133,7 +133,7 @@ fn a_scene_has_a_stack_by_name_or_beside_it() {
     std::fs::create_dir(folder.path().join("inner")).unwrap();
     let named = scene("s2-expanded").expect_code(0).json();
     assert_eq!(
-        (&named["inputs"]["stack"], &config(&named)["map"]["expansion_cells"]),
+        (&named["inputs"]["stack"], &config(&named)["map"]["published"]["expansion_cells"]),
         (&json!("s2-expanded"), &json!(1))
     );
     let printed = keyway(folder.path(), "list s2-expanded").expect_code(0).out;

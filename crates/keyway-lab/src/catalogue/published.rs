@@ -62,7 +62,13 @@ const ROWS: &[PublishedUse] = &[
     row("You2021", "bidirectional A*, its baseline", "bidirectional-astar", "none", &[]),
     row("S1", "the paper's method", "density-astar", "bidirectional", &[]),
     row("S1", "traditional A*, its baseline", "astar", "none", CORNERS),
-    row("Wang2019", "the paper's method", "ratio-astar", "shortcut", &["map.expansion_cells=1"]),
+    row(
+        "Wang2019",
+        "the paper's method",
+        "ratio-astar",
+        "shortcut",
+        &["map.published.expansion_cells=1"],
+    ),
     row("Wang2019", "traditional A*, its baseline", "astar", "none", STRAIGHT_LINE),
     row("Wang2019", "Dijkstra's algorithm, its baseline", "dijkstra", "none", CORNERS),
     row(

@@ -3,7 +3,9 @@
 use super::shown::Shown;
 use super::unknown;
 use keyway::ConfigError;
-use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
+use keyway::map::{
+    Cell, Connectivity, LayerConfig, OccupancyGrid, PublishedConstraints, SearchMap,
+};
 use keyway::navigate::NavigateError;
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::route::{RouteQuery, smooth_line};
@@ -186,8 +188,11 @@ impl Planning {
 
     fn layers(&self, grid: &OccupancyGrid) -> Result<SearchMap, ConfigError> {
         let layers = LayerConfig {
-            expansion_cells: self.expansion_cells,
-            l1_constraint: self.l1_constraint,
+            published: PublishedConstraints {
+                expansion_cells: self.expansion_cells,
+                l1_constraint: self.l1_constraint,
+                ..PublishedConstraints::NONE
+            },
             ..LayerConfig::default()
         };
         let map = SearchMap::new(grid, layers)?;

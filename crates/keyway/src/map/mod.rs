@@ -36,8 +36,8 @@ use layers::StopBitmaps;
 #[cfg(feature = "formats")]
 pub(crate) use layers::mix;
 pub use layers::{
-    BlockedBy, Components, Connectivity, Hindrance, LayerConfig, SearchMap, Separation,
-    UnknownPolicy,
+    BlockedBy, Components, Connectivity, Hindrance, LayerConfig, PublishedConstraints, SearchMap,
+    Separation, UnknownPolicy,
 };
 pub use occupancy::{Edit, OccupancyGrid};
 pub use occupancy_values::{OccupancyError, OccupancyThresholds};

@@ -25,7 +25,7 @@
 use super::{ControllerConfig, RecoveryKind, Stack};
 use crate::guide::GuideConfig;
 use crate::local::{DwaConfig, LocalConfig};
-use crate::map::LayerConfig;
+use crate::map::{LayerConfig, PublishedConstraints};
 use crate::plan::PlannerConfig;
 use crate::robot::Robot;
 use crate::search::CornerRule;
@@ -293,7 +293,8 @@ impl Parts {
     /// The layers of its search, without a clearance.
     fn layers(&self) -> LayerConfig {
         let expansion_cells = u32::from(self.name == S2_EXPANDED);
-        LayerConfig { expansion_cells, ..LayerConfig::default() }
+        let published = PublishedConstraints { expansion_cells, ..PublishedConstraints::NONE };
+        LayerConfig { published, ..LayerConfig::default() }
     }
 }
 
@@ -373,7 +374,7 @@ mod tests {
     fn parts_that_belong_together_agree() {
         let published = Stack::published_by_name("s2-expanded").unwrap();
         assert_eq!(published.smoother, SmootherConfig::Shortcut(ShortcutConfig::PAPER));
-        assert_eq!(published.map.expansion_cells, ShortcutConfig::PAPER.expansion_cells);
+        assert_eq!(published.map.published.expansion_cells, ShortcutConfig::PAPER.expansion_cells);
         for name in ["s0-key-point", "s4-guided"] {
             let stack = Stack::by_name(name, &Robot::small()).unwrap();
             assert_eq!(stack.smoother.safe_distance_m(0.05), stack.map.clearance_m, "{name}");

@@ -1,7 +1,9 @@
 //! The formulas by hand, a scene by hand, safe children, and what is promised for paths.
 
 use super::*;
-use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, UnknownPolicy};
+use crate::map::{
+    CellState, GridFrame, LayerConfig, OccupancyGrid, PublishedConstraints, UnknownPolicy,
+};
 use crate::plan::{AStar, AStarConfig, Stop};
 use crate::search::{Cost, Neighbours, Side, Successors, Uniform};
 use proptest::prelude::*;
@@ -78,7 +80,8 @@ fn the_density_by_hand() {
     let grid = OccupancyGrid::from_ascii(&["..#.#", ".?#..", "....#"]);
     let (query, node) = (Query::new(Cell::new(0, 0), Cell::new(3, 1)), Cell::new(1, 2));
     for unknown in [UnknownPolicy::Blocked, UnknownPolicy::Free, UnknownPolicy::Penalised] {
-        let config = LayerConfig { unknown, expansion_cells: 1, ..LayerConfig::default() };
+        let published = PublishedConstraints { expansion_cells: 1, ..PublishedConstraints::NONE };
+        let config = LayerConfig { unknown, published, ..LayerConfig::default() };
         let map = SearchMap::new(&grid, config).unwrap();
         let share = |density| share(density, &map, &query, node);
         assert_eq!(SCOPES.map(share), [1.0 / 8.0, 2.0 / 6.0, 4.0 / 15.0, 0.0]);

@@ -19,7 +19,7 @@
 //! The paper's *traditional* A*, whose g is the straight line from the start, is [`super::AStar`]
 //! with `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"`. The paper's third
 //! and fourth improvements are stages of their own: a smoother, and the obstacle expansion of the
-//! map ([`crate::map::LayerConfig::expansion_cells`]).
+//! map ([`crate::map::PublishedConstraints::expansion_cells`]).
 //!
 //! # Where this differs from the paper
 //! - Equation (12) says g'(n) <= g(n), with g the straight line from the start. It is the other way

@@ -45,7 +45,7 @@ pub struct ShortcutConfig {
     /// How often the line is walked back.
     pub passes: u32,
     /// A shortcut touches no cell that is at most this many rows and columns away from an obstacle;
-    /// the same number as the search's `map.expansion_cells` \[cells\].
+    /// the same number as the search's `map.published.expansion_cells` \[cells\].
     pub expansion_cells: u32,
 }
 
@@ -55,7 +55,7 @@ impl ShortcutConfig {
 
     /// The paper's passes, with the expansion of the map on which the line was planned.
     pub const fn for_layers(layers: &LayerConfig) -> Self {
-        Self { expansion_cells: layers.expansion_cells, ..Self::PAPER }
+        Self { expansion_cells: layers.published.expansion_cells, ..Self::PAPER }
     }
 }
 
@@ -138,7 +138,7 @@ fn walked_back(points: &[Point], is_free: impl Fn(Segment) -> bool) -> Vec<Point
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::OccupancyGrid;
+    use crate::map::{OccupancyGrid, PublishedConstraints};
 
     fn smooth(
         config: &ShortcutConfig,
@@ -200,7 +200,8 @@ mod tests {
         let once = Polyline::new(run(1, 0));
         let twice = smooth(&again, &once, &clearance, 0.0).path.flattened(0.0);
         assert_eq!((once.points().len(), twice.points()), (4, &run(2, 0)[..]));
-        let layers = LayerConfig { expansion_cells: 3, ..LayerConfig::default() };
+        let published = PublishedConstraints { expansion_cells: 3, ..PublishedConstraints::NONE };
+        let layers = LayerConfig { published, ..LayerConfig::default() };
         assert_eq!(
             ShortcutConfig::for_layers(&layers),
             ShortcutConfig { passes: 2, expansion_cells: 3 }

@@ -20,12 +20,12 @@ pub enum BlockedBy {
     },
     /// It is in the expanded zone of an obstacle.
     Expansion {
-        /// [`crate::map::LayerConfig::expansion_cells`].
+        /// [`crate::map::PublishedConstraints::expansion_cells`].
         cells: u32,
     },
     /// It is nearer to an obstacle than the constraint allows.
     Constraint {
-        /// [`crate::map::LayerConfig::l1_constraint`], in reference cells.
+        /// [`crate::map::PublishedConstraints::l1_constraint`], in reference cells.
         distance: f64,
     },
 }
@@ -42,12 +42,12 @@ impl std::fmt::Display for BlockedBy {
             }
             Self::Expansion { cells } => write!(
                 f,
-                "is free, but in the expanded zone of an obstacle (map.expansion_cells is {cells})"
+                "is free, but in the expanded zone of an obstacle (map.published.expansion_cells is {cells})"
             ),
             Self::Constraint { distance } => write!(
                 f,
                 "is free, but nearer to an obstacle than the constraint allows \
-                 (map.l1_constraint is {distance})"
+                 (map.published.l1_constraint is {distance})"
             ),
         }
     }
@@ -70,9 +70,9 @@ impl SearchMap {
             let nearest = self.hindrance(self.frame().world_from_cell(cell));
             BlockedBy::Clearance { radius_m: config.clearance_m, nearest }
         } else if zones.expansion.is_blocked(cell, obstacles) {
-            BlockedBy::Expansion { cells: config.expansion_cells }
+            BlockedBy::Expansion { cells: config.published.expansion_cells }
         } else {
-            BlockedBy::Constraint { distance: config.l1_constraint }
+            BlockedBy::Constraint { distance: config.published.l1_constraint }
         })
     }
 }
@@ -80,7 +80,7 @@ impl SearchMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::map::{LayerConfig, OccupancyGrid};
+    use crate::map::{LayerConfig, OccupancyGrid, PublishedConstraints};
 
     /// The obstacle is in column 0. Clearance 0.6 reaches column 1 (its centre is 0.5 from the
     /// square), expansion 2 reaches column 2, the constraint 4 reaches column 3. With the clearance
@@ -90,8 +90,11 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&["......", "......", "#.....", "......", "......"]);
         let config = LayerConfig {
             clearance_m: 0.6,
-            expansion_cells: 2,
-            l1_constraint: 4.0,
+            published: PublishedConstraints {
+                expansion_cells: 2,
+                l1_constraint: 4.0,
+                ..PublishedConstraints::NONE
+            },
             ..LayerConfig::default()
         };
         let map = SearchMap::new(&grid, config).unwrap();

@@ -2,7 +2,8 @@
 
 use crate::ConfigError;
 use crate::map::GridFrame;
-use crate::map::layers::dilation::BlockedNeighbourhood;
+use crate::map::layers::dilation::{BlockedNeighbourhood, check_reach};
+use crate::map::layers::published::PublishedConstraints;
 use serde::{Deserialize, Serialize};
 
 /// What a search makes of unknown cells.
@@ -35,19 +36,11 @@ pub struct LayerConfig {
     /// this distance from every obstacle square, and when a disc of this radius does not leave the
     /// map.
     pub clearance_m: f64,
-    /// Obstacle expansion \[cells\] \[Wang2019\]: 1 blocks the 8 neighbours of every obstacle.
-    pub expansion_cells: u32,
-    /// Collision constraint L \[ZhuYin2024, eq. (2)\]: a cell is free only when its centre is at
-    /// least this far from every obstacle's centre in the L1 norm, in reference cells; 0 for none.
-    /// With cells of side s that keeps L - s / 2 from an obstacle's square straight ahead and (L -
-    /// s) / sqrt(2) past its corner: for L = 2, 1.5 and 0.71 m on cells of 1 m, 1.98 and 1.38 m on
-    /// cells of 0.05 m.
-    pub l1_constraint: f64,
-    /// Side of the reference cell of [`Self::l1_constraint`] \[m\].
-    pub reference_cell_m: f64,
     /// Radius of the discs around start and goal in which clearance, expansion and constraint are
     /// lifted (never obstacles) \[m\]; 0 for none.
     pub free_ends_m: f64,
+    /// Constraints of papers beside the clearance.
+    pub published: PublishedConstraints,
 }
 
 impl Default for LayerConfig {
@@ -56,10 +49,8 @@ impl Default for LayerConfig {
             unknown: UnknownPolicy::Blocked,
             unknown_penalty: 3,
             clearance_m: 0.0,
-            expansion_cells: 0,
-            l1_constraint: 0.0,
-            reference_cell_m: 1.0,
             free_ends_m: 0.0,
+            published: PublishedConstraints::NONE,
         }
     }
 }
@@ -80,8 +71,6 @@ impl Neighbourhoods {
 }
 
 impl LayerConfig {
-    /// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
-    pub(crate) const MAX_REACH_CELLS: f64 = 100_000.0;
     /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add
     /// two such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
@@ -93,26 +82,19 @@ impl LayerConfig {
     ) -> Result<Neighbourhoods, ConfigError> {
         let resolution_m = frame.resolution_m();
         let side = frame.width().max(frame.height()) as i32;
-        let check = |field, value: f64, ok: bool, expected| {
-            if ok { Ok(()) } else { Err(ConfigError::must_be(field, expected, value)) }
-        };
-        let reach =
-            |length_m: f64| length_m >= 0.0 && length_m / resolution_m <= Self::MAX_REACH_CELLS;
-        let (clearance, l1, cell) = (self.clearance_m, self.l1_constraint, self.reference_cell_m);
-        let length = "a length of at least 0 and at most 100000 cells";
-        check("clearance_m", clearance, reach(clearance), length)?;
-        check("reference_cell_m", cell, cell > 0.0 && cell.is_finite(), "a positive length")?;
-        check("l1_constraint", l1, reach(l1 * cell), length)?;
-        let expansion = f64::from(self.expansion_cells);
-        check("expansion_cells", expansion, expansion <= Self::MAX_REACH_CELLS, length)?;
-        check("free_ends_m", self.free_ends_m, reach(self.free_ends_m), length)?;
+        let length = |field, length_m| check_reach(field, length_m / resolution_m, length_m);
+        length("clearance_m", self.clearance_m)?;
+        length("free_ends_m", self.free_ends_m)?;
+        self.published.check(resolution_m).map_err(|error| error.within("published"))?;
         let penalty = f64::from(self.unknown_penalty);
-        let expected = "a factor from 1 to 1000";
-        check("unknown_penalty", penalty, (1.0..=1000.0).contains(&penalty), expected)?;
+        if !(1.0..=1000.0).contains(&penalty) {
+            let expected = "a factor from 1 to 1000";
+            return Err(ConfigError::must_be("unknown_penalty", expected, penalty));
+        }
         Ok(Neighbourhoods {
-            clearance: BlockedNeighbourhood::disc(clearance / resolution_m, side),
-            expansion: BlockedNeighbourhood::square(self.expansion_cells, side),
-            constraint: BlockedNeighbourhood::diamond(l1 * cell / resolution_m, side),
+            clearance: BlockedNeighbourhood::disc(self.clearance_m / resolution_m, side),
+            expansion: BlockedNeighbourhood::square(self.published.expansion_cells, side),
+            constraint: BlockedNeighbourhood::diamond(self.published.l1_m() / resolution_m, side),
         })
     }
 

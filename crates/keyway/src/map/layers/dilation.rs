@@ -1,10 +1,27 @@
 //! Which cells around an obstacle cell are blocked because of it.
 
+use crate::ConfigError;
 use crate::map::{BitGrid, Cell};
 
 /// A comparison of a clearance with a distance tolerates this share of the clearance: both are sums
 /// and products of decimal fractions, and 0.225 m must equal 4.5 cells of 0.05 m.
 pub(crate) const CLEARANCE_TOLERANCE: f64 = 1e-9;
+
+/// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
+const MAX_REACH_CELLS: f64 = 100_000.0;
+
+/// Refuses the value of a field that gives a neighbourhood a reach that none can have.
+pub(in crate::map) fn check_reach(
+    field: &str,
+    reach_cells: f64,
+    value: f64,
+) -> Result<(), ConfigError> {
+    if (0.0..=MAX_REACH_CELLS).contains(&reach_cells) {
+        return Ok(());
+    }
+    let expected = "a length of at least 0 and at most 100000 cells";
+    Err(ConfigError::must_be(field, expected, value))
+}
 
 /// The neighbourhood of an obstacle cell that it blocks: symmetric in both axes and in their
 /// exchange, and without gaps in a row.

@@ -55,7 +55,9 @@ mod tests {
     use super::*;
     use crate::geometry::Pose;
     use crate::map::SearchMap;
-    use crate::map::{CellState, Edit, GridFrame, LayerConfig, OccupancyGrid};
+    use crate::map::{
+        CellState, Edit, GridFrame, LayerConfig, OccupancyGrid, PublishedConstraints,
+    };
     use proptest::prelude::*;
 
     fn drawing(map: &SearchMap) -> Vec<String> {
@@ -69,7 +71,8 @@ mod tests {
     #[test]
     fn a_disc_by_hand() {
         let grid = OccupancyGrid::from_ascii(&[".....", ".....", "..#..", ".....", "....."]);
-        let config = LayerConfig { expansion_cells: 1, free_ends_m: 1.0, ..LayerConfig::default() };
+        let published = PublishedConstraints { expansion_cells: 1, ..PublishedConstraints::NONE };
+        let config = LayerConfig { published, free_ends_m: 1.0, ..LayerConfig::default() };
         let mut map = SearchMap::new(&grid, config).unwrap();
         let expanded = [".....", ".###.", ".###.", ".###.", "....."];
         assert_eq!(drawing(&map), expanded);
@@ -95,9 +98,11 @@ mod tests {
         (0.0..0.3f64, 0u32..3, 0.0..3.5f64, 0.0..0.4f64).prop_map(|(clearance, e, l1, free)| {
             LayerConfig {
                 clearance_m: clearance,
-                expansion_cells: e,
-                l1_constraint: l1,
-                reference_cell_m: 0.1,
+                published: PublishedConstraints {
+                    expansion_cells: e,
+                    l1_constraint: l1,
+                    reference_cell_m: 0.1,
+                },
                 free_ends_m: free,
                 ..LayerConfig::default()
             }

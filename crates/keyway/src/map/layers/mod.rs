@@ -9,6 +9,7 @@ mod free_ends;
 mod hindrance;
 mod narrowest;
 mod nearest_free;
+mod published;
 mod search_map;
 mod separation;
 mod stops;
@@ -19,6 +20,7 @@ pub use config::{LayerConfig, UnknownPolicy};
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub use hindrance::Hindrance;
+pub use published::PublishedConstraints;
 pub use search_map::SearchMap;
 pub use separation::Separation;
 pub(in crate::map) use stops::StopBitmaps;

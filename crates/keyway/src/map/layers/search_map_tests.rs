@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::Pose;
+use crate::map::PublishedConstraints;
 use proptest::prelude::*;
 
 fn map(rows: &[&str], config: LayerConfig) -> SearchMap {
@@ -70,9 +71,11 @@ fn any_config() -> impl Strategy<Value = LayerConfig> {
         LayerConfig {
             unknown,
             clearance_m,
-            expansion_cells: e,
-            l1_constraint: l1,
-            reference_cell_m: 0.1,
+            published: PublishedConstraints {
+                expansion_cells: e,
+                l1_constraint: l1,
+                reference_cell_m: 0.1,
+            },
             ..LayerConfig::default()
         }
     })
@@ -101,8 +104,8 @@ proptest! {
                 let gap = |d: i32| (f64::from(d) - 0.5).max(0.0) * 0.1;
                 let near = (dx, dy) == (0, 0)
                     || gap(dx).hypot(gap(dy)) < c
-                    || dx.max(dy) <= config.expansion_cells as i32
-                    || f64::from(dx + dy) < config.l1_constraint - 1e-9;
+                    || dx.max(dy) <= config.published.expansion_cells as i32
+                    || f64::from(dx + dy) < config.published.l1_constraint - 1e-9;
                 free &= !(solid && near);
             }
             prop_assert_eq!(map.is_free(cell), free, "{}", cell);

@@ -218,7 +218,7 @@ const UNBOUNDED: u32 = u32::MAX;
 mod tests {
     use super::*;
     use crate::geometry::Pose;
-    use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
+    use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, PublishedConstraints};
     use proptest::prelude::*;
 
     /// A door of three cells of 0.3 m: a radius of 0.45 m fits there, and beside the border, too.
@@ -315,7 +315,8 @@ mod tests {
             let [start, goal] = [Cell::new(ends[0], ends[1]), Cell::new(ends[2] + 3, ends[3])];
             let connectivity = if is_eight { Connectivity::Eight } else { Connectivity::Four };
             let map = |clearance_m| {
-                let config = LayerConfig { clearance_m, expansion_cells, free_ends_m, ..LayerConfig::default() };
+                let published = PublishedConstraints { expansion_cells, ..PublishedConstraints::NONE };
+                let config = LayerConfig { clearance_m, free_ends_m, published, ..LayerConfig::default() };
                 let mut map = SearchMap::new(&grid, config).unwrap();
                 map.free_ends(&[start, goal]);
                 map
