@@ -12,7 +12,7 @@ use crate::measure::{StageTimer, Times, timed};
 use crate::progress::Progress;
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
-use keyway::plan::{GlobalPlanner, Plan, PlanError, PlannerConfig, Relaxed, shortest_line};
+use keyway::plan::{GlobalPlanner, Plan, PlanError, PlanNote, PlannerConfig, shortest_line};
 use keyway::route::{RouteQuery, smooth_line};
 use keyway::search::{CornerRule, Workspace};
 use keyway::smooth::{Smoothed, SmootherConfig};
@@ -41,8 +41,8 @@ pub struct Answer {
     pub reason: Option<String>,
     /// Search time; `None` where times are left out.
     pub plan: Option<Times>,
-    /// The planner's constraint, where it was lowered to leave a path.
-    pub relaxed: Option<Relaxed>,
+    /// The planner's note on its plan.
+    pub note: Option<PlanNote>,
     /// The path, if there is one.
     pub found: Option<Found>,
 }
@@ -168,7 +168,7 @@ struct Planned {
     outcome: PlanOutcome,
     reason: Option<String>,
     times: Times,
-    relaxed: Option<Relaxed>,
+    note: Option<PlanNote>,
     line: Option<PlannedLine>,
 }
 
@@ -220,8 +220,8 @@ impl Contender {
                     Err(error) => outcome(error)?,
                 };
                 let reason = result.err().map(|error| why(&error));
-                let relaxed = self.plan.relaxed;
-                self.planned.push(Planned { outcome, reason, times, relaxed, line });
+                let note = self.plan.note;
+                self.planned.push(Planned { outcome, reason, times, note, line });
             }
             if progress.answered().is_break() {
                 return Err(CompareError::Stopped);
@@ -299,7 +299,7 @@ impl Planned {
             shortest_m,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
-        Answer { outcome, reason, plan: Some(self.times), relaxed: self.relaxed, found }
+        Answer { outcome, reason, plan: Some(self.times), note: self.note, found }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Compared;
 use super::contest::Entry;
-use keyway::plan::Relaxed;
+use keyway::plan::{PlanNote, Relaxed};
 
 /// Text below the table; `None` where every constraint was kept.
 pub fn lowered_note(maps: &[Compared]) -> Option<String> {
@@ -24,8 +24,16 @@ fn of_map(map: &Compared) -> Vec<String> {
     lines
 }
 
+fn relaxed(note: PlanNote) -> Option<Relaxed> {
+    match note {
+        PlanNote::Relaxed(relaxed) => Some(relaxed),
+        _ => None,
+    }
+}
+
 fn line(map: &str, entry: &Entry) -> Option<String> {
-    let lowered: Vec<Relaxed> = entry.answers.iter().filter_map(|answer| answer.relaxed).collect();
+    let notes = entry.answers.iter().filter_map(|answer| answer.note);
+    let lowered: Vec<Relaxed> = notes.filter_map(relaxed).collect();
     let Relaxed { asked_m, .. } = *lowered.first()?;
     let least_m = lowered.iter().map(|one| one.used_m).fold(f64::INFINITY, f64::min);
     let (count, all, planner) = (lowered.len(), entry.answers.len(), entry.planner);

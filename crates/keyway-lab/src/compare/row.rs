@@ -236,17 +236,11 @@ mod tests {
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
         let found = Found { smooth: Some(micros(7)), done, metrics, shortest_m: Some(10.0) };
         let plan = Some(micros(turns as u64));
-        Answer {
-            outcome: PlanOutcome::Found,
-            reason: None,
-            plan,
-            relaxed: None,
-            found: Some(found),
-        }
+        Answer { outcome: PlanOutcome::Found, reason: None, plan, note: None, found: Some(found) }
     }
 
     fn without(outcome: PlanOutcome) -> Answer {
-        Answer { outcome, reason: None, plan: Some(micros(100)), relaxed: None, found: None }
+        Answer { outcome, reason: None, plan: Some(micros(100)), note: None, found: None }
     }
 
     fn entry(answers: Vec<Answer>) -> Entry {

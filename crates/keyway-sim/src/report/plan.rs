@@ -3,7 +3,7 @@
 use crate::metrics::PathMetrics;
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Cell, SearchMap, Separation};
-use keyway::plan::{Plan, PlanError, Relaxed, Stop};
+use keyway::plan::{Plan, PlanError, PlanNote, Relaxed, Stop};
 use keyway::search::{SearchStatistics, SideStatistics};
 use keyway::smooth::{Smoother, Unsmoothed};
 use serde::{Deserialize, Serialize};
@@ -129,7 +129,7 @@ impl PlanPart {
             search: plan.statistics,
             stopped: plan.stop,
             meeting: plan.meeting,
-            relaxed: plan.relaxed,
+            relaxed: Self::lowered(plan),
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
             min_clearance_m: metrics.min_clearance_m,
@@ -137,6 +137,14 @@ impl PlanPart {
             waypoints_m: Some(line.polyline().merged()),
             cells: Some(plan.cells.clone()),
             ..Self::without_path(planner, PlanOutcome::Found, time_s)
+        }
+    }
+
+    /// The constraint that the planner's note says it has lowered.
+    fn lowered(plan: &Plan) -> Option<Relaxed> {
+        match plan.note? {
+            PlanNote::Relaxed(relaxed) => Some(relaxed),
+            _ => None,
         }
     }
 

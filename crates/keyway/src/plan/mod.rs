@@ -106,8 +106,16 @@ pub struct Plan {
     pub meeting: Option<Cell>,
     /// Why the search stopped; `None` without a path.
     pub stop: Option<Stop>,
-    /// The constraint that the planner lowered because it left no path; `None` where it was kept.
-    pub relaxed: Option<Relaxed>,
+    /// Something that only its planner knows of it; mostly `None`.
+    pub note: Option<PlanNote>,
+}
+
+/// A planner's note on its plan, for whoever reads the plan: searches and smoothers do without it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PlanNote {
+    /// A constraint of the planner left no path and was lowered.
+    Relaxed(Relaxed),
 }
 
 /// A constraint that was lowered as little as was needed to leave a path.

@@ -46,7 +46,7 @@
 //!   keeps up to 2 m from every wall: indoors hardly any start, goal or door has that much room,
 //!   and every query would fail. So by default ([`IfNoPath::Relax`]) L becomes the largest whole
 //!   number of the map's cells that leaves a path, at most L as it is set (start and goal included,
-//!   whose distances bound it), and [`Plan::relaxed`] says so. A smaller L leaves every path that a
+//!   whose distances bound it), and a [`PlanNote::Relaxed`] says so. A smaller L leaves every path that a
 //!   larger one leaves, so it is found by bisection. Statistics and observer then report the search
 //!   with that L, not those that found it, and a budget holds for each of them.
 //!   [`HstaConfig::PAPER`] keeps L as it is: there the error says that it is the constraint that
@@ -75,7 +75,7 @@ mod evaluation;
 use super::best_first::with_costs;
 use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::two_sided::{self, Half, Meeting};
-use super::{GlobalPlanner, Miss, Plan, PlanError, Relaxed, Stop};
+use super::{GlobalPlanner, Miss, Plan, PlanError, PlanNote, Relaxed, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
@@ -348,7 +348,7 @@ impl GlobalPlanner for Hsta {
         let (meeting, relaxed) = met.map_err(|error| self.blame(error))?;
         let Sides { forward, backward } = sides;
         two_sided::finish(map, (forward, backward), meeting, Stop::SidesMet, plan);
-        plan.relaxed = relaxed;
+        plan.note = relaxed.map(PlanNote::Relaxed);
         Ok(())
     }
 }

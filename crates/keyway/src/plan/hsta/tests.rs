@@ -48,13 +48,13 @@ fn the_constraint_is_to_blame() {
     assert_eq!(advice.value, "relax");
     let relaxing = Hsta::default();
     let (plan, _) = drawn::plan(&relaxing, &rows).unwrap();
-    assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
+    assert_eq!(plan.note, Some(PlanNote::Relaxed(Relaxed { asked_m: 2.0, used_m: 1.0 })));
     let open: Vec<String> = rows.iter().map(|row| row.replace(['S', 'G'], ".")).collect();
     let map = drawn::map(&open.iter().map(String::as_str).collect::<Vec<_>>());
     assert_eq!(relaxing.distance_kept(&map, &plan.cells), Some(1.0));
     // Where the way is free anyway, nothing is relaxed.
     let around = drawn::plan(&relaxing, &AROUND).map(|(plan, _)| plan);
-    assert_eq!(around.as_ref().unwrap().relaxed, None);
+    assert_eq!(around.as_ref().unwrap().note, None);
     assert_eq!(around, drawn::plan(&published, &AROUND).map(|(plan, _)| plan));
 }
 
@@ -82,7 +82,7 @@ fn ends_beside_obstacles() {
     assert_eq!((advice.planner, advice.parameter), ("hsta", "if_no_path"));
     assert_eq!(advice.value, "relax");
     let (plan, _) = drawn::plan(&Hsta::default(), &rows).unwrap();
-    assert_eq!(plan.relaxed, Some(Relaxed { asked_m: 2.0, used_m: 1.0 }));
+    assert_eq!(plan.note, Some(PlanNote::Relaxed(Relaxed { asked_m: 2.0, used_m: 1.0 })));
 }
 
 #[test]
