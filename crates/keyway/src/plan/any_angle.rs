@@ -1,5 +1,5 @@
-//! What any-angle planners share: the search of the Theta* family, and the path that its parents
-//! give.
+//! Shared parts of any-angle planners: the search of the Theta* family, and the path that its
+//! parents give.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanCost, PlanError, Stop};
@@ -58,7 +58,7 @@ impl<'m> Lines<'m> {
         Step { to, cost: Euclidean.length(a.x.abs_diff(b.x), a.y.abs_diff(b.y)) }
     }
 
-    /// Whether two cells see each other.
+    /// True if two cells see each other.
     pub(super) fn is_free(&self, a: CellIndex, b: CellIndex) -> bool {
         self.sight.is_free(self.map.cell(a), self.map.cell(b))
     }
@@ -181,7 +181,7 @@ pub(super) fn keep_turns(cells: &mut Vec<Cell>) {
     cells.truncate(kept);
 }
 
-/// Whether the line from `b` to `c` has the direction of that from `a` to `b`.
+/// True if the line from `b` to `c` has the direction of that from `a` to `b`.
 pub(super) fn is_straight_on(a: Cell, b: Cell, c: Cell) -> bool {
     let difference = |from: Cell, to: Cell| {
         (i128::from(to.x) - i128::from(from.x), i128::from(to.y) - i128::from(from.y))
@@ -201,17 +201,17 @@ pub(super) fn length(cells: &[Cell]) -> PlanCost {
     PlanCost::Length(cells.windows(2).map(leg).fold(0.0, |sum, leg| sum + leg))
 }
 
-/// What tests of these planners look at.
+/// Observations for tests of these planners.
 #[cfg(test)]
 pub(super) mod watched {
     use crate::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
     use crate::plan::{GlobalPlanner, Plan};
     use crate::search::{Observer, Query, Side, Workspace};
 
-    /// What is reported about (x, y): its parent, and g.
+    /// A report about (x, y): its parent, and g.
     pub(in crate::plan) type Line = (&'static str, (i32, i32), (i32, i32), f64);
 
-    /// What is reported, in order.
+    /// All reports, in order.
     #[derive(Default)]
     pub(in crate::plan) struct Told(pub(in crate::plan) Vec<Line>);
 

@@ -41,7 +41,7 @@ use crate::search::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What g is.
+/// The meaning of g.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -65,13 +65,13 @@ pub struct AStarConfig {
     /// The estimate of the remaining cost: `octile`, `euclidean`, `manhattan` or `mean`. Paths are
     /// shortest ones with the first two.
     pub heuristic: Heuristic,
-    /// What a node has cost: `accumulated` along its path, or the `straight-line` from the start,
+    /// The cost of a node: `accumulated` along its path, or the `straight-line` from the start,
     /// which does not give shortest paths.
     pub g: PathCost,
 }
 
 impl AStarConfig {
-    /// Whether paths are shortest ones under the config's corner rule.
+    /// True if paths are shortest ones under the config's corner rule.
     pub fn is_exact(&self) -> bool {
         self.heuristic.is_consistent() && self.g == PathCost::Accumulated
     }

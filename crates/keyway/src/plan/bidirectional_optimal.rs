@@ -160,7 +160,7 @@ impl GlobalPlanner for BidirectionalOptimal {
     }
 }
 
-/// Where the best path so far passes from one side's tree into the other's.
+/// The place where the best path so far passes from one side's tree into the other's.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     at: CellIndex,

@@ -111,12 +111,12 @@ impl PlannerConfig {
         self.parameters().build_with_progress(map, progress)
     }
 
-    /// Whether its paths are shortest among those without corner cutting.
+    /// True if its paths are shortest among those without corner cutting.
     pub fn is_optimal(&self) -> bool {
         self.parameters().is_optimal()
     }
 
-    /// Whether [`Self::build`] prepares the map: the planner is then of no use on another one, or
+    /// True if [`Self::build`] prepares the map: the planner is then of no use on another one, or
     /// after an edit.
     pub fn needs_static_map(&self) -> bool {
         self.parameters().needs_static_map()

@@ -1,9 +1,9 @@
-//! What a path costs.
+//! The cost of a path.
 
 use crate::search::Cost;
 use std::cmp::Ordering;
 
-/// What a path costs, in cells.
+/// The cost of a path, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanCost {
     /// This many straight and diagonal steps, penalties included: exact.

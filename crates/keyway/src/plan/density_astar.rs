@@ -61,7 +61,7 @@ use crate::search::{
 use serde::{Deserialize, Serialize};
 use summed_area::SummedArea;
 
-/// Where the density P of obstacles is measured: the share of occupied cells.
+/// The cells on which the density P of obstacles is measured: the share of occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -89,7 +89,7 @@ pub enum EstimateWeight {
     One,
 }
 
-/// What becomes of a closed cell to which a shorter way is found.
+/// The fate of a closed cell to which a shorter way is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -108,15 +108,15 @@ pub enum Closed {
 pub struct DensityAStarConfig {
     /// The factor of the estimate: `sigmoid` as in the paper, or `one`.
     pub weight: EstimateWeight,
-    /// Where the share P of occupied cells is measured: in the `box` of start and goal, in the
-    /// `remaining` box of node and goal, on the whole `map`, or `none` for P = 0.
+    /// The place where the share P of occupied cells is measured: in the `box` of start and goal,
+    /// in the `remaining` box of node and goal, on the whole `map`, or `none` for P = 0.
     pub density: Density,
-    /// What a node has cost: `accumulated` along its path, or the `straight-line` from the start.
+    /// The cost of a node: `accumulated` along its path, or the `straight-line` from the start.
     pub g: PathCost,
     /// May a diagonal step pass blocked side neighbours? `forbid` (the paper's safe children) or
     /// `allow` (its traditional A*).
     pub corners: CornerRule,
-    /// What becomes of a closed cell to which a shorter way is found: `stay` or `reopen`. Has no
+    /// The fate of a closed cell to which a shorter way is found: `stay` or `reopen`. Has no
     /// effect with a straight-line g.
     pub closed: Closed,
     /// The estimate of the remaining cost: `octile`, `euclidean` as in the paper, `manhattan` or

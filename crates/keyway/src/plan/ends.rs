@@ -1,4 +1,4 @@
-//! What is known of a query without a search: whether its ends are free and connected.
+//! Answers to a query without a search: whether its ends are free and connected.
 
 use super::{PathEnd, PlanError};
 use crate::map::{Cell, Connectivity, SearchMap};

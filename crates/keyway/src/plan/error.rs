@@ -30,7 +30,7 @@ pub enum PlanError {
         end: PathEnd,
         /// The cell asked for.
         cell: Cell,
-        /// What blocks it.
+        /// The reason why it is blocked.
         by: BlockedBy,
         /// The nearest free cell, unless all are blocked.
         nearest: Option<Cell>,
@@ -39,7 +39,7 @@ pub enum PlanError {
     /// are zero, unless every cell that can be reached was searched.
     #[error("there is no path from the start to the goal")]
     NoPath {
-        /// What the search did.
+        /// The work of the search.
         statistics: SearchStatistics,
     },
     /// There is a path, and the planner did not find it.
@@ -47,9 +47,9 @@ pub enum PlanError {
     Missed {
         /// The planner.
         planner: &'static str,
-        /// What is to blame.
+        /// The part of the planner that is to blame.
         miss: Miss,
-        /// What the search did.
+        /// The work of the search.
         statistics: SearchStatistics,
     },
     /// The start or goal is nearer to an obstacle than the planner's constraint allows.
@@ -93,7 +93,7 @@ pub enum PlanError {
     BudgetExhausted {
         /// The budget.
         budget: u64,
-        /// What the search did.
+        /// The work of the search.
         statistics: SearchStatistics,
     },
 }
@@ -101,7 +101,7 @@ pub enum PlanError {
 /// Advice against an error: a parameter of the planner that failed, and its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Advice {
-    /// What it is good for: "to lower the constraint as far as needed".
+    /// Its purpose: "to lower the constraint as far as needed".
     pub purpose: &'static str,
     /// Name of the planner.
     pub planner: &'static str,
@@ -183,7 +183,7 @@ pub enum Miss {
     /// All random samples were used up.
     #[error("its {samples} random samples were used up")]
     SamplesUsedUp {
-        /// How many there were.
+        /// Their number.
         samples: u64,
     },
 }

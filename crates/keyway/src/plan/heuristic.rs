@@ -21,7 +21,7 @@ pub enum Heuristic {
 }
 
 impl Heuristic {
-    /// Whether no step among 8 neighbours makes the estimate smaller by more than it costs: the
+    /// True if no step among 8 neighbours makes the estimate smaller by more than it costs: the
     /// paths of A* are then shortest ones.
     pub(crate) const fn is_consistent(self) -> bool {
         matches!(self, Self::Octile | Self::Euclidean)

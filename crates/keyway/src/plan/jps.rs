@@ -211,7 +211,7 @@ fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Pla
     plan.cost = PlanCost::Steps(cost);
 }
 
-/// Where a leg turns from diagonal to straight.
+/// The cell in which a leg turns from diagonal to straight.
 fn turn_of_leg(from: Cell, to: Cell) -> Cell {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let diagonal = dx.abs().min(dy.abs());

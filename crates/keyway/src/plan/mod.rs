@@ -100,11 +100,11 @@ pub struct Plan {
     pub jump_points: Vec<usize>,
     /// Its cost, penalties of unknown cells included.
     pub cost: PlanCost,
-    /// What the search did.
+    /// The work of the search.
     pub statistics: SearchStatistics,
-    /// Where the two sides of a bidirectional search met.
+    /// The cell in which the two sides of a bidirectional search met.
     pub meeting: Option<Cell>,
-    /// Why the search stopped; `None` without a path.
+    /// The reason why the search stopped; `None` without a path.
     pub stop: Option<Stop>,
     /// Something that only its planner knows of it; mostly `None`.
     pub note: Option<PlanNote>,
@@ -127,7 +127,7 @@ pub struct Relaxed {
     pub used_m: f64,
 }
 
-/// Why a search that found a path stopped.
+/// The reason why a search that found a path stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -171,13 +171,13 @@ pub trait GlobalPlanner: Debug {
     /// Which neighbouring cells its steps join.
     fn connectivity(&self) -> Connectivity;
 
-    /// Whether its paths leave the 8 directions of the grid: its waypoints are then not neighbours,
+    /// True if its paths leave the 8 directions of the grid: its waypoints are then not neighbours,
     /// and its cost is a length.
     fn is_any_angle(&self) -> bool {
         false
     }
 
-    /// Whether it plans only where all cells cost the same: on maps with [penalised
+    /// True if it plans only where all cells cost the same: on maps with [penalised
     /// cells](SearchMap::penalised) it is refused.
     fn needs_uniform_cost(&self) -> bool {
         false

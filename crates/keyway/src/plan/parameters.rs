@@ -1,4 +1,4 @@
-//! What every planner says of itself by its parameters.
+//! Facts about every planner by its parameters.
 
 use super::{GlobalPlanner, PlanError, PrepareProgress};
 use crate::ConfigError;
@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 /// A planner chosen by name.
 pub(super) type BoxedPlanner = Box<dyn GlobalPlanner + Send + Sync>;
 
-/// What is known of a planner by its parameters.
+/// Facts about a planner by its parameters.
 pub(super) trait PlannerParameters {
     /// Refuses parameters that cannot be used.
     fn check(&self) -> Result<(), ConfigError> {

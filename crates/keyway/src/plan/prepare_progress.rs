@@ -1,6 +1,6 @@
-//! How far the preparation of a map is.
+//! The progress of the preparation of a map.
 
-/// How far a preparation is.
+/// The progress of a preparation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PrepareProgress {
     /// Corner cells that have been put into their order, and those whose label was entered.

@@ -50,15 +50,15 @@ use crate::search::{
 };
 use serde::{Deserialize, Serialize};
 
-/// When a search ends.
+/// The event that ends a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SearchEnd {
-    /// When the goal appears in the open list \[Wang2019, step 3\].
+    /// The goal appears in the open list \[Wang2019, step 3\].
     GoalGenerated,
-    /// When the goal is taken from the open list, as in A*.
+    /// The goal is taken from the open list, as in A*.
     GoalExpanded,
 }
 
@@ -69,7 +69,7 @@ pub enum SearchEnd {
 pub struct RatioAStarConfig {
     /// X: how many times the weight of the cost the estimate has; more than 0. 1 is plain A*.
     pub x: f64,
-    /// When the search ends: `goal-generated` as in the paper, or `goal-expanded`.
+    /// The event that ends the search: `goal-generated` as in the paper, or `goal-expanded`.
     pub end: SearchEnd,
     /// May a diagonal step pass blocked side neighbours? `forbid`, or `allow` as in the paper.
     pub corners: CornerRule,

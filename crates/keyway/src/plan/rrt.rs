@@ -63,9 +63,9 @@ pub struct RrtConfig {
     /// May a line pass between two cells that touch at a corner, when one of them is blocked?
     /// `forbid` or `allow`.
     pub corners: CornerRule,
-    /// How far the tree grows at a time, rounded to whole cells, at least one \[m\].
+    /// The length by which the tree grows at a time, rounded to whole cells, at least one \[m\].
     pub step_m: f64,
-    /// How likely a sample is to be the goal, from 0 to 1.
+    /// The probability that a sample is the goal, from 0 to 1.
     pub goal_bias: f64,
     /// Give up after this many samples.
     pub samples: u64,

@@ -1,4 +1,4 @@
-//! What all planners that search from both ends share.
+//! Shared parts of all planners that search from both ends.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanError, Stop, path_cost};
@@ -7,7 +7,7 @@ use crate::search::{
     Expanded, Frontier, Observer, Query, Rule, SearchStatistics, Side, Successors, cells,
 };
 
-/// What both sides did.
+/// The statistics of both sides.
 pub(super) const fn statistics(forward: &Frontier, backward: &Frontier) -> SearchStatistics {
     SearchStatistics { forward: forward.statistics(), backward: backward.statistics() }
 }
@@ -41,13 +41,13 @@ pub(super) fn finish(
     plan.stop = Some(stop);
 }
 
-/// When two sides that take turns have met.
+/// The rule by which two sides that take turns have met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
-    /// When one puts into its open list a node that the other has reached; of several such nodes of
-    /// one expansion it is the one with the cheapest path, the first of equal ones.
+    /// They meet when one puts into its open list a node that the other has reached; of several
+    /// such nodes of one expansion it is the one with the cheapest path, the first of equal ones.
     Generated,
-    /// When one takes from its open list a node that the other has expanded.
+    /// They meet when one takes from its open list a node that the other has expanded.
     Expanded,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Half<'a, N, A> {
     side: Side,
     frontier: &'a mut Frontier,
     steps: N,
-    /// Whether a cell that a step leads to may be visited; asked until the cell is reached.
+    /// True if a cell that a step leads to may be visited; asked until the cell is reached.
     allows: A,
     /// Its current node: the one that it expanded last, its root at first.
     current: CellIndex,

@@ -60,7 +60,7 @@ impl Direction {
     }
 }
 
-/// What a scan found.
+/// The find of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Scan {
     /// The last cell that was looked at; the cell of departure where no step is possible.
@@ -100,7 +100,7 @@ impl Jumps<'_> {
         Scan { end: at, node: None }
     }
 
-    /// Whether a diagonal step cuts no corner.
+    /// True if a diagonal step cuts no corner.
     fn may_step(&self, from: Cell, Direction { dx, dy }: Direction) -> bool {
         [(dx, 0), (0, dy), (dx, dy)]
             .into_iter()
@@ -153,7 +153,7 @@ impl Jumps<'_> {
         is_ahead || (is_beside && self.opens(at, arrival, side))
     }
 
-    /// Whether something opens beside a cell: the side neighbour of the cell before is blocked, and
+    /// True if something opens beside a cell: the side neighbour of the cell before is blocked, and
     /// its own is free.
     fn opens(&self, at: Cell, arrival: Direction, side: Direction) -> bool {
         let before = arrival.step_back(at);

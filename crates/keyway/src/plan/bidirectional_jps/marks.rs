@@ -52,7 +52,7 @@ impl Marks {
         }
     }
 
-    /// Whether a cell is marked.
+    /// True if a cell is marked.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         self.rows.get(cell)
     }

@@ -74,21 +74,21 @@ use crate::search::{Observer, Query, Workspace};
 use search::{Method, Targets};
 use serde::{Deserialize, Serialize};
 
-/// When the two sides have met.
+/// The rule by which the two sides have met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum JumpMeeting {
-    /// When a scan comes upon any node of the other side.
+    /// They meet when a scan comes upon any node of the other side.
     #[default]
     Generated,
-    /// When the same node is in both lists; of the other side's nodes only the target stops a scan.
-    /// Can miss.
+    /// They meet when the same node is in both lists; of the other side's nodes only the target
+    /// stops a scan. Can miss.
     Literal,
 }
 
-/// What becomes of the keys of open nodes when the target moves.
+/// The fate of the keys of open nodes when the target moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -109,7 +109,7 @@ pub struct BidirectionalJpsConfig {
     /// The sides have met when a scan comes upon any node of the other side (`generated`), or when
     /// the same node is in both lists (`literal`, which can miss).
     pub meeting: JumpMeeting,
-    /// What becomes of the keys of open nodes when the target moves: `kept` or `renewed`.
+    /// The fate of the keys of open nodes when the target moves: `kept` or `renewed`.
     pub keys: OpenKeys,
     /// The estimate H of the cost to the target: `octile`, `euclidean`, `manhattan` or `mean`, eq.
     /// (3).

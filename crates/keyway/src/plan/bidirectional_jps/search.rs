@@ -11,7 +11,7 @@ use crate::search::{
     SearchStatistics, Side, Step, Workspace, cells,
 };
 
-/// What a side aims at.
+/// The aim of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Targets {
     /// The node that the other side has expanded last; its root at first.
@@ -32,7 +32,7 @@ pub(super) struct Method<M> {
     pub(super) b: f64,
 }
 
-/// What both sides work in, the forward one first.
+/// The memory of both sides, the forward one first.
 #[derive(Debug, Default)]
 struct JumpSides([JumpSide; 2]);
 
@@ -239,7 +239,7 @@ impl<'w> Half<'w> {
     }
 }
 
-/// What both sides have done.
+/// The statistics of both sides.
 fn statistics(active: &Half<'_>, waiting: &Half<'_>) -> SearchStatistics {
     let mut both = SearchStatistics::default();
     for half in [active, waiting] {

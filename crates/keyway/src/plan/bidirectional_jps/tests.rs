@@ -9,7 +9,8 @@ use crate::search::{Cost, DistanceTo, Mean, Rule, Side};
 const FORWARD: Side = Side::Forward;
 const BACKWARD: Side = Side::Backward;
 
-/// What an observer is told: a side expands a node; a node was generated from it; the sides met.
+/// An event of which an observer is told: a side expands a node; a node was generated from it; the
+/// sides met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Event {
     Expanded(Side, i32, i32),

@@ -1,4 +1,4 @@
-//! How many occupied cells lie in any box, in four look-ups \[Crow1984\].
+//! The number of occupied cells in any box, in four look-ups \[Crow1984\].
 
 use crate::map::{Cell, CellState, SearchMap};
 use crate::search::SearchMemory;

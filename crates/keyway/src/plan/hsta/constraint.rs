@@ -113,7 +113,7 @@ impl<'m> Constraint<'m> {
         Ok(Self { reach: with_path, ..self })
     }
 
-    /// Whether some path keeps the constraint, by the search that is quickest to find any.
+    /// True if some path keeps the constraint, by the search that is quickest to find any.
     fn leaves_path(
         &self,
         map: &SearchMap,
@@ -142,7 +142,7 @@ impl<'m> Constraint<'m> {
     }
 }
 
-/// Whether an obstacle lies within an L1 distance of a free cell \[cells\].
+/// True if an obstacle lies within an L1 distance of a free cell \[cells\].
 fn is_near(obstacles: &BitGrid, cell: Cell, reach: i32) -> bool {
     let last_row = obstacles.height() as i32 - 1;
     let rows = (cell.y - reach).max(0)..=cell.y.saturating_add(reach).min(last_row);

@@ -1,4 +1,4 @@
-//! What a node is worth: equations (1) and (3) to (5).
+//! The worth of a node: equations (1) and (3) to (5).
 
 use super::{Correction, HstaConfig, Weight};
 use crate::map::{Cell, CellIndex, SearchMap};

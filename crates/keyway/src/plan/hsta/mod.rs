@@ -104,7 +104,7 @@ pub struct HstaConfig {
     pub weight: Weight,
     /// The correction factor c, eq. (5): the `distance` to the other side's root, or `none`.
     pub correction: Correction,
-    /// What to do when the constraint leaves no path: `relax` it as little as possible, and say so,
+    /// The answer when the constraint leaves no path: `relax` it as little as possible, and say so,
     /// or `fail`.
     pub if_no_path: IfNoPath,
     /// Radius of the discs around start and goal in which there is no constraint \[m\]; 0 for none.
@@ -114,7 +114,7 @@ pub struct HstaConfig {
     pub corners: CornerRule,
 }
 
-/// What a distance is counted in.
+/// The unit in which a distance is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -153,7 +153,7 @@ pub enum Correction {
     None,
 }
 
-/// What [`Hsta`] does when its constraint leaves no path.
+/// The answer of [`Hsta`] when its constraint leaves no path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -283,7 +283,7 @@ impl Hsta {
         Ok((met, self.relaxed(map, &constraint)))
     }
 
-    /// How far the constraint of a search is below that of the config.
+    /// The constraint of a search, where it is below that of the config.
     fn relaxed(&self, map: &SearchMap, constraint: &Constraint<'_>) -> Option<Relaxed> {
         let HstaConfig { l1_constraint, .. } = self.config;
         let used_m = constraint.least_m(map);

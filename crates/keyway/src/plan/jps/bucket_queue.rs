@@ -97,7 +97,7 @@ impl BucketQueue {
         Some(index)
     }
 
-    /// Whether the entry that was last popped, and with it all others, has a key above this one's
+    /// True if the entry that was last popped, and with it all others, has a key above this one's
     /// bucket.
     pub(super) const fn is_past(&self, key: u64) -> bool {
         self.current > key >> self.shift

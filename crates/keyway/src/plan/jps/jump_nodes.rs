@@ -25,7 +25,7 @@ const DONE: u64 = 0xf0;
 const EPOCH_SHIFT: u32 = 8;
 const _: () = assert!(NodePages::EPOCH_BITS + EPOCH_SHIFT == 32);
 
-/// What is to be expanded.
+/// A node to be expanded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JumpNode {
     pub(super) index: CellIndex,
@@ -49,7 +49,7 @@ impl JumpNodes {
         self.open.push(key, root.0);
     }
 
-    /// What was done since [`Self::start`].
+    /// The work since [`Self::start`].
     pub(super) const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
@@ -137,7 +137,7 @@ impl JumpNodes {
         self.solution.map(|(_, parent)| parent)
     }
 
-    /// Where the way to a node comes from; `None` for the root.
+    /// The node from which the way to a node comes; `None` for the root.
     pub(super) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
         let parent = CellIndex((self.nodes.touched(at.as_usize())[1] >> 32) as u32);
         (parent != at).then_some(parent)

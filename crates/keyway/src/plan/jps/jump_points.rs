@@ -29,7 +29,7 @@ const NORTH: Arrival = 1;
 const WEST: Arrival = 2;
 const SOUTH: Arrival = 3;
 
-/// What is done with the finds.
+/// The receiver of the finds.
 pub(super) trait JumpVisitor {
     /// A jump point was reached at path cost `g`. Returns its lowest known path cost.
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
@@ -233,7 +233,7 @@ impl<'m> JumpPoints<'m> {
         found.jump_point(at, arrival, g + cost) + cost < g
     }
 
-    /// Whether the cells to the goal, which lies in the same row or column, are all free.
+    /// True if the cells to the goal, which lies in the same row or column, are all free.
     fn sees_goal(&self, from: Place) -> bool {
         let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
         let span = |at: usize, cells: i32| {
@@ -296,7 +296,7 @@ const fn onward_after(arrival: u32, pattern: usize) -> u8 {
     relative.rotate_left(ahead)
 }
 
-/// Whether no bit from `low` to `high` is set.
+/// True if no bit from `low` to `high` is set.
 fn is_clear(words: &[u64], (low, high): (usize, usize)) -> bool {
     (low / 64..=high / 64).all(|word| {
         let from = if word == low / 64 { u64::MAX << (low % 64) } else { u64::MAX };

@@ -30,7 +30,7 @@ impl Corners {
         &self.cells
     }
 
-    /// How many there are.
+    /// Their number.
     pub(super) fn count(&self) -> usize {
         self.cells.count_ones() as usize
     }
@@ -42,7 +42,7 @@ impl Corners {
             .flat_map(move |y| self.cells.ones_in_span(y, 0, last).map(move |x| Cell::new(x, y)))
     }
 
-    /// Whether a cell of the map is one.
+    /// True if a cell of the map is one.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         let bit = self.bit(cell);
         self.cells.words()[bit / 64] >> (bit % 64) & 1 == 1

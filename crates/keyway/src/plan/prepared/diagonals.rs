@@ -1,4 +1,4 @@
-//! Where a walk along a diagonal has something to do.
+//! The cells where a walk along a diagonal has something to do.
 
 use crate::map::{BitGrid, Cell, SearchMap};
 
@@ -52,7 +52,7 @@ impl Diagonals {
         self.stops.iter().map(BitGrid::memory_bytes).sum()
     }
 
-    /// Where on its diagonal a cell lies.
+    /// The place of a cell on its diagonal.
     const fn along(&self, cell: Cell) -> i32 {
         if self.is_tall { cell.x } else { cell.y }
     }
@@ -63,7 +63,7 @@ impl Diagonals {
     }
 }
 
-/// Whether the 2 x 2 block of a diagonal step is free.
+/// True if the 2 x 2 block of a diagonal step is free.
 fn is_diagonal_free(map: &SearchMap, cell: Cell, quarter: usize) -> bool {
     let west = i32::from(quarter == 1 || quarter == 2);
     let south = i32::from(quarter >= 2);

@@ -33,7 +33,7 @@ const VERSION: u32 = 1;
 const CORNERS_ARE_NOT_CUT: u32 = 0;
 const HEADER_BYTES: usize = 40;
 const CHECKSUM_BYTES: usize = 8;
-/// What numbers of nodes and label entries of 32 bits allow, rounded up.
+/// The size that numbers of nodes and label entries of 32 bits allow, rounded up.
 const MAX_FILE_BYTES: u64 = 1 << 37;
 
 /// Why a prepared map cannot be read.
@@ -74,7 +74,7 @@ pub enum PreparedFormatError {
     Content {
         /// Which table.
         part: &'static str,
-        /// Where in it.
+        /// The place in this table.
         index: usize,
     },
 }
@@ -86,12 +86,12 @@ pub enum PreparedFileError {
     /// Reading failed.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// What it holds cannot be used.
+    /// Its content cannot be used.
     #[error("{}: {reason}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault in it.
         reason: PreparedFormatError,
     },
 }
@@ -169,7 +169,7 @@ impl Prepared {
     }
 }
 
-/// What the first bytes of a file say, when all of them are there and the checksum is right.
+/// The content of the first bytes of a file, when all of them are there and the checksum is right.
 struct Head {
     fingerprint: u64,
     edges: u64,
@@ -206,7 +206,7 @@ impl Head {
     }
 }
 
-/// Whether the numbers are those of all corner cells, each once.
+/// True if the numbers are those of all corner cells, each once.
 fn checked_order(order: &[u32], corners: usize) -> Result<Vec<u32>, PreparedFormatError> {
     if order.len() != corners {
         return Err(content("node", corners.min(order.len())));
@@ -221,7 +221,7 @@ fn checked_order(order: &[u32], corners: usize) -> Result<Vec<u32>, PreparedForm
     Ok(order.to_vec())
 }
 
-/// Where each label begins.
+/// The beginning of each label.
 fn checked_first(lengths: &[u32], entries: usize) -> Result<Vec<u32>, PreparedFormatError> {
     let mut first = Vec::with_capacity(lengths.len() + 1);
     let mut sum = 0_u64;

@@ -38,7 +38,7 @@ struct Scanner<'m> {
     stops_transposed: BitGrid,
 }
 
-/// Where a straight scan ended, and after how many steps (at least one).
+/// The end of a straight scan, and the number of its steps (at least one).
 #[derive(Clone, Copy)]
 struct Scan {
     stop: Cell,

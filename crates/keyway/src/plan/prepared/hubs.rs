@@ -13,8 +13,8 @@ pub(super) struct Access {
     pub(super) at: Cell,
 }
 
-/// Where the ways from the start and those to the goal enter, and the shortest way known from the
-/// start to each hub. Nothing is cleared between queries.
+/// The places where the ways from the start and those to the goal enter, and the shortest way known
+/// from the start to each hub. Nothing is cleared between queries.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HubMemory {
     /// At the start, at the goal.

@@ -49,7 +49,7 @@ impl Entry {
 /// this order, so that the last one of a label is the node itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Labels {
-    /// Where the label of each node begins, and at the end where the last one ends.
+    /// The beginning of the label of each node, and last of all the end of the last label.
     pub(super) first: Vec<u32>,
     pub(super) entries: Vec<Entry>,
     /// For each entry how the way to the hub begins.
@@ -78,8 +78,8 @@ impl Hop {
     }
 }
 
-/// Where `to` lies from `from`: bit 0 says to the west, bit 1 to the south, bit 2 further in rows
-/// than in columns.
+/// The octant in which `to` lies from `from`: bit 0 says to the west, bit 1 to the south, bit 2
+/// further in rows than in columns.
 pub(super) fn octant(from: Cell, to: Cell) -> u8 {
     let steep = from.y.abs_diff(to.y) > from.x.abs_diff(to.x);
     u8::from(to.x < from.x) | u8::from(to.y < from.y) << 1 | u8::from(steep) << 2
@@ -229,7 +229,7 @@ struct LabelSearch {
     entered: usize,
 }
 
-/// How a node was reached from a hub.
+/// The way in which a node was reached from a hub.
 #[derive(Clone, Copy)]
 struct Reached {
     key: u64,
@@ -283,7 +283,7 @@ impl LabelSearch {
         Ok(())
     }
 
-    /// Whether a hub that both labels hold gives the distance, or a smaller one.
+    /// True if a hub that both labels hold gives the distance, or a smaller one.
     fn is_known(&self, entries: &[Entry], key: u64) -> bool {
         let through =
             |entry: &Entry| self.from_hub[entry.hub() as usize].saturating_add(entry.key());

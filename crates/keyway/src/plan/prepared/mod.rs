@@ -87,7 +87,7 @@ pub struct Prepared {
     labels: Labels,
 }
 
-/// What a preparation came to.
+/// The outcome of a preparation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Preparation {
     /// Cells at which shortest paths may turn.
@@ -147,7 +147,7 @@ impl Prepared {
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })
     }
 
-    /// What the preparation came to.
+    /// The outcome of the preparation.
     pub fn preparation(&self) -> Preparation {
         let tables =
             self.nodes.capacity() * size_of::<u32>() + self.cells.capacity() * size_of::<Cell>();
@@ -250,7 +250,7 @@ impl GlobalPlanner for Prepared {
     }
 }
 
-/// Where each number stands in an order.
+/// The place of each number in an order.
 fn inverse(order: &[u32]) -> Vec<u32> {
     let mut places = vec![0; order.len()];
     for (place, &number) in order.iter().enumerate() {

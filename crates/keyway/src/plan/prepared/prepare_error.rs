@@ -20,15 +20,15 @@ pub enum PrepareError {
         "the map has {corner_cells} cells at which paths may turn, expected at most {limit}; use jps"
     )]
     TooManyCorners {
-        /// How many there are.
+        /// Their number.
         corner_cells: u64,
-        /// How many there may be.
+        /// The largest number that there may be.
         limit: u64,
     },
     /// Too many label entries.
     #[error("the labels would have more than {limit} entries; use jps")]
     TooManyEntries {
-        /// How many there may be.
+        /// The largest number that there may be.
         limit: u64,
     },
     /// Too long a path.

@@ -17,7 +17,7 @@ use super::{PlanError, Prepared};
 use crate::map::{Cell, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side};
 
-/// How a path runs.
+/// The shape of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Route {
     /// Diagonal, then straight.

@@ -1,4 +1,4 @@
-//! Where a shortest path from a cell may turn for the first time.
+//! The places where a shortest path from a cell may turn for the first time.
 //!
 //! As in a jump point search \[Harabor2011\] a path runs diagonally, then straight, until it turns
 //! beside the end of an obstacle that it had on one side. Here scans pass such jump points and go
@@ -18,7 +18,7 @@ pub(super) struct Turn {
     pub(super) cost: Cost,
     /// The straight direction of arrival, as a step.
     pub(super) ahead: (i32, i32),
-    /// Whether paths may turn to the left, to the right.
+    /// True if paths may turn to the left, to the right.
     pub(super) opens: [bool; 2],
 }
 
@@ -52,7 +52,7 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// Whether the way to `to`, first diagonal, then straight, is free.
+    /// True if the way to `to`, first diagonal, then straight, is free.
     pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let step = (dx.signum(), dy.signum());

@@ -57,7 +57,7 @@ impl CellTree {
         self.nodes.len()
     }
 
-    /// Whether a cell of the map is in the tree.
+    /// True if a cell of the map is in the tree.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         self.by_place.contains(cell)
     }

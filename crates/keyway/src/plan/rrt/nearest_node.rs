@@ -70,7 +70,7 @@ impl NearestNode {
         self.mark(cell, false);
     }
 
-    /// Whether a cell of the map has a number.
+    /// True if a cell of the map has a number.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         self.numbers[self.index(cell)] != 0
     }

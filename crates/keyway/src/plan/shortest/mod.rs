@@ -139,7 +139,7 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Whether a taut line that came to a node may go on to `to`: it bends towards the obstacle, or
+    /// True if a taut line that came to a node may go on to `to`: it bends towards the obstacle, or
     /// not at all.
     fn may_turn(&self, at: u32, to: Spot) -> bool {
         let parent = self.nodes[at as usize].parent;
@@ -153,7 +153,7 @@ impl<'m> Search<'m> {
         bend == 0 || bend.signum() * side.signum() >= 0
     }
 
-    /// Whether a line in this direction runs into the obstacle of a corner: it cannot bend around
+    /// True if a line in this direction runs into the obstacle of a corner: it cannot bend around
     /// it.
     fn is_head_on(&self, corner: Spot, ahead: Spot) -> bool {
         self.obstacle_at(corner)

@@ -45,7 +45,7 @@ fn no_way() {
     assert_eq!(points(&["..#.."], [0.5, 0.5], [9.0, 0.5]), None);
 }
 
-/// Whether the segment enters no blocked square and does not pass between two that share a corner.
+/// True if the segment enters no blocked square and does not pass between two that share a corner.
 /// In quarters of a cell.
 fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64; 2]) -> bool {
     let blocked =

@@ -1,4 +1,4 @@
-//! What can be seen from a point: corners of obstacles, and a target.
+//! The view from a point: corners of obstacles, and a target.
 
 use crate::map::BitGrid;
 use crate::search::CornerRule;
@@ -39,7 +39,7 @@ impl Spot {
     }
 }
 
-/// What is seen.
+/// The receiver of all that is seen.
 pub(super) trait Viewer {
     /// A corner of an obstacle around which a shortest line may turn; (x, y) is the lower left
     /// corner of that cell. May be reported twice.
@@ -84,7 +84,7 @@ struct Window {
 struct UpwardView<'a, V> {
     blocked: &'a BitGrid,
     corners: CornerRule,
-    /// Whether the plane is mirrored: up is down.
+    /// True if the plane is mirrored: up is down.
     flip: bool,
     eye: Spot,
     /// The target, if it is not below.
@@ -147,7 +147,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         Spot::lattice(x, y).from(self.eye)
     }
 
-    /// Where a ray crosses a line: the column, and whether at its left edge.
+    /// The crossing of a ray and a line: the column, and whether at its left edge.
     fn crossing(&self, ray: Spot, line: i32) -> (i32, bool) {
         let rise = i128::from(i64::from(line) * UNITS_PER_CELL - self.eye.y);
         let (x, width) = (i128::from(ray.x), i128::from(ray.y));
