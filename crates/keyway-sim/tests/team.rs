@@ -6,11 +6,11 @@ use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{NavigateError, Stack};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
-    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
+    Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions,
     run_episode, watch_episode,
 };
 use keyway_sim::report::ContactPart;
-use keyway_sim::sim::{Circle, Disturbances, Mover, Obstacle, StandingPolygon};
+use keyway_sim::sim::{Circle, Obstacle, StandingPolygon};
 
 /// A hall of 8 m x 8 m, with a wall across it at x = 4 m if so.
 fn hall(has_wall: bool) -> OccupancyGrid {
