@@ -4,7 +4,7 @@ use super::decoded_image::{DecodedImage, ImageError};
 #[cfg(feature = "images")]
 use super::other_image;
 use super::rule::{CellRule, Doubts, Translator};
-use super::{DEFAULT_MAX_CELLS, ImagePlacement, check_size, png, png_fault, pnm};
+use super::{DEFAULT_MAX_CELLS, ImagePlacement, check_size, png, pnm};
 use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
 /// The kinds of image that maps are written as.
@@ -45,7 +45,7 @@ pub fn grid_from_image(
 
 /// The columns and rows that the header announces, if this beginning of a file has it all.
 pub(super) fn size_of_image(head: &[u8]) -> Option<(u64, u64)> {
-    if pnm::is_pnm(head) { pnm::size(head) } else { png_fault::size(head) }
+    if pnm::is_pnm(head) { pnm::size(head) } else { png::size(head) }
 }
 
 /// The same with another limit, and what is usually a mistake.
@@ -63,7 +63,7 @@ pub(super) fn grid_of_at_most(
         return Err(ImageError::Empty);
     } else if pnm::is_pnm(bytes) {
         pnm::decode(bytes, &mut cells)?
-    } else if bytes.starts_with(png_fault::SIGNATURE) {
+    } else if bytes.starts_with(png::SIGNATURE) {
         png::decode(bytes, &mut cells)?
     } else {
         other(bytes, max_cells, &mut cells)?

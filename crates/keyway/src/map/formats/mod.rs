@@ -28,7 +28,6 @@ mod notices;
 mod other_image;
 mod placement;
 mod png;
-mod png_fault;
 mod pnm;
 mod reader;
 mod ros;

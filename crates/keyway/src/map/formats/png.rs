@@ -2,7 +2,6 @@
 
 use super::decoded_image::{DecodedImage, ImageError};
 use super::layout::Layout;
-use super::png_fault::{fault, palette_fault};
 use super::rule::Translator;
 use crate::geometry::Pose;
 use crate::map::GridFrame;
@@ -11,6 +10,8 @@ use ::png::{
     Transformations, expand_interlaced_row,
 };
 use std::io::Cursor;
+
+pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// No deflate stream is longer than this times its compressed form.
 const MAX_DEFLATE_RATIO: u64 = 1032;
@@ -28,8 +29,6 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
 }
 
 pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<DecodedImage, ImageError> {
-    // What the decoder says is for those who write decoders.
-    let broken = |_: DecodingError| ImageError::Png(fault(bytes));
     let can_hold =
         (bytes.len() as u64).saturating_mul(MAX_DEFLATE_RATIO).saturating_add(SLACK_BYTES);
     let limits = Limits { bytes: usize::try_from(can_hold).unwrap_or(usize::MAX) };
@@ -52,15 +51,40 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     // The decoder looks colours up in a table that it makes of this, and panics where one is cut
     // off.
     let palette = reader.info().palette.as_deref();
-    let used = palette.filter(|_| reader.info().color_type == ColorType::Indexed);
-    if let Some(fault) = used.and_then(palette_fault) {
-        return Err(ImageError::Png(fault));
+    let length = palette.map_or(3, <[u8]>::len);
+    let is_sound = length.is_multiple_of(3) && (3..=3 * 256).contains(&length);
+    if reader.info().color_type == ColorType::Indexed && !is_sound {
+        let expected = "expected three for each of 1 to 256 colours";
+        return Err(ImageError::Png(format!("its palette has {length} bytes, {expected}")));
     }
     let values = read_rows(reader, cells).map_err(broken)?;
     if values.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(ImageError::Png("its first frame does not fill it".to_owned()));
     }
     Ok(DecodedImage { width: u64::from(width), height: u64::from(height), values })
+}
+
+/// The columns and rows that the header announces; nothing where there is none.
+pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
+    let header = bytes.strip_prefix(SIGNATURE)?.get(4..)?.strip_prefix(b"IHDR")?;
+    let (width, rest) = header.split_first_chunk()?;
+    let height = rest.first_chunk()?;
+    let [width, height] = [*width, *height].map(|side| u64::from(u32::from_be_bytes(side)));
+    (width > 0 && height > 0).then_some((width, height))
+}
+
+/// The first sentence of what the decoder says, without checksums, and with a chunk's name only.
+fn broken(error: DecodingError) -> ImageError {
+    let text = error.to_string();
+    let sentence = text.split(". ").next().unwrap_or(&text).trim_end_matches('.');
+    let chunk = sentence.split_once("ChunkType { type: ").and_then(|(before, chunk)| {
+        let (name, rest) = chunk.split_once(',')?;
+        let after = rest.split_once(" }")?.1;
+        let fault = before.split_once(": expected 0x");
+        let fault = fault.map_or(before.to_owned(), |(fault, _)| format!("{fault} in "));
+        Some(format!("{fault}{name}{after}"))
+    });
+    ImageError::Png(chunk.unwrap_or_else(|| sentence.to_owned()))
 }
 
 /// The value of every pixel. Rows are translated as they come, so that one byte per pixel is the
@@ -110,7 +134,6 @@ fn layout((colour, depth): (ColorType, BitDepth)) -> Layout {
 
 #[cfg(test)]
 mod tests {
-    use super::super::png_fault::{SIGNATURE, checksum};
     use super::super::rule::{CellRule, MapMode};
     use super::*;
     use proptest::prelude::*;
@@ -198,15 +221,57 @@ mod tests {
     fn with_size(mut bytes: Vec<u8>, width: u32, height: u32) -> Vec<u8> {
         bytes[16..20].copy_from_slice(&width.to_be_bytes());
         bytes[20..24].copy_from_slice(&height.to_be_bytes());
-        let mut crc = u32::MAX;
-        for &byte in &bytes[12..29] {
-            crc ^= u32::from(byte);
-            for _ in 0..8 {
-                crc = if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
-            }
-        }
-        bytes[29..33].copy_from_slice(&(!crc).to_be_bytes());
+        with_checksum(bytes)
+    }
+
+    /// CRC-32 of kind and content, as the PNG specification defines it.
+    fn checksum(kind_and_content: &[u8]) -> [u8; 4] {
+        let shift = |sum: u32| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
+        let byte = |sum: u32, &byte: &u8| (0..8).fold(sum ^ u32::from(byte), |sum, _| shift(sum));
+        (!kind_and_content.iter().fold(u32::MAX, byte)).to_be_bytes()
+    }
+
+    /// The same with the checksum of its header.
+    fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
+        let sum = checksum(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&sum);
         bytes
+    }
+
+    #[test]
+    fn the_fault_is_named() {
+        let whole = encode(2, 1, &[0, 255]);
+        let named = |bytes: &[u8], fault_named: &str| {
+            let expected = format!("not a sound PNG image: {fault_named}; save it again");
+            assert_eq!(raw(bytes).unwrap_err().to_string(), expected);
+        };
+        for length in [10, 45] {
+            named(&whole[..length], "unexpected end of file");
+        }
+        let with = |index: usize| {
+            let mut damaged = whole.clone();
+            damaged[index] ^= 1;
+            damaged
+        };
+        named(&with(42), "Corrupt deflate stream");
+        let text = fault(&with(29));
+        assert!(
+            text.contains("CRC error") && text.contains("while decoding IHDR chunk;"),
+            "{text}"
+        );
+        let mut later = whole.clone();
+        later[12] = b'J';
+        named(&later, "JHDR chunk appeared before IHDR chunk");
+        let header = |index: usize, value, expected: &str| {
+            let mut bytes = whole.clone();
+            bytes[16 + index] = value;
+            named(&with_checksum(bytes), expected);
+        };
+        header(3, 0, "Invalid image dimensions");
+        header(8, 3, "Invalid bit depth 3");
+        header(9, 5, "Invalid color type 5");
+        header(10, 2, "Unknown compression method 2");
+        header(12, 2, "Unknown interlace method 2");
     }
 
     #[test]
@@ -248,7 +313,7 @@ mod tests {
         for (kind, content) in ends[..1].iter().chain(others).chain(&ends[1..]) {
             bytes.extend((content.len() as u32).to_be_bytes());
             bytes.extend(kind.iter().chain(content));
-            bytes.extend(checksum(*kind, content).to_be_bytes());
+            bytes.extend(checksum(&[&kind[..], content].concat()));
         }
         bytes
     }
