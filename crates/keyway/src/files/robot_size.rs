@@ -50,6 +50,9 @@ impl RobotSize {
     /// # Errors
     /// When no robot can have the radius.
     pub fn new(robot: Option<Robot>, radius_m: Option<f64>) -> Result<Self, FootprintError> {
+        if let Some(radius_m) = radius_m.filter(|it| !it.is_finite() || *it < 0.0) {
+            return Err(FootprintError::Radius(radius_m));
+        }
         let resized = |robot: Robot| match radius_m {
             Some(radius_m) => Ok(Robot { footprint: Footprint::circle(radius_m)?, ..robot }),
             None => Ok(robot),
@@ -208,6 +211,10 @@ mod tests {
             assert_eq!(size.robot().is_some(), robot.is_some());
         }
         assert!(RobotSize::new(Some(robot), Some(1e4)).is_err());
+        for radius_m in [-1.0, -1e-300, f64::NAN, f64::INFINITY] {
+            let refused = RobotSize::new(None, Some(radius_m));
+            assert!(matches!(refused, Err(FootprintError::Radius(_))), "{radius_m}");
+        }
     }
 
     #[test]
