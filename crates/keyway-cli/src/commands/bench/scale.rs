@@ -1,16 +1,15 @@
 //! `keyway bench scale`: one map, tiled to larger and larger ones -> time and memory of planners.
 
-use super::unusable_map;
 use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
 use crate::commands::{Done, THROUGH_UNKNOWN, print, unusable_planner};
 use crate::config::resolve;
 use crate::error::{CliError, Kind};
-use crate::inputs::{load_map, robot_size};
+use crate::inputs::{bad_layers, load_map, robot_size};
 use crate::out_dir::prepare;
 use crate::pictures::png;
 use crate::progress::Progress;
 use crate::stdout::print_files;
-use keyway::files::{FieldValue, StackBase};
+use keyway::files::{FieldValue, RobotSize, StackBase};
 use keyway::navigate::Stack;
 use keyway_draw::{LogChart, LogLine, LogPanel, Svg, log_chart};
 use keyway_lab::bench::{
@@ -26,15 +25,12 @@ const FILES: [&str; 3] = ["report.json", "scale.svg", "scale.png"];
 
 pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     // Wrong names and parameters are reported before anything is measured.
+    let size = robot_size(&args.size)?;
     let stacks: Vec<Stack> =
-        args.planner.iter().map(|name| stack(args, name)).collect::<Result<_, _>>()?;
+        args.planner.iter().map(|name| stack(args, name, &size)).collect::<Result<_, _>>()?;
     let loaded = load_map(&args.map, &args.limit.reader())?;
-    let request = ScaleRequest {
-        map: &loaded.grid,
-        stacks: &stacks,
-        sides_cells: &args.sides,
-        radius_m: args.size.radius,
-    };
+    let request =
+        ScaleRequest { map: &loaded.grid, stacks: &stacks, sides_cells: &args.sides, size: &size };
     if args.alone {
         let task = ScaleTask { planner: 0, side_cells: args.sides[0] };
         crate::json::print(&request.measure_here(task)?)?;
@@ -70,9 +66,8 @@ fn write(report: &mut ScaleReport, mut out: OutDir) -> Result<(), CliError> {
     Ok(())
 }
 
-fn stack(args: &BenchScaleArgs, planner: &str) -> Result<Stack, CliError> {
+fn stack(args: &BenchScaleArgs, planner: &str, size: &RobotSize) -> Result<Stack, CliError> {
     let planner = FieldValue::new("planner", "planner.name", planner);
-    let size = robot_size(&args.size)?;
     let robot = size.robot_or_small();
     resolve(
         StackBase::for_robot(&Stack::for_plans(&robot), &robot),
@@ -117,9 +112,7 @@ impl From<ScaleError> for CliError {
     fn from(error: ScaleError) -> Self {
         match error {
             ScaleError::Side(error) => Self::new(Kind::Usage, error).field("--sides"),
-            ScaleError::Radius(error) => Self::new(Kind::Config, error).field("--radius"),
-            ScaleError::Clearance(error) => Self::new(Kind::Config, error).field("map.clearance_m"),
-            ScaleError::Map(error) => unusable_map(error),
+            ScaleError::Layers(error) => bad_layers(&error),
             ScaleError::Planner(error) => unusable_planner(error),
             ScaleError::NoFreeCell { is_unknown_blocked } => {
                 let hint = is_unknown_blocked.then_some(THROUGH_UNKNOWN);

@@ -1,7 +1,6 @@
 //! Errors of a measurement.
 
-use keyway::ConfigError;
-use keyway::files::RadiusBeyondMap;
+use keyway::files::RobotLayersError;
 use keyway::map::FrameError;
 use keyway::plan::PlanError;
 use thiserror::Error;
@@ -13,15 +12,9 @@ pub enum ScaleError {
     /// The map cannot be tiled to this side.
     #[error(transparent)]
     Side(FrameError),
-    /// The radius that the caller chose leaves no cell free.
+    /// The layers cannot be made, or leave no cell free.
     #[error(transparent)]
-    Radius(RadiusBeyondMap),
-    /// The clearance of the layers leaves no cell free.
-    #[error(transparent)]
-    Clearance(RadiusBeyondMap),
-    /// The layers cannot be made.
-    #[error(transparent)]
-    Map(ConfigError),
+    Layers(RobotLayersError),
     /// The planner cannot be used.
     #[error(transparent)]
     Planner(PlanError),

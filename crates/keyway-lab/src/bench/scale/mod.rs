@@ -14,6 +14,7 @@ pub use report::{ScaleCurve, ScaleCurves, ScaleReport, scale_table};
 pub use row::ScaleRow;
 
 use crate::progress::Progress;
+use keyway::files::RobotSize;
 use keyway::map::OccupancyGrid;
 use keyway::navigate::Stack;
 use row::measure;
@@ -28,9 +29,8 @@ pub struct ScaleRequest<'a> {
     pub stacks: &'a [Stack],
     /// Sides of the square maps \[cells\].
     pub sides_cells: &'a [u32],
-    /// Radius of the robot \[m\], if the caller chose it apart from the layers. A radius that
-    /// leaves no cell free is refused.
-    pub radius_m: Option<f64>,
+    /// Size of the robot. A radius that leaves no cell free is refused.
+    pub size: &'a RobotSize,
 }
 
 /// One measurement.
@@ -107,8 +107,8 @@ mod tests {
     #[test]
     fn every_planner_is_measured_on_every_side() {
         let (map, stacks) = (OccupancyGrid::from_ascii(&["..", ".#"]), stacks(&["astar", "jps"]));
-        let request =
-            ScaleRequest { map: &map, stacks: &stacks, sides_cells: &[4, 7], radius_m: None };
+        let size = &RobotSize::default();
+        let request = ScaleRequest { map: &map, stacks: &stacks, sides_cells: &[4, 7], size };
         let rows = request.run(|task| request.measure_here(task), &()).unwrap();
         let found: Vec<(&str, u32)> =
             rows.iter().map(|row| (row.planner.as_str(), row.side_cells)).collect();
@@ -125,8 +125,8 @@ mod tests {
     fn errors_name_what_is_wrong() {
         let error = |map: &OccupancyGrid, radius_m, side_cells| {
             let stacks = stacks(&["astar"]);
-            let request =
-                ScaleRequest { map, stacks: &stacks, sides_cells: &[side_cells], radius_m };
+            let size = &RobotSize::new(None, radius_m).unwrap();
+            let request = ScaleRequest { map, stacks: &stacks, sides_cells: &[side_cells], size };
             request.measure_here(ScaleTask { planner: 0, side_cells }).unwrap_err()
         };
         let walled = OccupancyGrid::from_ascii(&["###", "#.#", "###"]);

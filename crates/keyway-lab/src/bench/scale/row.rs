@@ -2,8 +2,7 @@
 
 use super::{ScaleError, ScaleRequest, ScaleTask};
 use crate::measure::timed;
-use keyway::files::RadiusBeyondMap;
-use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap, UnknownPolicy};
+use keyway::map::{Cell, OccupancyGrid, SearchMap, UnknownPolicy};
 use keyway::plan::{Plan, PlanError};
 use keyway::search::{Query, SearchStatistics, Workspace};
 use keyway_sim::report::PlanOutcome;
@@ -52,7 +51,7 @@ pub(super) fn measure(
 ) -> Result<ScaleRow, ScaleError> {
     let stack = &request.stacks[planner];
     let begin = Instant::now();
-    let map = layers(&grid, stack.map.clone(), request.radius_m)?;
+    let map = request.size.layers(&grid, stack.map.clone()).map_err(ScaleError::Layers)?;
     let planner = stack.planner.build(&map).map_err(ScaleError::Planner)?;
     let components = map.components(planner.connectivity());
     let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
@@ -98,19 +97,6 @@ fn outcome_of(
         (PlanOutcome::Refused, _) => Err(ScaleError::Refused(error)),
         other => Ok(other),
     }
-}
-
-fn layers(
-    grid: &OccupancyGrid,
-    config: LayerConfig,
-    radius_m: Option<f64>,
-) -> Result<SearchMap, ScaleError> {
-    if let Some(radius_m) = radius_m {
-        RadiusBeyondMap::check(radius_m, grid.frame()).map_err(ScaleError::Radius)?;
-    }
-    let map = SearchMap::new(grid, config).map_err(ScaleError::Map)?;
-    RadiusBeyondMap::check(map.config().clearance_m, map.frame()).map_err(ScaleError::Clearance)?;
-    Ok(map)
 }
 
 fn no_free_cell(grid: &OccupancyGrid, map: &SearchMap) -> ScaleError {
