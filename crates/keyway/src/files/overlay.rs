@@ -16,8 +16,7 @@ pub type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static
 
 /// A value of type `T` as a tree, in which fields can be changed by their path.
 ///
-/// A change may only replace what is there, by the same kind of value, or give a value to a field
-/// that has none. Every change is tried at once, so that an error names its field. A table with a
+/// A change may only replace what is there, or give a value to a field that has none. Every change is tried at once, so that an error names its field. A table with a
 /// `name` is one of several alternatives: when its name changes, the whole table becomes the
 /// default of the new name.
 pub struct Overlay<'a, T> {
@@ -43,16 +42,6 @@ pub enum OverlayError {
         parent: String,
         /// The fields of that table.
         names: Vec<String>,
-    },
-    /// The field holds another kind of value.
-    #[error("`{path}` must be {expected}, got {got}")]
-    Kind {
-        /// The field.
-        path: String,
-        /// What it holds.
-        expected: String,
-        /// What was given.
-        got: String,
     },
     /// No alternative has this name.
     #[error(
@@ -81,10 +70,9 @@ impl OverlayError {
     /// The field that is to blame, as a path.
     pub fn path(&self) -> &str {
         match self {
-            Self::Unknown { path, .. }
-            | Self::Kind { path, .. }
-            | Self::Name { path, .. }
-            | Self::Rejected { path, .. } => path,
+            Self::Unknown { path, .. } | Self::Name { path, .. } | Self::Rejected { path, .. } => {
+                path
+            }
         }
     }
 }
@@ -148,25 +136,16 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
             return self.add(&absent, above, key, whole);
         }
         let parent = table_at(&mut self.tree, parent_path)?;
-        let Some(current) = parent.get(key) else {
-            return self.add(path, parent_path, key, value);
-        };
-        match (current, value) {
-            (Value::Table(_), Value::Table(changes)) => return self.merge_at(path, &changes),
-            (Value::String(name), Value::String(wanted)) if key == NAME => {
+        match (parent.get(key), value) {
+            (None, value) => return self.add(path, parent_path, key, value),
+            (Some(Value::Table(_)), Value::Table(changes)) => return self.merge_at(path, &changes),
+            (Some(Value::String(name)), Value::String(wanted)) if key == NAME => {
                 if *name != wanted {
                     self.rename(path, parent_path, &wanted)?;
                 }
             }
-            (Value::Float(_), Value::Integer(whole)) => {
-                parent.insert(key.to_owned(), Value::Float(whole as f64));
-            }
-            (current, value) if current.same_type(&value) => {
+            (Some(_), value) => {
                 parent.insert(key.to_owned(), value);
-            }
-            (current, value) => {
-                let (expected, got) = (kind_text(current), value_text(&value));
-                return Err(OverlayError::Kind { path: path.to_owned(), expected, got });
             }
         }
         self.value().map(drop).map_err(|reason| rejected(path, &reason))
@@ -266,31 +245,6 @@ fn unknown(path: &str, parent: &str, table: &Table) -> OverlayError {
 
 fn rejected(path: &str, reason: &str) -> OverlayError {
     OverlayError::Rejected { path: path.to_owned(), reason: reason.to_owned() }
-}
-
-fn kind_text(value: &Value) -> String {
-    match value {
-        Value::String(_) => "a text".to_owned(),
-        Value::Integer(_) => "a whole number".to_owned(),
-        Value::Float(_) => "a number".to_owned(),
-        Value::Boolean(_) => "true or false".to_owned(),
-        Value::Datetime(_) => "a date".to_owned(),
-        Value::Array(_) => "a list".to_owned(),
-        Value::Table(fields) => {
-            let names: Vec<&str> = fields.keys().map(String::as_str).collect();
-            format!("a table with the fields {}", names.join(", "))
-        }
-    }
-}
-
-fn value_text(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("the text \"{text}\""),
-        Value::Array(_) => "a list".to_owned(),
-        Value::Table(_) => "a table".to_owned(),
-        Value::Float(number) => format!("{number:?}"),
-        other => other.to_string(),
-    }
 }
 
 #[cfg(test)]

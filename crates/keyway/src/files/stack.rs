@@ -188,14 +188,14 @@ mod tests {
         let line = 1 + text.lines().position(|line| line.starts_with("horizon_s")).unwrap();
         let far = error("horizon_s = ", "horizon_s = \"far\" # ");
         let place = format!("my.toml: line {line}, column 13: `local.window.horizon_s`: ");
-        assert_eq!(far, place + "expected a number, got the text \"far\"");
+        assert_eq!(far, place + "invalid type: string \"far\", expected a number");
         let none = error("name = \"dwa\"", "name = \"hay\"");
         assert!(none.contains("`hay`") && none.contains("key-point-dwa"), "{none}");
         let without = error("horizon_s", "prospect_s");
         let line = format!("my.toml: line {line}, ");
         assert!(without.starts_with(&line) && without.contains("`prospect_s`"), "{without}");
         let least = error("least_clearance_m = ", "least_clearance_m = true # ");
-        assert!(least.contains("`controller.least_clearance_m`: expected a number"), "{least}");
+        assert!(least.contains("`controller.least_clearance_m`: invalid type: boolean"), "{least}");
         let missing = error("distance_cap_m", "# distance_cap_m");
         let line = 1 + text.lines().position(|line| line == "[local.window]").unwrap();
         let expected = format!(

@@ -101,7 +101,8 @@ mod tests {
         let kind = robot_error(|text| text.replace("range_m = 3.5", "range_m = \"far\""));
         assert_eq!(kind.field, "sensor.range_m");
         assert!(
-            kind.to_string().contains("`sensor.range_m`: expected a number, got the text \"far\"")
+            kind.to_string()
+                .contains("`sensor.range_m`: invalid type: string \"far\", expected a number")
         );
         let unknown = robot_error(|text| format!("colour = 1\n{text}"));
         assert_eq!((unknown.line, unknown.column), (Some(1), Some(1)));
@@ -120,8 +121,8 @@ mod tests {
             error.reason
         };
         let both = "radius_m = 0.18\nvertices_m = [[1, 0], [0, 1], [-1, -1]]";
-        assert_eq!(footprint(both), "expected exactly one field, got several");
-        assert_eq!(footprint(""), "expected exactly one field, got none");
+        assert_eq!(footprint(both), "wanted exactly 1 element, more than 1 element");
+        assert_eq!(footprint(""), "wanted exactly 1 element, found 0 elements");
     }
 
     #[test]
