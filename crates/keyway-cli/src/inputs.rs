@@ -101,10 +101,7 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
 /// option.
 pub(crate) fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
     let error = error.into();
-    let cannot_be_read = matches!(
-        error,
-        SceneFileError::Config(ConfigFileError::Read(_) | ConfigFileError::Text { .. })
-    );
+    let cannot_be_read = matches!(error, SceneFileError::Config(ConfigFileError::File(_)));
     let kind = if cannot_be_read { Kind::Input } else { Kind::Config };
     let field = error.field();
     CliError::new(kind, &error).field(if field.is_empty() { option } else { field })

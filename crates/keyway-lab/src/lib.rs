@@ -14,7 +14,6 @@
 //! | [`table`], [`run_tables`] | rows as text, LaTeX and CSV; routes and runs as tables |
 //! | [`significance`], [`measure`] | differences that are more than chance; times of work |
 //! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
-//! | [`text_file`] | text within limits |
 
 pub mod batch;
 pub mod bench;
@@ -31,4 +30,3 @@ pub mod run_tables;
 pub mod scenes;
 pub mod significance;
 pub mod table;
-pub mod text_file;

@@ -1,7 +1,7 @@
 //! Which Python exception an error of the library is.
 
 use keyway::file_system::ReadError;
-use keyway::files::{ConfigFileError, ParameterError};
+use keyway::files::{ConfigFileError, ParameterError, TextFileError};
 use keyway::map::formats::MapFileError;
 use keyway::map::{BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
@@ -120,7 +120,7 @@ pub(crate) fn scene_file_error(error: &SceneFileError) -> PyErr {
 /// A robot or a stack that cannot be used.
 pub(crate) fn config_file_error(error: &ConfigFileError) -> PyErr {
     match error {
-        ConfigFileError::Read(read) => read_error(read, error),
+        ConfigFileError::File(TextFileError::Read(read)) => read_error(read, error),
         _ => bad_value(error),
     }
 }

@@ -4,7 +4,7 @@ use super::files::{PART, ROBOTS, RUNS, TIMES, TimeLine};
 use super::part::Part;
 use super::{PartsError, Record, Row};
 use crate::results::{JOURNAL_NAME, LinesError, OutDir, ResultsError, entries, read_lines};
-use crate::text_file::read_text;
+use keyway::files::read_text;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

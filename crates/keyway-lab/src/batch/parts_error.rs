@@ -2,7 +2,7 @@
 
 use super::Shard;
 use crate::results::LinesError;
-use crate::text_file::TextFileError;
+use keyway::files::TextFileError;
 use std::path::PathBuf;
 use thiserror::Error;
 

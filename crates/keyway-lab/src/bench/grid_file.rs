@@ -1,7 +1,7 @@
 //! A scenario file with its map.
 
 use super::raw_map::RawMap;
-use crate::text_file::{TextFileError, read_text};
+use keyway::files::{TextFileError, read_text};
 use keyway::map::OccupancyGrid;
 use keyway::map::formats::{
     MAX_MAP_BYTES, MapFileError, MapFormat, Scenario, read_scenarios, read_scenarios_for,

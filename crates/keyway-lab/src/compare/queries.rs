@@ -4,7 +4,7 @@ use super::ends::Ends;
 use super::map_names::MapNames;
 use super::pairs::{PairsError, ends_of_pairs};
 use super::report::QuerySource;
-use crate::text_file::{TextFileError, read_text};
+use keyway::files::{TextFileError, read_text};
 use keyway::map::formats::{MapFileError, Scenario, read_scenarios_for};
 use keyway::map::{Connectivity, GridFrame, SearchMap};
 use keyway::search::{Query, random_queries};

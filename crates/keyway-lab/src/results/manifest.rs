@@ -7,8 +7,7 @@
 //! There are two copies of the list, and what either says holds. So a list that is lost, or put
 //! back from an earlier day, does not make Keyway's own files look like somebody else's.
 
-use keyway::file_system::{ReadError, read_file};
-use keyway::map::formats::{TextError, text_from_bytes};
+use keyway::files::{TextFileError, read_text};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
@@ -32,17 +31,9 @@ pub(super) struct Manifest {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManifestError {
-    /// It cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// It is no text.
-    #[error("{}: {reason}; {ADVICE}", path.display())]
-    Text {
-        /// The list.
-        path: PathBuf,
-        /// The fault.
-        reason: TextError,
-    },
+    /// It cannot be read, or is no text.
+    #[error("{0}; {ADVICE}")]
+    File(#[from] TextFileError),
     /// A line names no file.
     #[error(
         "{}: line {line}: expected a digest of 16 digits and the name of a file; {ADVICE}",
@@ -56,8 +47,8 @@ pub enum ManifestError {
     },
 }
 
-const ADVICE: &str = "this list of the files that Keyway wrote is damaged: remove it, as there is a copy \
-                      beside it; without one remove the results, too, or choose another folder";
+const ADVICE: &str = "this is the list of the files that Keyway wrote; if it is damaged, remove it, as there \
+                      is a copy beside it; without one remove the results, too, or choose another folder";
 
 impl Manifest {
     /// The list and its copy.
@@ -76,9 +67,7 @@ impl Manifest {
     }
 
     fn add_list(&mut self, path: PathBuf) -> Result<(), ManifestError> {
-        let bytes = read_file(&path, MAX_BYTES)?;
-        let text = text_from_bytes(&bytes)
-            .map_err(|reason| ManifestError::Text { path: path.clone(), reason })?;
+        let text = read_text(&path, MAX_BYTES)?;
         for (line, number) in text.lines().zip(1..) {
             if !line.is_empty() && self.add(line).is_none() {
                 return Err(ManifestError::Line { path, line: number });
@@ -241,7 +230,7 @@ mod tests {
         let text = refused(b"\xff");
         assert!(
             text.contains(".keyway-files: line 1 is not UTF-8")
-                && text.contains("damaged: remove it")
+                && text.contains("damaged, remove it")
         );
         fs::remove_file(folder.path().join(Manifest::NAMES[0])).unwrap();
         assert_eq!(Manifest::read(folder.path()).unwrap().text(), "");

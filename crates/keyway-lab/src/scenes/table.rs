@@ -1,6 +1,6 @@
 //! Lines of a CSV file, by the names of its columns.
 
-use crate::text_file::{TextFileError, read_text};
+use keyway::files::{TextFileError, read_text};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use thiserror::Error;

@@ -3,8 +3,9 @@
 use super::{SceneError, SceneFile};
 use crate::sim::Disturbances;
 use keyway::ConfigError;
-use keyway::file_system::read_file;
-use keyway::files::{ConfigFileError, MAX_TOML_BYTES, config_text, from_toml};
+use keyway::files::{
+    ConfigFileError, MAX_TOML_BYTES, TextFileError, file_text, from_toml, read_text,
+};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -12,7 +13,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
-    /// A file cannot be read or is not TOML, or a robot or stack file is wrong.
+    /// A file cannot be read or is not TOML, or a file of a robot, a stack or disturbances is wrong.
     #[error(transparent)]
     Config(#[from] ConfigFileError),
     /// A file is not a scene.
@@ -23,14 +24,12 @@ pub enum SceneFileError {
         /// Error of the scene.
         reason: SceneError,
     },
-    /// Disturbances cannot be used.
-    #[error("{}: {reason}", path.display())]
-    Disturbances {
-        /// The file.
-        path: PathBuf,
-        /// Error of the disturbances.
-        reason: ConfigError,
-    },
+}
+
+impl From<TextFileError> for SceneFileError {
+    fn from(error: TextFileError) -> Self {
+        Self::Config(error.into())
+    }
 }
 
 impl SceneFileError {
@@ -39,7 +38,6 @@ impl SceneFileError {
     pub fn field(&self) -> &str {
         match self {
             Self::Config(error) => error.field(),
-            Self::Disturbances { reason, .. } => &reason.path,
             Self::Scene { .. } => "",
         }
     }
@@ -50,7 +48,7 @@ impl SceneFileError {
 /// # Errors
 /// When the file cannot be read, or does not hold a scene.
 pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
-    scene_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
+    scene_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes())
 }
 
 /// Reads and checks a scene from memory; errors call the file `name`.
@@ -58,7 +56,7 @@ pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
 /// # Errors
 /// When the content is not a scene.
 pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
-    SceneFile::from_toml(config_text(name, bytes)?)
+    SceneFile::from_toml(file_text(name, bytes)?)
         .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
 }
 
@@ -68,7 +66,7 @@ pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFil
 /// # Errors
 /// When the file cannot be read, does not contain disturbances, or names a seed.
 pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
-    disturbances_from_bytes(path, &read_file(path, MAX_TOML_BYTES).map_err(ConfigFileError::Read)?)
+    disturbances_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes())
 }
 
 /// Reads and checks disturbances from memory; errors call the file `name`.
@@ -77,7 +75,7 @@ pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
 /// When the content does not contain disturbances, or names a seed.
 pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
     let path = || name.to_owned();
-    let disturbances: Disturbances = from_toml(config_text(name, bytes)?)
+    let disturbances: Disturbances = from_toml(file_text(name, bytes)?)
         .map_err(|reason| ConfigFileError::Toml { path: path(), reason })?;
     let no_seed = if disturbances.seed == 0 {
         Ok(())
@@ -87,7 +85,7 @@ pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances
     };
     match disturbances.validate().and(no_seed) {
         Ok(()) => Ok(disturbances),
-        Err(reason) => Err(SceneFileError::Disturbances { path: path(), reason }),
+        Err(reason) => Err(ConfigFileError::Value { path: path(), reason }.into()),
     }
 }
 

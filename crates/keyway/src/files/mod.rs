@@ -7,6 +7,7 @@ mod read;
 mod robot_size;
 mod stack;
 mod stack_base;
+mod text_file;
 mod toml_messages;
 mod toml_text;
 
@@ -17,11 +18,11 @@ pub use parameter_layers::{
     ParameterLayers,
 };
 pub use read::{
-    ConfigFileError, MAX_TOML_BYTES, config_text, find_robot, read_parameters, read_robot,
-    robot_from_bytes,
+    ConfigFileError, MAX_TOML_BYTES, find_robot, read_parameters, read_robot, robot_from_bytes,
 };
 pub use robot_size::{RadiusBeyondMap, RobotLayersError, RobotSize, StartingValues};
 pub use stack::{find_stack, read_stack, stack_from_bytes};
 pub use stack_base::{ParameterError, StackBase};
+pub use text_file::{TextFileError, file_text, read_text};
 use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

@@ -1,9 +1,8 @@
 //! Robot files, from a path or from memory.
 
-use super::{ParameterFile, TomlError, did_you_mean, from_toml};
+use super::{ParameterFile, TextFileError, TomlError};
+use super::{did_you_mean, file_text, from_toml, read_text};
 use crate::ConfigError;
-use crate::file_system::{ReadError, read_file};
-use crate::map::formats::{TextError, text_from_bytes};
 use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::{Path, PathBuf};
@@ -17,17 +16,9 @@ pub const MAX_TOML_BYTES: u64 = 16 << 20;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConfigFileError {
-    /// Reading failed.
+    /// It cannot be read, or is no text.
     #[error(transparent)]
-    Read(#[from] ReadError),
-    /// Not UTF-8.
-    #[error("{}: {reason}", path.display())]
-    Text {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: TextError,
-    },
+    File(#[from] TextFileError),
     /// Not the description of a robot, or not a stack.
     #[error("{}: {reason}", path.display())]
     Toml {
@@ -53,14 +44,6 @@ pub enum ConfigFileError {
         /// The name.
         name: String,
     },
-    /// A robot that cannot be.
-    #[error("{}: {reason}", path.display())]
-    Robot {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: ConfigError,
-    },
     /// Neither the name of a stack nor that of a file.
     #[error(
         "there is no stack `{name}`, expected one of {}, or a file{}",
@@ -70,9 +53,9 @@ pub enum ConfigFileError {
         /// The name.
         name: String,
     },
-    /// A stack that cannot be, or not with the robot.
+    /// A value that cannot be used, or not with the robot.
     #[error("{}: {reason}", path.display())]
-    Stack {
+    Value {
         /// The file.
         path: PathBuf,
         /// What is wrong.
@@ -86,8 +69,8 @@ impl ConfigFileError {
         match self {
             Self::Toml { reason, .. } => &reason.field,
             Self::Missing { fields, .. } => fields.first().map_or("", String::as_str),
-            Self::Robot { reason, .. } | Self::Stack { reason, .. } => &reason.path,
-            Self::Read(_) | Self::Text { .. } | Self::NoRobot { .. } | Self::NoStack { .. } => "",
+            Self::Value { reason, .. } => &reason.path,
+            Self::File(_) | Self::NoRobot { .. } | Self::NoStack { .. } => "",
         }
     }
 }
@@ -118,7 +101,7 @@ pub(super) fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
 /// # Errors
 /// When the file cannot be read, or does not describe a robot that can be.
 pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
-    robot_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?)
+    robot_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes())
 }
 
 /// The same from memory; errors call the file `name`.
@@ -133,17 +116,20 @@ pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
 /// # Errors
 /// When the content does not describe a robot that can be.
 pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileError> {
-    let text = config_text(name, bytes)?;
+    let text = file_text(name, bytes)?;
     let path = || name.to_owned();
-    let robot: Robot = from_toml(text).map_err(|reason| match missing(text) {
-        fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
-            ConfigFileError::Missing { path: path(), fields }
+    let robot: Robot = from_toml(text).map_err(|reason| {
+        let tables = Table::try_from(Robot::small()).ok().zip(text.parse::<Table>().ok());
+        match tables.map_or_else(Vec::new, |(whole, given)| missing_fields(&whole, &given)) {
+            fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
+                ConfigFileError::Missing { path: path(), fields }
+            }
+            _ => ConfigFileError::Toml { path: path(), reason },
         }
-        _ => ConfigFileError::Toml { path: path(), reason },
     })?;
     match robot.validate() {
         Ok(()) => Ok(robot),
-        Err(reason) => Err(ConfigFileError::Robot { path: path(), reason }),
+        Err(reason) => Err(ConfigFileError::Value { path: path(), reason }),
     }
 }
 
@@ -153,8 +139,7 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileEr
 /// # Errors
 /// When the file cannot be read, or is not TOML.
 pub fn read_parameters(path: &Path) -> Result<ParameterFile, ConfigFileError> {
-    let bytes = read_file(path, MAX_TOML_BYTES)?;
-    let table = from_toml(config_text(path, &bytes)?)
+    let table = from_toml(&read_text(path, MAX_TOML_BYTES)?)
         .map_err(|reason| ConfigFileError::Toml { path: path.to_owned(), reason })?;
     Ok(ParameterFile { name: path.display().to_string(), table })
 }
@@ -162,8 +147,8 @@ pub fn read_parameters(path: &Path) -> Result<ParameterFile, ConfigFileError> {
 /// What a robot file need not have.
 const OPTIONAL: &str = "actuation_delay_s";
 
-/// The fields of a robot that a text does not give, as paths.
-fn missing(text: &str) -> Vec<String> {
+/// The fields of a whole table that another one does not give, as paths.
+pub(super) fn missing_fields(whole: &Table, given: &Table) -> Vec<String> {
     fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
         for (key, value) in whole {
             let (here, given) = (format!("{path}{key}"), given.and_then(|given| given.get(key)));
@@ -178,18 +163,8 @@ fn missing(text: &str) -> Vec<String> {
         }
     }
     let mut fields = Vec::new();
-    if let (Ok(whole), Ok(given)) = (Table::try_from(Robot::small()), text.parse::<Table>()) {
-        walk(&whole, Some(&given), "", &mut fields);
-    }
+    walk(whole, Some(given), "", &mut fields);
     fields
-}
-
-/// The text of a file of this name.
-///
-/// # Errors
-/// When it is not UTF-8.
-pub fn config_text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, ConfigFileError> {
-    text_from_bytes(bytes).map_err(|reason| ConfigFileError::Text { path: name.to_owned(), reason })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Stack files: all of a stack, from a path or from memory.
 
-use super::read::{config_text, file_of};
+use super::read::file_of;
 use super::toml_messages::in_plain_words;
 use super::toml_text::place_of_field;
-use super::{ConfigFileError, MAX_TOML_BYTES, TomlError, from_toml};
-use crate::file_system::read_file;
+use super::{ConfigFileError, MAX_TOML_BYTES, TomlError};
+use super::{file_text, from_toml, read_text};
 use crate::guide::GuideConfig;
 use crate::local::LocalConfig;
 use crate::navigate::Stack;
@@ -36,7 +36,7 @@ pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, Con
 /// # Errors
 /// When the file cannot be read, or does not hold a stack that the robot can be driven with.
 pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
-    stack_from_bytes(path, &read_file(path, MAX_TOML_BYTES)?, robot)
+    stack_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes(), robot)
 }
 
 /// The same from memory; errors call the file `name`.
@@ -49,14 +49,14 @@ pub fn stack_from_bytes(
     robot: &Robot,
 ) -> Result<Stack, ConfigFileError> {
     let path = || name.to_owned();
-    let text = config_text(name, bytes)?;
+    let text = file_text(name, bytes)?;
     let stack: Stack = from_toml(text).map_err(|error| {
         let reason = in_part(text, &error, robot).unwrap_or(error);
         ConfigFileError::Toml { path: path(), reason }
     })?;
     match stack.fit(robot) {
         Ok(_) => Ok(stack),
-        Err(reason) => Err(ConfigFileError::Stack { path: path(), reason }),
+        Err(reason) => Err(ConfigFileError::Value { path: path(), reason }),
     }
 }
 

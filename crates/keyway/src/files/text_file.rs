@@ -1,7 +1,7 @@
-//! Text files.
+//! Text files, read within limits.
 
-use keyway::file_system::{ReadError, read_file};
-use keyway::map::formats::{TextError, text_from_bytes};
+use crate::file_system::{ReadError, read_file};
+use crate::map::formats::{TextError, text_from_bytes};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -22,13 +22,18 @@ pub enum TextFileError {
     },
 }
 
-/// Returns the text of a file of at most `limit_bytes`, without a byte order mark.
+/// Reads the text of a file of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
 /// When the file cannot be read, holds more, or is not UTF-8.
 pub fn read_text(path: &Path, limit_bytes: u64) -> Result<String, TextFileError> {
-    let bytes = read_file(path, limit_bytes)?;
-    let text = text_from_bytes(&bytes)
-        .map_err(|reason| TextFileError::Text { path: path.to_owned(), reason })?;
-    Ok(text.to_owned())
+    file_text(path, &read_file(path, limit_bytes)?).map(str::to_owned)
+}
+
+/// Text of a file of this name, without a byte order mark.
+///
+/// # Errors
+/// When it is not UTF-8.
+pub fn file_text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, TextFileError> {
+    text_from_bytes(bytes).map_err(|reason| TextFileError::Text { path: name.to_owned(), reason })
 }
