@@ -1,20 +1,14 @@
 //! Stack files: all of a stack, from a path or from memory.
 
-use super::read::file_of;
-use super::toml_messages::in_plain_words;
+use super::overlay::{NamedDefault, Overlay, OverlayError};
+use super::read::{file_of, missing_fields};
 use super::toml_text::place_of_field;
-use super::{ConfigFileError, MAX_TOML_BYTES, TomlError};
+use super::{ConfigFileError, MAX_TOML_BYTES, StackBase, TomlError};
 use super::{file_text, from_toml, read_text};
-use crate::guide::GuideConfig;
-use crate::local::LocalConfig;
 use crate::navigate::Stack;
-use crate::plan::PlannerConfig;
 use crate::robot::Robot;
-use crate::smooth::SmootherConfig;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::path::Path;
-use toml::{Table, Value};
+use toml::Table;
 
 /// A stack by its name, with the parameters for a robot; or one from a file (anything that looks
 /// like one), relative to `folder`, with the parameters that it has there.
@@ -61,97 +55,30 @@ pub fn stack_from_bytes(
 }
 
 /// What is wrong within a part that has a name: the parser knows no more of it than where the part
-/// begins.
+/// begins. Laid over a sound part field by field, it shows which one cannot be used.
 fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
     let tree: Table = text.parse().ok()?;
     let part = tree.get(&error.field)?.as_table()?;
-    let name = part.get("name")?.as_str()?;
-    let (inner, reason) = match error.field.as_str() {
-        "planner" => fault(part, PlannerConfig::by_name(name)),
-        "smoother" => fault(part, SmootherConfig::by_name(name)),
-        "guide" => fault(part, GuideConfig::by_name(name, robot)),
-        "local" => fault(part, LocalConfig::by_name(name, robot)),
-        _ => None,
-    }?;
-    let field = format!("{}.{inner}", error.field);
-    let place = place_of_field(text, &field);
-    let (line, column) = (place.map(|(line, _)| line), place.map(|(_, column)| column));
+    let stack = Stack::for_plans(robot);
+    let base = StackBase::for_robot(&stack, robot);
+    let sound = base.part(&error.field, part.get("name")?.as_str()?).ok()?;
+    let named: NamedDefault<'_> = &|path, name| base.part(path, name);
+    let laid_over = Overlay::of(&stack, named).ok()?.set(&error.field, part.clone().into());
+    let (field, reason) = match laid_over {
+        Err(OverlayError::Rejected { path, reason }) => (path, reason),
+        Err(error) => (error.path().to_owned(), error.to_string()),
+        Ok(()) => {
+            let is_it = |path: &String| {
+                path.rsplit('.')
+                    .next()
+                    .is_some_and(|key| error.reason.ends_with(&format!("`{key}`")))
+            };
+            let path = missing_fields(&sound, part).into_iter().find(is_it)?;
+            (format!("{}.{path}", error.field), error.reason.clone())
+        }
+    };
+    let (line, column) = place_of_field(text, &field).unzip();
     Some(TomlError { line, column, field, reason })
-}
-
-/// The first field that a sound part cannot have, or cannot be without, and why.
-fn fault<P: Serialize + DeserializeOwned>(
-    part: &Table,
-    sound: Option<P>,
-) -> Option<(String, String)> {
-    let sound = Table::try_from(sound?).ok()?;
-    let try_one = |path: &[&str], value: &Value| {
-        let mut tree = sound.clone();
-        set(&mut tree, path, value)?;
-        let error = tree.try_into::<P>().err()?;
-        Some((path.join("."), in_plain_words(error.message())))
-    };
-    let without = |path: &[&str]| {
-        let mut tree = sound.clone();
-        table_of(&mut tree, path)?.remove(*path.last()?)?;
-        let error = tree.try_into::<P>().err()?;
-        Some((path.join("."), in_plain_words(error.message())))
-    };
-    first_leaf(part, &mut Vec::new(), &try_one)
-        .or_else(|| first_missing(&sound, part, &mut Vec::new(), &without))
-}
-
-/// The first answer for one of the values that a sound table has and another one lacks.
-fn first_missing<'a, R>(
-    sound: &'a Table,
-    part: &Table,
-    path: &mut Vec<&'a str>,
-    ask: &impl Fn(&[&str]) -> Option<R>,
-) -> Option<R> {
-    sound.iter().find_map(|(key, value)| {
-        path.push(key);
-        let answer = match (value, part.get(key)) {
-            (_, None) => ask(path),
-            (Value::Table(sound), Some(Value::Table(part))) => {
-                first_missing(sound, part, path, ask)
-            }
-            (_, Some(_)) => None,
-        };
-        path.pop();
-        answer
-    })
-}
-
-/// The first answer for one of the values in a table.
-fn first_leaf<'a, R>(
-    table: &'a Table,
-    path: &mut Vec<&'a str>,
-    ask: &impl Fn(&[&str], &Value) -> Option<R>,
-) -> Option<R> {
-    table.iter().find_map(|(key, value)| {
-        path.push(key);
-        let answer = match value {
-            Value::Table(inner) => first_leaf(inner, path, ask),
-            value => ask(path, value),
-        };
-        path.pop();
-        answer
-    })
-}
-
-/// Puts a value where its table is; `None` where that is none.
-fn set(tree: &mut Table, path: &[&str], value: &Value) -> Option<()> {
-    table_of(tree, path)?.insert((*path.last()?).to_owned(), value.clone());
-    Some(())
-}
-
-/// The table that holds the last part of a path; `None` where something else is in its place.
-fn table_of<'a>(tree: &'a mut Table, path: &[&str]) -> Option<&'a mut Table> {
-    let (_, tables) = path.split_last()?;
-    tables.iter().try_fold(tree, |table, key| {
-        let inner = table.entry(*key).or_insert_with(|| Value::Table(Table::new()));
-        inner.as_table_mut()
-    })
 }
 
 #[cfg(test)]
@@ -193,7 +120,10 @@ mod tests {
         assert!(none.contains("`hay`") && none.contains("key-point-dwa"), "{none}");
         let without = error("horizon_s", "prospect_s");
         let line = format!("my.toml: line {line}, ");
-        assert!(without.starts_with(&line) && without.contains("`prospect_s`"), "{without}");
+        assert!(
+            without.starts_with(&line) && without.contains("no field `local.window.prospect_s`"),
+            "{without}"
+        );
         let least = error("least_clearance_m = ", "least_clearance_m = true # ");
         assert!(least.contains("`controller.least_clearance_m`: invalid type: boolean"), "{least}");
         let missing = error("distance_cap_m", "# distance_cap_m");
