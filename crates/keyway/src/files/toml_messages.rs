@@ -54,9 +54,8 @@ fn kind(expected: &str) -> String {
         "a sequence" => "an array".to_owned(),
         "variant identifier" | "field identifier" | "path string" => "a string".to_owned(),
         _ if expected.contains("tuple") => format!("an array of {count} values"),
-        _ if ["a map", "struct ", "enum "].iter().any(|it| expected.contains(it)) => {
-            "a table".to_owned()
-        }
+        "a map" => "a table".to_owned(),
+        _ if expected.contains("struct ") || expected.contains("enum ") => "a table".to_owned(),
         _ => shown(expected, MESSAGE_LETTERS),
     }
 }

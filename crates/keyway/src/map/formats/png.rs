@@ -38,7 +38,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     // Palettes to colours, less than 8 bits to 8, transparent colours to alpha.
     decoder.set_transformations(Transformations::EXPAND);
 
-    let header = decoder.read_header_info().map_err(broken)?;
+    let header = decoder.read_header_info().map_err(|error| broken(&error))?;
     let (width, height) = (header.width, header.height);
     let row_bits = u64::from(width) * header.bits_per_pixel() as u64;
     if row_bits.div_ceil(8).saturating_mul(u64::from(height)) > can_hold {
@@ -47,7 +47,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     // Before anything of that size is made.
     GridFrame::new(u64::from(width), u64::from(height), 1.0, Pose::default())?;
 
-    let reader = decoder.read_info().map_err(broken)?;
+    let reader = decoder.read_info().map_err(|error| broken(&error))?;
     // The decoder looks colours up in a table that it makes of this, and panics where one is cut
     // off.
     let palette = reader.info().palette.as_deref();
@@ -57,7 +57,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
         let expected = "expected three for each of 1 to 256 colours";
         return Err(ImageError::Png(format!("its palette has {length} bytes, {expected}")));
     }
-    let values = read_rows(reader, cells).map_err(broken)?;
+    let values = read_rows(reader, cells).map_err(|error| broken(&error))?;
     if values.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(ImageError::Png("its first frame does not fill it".to_owned()));
     }
@@ -74,7 +74,7 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
 }
 
 /// The first sentence of what the decoder says, without checksums, and with a chunk's name only.
-fn broken(error: DecodingError) -> ImageError {
+fn broken(error: &DecodingError) -> ImageError {
     let text = error.to_string();
     let sentence = text.split(". ").next().unwrap_or(&text).trim_end_matches('.');
     let chunk = sentence.split_once("ChunkType { type: ").and_then(|(before, chunk)| {
@@ -254,11 +254,7 @@ mod tests {
             damaged
         };
         named(&with(42), "Corrupt deflate stream");
-        let text = fault(&with(29));
-        assert!(
-            text.contains("CRC error") && text.contains("while decoding IHDR chunk;"),
-            "{text}"
-        );
+        named(&with(29), "CRC error in IHDR chunk");
         let mut later = whole.clone();
         later[12] = b'J';
         named(&later, "JHDR chunk appeared before IHDR chunk");
