@@ -1,6 +1,6 @@
 //! What happens when a command is issued and the robot then brakes, and what that may touch.
 
-use super::start::{Covered, Start, Touched};
+use super::start::{Body, Covered, ROUNDING_M, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Point, Pose, Velocity, wrap_angle};
 use crate::local::rear::{Seen, SeenAhead};
@@ -18,18 +18,6 @@ pub(super) struct Work {
     /// Of each body.
     boxes: [NearBoxes; 2],
     turned: [Turned; 2],
-}
-
-/// The part of the robot that must not come near to what stands.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Body<'a> {
-    pub(super) core: Core<'a>,
-    /// The body is all ground this near to the core \[m\].
-    pub(super) radius_m: f64,
-    /// What it must keep from that \[m\].
-    pub(super) kept_m: f64,
-    /// Whether it must keep that from the map's border, too.
-    pub(super) keeps_border: bool,
 }
 
 /// A body among what stands around it.
@@ -115,13 +103,6 @@ impl Reach {
 impl<'a> Manoeuvres<'a> {
     /// What is nearer than this cannot be told from contact \[m\].
     const LEAST_STEP_M: f64 = 1e-4;
-
-    /// The most that rounding may take from a distance \[m\]: what is no farther away than this is
-    /// touched, because less than nothing could be kept from it.
-    pub(super) const ROUNDING_M: f64 = 1e-9;
-
-    /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
-    pub(super) const HALVINGS: u32 = 16;
 
     /// Those whose first velocity lies between braking and what was asked for.
     pub(super) fn new(
@@ -318,7 +299,7 @@ impl<'a> Manoeuvres<'a> {
     /// Shows that a mover cannot touch the footprint on a stretch, unless nothing moves on it.
     fn check_mover(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, _) = self.robot.footprint.core();
-        let stands = stretch.moves_m(&core) <= Self::ROUNDING_M;
+        let stands = stretch.moves_m(&core) <= ROUNDING_M;
         if stands { Ok(()) } else { self.check_apart(stretch, mover) }
     }
 

@@ -1,12 +1,27 @@
 //! A robot at the beginning of a cycle: which parts of it must keep away from what.
 
 use super::Surroundings;
-use super::manoeuvre::{Body, Manoeuvres};
 use crate::geometry::{Point, Pose};
 use crate::map::{Cell, Clearance, Core};
 use crate::robot::Robot;
 use crate::sense::ProjectedScan;
 use arrayvec::ArrayVec;
+
+/// The most that rounding may take from a distance \[m\]: what is no farther away than this is
+/// touched, because less than nothing could be kept from it.
+pub(super) const ROUNDING_M: f64 = 1e-9;
+
+/// The part of the robot that must not come near to what stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body<'a> {
+    pub(super) core: Core<'a>,
+    /// The body is all ground this near to the core \[m\].
+    pub(super) radius_m: f64,
+    /// What it must keep from that \[m\].
+    pub(super) kept_m: f64,
+    /// Whether it must keep that from the map's border, too.
+    pub(super) keeps_border: bool,
+}
 
 /// The centre of rotation is inside an obstacle or outside the map.
 pub(super) struct Covered;
@@ -68,7 +83,7 @@ impl Touched {
         let mut nearest_m = reach_m;
         self.places.retain(|&place| {
             let room_m = core.distance_to_m(pose, place) - radius_m;
-            let matters = room_m > Manoeuvres::ROUNDING_M && room_m <= reach_m;
+            let matters = room_m > ROUNDING_M && room_m <= reach_m;
             if matters {
                 nearest_m = nearest_m.min(room_m);
             }
@@ -90,6 +105,9 @@ pub(super) struct Start<'a> {
 }
 
 impl<'a> Start<'a> {
+    /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
+    const HALVINGS: u32 = 16;
+
     /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where
     /// the robot touches something, first the part of it that may touch nothing at all, then the
     /// whole, which may touch nothing but what is `touched`.
@@ -110,11 +128,11 @@ impl<'a> Start<'a> {
         let core_room_m = room_m(&core, pose, &clearance, reach_m);
         let room_m = core_room_m - radius_m;
         let first = Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border: true };
-        if room_m > Manoeuvres::ROUNDING_M {
+        if room_m > ROUNDING_M {
             return Ok(ArrayVec::from_iter([first]));
         }
         let centre = Core::polygon(&[]);
-        if self::room_m(&centre, pose, &clearance, reach_m) <= Manoeuvres::ROUNDING_M {
+        if self::room_m(&centre, pose, &clearance, reach_m) <= ROUNDING_M {
             return Err(Covered);
         }
         let part = if core.vertices().is_empty() {
@@ -134,7 +152,7 @@ impl<'a> Start<'a> {
         let Surroundings { pose, obstacles, seen, .. } = *self.around;
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
-        let touch_m = radius_m + Manoeuvres::ROUNDING_M;
+        let touch_m = radius_m + ROUNDING_M;
         core.touched(pose, &clearance, touch_m, &mut touched.squares);
         if let Some(scan) = seen.scan {
             touched.add_squares_met(scan, &clearance);
@@ -146,14 +164,14 @@ impl<'a> Start<'a> {
         let to_others_m = core.distance_without_m(pose, &clearance, reach_m, &touched.squares);
         let to_others_m = to_others_m - radius_m;
         let to_border_m = core.to_border_m(pose, &clearance) - radius_m;
-        let keeps_border = to_border_m > Manoeuvres::ROUNDING_M;
+        let keeps_border = to_border_m > ROUNDING_M;
         let room_m = if keeps_border { to_others_m.min(to_border_m) } else { to_others_m };
         Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border }
     }
 
     /// The margin, or what there is now, where that is less.
     fn kept_m(&self, room_m: f64) -> f64 {
-        self.margin_m.min(room_m - Manoeuvres::ROUNDING_M)
+        self.margin_m.min(room_m - ROUNDING_M)
     }
 
     /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
@@ -163,10 +181,10 @@ impl<'a> Start<'a> {
             shrunk.clear();
             shrunk.extend(vertices.iter().map(|&vertex| vertex * scale));
             let room_m = room_m(&Core::polygon(shrunk), pose, &obstacles.clearance(), reach_m);
-            room_m > Manoeuvres::ROUNDING_M
+            room_m > ROUNDING_M
         };
         let (mut free, mut covering) = (0.0, 1.0);
-        for _ in 0..Manoeuvres::HALVINGS {
+        for _ in 0..Self::HALVINGS {
             let middle = 0.5 * (free + covering);
             *(if fill(middle) { &mut free } else { &mut covering }) = middle;
         }
