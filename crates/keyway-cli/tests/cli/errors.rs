@@ -152,7 +152,7 @@ fn parameters() {
     let parts = ["no field `planner.corner`", "name, corners"];
     refused(&folder, &unknown, &parts, "config", Some("planner.corner"));
     let kind = format!("{PLAN} --set map.clearance_m=wide");
-    let parts = ["`map.clearance_m` must be a number", "\"wide\""];
+    let parts = ["`map.clearance_m`: invalid type", "expected a number", "wide"];
     refused(&folder, &kind, &parts, "config", Some("map.clearance_m"));
     let variant = format!("{PLAN} --planner astar --set planner.corners=maybe");
     let parts = ["`maybe`", "`forbid` or `allow`"];

@@ -68,7 +68,7 @@ fn parameters_say_what_a_field_should_be() {
             &["`map.published.expansion_cells`: ", "`1.5`, expected a whole number"],
         ),
         ("[map]\nunknown = \"grey\"", &["`map.unknown`", "`grey`", "`blocked`"]),
-        ("[map]\nunknown = true", &["`map.unknown`: wanted string or table"]),
+        ("[map]\nunknown = true", &["`map.unknown`: invalid type, expected a string"]),
         ("[planner]\nname = \"x\"", &["`planner.name` must be one of"]),
         ("[planner]\nname = 3", &["`planner.name`: ", "`3`, expected a string"]),
         ("[local]\nx = 1", &["there is no field `local.x`"]),

@@ -3,8 +3,8 @@
 use super::did_you_mean;
 use crate::map::formats::shown;
 
-/// Letters of a value that are shown, and of a message, which may list all fields.
-const VALUE_LETTERS: usize = 80;
+/// Letters of a kind with its value that are shown, and of a message, which may list all fields.
+const VALUE_LETTERS: usize = 60;
 const MESSAGE_LETTERS: usize = 500;
 
 /// The message of an error of the reader, with the kinds of values that TOML has.
@@ -24,6 +24,8 @@ pub(super) fn in_plain_words(message: &str) -> String {
     let got = match got {
         "invalid type: map" => "invalid type: table".to_owned(),
         "invalid type: sequence" => "invalid type: array".to_owned(),
+        // What it says of a choice between names that is no text.
+        "invalid type: unit variant" => "invalid type".to_owned(),
         _ => shown(got, VALUE_LETTERS).replacen("unknown variant ", "unknown value ", 1),
     };
     format!("{got}, expected {}{}", kind(expected), name_meant(message))
@@ -52,7 +54,9 @@ fn kind(expected: &str) -> String {
         "i64" | "any valid TOML value" => whole(i64::MIN, i64::MAX),
         "f64" => "a number".to_owned(),
         "a sequence" => "an array".to_owned(),
-        "variant identifier" | "field identifier" | "path string" => "a string".to_owned(),
+        "variant identifier" | "field identifier" | "path string" | "string only" => {
+            "a string".to_owned()
+        }
         _ if expected.contains("tuple") => format!("an array of {count} values"),
         "a map" => "a table".to_owned(),
         _ if expected.contains("struct ") || expected.contains("enum ") => "a table".to_owned(),
@@ -76,6 +80,7 @@ mod tests {
                 "invalid value: integer `-1`, expected a whole number from 0 to 4294967295",
             ),
             ("invalid type: map, expected a sequence", "invalid type: table, expected an array"),
+            ("invalid type: unit variant, expected string only", "invalid type, expected a string"),
             (
                 "invalid type: boolean `true`, expected path string",
                 "invalid type: boolean `true`, expected a string",
