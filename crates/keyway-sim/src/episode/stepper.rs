@@ -69,4 +69,16 @@ mod tests {
         let expected = run_episode(&episode).unwrap().first().trajectory.unwrap();
         assert_eq!(samples.iter().map(trajectory_row).collect::<Vec<_>>(), expected);
     }
+
+    #[test]
+    fn several_robots_are_not_driven_from_outside() {
+        let map = OccupancyGrid::from_ascii(&["........"; 4]);
+        let robot =
+            |y: f64| EpisodeRobot::new(Robot::small(), Point::new(0.6, y), Point::new(7.4, y));
+        let none = Episode::of_robots(map.clone(), vec![]).stepper().map(drop).unwrap_err();
+        assert_eq!(none.to_string(), "robots must be one or more, got none");
+        let two =
+            Episode::of_robots(map, vec![robot(1.0), robot(3.0)]).stepper().map(drop).unwrap_err();
+        assert_eq!(two.to_string(), "robots must be one to be driven from outside, got 2");
+    }
 }
