@@ -16,9 +16,9 @@ pub type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static
 
 /// A value of type `T` as a tree, in which fields can be changed by their path.
 ///
-/// A change may only replace what is there, or give a value to a field that has none. Every change is tried at once, so that an error names its field. A table with a
-/// `name` is one of several alternatives: when its name changes, the whole table becomes the
-/// default of the new name.
+/// A change may only replace what is there, or give a value to a field that has none. Every change
+/// is tried at once, so that an error names its field. A table with a `name` is one of several
+/// alternatives: when its name changes, the whole table becomes the default of the new name.
 pub struct Overlay<'a, T> {
     tree: Table,
     named: NamedDefault<'a>,

@@ -73,10 +73,7 @@ impl<'a> Drive<'a> {
         look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
-            seen: crate::sense::SeenCells {
-                behind: seen.as_ref(),
-                ..crate::sense::SeenCells::ANYWHERE
-            },
+            seen: SeenCells { behind: seen.as_ref(), ..SeenCells::ANYWHERE },
             movers,
             walked: &[],
             pose: *pose,
@@ -254,7 +251,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     let scene = Scene {
         obstacles: drive.world,
         sensed: &scene_grid,
-        seen: crate::sense::SeenCells::ANYWHERE,
+        seen: SeenCells::ANYWHERE,
         movers: &drive.movers,
         walked: &[],
         pose,
