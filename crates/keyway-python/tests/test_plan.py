@@ -155,7 +155,7 @@ def test_parameters_are_those_of_the_files() -> None:
         ({"radius": math.nan}, "map.clearance_m must be .* got NaN"),
         ({"robot": "hal"}, "there is no robot `hal`, expected one of small, jackal, paper, or a file"),
         ({"parameters": {"map": {"clearance": 1.0}}}, "there is no field `map.clearance`; `map` has: "),
-        ({"parameters": {"map": {"unknown": 3}}}, "`map.unknown`: wanted string or table"),
+        ({"parameters": {"map": {"unknown": 3}}}, "`map.unknown`: invalid type, expected a string"),
         ({"parameters": {"map": {"unknown": "maybe"}}}, "`map.unknown`: "),
         ({"parameters": {"smoother": {"name": "taut", "tension": 1}}}, "there is no field `smoother.tension`"),
         ({"parameters": {"map": None}}, "`map`|None|unit"),

@@ -6,6 +6,8 @@ use crate::map::formats::shown;
 /// Letters of a kind with its value that are shown, and of a message, which may list all fields.
 const VALUE_LETTERS: usize = 60;
 const MESSAGE_LETTERS: usize = 500;
+/// No whole number that TOML can hold has more letters.
+const MOST_DIGITS: usize = 20;
 
 /// The message of an error of the reader, with the kinds of values that TOML has.
 pub(super) fn in_plain_words(message: &str) -> String {
@@ -26,9 +28,19 @@ pub(super) fn in_plain_words(message: &str) -> String {
         "invalid type: sequence" => "invalid type: array".to_owned(),
         // What it says of a choice between names that is no text.
         "invalid type: unit variant" => "invalid type".to_owned(),
-        _ => shown(got, VALUE_LETTERS).replacen("unknown variant ", "unknown value ", 1),
+        _ => {
+            shown(&few_digits(got), VALUE_LETTERS).replacen("unknown variant ", "unknown value ", 1)
+        }
     };
     format!("{got}, expected {}{}", kind(expected), name_meant(message))
+}
+
+/// The same with a long number as a power of ten, which has all its digits otherwise.
+fn few_digits(got: &str) -> String {
+    let number = got.strip_suffix('`').and_then(|got| got.split_once('`'));
+    let number = number.filter(|(_, number)| number.len() > MOST_DIGITS);
+    let parsed = number.and_then(|(before, number)| Some((before, number.parse::<f64>().ok()?)));
+    parsed.map_or_else(|| got.to_owned(), |(before, number)| format!("{before}`{number:e}`"))
 }
 
 /// The name that may have been meant, of a message such as "unknown field `gaol`, expected `start`
@@ -78,6 +90,10 @@ mod tests {
             (
                 "invalid value: integer `-1`, expected u32",
                 "invalid value: integer `-1`, expected a whole number from 0 to 4294967295",
+            ),
+            (
+                "invalid type: floating point `1000000000000000000000.0`, expected u32",
+                "invalid type: floating point `1e21`, expected a whole number from 0 to 4294967295",
             ),
             ("invalid type: map, expected a sequence", "invalid type: table, expected an array"),
             ("invalid type: unit variant, expected string only", "invalid type, expected a string"),
