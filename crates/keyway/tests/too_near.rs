@@ -33,7 +33,7 @@ fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
     all.filter(|(_, stack)| stack.local.name() != "follower").collect()
 }
 
-/// What a robot sees of the wall that is told to be nearer to it than it is.
+/// The robot's scan of the wall, which is told to be nearer than it is.
 fn scan_of_the_wall(robot: &Robot, told: Pose) -> Scan {
     let mut scan = Scan::of_nothing(&robot.sensor);
     let to_wall_m = told.y - WALL_M + TOLD_NEARER_M;

@@ -6,7 +6,7 @@ use super::{Episode, EpisodeError, EpisodeObserver, EpisodeReport};
 use crate::report::Clock;
 use keyway::navigate::FittedStack;
 
-/// How an episode is run beyond what it says itself.
+/// Options of a run that are no part of its episode.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
     /// Clock that measures times; `None`: times are not measured.

@@ -13,7 +13,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
-    /// A file cannot be read or is not TOML, or a file of a robot, a stack or disturbances is wrong.
+    /// A file cannot be read or is not TOML, or a file of a robot, a stack or disturbances is
+    /// wrong.
     #[error(transparent)]
     Config(#[from] ConfigFileError),
     /// A file is not a scene.

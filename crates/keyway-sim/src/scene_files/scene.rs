@@ -204,7 +204,8 @@ impl SceneFile {
     /// [`keyway::files::find_stack`]).
     ///
     /// # Errors
-    /// Those of `find`; when an obstacle is not on the map, or a random one cannot be drawn.
+    /// Those of `find`; when the scene was not read from a file and has neither a start and a goal
+    /// nor robots, when an obstacle is not on the map, or a random one cannot be drawn.
     pub fn episode<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,

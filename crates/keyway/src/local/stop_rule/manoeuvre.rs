@@ -41,7 +41,8 @@ pub(super) struct Manoeuvres<'a> {
     /// something.
     grounds: ArrayVec<Ground<'a>, 2>,
     touched: &'a Touched,
-    /// Where the room from places of the scan was computed last, and what was to spare \[m\].
+    /// The pose at which the room from places of the scan was computed last, and the room to spare
+    /// there \[m\].
     looked: Option<(Pose, f64)>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].

@@ -17,24 +17,24 @@ pub(super) struct Body<'a> {
     pub(super) core: Core<'a>,
     /// The body is all ground this near to the core \[m\].
     pub(super) radius_m: f64,
-    /// What it must keep from that \[m\].
+    /// Distance that it must keep from that \[m\].
     pub(super) kept_m: f64,
-    /// Whether it must keep that from the map's border, too.
+    /// True if it must keep that from the map's border, too.
     pub(super) keeps_border: bool,
 }
 
 /// The centre of rotation is inside an obstacle or outside the map.
 pub(super) struct Covered;
 
-/// What a robot touches when a cycle begins.
+/// Obstacles that a robot touches when a cycle begins.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     /// Obstacle squares, row by row: those that it touches, and those beside them in which the
     /// latest scan met something.
     pub(super) squares: Vec<Cell>,
-    /// Where the scan met something near the robot, outside of it.
+    /// Places at which the scan met something near the robot, outside of it.
     pub(super) places: Vec<Point>,
-    /// What it must keep from those places \[m\].
+    /// Distance that it must keep from those places \[m\].
     pub(super) places_kept_m: f64,
 }
 

@@ -245,7 +245,8 @@ mod tests {
             let expected = format!("not a sound PNG image: {fault_named}; save it again");
             assert_eq!(raw(bytes).unwrap_err().to_string(), expected);
         };
-        for length in [10, 45] {
+        // In the signature, in the data, and before the chunk that ends a file.
+        for length in [10, 45, whole.len() - 12] {
             named(&whole[..length], "unexpected end of file");
         }
         let with = |index: usize| {

@@ -5,8 +5,8 @@ use crate::map::layers::dilation::check_reach;
 use serde::{Deserialize, Serialize};
 
 /// Distances that papers keep from obstacles, each in a measure of its own; by default none. They
-/// hold beside [`crate::map::LayerConfig::clearance_m`], so that any planner can be compared on the layers of a
-/// paper's.
+/// hold beside [`crate::map::LayerConfig::clearance_m`], so that any planner can be compared on the
+/// layers of a paper's.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
