@@ -7,18 +7,17 @@ use super::Circle;
 /// The discs are sorted by where they begin along the x axis. Each is compared only with discs that
 /// begin before it ends. So the cost grows with the discs that share a strip and with the overlaps.
 pub(super) fn overlapping(discs: &[Circle]) -> Vec<Vec<usize>> {
-    let mut along: Vec<(f64, usize)> =
-        discs.iter().map(|disc| disc.centre.x - disc.radius_m).zip(0..).collect();
+    let begins = |(disc, index): (&Circle, usize)| (disc.centre.x - disc.radius_m, index, *disc);
+    let mut along: Vec<(f64, usize, Circle)> = discs.iter().zip(0..).map(begins).collect();
     along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut later = vec![Vec::new(); discs.len()];
-    for (place, &(_, one)) in along.iter().enumerate() {
-        let Circle { centre, radius_m } = discs[one];
+    for (place, &(_, one, Circle { centre, radius_m, .. })) in along.iter().enumerate() {
         let end = centre.x + radius_m;
-        let beside = along[place + 1..].iter().take_while(|(begin, _)| *begin <= end);
-        for &(_, other) in beside {
-            let radii_m = radius_m + discs[other].radius_m;
-            if (centre - discs[other].centre).norm_sq() <= radii_m * radii_m {
-                later[one.min(other)].push(one.max(other));
+        let beside = along[place + 1..].iter().take_while(|(begin, ..)| *begin <= end);
+        for (_, other, disc) in beside {
+            let radii_m = radius_m + disc.radius_m;
+            if (centre - disc.centre).norm_sq() <= radii_m * radii_m {
+                later[one.min(*other)].push(one.max(*other));
             }
         }
     }
