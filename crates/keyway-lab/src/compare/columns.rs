@@ -1,6 +1,9 @@
 //! The printed table: in the terminal and in LaTeX.
 
 use super::Compared;
+use super::figures::{
+    CLEARANCE_M, EXCESS, Figure, LENGTH_M, NON_SMOOTH_TURNS, Summary, TURNING_ANGLE_DEG, TURNS,
+};
 use super::row::CompareRow;
 use crate::table::{latex_table, number, percent, range, rows};
 use keyway::files::did_you_mean;
@@ -18,11 +21,19 @@ struct Column {
     /// Header in the terminal, in two lines where it is longer than its numbers; `None` where the
     /// terminal shows the column only on request.
     heading: Option<&'static str>,
-    cell: fn(&CompareRow) -> String,
-    /// Range of the values of most queries, where the cell is a mean.
-    range: Option<fn(&CompareRow) -> String>,
+    cell: Cell,
     is_needed: fn(&[CompareRow]) -> bool,
 }
+
+/// Content of a column.
+#[derive(Debug)]
+enum Cell {
+    Text(fn(&CompareRow) -> String),
+    /// A mean, with the range of the values of most queries. Each is written with as many decimals.
+    Mean(&'static Figure, Written, [usize; 2]),
+}
+
+type Written = fn(Option<f64>, usize) -> String;
 
 /// Names that come first in every row; the terminal has the map above its table.
 const MAP: Column = always("map", "map", None, |row| row.map.clone());
@@ -36,31 +47,25 @@ const COLUMNS: [Column; 14] = [
     always("solved", "solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
     always("missed", "missed", None, |row| row.missed.to_string()),
     always("compared", "compared", None, |row| row.compared.to_string()),
-    mean("length", "length m", Some("length m"), length, |row| {
-        range(row.p5_length_m, row.p95_length_m, |length_m| number(length_m, 1))
-    }),
-    mean("excess", "excess %", Some("excess %"), excess, |row| {
-        range(row.p5_excess, row.p95_excess, |share| percent(share, 1))
-    }),
-    always("worst", "worst %", None, |row| percent(row.max_excess, 3)),
-    mean("turns", "turns", Some("turns"), turns, |row| {
-        range(row.p5_turns, row.p95_turns, |turns| number(turns, 0))
-    }),
-    mean("angle", "angle deg", None, angle, |row| {
-        range(row.p5_turning_angle_deg, row.p95_turning_angle_deg, |angle| number(angle, 0))
-    }),
-    mean("non-smooth", "non-smooth", Some("non-\nsmooth"), non_smooth, |row| {
-        range(row.p5_non_smooth_turns, row.p95_non_smooth_turns, |turns| number(turns, 0))
-    }),
+    column("length", "length m", Some("length m"), Cell::Mean(&LENGTH_M, number, [3, 1])),
+    column("excess", "excess %", Some("excess %"), Cell::Mean(&EXCESS, percent, [3, 1])),
+    always("worst", "worst %", None, |row| percent(row.figures.get(&EXCESS).worst, 3)),
+    column("turns", "turns", Some("turns"), Cell::Mean(&TURNS, number, [1, 0])),
+    column("angle", "angle deg", None, Cell::Mean(&TURNING_ANGLE_DEG, number, [1, 0])),
+    column(
+        "non-smooth",
+        "non-smooth",
+        Some("non-\nsmooth"),
+        Cell::Mean(&NON_SMOOTH_TURNS, number, [1, 0]),
+    ),
     always("clearance", "least clearance m", Some("clear-\nance m"), |row| {
-        number(row.min_clearance_m, 3)
+        number(row.figures.get(&CLEARANCE_M).worst, 3)
     }),
     Column {
         id: "shortfalls",
         name: "shortfalls",
         heading: Some("short-\nfalls"),
-        cell: shortfalls,
-        range: None,
+        cell: Cell::Text(shortfalls),
         // Shown only where a path falls short of the requested clearance.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
@@ -79,25 +84,29 @@ const fn always(
     heading: Option<&'static str>,
     cell: fn(&CompareRow) -> String,
 ) -> Column {
-    Column { id, name, heading, cell, range: None, is_needed: |_| true }
+    column(id, name, heading, Cell::Text(cell))
 }
 
-const fn mean(
+const fn column(
     id: &'static str,
     name: &'static str,
     heading: Option<&'static str>,
-    cell: fn(&CompareRow) -> String,
-    range: fn(&CompareRow) -> String,
+    cell: Cell,
 ) -> Column {
-    Column { id, name, heading, cell, range: Some(range), is_needed: |_| true }
+    Column { id, name, heading, cell, is_needed: |_| true }
 }
 
 impl Column {
     /// Returns the cell with its range behind or below it.
     fn with_range(&self, row: &CompareRow, [before, after]: [&str; 2]) -> String {
-        let range = self.range.map(|range| range(row)).filter(|range| !range.is_empty());
-        let range = range.map(|range| format!("{before}{range}{after}")).unwrap_or_default();
-        (self.cell)(row) + &range
+        let (figure, written, [of_mean, of_range]) = match self.cell {
+            Cell::Text(text) => return text(row),
+            Cell::Mean(figure, written, decimals) => (figure, written, decimals),
+        };
+        let Summary { mean, p5, p95, .. } = row.figures.get(figure);
+        let range = range(p5, p95, |value| written(value, of_range));
+        let range = if range.is_empty() { range } else { format!("{before}{range}{after}") };
+        written(mean, of_mean) + &range
     }
 }
 
@@ -215,24 +224,4 @@ const fn corners(row: &CompareRow) -> &'static str {
 fn shortfalls(row: &CompareRow) -> String {
     let of = |all: usize| format!("{}/{all}", row.shortfalls);
     Some(row.compared).filter(|&all| all > 0).map_or_else(|| "-".to_owned(), of)
-}
-
-fn length(row: &CompareRow) -> String {
-    number(row.mean_length_m, 3)
-}
-
-fn excess(row: &CompareRow) -> String {
-    percent(row.mean_excess, 3)
-}
-
-fn turns(row: &CompareRow) -> String {
-    number(row.mean_turns, 1)
-}
-
-fn angle(row: &CompareRow) -> String {
-    number(row.mean_turning_angle_deg, 1)
-}
-
-fn non_smooth(row: &CompareRow) -> String {
-    number(row.mean_non_smooth_turns, 1)
 }

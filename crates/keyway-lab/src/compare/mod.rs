@@ -9,6 +9,7 @@ mod choice;
 mod columns;
 mod contest;
 mod ends;
+mod figures;
 mod files;
 mod left_out;
 mod lowered;

@@ -91,7 +91,7 @@ pub fn number(value: Option<f64>, decimals: usize) -> String {
 }
 
 /// The two ends of the range of most values; empty where they are missing.
-pub fn range(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> String) -> String {
+pub fn range(low: Option<f64>, high: Option<f64>, shown: impl Fn(Option<f64>) -> String) -> String {
     if low.is_none() || high.is_none() {
         return String::new();
     }
