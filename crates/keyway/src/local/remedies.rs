@@ -8,10 +8,11 @@
 //! # Errors / cost
 //! None. Up to 40 decisions.
 
-use super::{Change, Remedy, Scene};
-use crate::geometry::{Pose, Velocity};
+use super::{Change, Remedy, Scene, Scratch, StopRule, StopRuleConfig, Surroundings};
+use crate::geometry::Pose;
 use crate::robot::{Limits, Robot};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Turns that are tried are multiples of this \[rad\].
 const TURN_STEP_RAD: f64 = PI / 12.0;
@@ -63,16 +64,18 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
 }
 
 /// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at
-/// least a cycle; no scene where it would touch something before.
+/// least a cycle; no scene where it would touch something before, by the [stop rule](StopRule).
 fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
     let braking = robot.limits.braked(scene.velocity, robot.cycle_s);
-    let (mut standing, mut duration_s, mut is_free) = (*scene, 0.0, true);
+    let (mut standing, mut duration_s) = (*scene, 0.0);
     for motion in robot.motion_to_stop(scene.pose, scene.velocity, braking) {
         (standing.pose, standing.velocity) = (motion.end, motion.to);
         duration_s += robot.cycle_s;
-        is_free &=
-            motion.from == Velocity::ZERO || robot.footprint.is_free(motion.end, scene.obstacles);
     }
+    let rule = StopRule::for_any_brakes(StopRuleConfig::for_robot(robot), Arc::new(robot.clone()));
+    let around = Surroundings::standing(scene);
+    let is_free =
+        rule.is_ok_and(|rule| rule.admits(&around, braking, &mut Scratch::default()).is_ok());
     (is_free.then_some(standing), duration_s)
 }
 

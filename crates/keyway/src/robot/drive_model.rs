@@ -161,21 +161,13 @@ impl Limits {
     /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its
     /// beginning, to stand within `within_m` of there, driving straight and braking in whole cycles
     /// \[m/s\]; 0 where none is small enough.
-    ///
-    /// In a cycle c a deceleration of b sheds b c. From the speed v = (n + f) b c, n whole and 0 <=
-    /// f < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from_mps` + v) c
-    /// / 2. Solved for n and f.
     pub(crate) fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
-        let shed_mps = self.deceleration_mps2 * cycle_s;
-        // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
-        let left = (2.0 * within_m / cycle_s - from_mps.abs()) / shed_mps;
-        if left == f64::INFINITY {
-            return left;
-        }
-        let left = left.max(0.0);
-        let whole = (0.5 * ((1.0 + 4.0 * left).sqrt() - 1.0)).floor();
-        let part = (left - whole * whole - whole) / (2.0 * whole + 2.0);
-        shed_mps * (whole + part)
+        stoppable(from_mps, within_m, self.deceleration_mps2, cycle_s)
+    }
+
+    /// The same of turning on the spot \[rad/s\].
+    pub(crate) fn stoppable_radps(&self, from_radps: f64, within_rad: f64, cycle_s: f64) -> f64 {
+        stoppable(from_radps, within_rad, self.angular_deceleration_radps2, cycle_s)
     }
 
     /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
@@ -190,6 +182,24 @@ impl Limits {
         let kept = 1.0 - duration_s / stop_s;
         Velocity::new(from.v * kept, from.omega * kept)
     }
+}
+
+/// The largest velocity at the end of a cycle from which a stop is possible in whole cycles.
+///
+/// In a cycle c a deceleration of b sheds b c. From the velocity v = (n + f) b c, n whole and 0 <= f
+/// < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from` + v) c / 2. Solved
+/// for n and f.
+fn stoppable(from: f64, within: f64, deceleration: f64, cycle_s: f64) -> f64 {
+    let shed = deceleration * cycle_s;
+    // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
+    let left = (2.0 * within / cycle_s - from.abs()) / shed;
+    if left == f64::INFINITY {
+        return left;
+    }
+    let left = left.max(0.0);
+    let whole = (0.5 * ((1.0 + 4.0 * left).sqrt() - 1.0)).floor();
+    let part = (left - whole * whole - whole) / (2.0 * whole + 2.0);
+    shed * (whole + part)
 }
 
 /// `from` moved towards `to`; speeding up and slowing down have limits of their own.

@@ -22,8 +22,8 @@
 //!   `detour.clearance_m` to one of the nodes of the route within `detour.look_ahead_m`. Nodes are
 //!   its points at every whole cell of arc length, and its end. The obstacle is all sensed cells
 //!   connected with that cell, as far as they are within the same distance of the robot.
-//! - The follower looks at no obstacle, so a command of it is driven only when the robot can then
-//!   brake on its arc without touching anything; otherwise the dynamic window approach drives to
+//! - The follower looks at no obstacle, so a command of it is driven only when the [stop
+//!   rule](StopRule) for what stands admits it, with the margin of the window; otherwise the dynamic window approach drives to
 //!   the follower's point of the route in that cycle. On routes as smooth and as far from obstacles
 //!   as the paper's, that does not happen.
 //! - The paper goes on with the dynamic window approach while obstacles move. Here everything is
@@ -51,11 +51,11 @@ use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::heading;
 use super::{
     Decision, DistanceAt, DriveMemory, Evaluation, Explanation, Follower, FollowerConfig,
-    LocalPlanner, NoCommand, Rejections, Scene, Scratch, WindowConfig,
+    LocalPlanner, NoCommand, Rejections, Scene, Scratch, StopRule, StopRuleConfig, Surroundings,
+    WindowConfig,
 };
 use crate::ConfigError;
-use crate::geometry::{Pose, Velocity};
-use crate::robot::{Ramp, Robot};
+use crate::robot::Robot;
 use detour::{AllCovered, GuidePoints};
 use obstacle::Cluster;
 use serde::{Deserialize, Serialize};
@@ -147,7 +147,7 @@ pub struct GuidedDwa {
     weighing: Weighing<3>,
     detour: DetourConfig,
     follower: Follower,
-    safety_margin_m: f64,
+    rule: StopRule,
 }
 
 /// No place to go to behind an obstacle is free.
@@ -162,6 +162,9 @@ impl GuidedDwa {
     /// The name of target(v, omega) in an evaluation.
     const TARGET_DISTANCE: &'static str = "target-distance";
 
+    /// The margin of the stop rule where the window has none \[m\].
+    const LEAST_MARGIN_M: f64 = 1e-4;
+
     /// The name of od(v, omega) in an evaluation.
     const OBSTACLE_DISTANCE: &'static str = "obstacle-distance";
 
@@ -172,10 +175,11 @@ impl GuidedDwa {
     /// error names the field.
     pub fn new(config: GuidedDwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let GuidedDwaConfig { window, weights, detour, follower } = config;
-        let safety_margin_m = window.safety_margin_m;
+        let margin_m = window.safety_margin_m.max(Self::LEAST_MARGIN_M);
         let robot = robot.into();
+        let stop_rule = StopRuleConfig { margin_m, ..StopRuleConfig::for_robot(&robot) };
         let follower = Follower::new(follower, Arc::clone(&robot));
-        let window = DynamicWindow::new(window, robot)?;
+        let window = DynamicWindow::new(window, Arc::clone(&robot))?;
         let follower = follower.map_err(|error| error.within("follower"))?;
         weights.validate().map_err(|error| error.within("weights"))?;
         detour.validate().map_err(|error| error.within("detour"))?;
@@ -184,7 +188,8 @@ impl GuidedDwa {
             Term::cost(Self::TARGET_DISTANCE, weights.target_distance),
             Term::of(Self::OBSTACLE_DISTANCE, weights.obstacle_distance),
         ]);
-        Ok(Self { window, weighing, detour, follower, safety_margin_m })
+        let rule = StopRule::for_any_brakes(stop_rule, robot)?;
+        Ok(Self { window, weighing, detour, follower, rule })
     }
 
     /// The robot that it drives.
@@ -219,32 +224,11 @@ impl GuidedDwa {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
         let decision = self.follower.decide(scene, memory, scratch)?;
-        if self.can_stop_after(scene, decision.command) {
+        if self.rule.admits(&Surroundings::standing(scene), decision.command, scratch).is_ok() {
             return Ok(decision);
         }
         let guide = self.follower.carrot(scene.path, memory.covered_m).unwrap_or(scene.guide);
         self.drive_to_guide(&Scene { guide, ..*scene }, scratch)
-    }
-
-    /// Whether the robot touches nothing and keeps its margin when it drives one cycle with a
-    /// command and then brakes along its arc. From a pose with a room of half of what any part of
-    /// it moves to the next such pose, all poses between them are free as well.
-    fn can_stop_after(&self, scene: &Scene<'_>, command: Velocity) -> bool {
-        let Robot { footprint, cycle_s, .. } = self.robot();
-        let (clearance, (core, _)) = (scene.obstacles.clearance(), footprint.core());
-        let has_room = |pose: Pose, room_m: f64| {
-            // Looked for farther than needed: what is cut off at the reach is rounded.
-            footprint.distance_m(pose, &clearance, 2.0 * room_m) >= room_m
-                && footprint.to_border_m(pose, &clearance) >= room_m
-        };
-        let is_free = |motion: Ramp| {
-            let Ramp { start, from, to, end } = motion;
-            let driven_m = from.v.abs().max(to.v.abs()) * cycle_s;
-            let turned_rad = from.omega.abs().max(to.omega.abs()) * cycle_s;
-            let room_m = self.safety_margin_m + 0.5 * core.moves_m(driven_m, turned_rad);
-            has_room(start, room_m) && has_room(end, room_m)
-        };
-        self.robot().motion_to_stop(scene.pose, scene.velocity, command).all(is_free)
     }
 
     /// Nothing behind the obstacle is free: brake, and let the caller plan a new route.

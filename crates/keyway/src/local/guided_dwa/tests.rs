@@ -1,8 +1,7 @@
 use super::*;
-use crate::geometry::{Point, Polyline};
+use crate::geometry::{Point, Polyline, Pose, Velocity};
 use crate::local::{Detour, OwnMemory};
-use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
-use proptest::prelude::*;
+use crate::map::{DistanceField, FieldConfig, OccupancyGrid};
 
 /// A world on cells of 1 m: `#` is on the known map, `o` was sensed.
 struct World {
@@ -323,53 +322,5 @@ fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
         assert_eq!(chosen, is_asked.then_some(decision.command));
         let candidates = explanation.candidates.len() as u32;
         assert_eq!(candidates, if is_asked { decision.evaluation.candidates } else { 0 });
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, max_global_rejects: 20_000, ..ProptestConfig::default() })]
-
-    /// What the follower's commands are checked for: beside obstacles, and beside the border of the
-    /// map.
-    #[test]
-    fn a_way_to_stop_that_is_called_free_is_free(
-        blocks in prop::collection::vec((0..60i32, 0..60i32), 0..4), x in 0.3..2.7f64, y in 0.3..2.7f64,
-        to_border in prop::option::of(0.0..1e-3f64), theta in prop_oneof![-3.1..3.1f64, 0.0..0.2f64],
-        moving in (0.0..2.0f64, -3.0..3.0f64), faster in (-0.15..0.15f64, -0.3..0.3f64),
-    ) {
-        let frame = GridFrame::new(60, 60, 0.05, Pose::default()).unwrap();
-        let mut obstacles = BitGrid::new(60, 60, false);
-        for &(x, y) in &blocks {
-            obstacles.fill_span(y, x, x + 1);
-        }
-        let field = DistanceField::new(&frame, &obstacles, &FieldConfig::default());
-        let robot = Robot::jackal();
-        let planner = GuidedDwa::new(GuidedDwaConfig::for_robot(&robot), robot.clone()).unwrap();
-        let mut pose = Pose::new(x, y, theta);
-        if let Some(to_border_m) = to_border {
-            pose.y += robot.footprint.to_border_m(Pose { x: 1.5, ..pose }, &field.clearance()) - to_border_m;
-            prop_assume!(pose.y > 1.5);
-        }
-        let mut velocity = Velocity::new(moving.0, moving.1);
-        let command = Velocity::new((velocity.v + faster.0).max(0.0), velocity.omega + faster.1);
-        let path = Polyline::default();
-        let scene = Scene {
-            obstacles: &field, sensed: &obstacles, seen: crate::sense::SeenCells::ANYWHERE, movers: &[], walked: &[], pose, velocity, guide: Point::default(), path: &path,
-            remaining_m: f64::INFINITY,
-        };
-        prop_assume!(planner.can_stop_after(&scene, command));
-        let mut next = robot.limits.reached(velocity, command, robot.cycle_s);
-        loop {
-            for part in 1..=50 {
-                let part = f64::from(part) / 50.0;
-                let there = pose.after_ramp(velocity, velocity.lerp(next, part), robot.cycle_s * part);
-                prop_assert!(robot.footprint.is_free(there, &field), "{there:?}");
-            }
-            if next == Velocity::ZERO {
-                break;
-            }
-            pose = pose.after_ramp(velocity, next, robot.cycle_s);
-            (velocity, next) = (next, robot.limits.braked(next, robot.cycle_s));
-        }
     }
 }

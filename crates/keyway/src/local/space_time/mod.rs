@@ -262,10 +262,9 @@ impl SpaceTime {
 
     /// What the stop rule makes of a command.
     fn gated(&self, scene: &Scene<'_>, command: Velocity, scratch: &mut Scratch) -> Velocity {
-        let Scene { obstacles, pose, velocity, .. } = *scene;
         // What its rear may be on is asked of every course.
         let seen = SeenCells { behind: None, ..scene.seen };
-        let around = Surroundings { obstacles, seen, movers: &[], delay_s: 0.0, pose, velocity };
+        let around = Surroundings { seen, ..Surroundings::standing(scene) };
         self.gate.gate(&around, command, scratch).command
     }
 

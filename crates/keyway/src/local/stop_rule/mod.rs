@@ -117,6 +117,8 @@
 //! into the manoeuvre. Up to four manoeuvres are looked at. Allocates nothing once the scratch is
 //! warm.
 
+#[cfg(test)]
+mod admits_tests;
 mod manoeuvre;
 #[cfg(test)]
 mod mover_tests;
@@ -128,8 +130,8 @@ mod tests;
 #[cfg(test)]
 mod touching_tests;
 
-use super::Scratch;
 use super::rear::{Front, Rear};
+use super::{Scene, Scratch};
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
@@ -191,6 +193,24 @@ pub struct Surroundings<'a> {
     pub pose: Pose,
     /// How it then moves.
     pub velocity: Velocity,
+}
+
+impl<'a> Surroundings<'a> {
+    /// What stands, as a local planner sees it. Nothing is asked about what has been seen, and
+    /// nothing moves.
+    pub(super) const fn standing(scene: &Scene<'a>) -> Self {
+        let Scene { obstacles, pose, velocity, .. } = *scene;
+        Self { obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity }
+    }
+
+    fn is_finite(&self) -> bool {
+        let Pose { x, y, theta } = self.pose;
+        [x, y, theta].iter().all(|number| number.is_finite()) && is_finite(self.velocity)
+    }
+}
+
+fn is_finite(velocity: Velocity) -> bool {
+    velocity.v.is_finite() && velocity.omega.is_finite()
 }
 
 /// What became of a command.
@@ -366,6 +386,24 @@ impl StopRule {
         Ok(Self { config, robot, front, rear })
     }
 
+    /// Tells whether a command is admissible: the robot keeps the margin until it stands when it
+    /// brakes from the next cycle on. Asked for braking, it tells whether that keeps the margin.
+    ///
+    /// # Errors
+    /// The first reason for which it is not.
+    pub fn admits(
+        &self,
+        around: &Surroundings<'_>,
+        command: Velocity,
+        scratch: &mut Scratch,
+    ) -> Result<(), Refusal> {
+        if !around.is_finite() || !is_finite(command) {
+            return Err(Refusal::NotANumber);
+        }
+        let asked = self.robot.limits.reached(around.velocity, command, self.robot.cycle_s);
+        Manoeuvres::new(self, around, asked, scratch.part()).check(asked)
+    }
+
     /// The command to issue when `command` is asked for. See the module's documentation.
     pub fn gate(
         &self,
@@ -373,14 +411,13 @@ impl StopRule {
         command: Velocity,
         scratch: &mut Scratch,
     ) -> Gated {
-        let Surroundings { pose, velocity, .. } = *around;
-        let numbers = [pose.x, pose.y, pose.theta, velocity.v, velocity.omega];
-        if !numbers.iter().all(|number| number.is_finite()) {
+        if !around.is_finite() {
             return Gated { command: Velocity::ZERO, why: Some(Refusal::NotANumber) };
         }
         let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
+        let velocity = around.velocity;
         let braking = limits.braked(velocity, cycle_s);
-        if !(command.v.is_finite() && command.omega.is_finite()) {
+        if !is_finite(command) {
             return Gated { command: braking, why: Some(Refusal::NotANumber) };
         }
         let asked = limits.reached(velocity, command, cycle_s);

@@ -352,7 +352,7 @@ impl Controller {
         }
         let driven = self.drive(pose, velocity);
         if let Ok(command) = driven {
-            self.turn_before(pose, command);
+            self.turn_before(pose, velocity, command);
             if let Some(command) = self.turn_first(pose, velocity) {
                 return Step::Drive(command);
             }

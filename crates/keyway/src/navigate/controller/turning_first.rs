@@ -15,7 +15,7 @@ impl Controller {
     /// Begins a turn towards the guide point where a command would lead off the ground on which a
     /// robot that is not round can turn around, and the guide point is aside: beyond, it could do
     /// neither, and a local planner does not see that coming.
-    pub(super) fn turn_before(&mut self, pose: Pose, command: Velocity) {
+    pub(super) fn turn_before(&mut self, pose: Pose, velocity: Velocity, command: Velocity) {
         let (robot, guide) = (&self.robot, self.guidance.point);
         let is_round = matches!(robot.footprint, Footprint::Circle(_));
         let may_turn = self.stack.controller.recoveries.contains(&RecoveryKind::Turn);
@@ -28,9 +28,8 @@ impl Controller {
         let clearance = self.obstacles.clearance();
         let can_turn = |at: Pose| clearance.is_clear_point(at.point(), turning_m);
         // Where the robot would stand if it braked after this command.
-        let brake_s = 0.5 * command.v.abs() / robot.limits.deceleration_mps2;
-        let stop = pose.after_arc(command, robot.cycle_s + brake_s);
-        if !can_turn(pose) || can_turn(stop) {
+        let stop = || robot.motion_to_stop(pose, velocity, command).last();
+        if !can_turn(pose) || stop().is_none_or(|motion| can_turn(motion.end)) {
             return;
         }
         let spot = OnTheSpot { robot, obstacles: &self.obstacles };

@@ -81,9 +81,8 @@ impl MotionUnderWay {
                     return MotionStep::Refused;
                 }
                 let most = SPEED_SHARE * limits.omega_max_radps;
-                let brakes = limits.angular_deceleration_radps2;
-                let omega = speed(left_rad, velocity.omega, brakes, cycle_s, most);
-                Velocity::new(0.0, omega)
+                let stops = limits.stoppable_radps(velocity.omega, left_rad.abs(), cycle_s);
+                Velocity::new(0.0, stops.min(most).copysign(left_rad))
             }
             Motion::Drive(left_m) => {
                 if !footprint.is_free_drive(pose, left_m, obstacles) {
@@ -91,8 +90,8 @@ impl MotionUnderWay {
                 }
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
                 let most = fastest.min(SPEED_SHARE * limits.v_max_mps);
-                let v = speed(left_m, velocity.v, limits.deceleration_mps2, cycle_s, most);
-                Velocity::new(v, 0.0)
+                let stops = limits.stoppable_mps(velocity.v, left_m.abs(), cycle_s);
+                Velocity::new(stops.min(most).copysign(left_m), 0.0)
             }
         };
         MotionStep::Moving(command)
@@ -118,18 +117,6 @@ impl Motion {
             Self::Turn(left) | Self::Drive(left) | Self::Wait(left) => left.abs(),
         }
     }
-}
-
-/// The largest speed towards the end, up to `most`, from which a stop is possible within `left`:
-/// both with their signs. With the speed `now`, a cycle of T and a deceleration of b it is the u of
-/// (now + u) T / 2 + u² / (2 b) + u T / 2 = left, where the last cycle of braking counts whole.
-fn speed(left: f64, now: f64, brakes: f64, cycle_s: f64, most: f64) -> f64 {
-    let ahead = left.abs() - 0.5 * now * left.signum() * cycle_s;
-    if ahead <= 0.0 {
-        return 0.0;
-    }
-    let u = brakes * ((cycle_s * cycle_s + 2.0 * ahead / brakes).sqrt() - cycle_s);
-    u.min(most) * left.signum()
 }
 
 #[cfg(test)]
