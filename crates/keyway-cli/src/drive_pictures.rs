@@ -2,18 +2,18 @@
 //! an animation.
 
 use crate::commands::Moment;
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Shares};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_draw::layers::{
-    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal,
+    Caption, CellTint, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal, HatchedDiscs,
     Hits, PathLine, Points, Polygons, Start, WalkedGround,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
 };
-use keyway_sim::sim::{Circle, Mover, StandingPolygon};
+use keyway_sim::sim::{MovingObstacle, StandingPolygon};
 use std::borrow::Cow;
 
 const INK: Rgb = Rgb(0x22, 0x22, 0x22);
@@ -31,10 +31,10 @@ pub(crate) struct Stage<'a> {
     pub(crate) map: &'a OccupancyGrid,
     pub(crate) robot: &'a Robot,
     /// Those that stand.
-    pub(crate) obstacles: &'a [Circle],
+    pub(crate) obstacles: &'a [Disc],
     pub(crate) polygons: &'a [StandingPolygon],
     pub(crate) hidden_cells: &'a [Cell],
-    pub(crate) movers: &'a [Mover],
+    pub(crate) movers: &'a [MovingObstacle],
     pub(crate) start: Point,
     pub(crate) goal: Point,
     pub(crate) tolerance_m: f64,
@@ -58,14 +58,13 @@ impl<'a> Stage<'a> {
     fn shown(&self, moment: &'a Moment, driven: &'a [DrivenPoint]) -> Shown<'a> {
         let Moment { t_s, pose, velocity, guide, .. } = *moment;
         let until = driven.partition_point(|point| point.t_s <= t_s + 1e-9);
-        let disc = |Circle { centre, radius_m }| Disc { centre, radius_m };
         Shown {
             moment,
             robot: [DrivenPoint { t_s, pose, velocity }],
             guide: vec![guide],
             towards: Polyline::new(vec![pose.point(), guide]),
-            discs: self.obstacles.iter().copied().map(disc).collect(),
-            moving: self.movers.iter().map(|mover| disc(mover.at(t_s))).collect(),
+            discs: self.obstacles.to_vec(),
+            moving: self.movers.iter().map(|mover| mover.at(t_s)).collect(),
             polygons: self.polygons.iter().map(StandingPolygon::vertices).collect(),
             driven: &driven[..until],
         }
@@ -78,8 +77,8 @@ impl<'a> Stage<'a> {
     {
         let footprint = &self.robot.footprint;
         MapPicture::new(self.map)
-            .with(Discs::unknown_obstacles(&shown.discs))
-            .with(Discs::moving_obstacles(&shown.moving))
+            .with(HatchedDiscs::unknown_obstacles(&shown.discs))
+            .with(HatchedDiscs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(self.hidden_cells))
             .with(CellTint::sensed_list(&shown.moment.sensed))

@@ -2,19 +2,18 @@
 
 use crate::drive_pictures::Stage;
 use crate::error::{CliError, Kind};
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
-use keyway::sense;
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Meeting, Movers, OtherGoals,
+    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, Meeting, Movers, OtherGoals,
     PathLine, Points, Polygons, SearchNodes, SearchTrace, Start, WalkedGround,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
 };
-use keyway_sim::sim::{Circle, StandingPolygon};
+use keyway_sim::sim::StandingPolygon;
 
 /// Pixels of a PNG per unit of its picture.
 pub(crate) const PNG_SCALE: f64 = 2.0;
@@ -99,7 +98,7 @@ pub(crate) struct DrivenPicture<'a> {
     pub(crate) key_points: &'a [Point],
     pub(crate) sensed: &'a BitGrid,
     /// What the robot went around.
-    pub(crate) walked: &'a [sense::Disc],
+    pub(crate) walked: &'a [Disc],
     pub(crate) points: &'a [DrivenPoint],
 }
 
@@ -107,13 +106,11 @@ impl RunPicture<'_> {
     pub(crate) fn svg(&self) -> Svg {
         let Stage { map, robot, obstacles, polygons, hidden_cells, .. } = self.stage;
         let Stage { movers, start, goal, tolerance_m, .. } = self.stage;
-        let to_disc = |circle: &Circle| Disc { centre: circle.centre, radius_m: circle.radius_m };
-        let discs: Vec<Disc> = obstacles.iter().map(to_disc).collect();
         let polygons: Vec<&[Point]> = polygons.iter().map(StandingPolygon::vertices).collect();
         let goal = Goal { point: goal, tolerance_m: Some(tolerance_m) };
         let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
         let mut picture = MapPicture::new(map)
-            .with(Discs::unknown_obstacles(&discs))
+            .with(HatchedDiscs::unknown_obstacles(obstacles))
             .with(Polygons::unknown_obstacles(&polygons))
             .with(CellTint::unknown_obstacles(hidden_cells))
             .with(Movers::new(movers, points))

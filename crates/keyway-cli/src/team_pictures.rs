@@ -1,9 +1,9 @@
 //! Pictures of several robots in one world. Each has a colour, dashes and a number.
 
 use crate::drive_pictures::{SIDE_PX, centiseconds};
-use keyway::geometry::{Point, Polyline};
+use keyway::geometry::{Disc, Point, Polyline};
 use keyway_draw::layers::{
-    Caption, CellTint, Disc, Discs, DrivenPoint, Footprints, Movers, NumberedEnds, PathLine,
+    Caption, CellTint, DrivenPoint, Footprints, HatchedDiscs, Movers, NumberedEnds, PathLine,
     Polygons,
 };
 use keyway_draw::{
@@ -11,7 +11,7 @@ use keyway_draw::{
     animate_frames, series_style, speed_curve,
 };
 use keyway_sim::episode::{Episode, EpisodeRobot};
-use keyway_sim::sim::{Circle, Mover, StandingPolygon};
+use keyway_sim::sim::{MovingObstacle, StandingPolygon};
 
 /// A team and what each of its robots drove; nothing without a route.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub(crate) struct TeamPicture<'a> {
     pub(crate) team: &'a Episode,
     pub(crate) driven: &'a [Vec<DrivenPoint>],
     /// What moves, as it did.
-    pub(crate) movers: &'a [Mover],
+    pub(crate) movers: &'a [MovingObstacle],
 }
 
 /// The robots at one moment, and their ways until then.
@@ -27,7 +27,6 @@ struct Shown<'a> {
     t_s: f64,
     ways: Vec<Polyline>,
     robots: Vec<[DrivenPoint; 1]>,
-    discs: Vec<Disc>,
     /// What moves, where it is at that time.
     moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
@@ -38,21 +37,19 @@ impl<'a> TeamPicture<'a> {
     /// Frames of an animation, at most.
     const MOST_FRAMES: usize = 120;
 
-    fn shown(&self, t_s: f64, movers: &[Mover]) -> Shown<'a> {
-        let Episode { robots, obstacles, polygons, .. } = self.team;
+    fn shown(&self, t_s: f64, movers: &[MovingObstacle]) -> Shown<'a> {
+        let Episode { robots, polygons, .. } = self.team;
         let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
         let parts: Vec<&[DrivenPoint]> =
             self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
         let way = |part: &&[DrivenPoint]| {
             Polyline::new(part.iter().map(|one| one.pose.point()).collect())
         };
-        let disc = |Circle { centre, radius_m }| Disc { centre, radius_m };
         Shown {
             t_s,
             ways: parts.iter().map(way).collect(),
             robots: parts.iter().filter_map(|part| Some([*part.last()?])).collect(),
-            discs: obstacles.iter().copied().map(disc).collect(),
-            moving: movers.iter().map(|mover| disc(mover.at(t_s))).collect(),
+            moving: movers.iter().map(|mover| mover.at(t_s)).collect(),
             polygons: polygons.iter().map(StandingPolygon::vertices).collect(),
             ends: robots.iter().map(|one| (one.start.position, one.goal.position)).collect(),
         }
@@ -63,10 +60,10 @@ impl<'a> TeamPicture<'a> {
     where
         'a: 'b,
     {
-        let Episode { known, robots, hidden_cells, .. } = self.team;
+        let Episode { known, robots, obstacles, hidden_cells, .. } = self.team;
         let mut picture = MapPicture::new(known)
-            .with(Discs::unknown_obstacles(&shown.discs))
-            .with(Discs::moving_obstacles(&shown.moving))
+            .with(HatchedDiscs::unknown_obstacles(obstacles))
+            .with(HatchedDiscs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(hidden_cells));
         for (index, way) in shown.ways.iter().enumerate() {

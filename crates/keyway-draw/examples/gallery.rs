@@ -1,11 +1,11 @@
 //! Draws a made-up room with everything on it, and speed curves, into a folder:
 //! `cargo run -p keyway-draw --example gallery -- pictures`
 
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, PathLine, Points, Start,
+    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, PathLine, Points, Start,
 };
 use keyway_draw::{MapPicture, SpeedCurveOptions, SpeedSeries, Svg, speed_curve};
 use std::error::Error;
@@ -93,7 +93,7 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
         .title("A room with two obstacles that the map does not show")
         .with(CellTint::blocked(&blocked))
         .with(CellTint::sensed(&sensed))
-        .with(Discs::unknown_obstacles(&discs))
+        .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(PathLine::planned(&planned))
         .with(PathLine::smoothed(&smoothed))
         .with(Points::key_points(&key_points))

@@ -2,19 +2,19 @@
 //! they show.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::local::{Explanation, Fate, JudgedCandidate, Share};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use keyway_draw::layers::{
-    Caption, CellTint, Disc, Discs, Driven, DrivenPoint, Fan, Footprints, Goal, Hits, Layer,
+    Caption, CellTint, Driven, DrivenPoint, Fan, Footprints, Goal, HatchedDiscs, Hits, Layer,
     Movers, OtherGoals, PathLine, Points, Polygons, Start,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
     TextTable, speed_curve,
 };
-use keyway_sim::sim::{Mover, WayPoints};
+use keyway_sim::sim::{MovingObstacle, WayPoints};
 
 /// Width and height of the page, as its text gives them; where pixels can be made, they have this
 /// size.
@@ -57,11 +57,11 @@ fn disc(radius_m: f64) -> Footprint {
 }
 
 /// One that crosses the robot's way for ever to and fro, and one that crosses it once.
-fn movers() -> Vec<Mover> {
+fn movers() -> Vec<MovingObstacle> {
     let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
     let across = keyway_sim::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
-    let past = Mover::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
-    vec![Mover::new(0.15, across).unwrap(), past]
+    let past = MovingObstacle::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
+    vec![MovingObstacle::new(0.15, across).unwrap(), past]
 }
 
 /// A picture with every layer.
@@ -76,7 +76,7 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .title("Everything <& more>")
         .with(CellTint::blocked(&cells))
         .with(CellTint::sensed(&cells))
-        .with(Discs::unknown_obstacles(&discs))
+        .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(PathLine::planned(&path))
         .with(PathLine::smoothed(&path))
         .with(Points::key_points(&points))
@@ -119,7 +119,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(PathLine::planned(&nothing))
         .with(CellTint::sensed(&unset))
         .with(CellTint::blocked(&unset))
-        .with(Discs::unknown_obstacles(&[]))
+        .with(HatchedDiscs::unknown_obstacles(&[]))
         .with(Points::key_points(&[]))
         .with(Driven::new(&[]))
         .with(Footprints::new(&[], &disc(0.2)))
@@ -203,7 +203,7 @@ fn degenerate_maps_and_layers_can_be_drawn() {
                 .with(PathLine::smoothed(&dot))
                 .with(PathLine::planned(&bad))
                 .with(CellTint::sensed(&small))
-                .with(Discs::unknown_obstacles(&strange))
+                .with(HatchedDiscs::unknown_obstacles(&strange))
                 .with(Polygons::unknown_obstacles(&polygons))
                 .with(Driven::new(&still).v_max_mps(f64::NAN))
                 .with(Footprints::new(&still, &disc(0.1)).every_m(0.0))
@@ -232,7 +232,7 @@ fn a_marker_does_not_hide_an_obstacle() {
     let (map, point) = (map(0.0), Point::new(3.0, 2.0));
     let with_disc = |radius_m: f64| {
         let discs = [Disc { centre: Point::new(3.01, 2.0), radius_m }];
-        let discs = Discs::unknown_obstacles(&discs);
+        let discs = HatchedDiscs::unknown_obstacles(&discs);
         MapPicture::new(&map).with(discs).with(Goal { point, tolerance_m: None }).svg()
     };
     let alone = MapPicture::new(&map).with(Goal { point, tolerance_m: None }).svg();
@@ -252,7 +252,7 @@ fn a_route_does_not_hide_an_obstacle() {
         (-10..=10).map(|i| Point::new(3.0 + 0.01 * f64::from(i), 2.0)).collect();
     let discs = [Disc { centre: Point::new(3.0, 2.0), radius_m: 0.01 }];
     let picture = MapPicture::new(&map)
-        .with(Discs::unknown_obstacles(&discs))
+        .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(Points::key_points(&around))
         .with(PathLine::smoothed(&Polyline::new(around.clone())).over_driven())
         .svg();

@@ -1,10 +1,11 @@
 //! Pictures for notebooks.
 
 use crate::errors::bad_value;
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::OccupancyGrid;
 use keyway_draw::layers::{
-    CellTint, Disc, Discs, Driven, DrivenPoint, Footprints, Goal, Movers, PathLine, Polygons, Start,
+    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, Movers, PathLine, Polygons,
+    Start,
 };
 use keyway_draw::{MapPicture, Svg};
 use keyway_sim::episode::RobotReport;
@@ -44,7 +45,7 @@ pub(crate) fn of_run(grid: &OccupancyGrid, report: &RobotReport) -> Svg {
     let driven: Vec<DrivenPoint> = report.trajectory.iter().flatten().map(point).collect();
     let movers = report.run.as_ref().map(|run| run.movers(&inputs.moving)).unwrap_or_default();
     let mut picture = MapPicture::new(grid)
-        .with(Discs::unknown_obstacles(&discs))
+        .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(Polygons::unknown_obstacles(&polygons))
         .with(CellTint::unknown_obstacles(&inputs.hidden_cells))
         .with(Movers::new(&movers, &driven))

@@ -33,7 +33,7 @@ fn hall() -> (OccupancyGrid, BitGrid) {
 /// Forty scans of a robot that drives among the posts while two people walk.
 fn scans(robot: &Robot, known: &OccupancyGrid, posts: &BitGrid) -> Vec<(Pose, Scan)> {
     let walker = |x: f64, y: f64, vx: f64, vy: f64| {
-        sim::Mover::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
+        sim::MovingObstacle::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
     };
     let walkers = vec![walker(11.0, 8.5, -0.2, 0.6), walker(8.6, 11.0, 0.3, -0.3)];
     let world = World::from_known(known, vec![]).unwrap().with_hidden(posts).unwrap();

@@ -4,12 +4,12 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use keyway::geometry::{Point, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 use keyway_sim::sim::{
-    Action, Circle, Control, Disturbances, Motion, Mover, Participant, Run, RunRules, WayPoints,
+    Action, Control, Disturbances, Motion, MovingObstacle, Participant, Run, RunRules, WayPoints,
     World, simulate,
 };
 use std::hint::black_box;
@@ -36,22 +36,22 @@ fn rooms() -> OccupancyGrid {
 }
 
 /// 150 cylinders all around an open place of 4 m.
-fn cylinders() -> Vec<Circle> {
+fn cylinders() -> Vec<Disc> {
     let places = (0..).map(|i| {
         let i = f64::from(i);
         Point::new(1.0 + i * 17.3 % 28.0, 1.0 + i * 11.7 % 28.0)
     });
     let is_apart = |place: &Point| place.distance(Point::new(15.0, 15.0)) > 4.0;
-    places.filter(is_apart).take(150).map(|place| Circle::standing(place, 0.1)).collect()
+    places.filter(is_apart).take(150).map(|place| Disc::new(place, 0.1)).collect()
 }
 
 /// 20 movers to and fro across the hall, none of which comes near the robot.
-fn movers() -> Vec<Mover> {
+fn movers() -> Vec<MovingObstacle> {
     let mover = |i: u32| {
         let x = 1.0 + 0.5 * f64::from(i) + if i < 10 { 0.0 } else { 17.0 };
         let ends = vec![Point::new(x, 2.0), Point::new(x, 28.0)];
         let motion = WayPoints::around(ends, 0.5 + 0.05 * f64::from(i)).unwrap();
-        Mover::new(0.25, Motion::WayPoints(motion)).unwrap()
+        MovingObstacle::new(0.25, Motion::WayPoints(motion)).unwrap()
     };
     (0..20).map(mover).collect()
 }

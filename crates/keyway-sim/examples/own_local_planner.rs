@@ -3,7 +3,7 @@
 //!
 //! `cargo run --example own_local_planner`
 
-use keyway::geometry::{Point, Velocity};
+use keyway::geometry::{Disc, Point, Velocity};
 use keyway::local::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::FittedStack;
@@ -11,7 +11,6 @@ use keyway::robot::Robot;
 use keyway_sim::episode::{
     Episode, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, watch_episode,
 };
-use keyway_sim::sim::Circle;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -48,7 +47,7 @@ fn run(has_stop_rule: bool) -> Result<RobotReport, Box<dyn Error>> {
     let robot = Robot::small();
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let mut episode = Episode::new(map, robot.clone(), start, goal);
-    episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+    episode.obstacles = vec![Disc::new(Point::new(4.0, 2.1), 0.3)];
     // It plans no way around what it sees: only the stop rule is left.
     let EpisodeRobot { stack, stack_name, .. } = &mut episode.robots[0];
     "bee".clone_into(stack_name);

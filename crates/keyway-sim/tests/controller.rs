@@ -5,13 +5,13 @@
 mod building;
 
 use building::{GOAL, START, blocks, building};
-use keyway::geometry::{Point, Pose, Segment, Velocity};
+use keyway::geometry::{Disc, Point, Pose, Segment, Velocity};
 use keyway::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 use keyway_sim::sim::{
-    Action, Circle, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
+    Action, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
 };
 
 /// The stack `key-point-fusion` on the small robot, from [`START`] to [`GOAL`].
@@ -24,7 +24,7 @@ fn small_controller(map: &OccupancyGrid) -> Controller {
 /// Everything a controller saw and answered in a run.
 type Record = Vec<(Pose, Velocity, Scan, Step)>;
 
-fn drive(map: &OccupancyGrid, unknown: Vec<Circle>, record: &mut Record) -> Run {
+fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
     let (robot, mut controller) = (Robot::small(), small_controller(map));
     let goal_tolerance_m = Stack::key_point_fusion(&robot).controller.goal_tolerance_m;
     let world = World::from_known(map, unknown).unwrap();
@@ -56,8 +56,8 @@ fn nothing() -> Scan {
     Scan::of_nothing(&Robot::small().sensor)
 }
 
-fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
-    Circle::standing(Point::new(x, y), radius_m)
+fn circle(x: f64, y: f64, radius_m: f64) -> Disc {
+    Disc::new(Point::new(x, y), radius_m)
 }
 
 #[test]

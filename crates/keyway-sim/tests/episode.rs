@@ -1,7 +1,7 @@
 //! Whole runs, and what is reported of them.
 #![allow(clippy::unwrap_used)]
 
-use keyway::geometry::{Point, Pose};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
 use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
 use keyway::robot::Robot;
@@ -11,7 +11,7 @@ use keyway_sim::episode::{
 };
 use keyway_sim::report::PlanOutcome;
 use keyway_sim::sim::{
-    Circle, Disturbances, KeyFrame, KeyFrames, LocalisationNoise, Motion, Mover, Run,
+    Disturbances, KeyFrame, KeyFrames, LocalisationNoise, Motion, MovingObstacle, Run,
 };
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -97,7 +97,7 @@ fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
 #[test]
 fn what_is_not_on_the_map_is_real() {
     let mut blocked = episode(OPEN);
-    blocked.obstacles = vec![Circle::standing(Point::new(3.0, 1.4), 0.3)];
+    blocked.obstacles = vec![Disc::new(Point::new(3.0, 1.4), 0.3)];
     let (free, around) =
         (run_episode(&episode(OPEN)).unwrap().first(), run_episode(&blocked).unwrap().first());
     assert_eq!(around.outcome, EpisodeOutcome::Reached);
@@ -221,8 +221,8 @@ fn a_robot_without_any_scan_stands() {
     blind.robots[0].stack = Stack::key_point_fusion(&blind.robots[0].robot);
     blind.robots[0].stack.controller.stop_when_blind = false;
     assert_eq!(run_episode(&blind).unwrap().first().outcome, EpisodeOutcome::Reached);
-    blind.obstacles = vec![Circle::standing(Point::new(3.0, 0.5), 0.4)];
-    blind.obstacles.push(Circle::standing(Point::new(3.0, 2.5), 0.4));
+    blind.obstacles = vec![Disc::new(Point::new(3.0, 0.5), 0.4)];
+    blind.obstacles.push(Disc::new(Point::new(3.0, 2.5), 0.4));
     assert_eq!(run_episode(&blind).unwrap().first().outcome, EpisodeOutcome::Collided);
 }
 
@@ -249,7 +249,7 @@ fn who_may_wait_longer_is_not_stuck() {
     let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 1.5) };
     let frames = vec![frame(0.0, 2.5), frame(30.0, 2.5), frame(38.0, 5.5)];
     let motion = Motion::KeyFrames(KeyFrames::new(frames).unwrap());
-    lane.movers = vec![Mover::new(0.45, motion).unwrap()];
+    lane.movers = vec![MovingObstacle::new(0.45, motion).unwrap()];
     lane.robots[0].goal = Point::new(4.0, 1.5).into();
     let report = run_episode(&lane).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
@@ -279,7 +279,7 @@ fn bad_input_is_an_error() {
     let error = run_episode(&bad).unwrap_err();
     assert!(matches!(error.why, RunError::Navigate(NavigateError::NoRoom { .. })), "{error}");
     bad = episode(OPEN);
-    bad.obstacles = vec![Circle::standing(Point::new(1.0, f64::NAN), 1.0)];
+    bad.obstacles = vec![Disc::new(Point::new(1.0, f64::NAN), 1.0)];
     assert!(matches!(run_episode(&bad).unwrap_err().why, RunError::World(_)));
     bad = episode(OPEN);
     bad.rules.time_limit_s = Some(-1.0);

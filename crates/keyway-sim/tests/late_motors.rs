@@ -1,12 +1,11 @@
 //! Robots whose commands act late, and that know it.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, Pose};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
-use keyway_sim::sim::Circle;
 
 /// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
 fn hall() -> OccupancyGrid {
@@ -72,7 +71,7 @@ fn what_is_seen_on_the_way_is_not_touched() {
         let mut episode = episode(robot);
         episode.robots[0].disturbances.actuation.delay_s = unknown_s;
         let places = [(2.4, 3.6), (3.2, 5.8), (6.2, 4.4), (6.6, 2.2), (9.3, 3.5), (9.6, 4.9)];
-        let disc = |(x, y)| Circle::standing(Point::new(x, y), 0.2);
+        let disc = |(x, y)| Disc::new(Point::new(x, y), 0.2);
         episode.obstacles = places.map(disc).to_vec();
         driven(&episode).outcome
     };

@@ -1,17 +1,17 @@
 //! Robots beside what moves, in whole runs: they pass or wait, and go on.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, Pose};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_sim::episode::{
     Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
     run_episode, watch_episode,
 };
-use keyway_sim::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, WayPoints};
+use keyway_sim::sim::{KeyFrame, KeyFrames, Motion, MovingObstacle, WayPoints};
 
 /// From (1, 3) to (9, 3) across a hall of 10 m x 6 m.
-fn across(movers: Vec<Mover>) -> Episode {
+fn across(movers: Vec<MovingObstacle>) -> Episode {
     let frame = GridFrame::new(200, 120, 0.05, Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |cell| {
         let edge = cell.x.min(cell.y).min(199 - cell.x).min(119 - cell.y);
@@ -28,13 +28,13 @@ fn guard(robot: &mut EpisodeRobot) {
     robot.stack = robot.stack.clone().with_stop_rule(&robot.robot);
 }
 
-fn walker(at: [f64; 2], velocity_mps: [f64; 2]) -> Mover {
-    Mover::straight(at.into(), 0.25, velocity_mps.into()).unwrap()
+fn walker(at: [f64; 2], velocity_mps: [f64; 2]) -> MovingObstacle {
+    MovingObstacle::straight(at.into(), 0.25, velocity_mps.into()).unwrap()
 }
 
 /// Compares what the robot believes to move with what does.
 struct Believed<'a> {
-    movers: &'a [Mover],
+    movers: &'a [MovingObstacle],
     /// Cycles in which something was known to move.
     cycles: u32,
     /// Cells that counted as standing when all walkers were in the hall for the last time.
@@ -48,12 +48,13 @@ impl EpisodeObserver for Believed<'_> {
         let believed = cycle.controller.movers();
         self.cycles += u32::from(!believed.is_empty());
         for mover in believed.iter().filter(|mover| mover.unseen_s == 0.0) {
-            let off_m = |truth: &Mover| truth.at(cycle.t_s).centre.distance(mover.centre);
+            let off_m = |truth: &MovingObstacle| truth.at(cycle.t_s).centre.distance(mover.centre);
             let off_m = self.movers.iter().map(off_m).fold(f64::INFINITY, f64::min);
             assert!(off_m <= mover.position_uncertainty_m + 1e-6, "{off_m} {mover:?}");
         }
         // Half of somebody who walks through a wall is part of the wall.
-        let is_in_hall = |mover: &Mover| (0.4..5.6).contains(&mover.at(cycle.t_s).centre.y);
+        let is_in_hall =
+            |mover: &MovingObstacle| (0.4..5.6).contains(&mover.at(cycle.t_s).centre.y);
         if self.movers.iter().all(is_in_hall) {
             self.sensed = cycle.controller.sensed().count_ones();
         }
@@ -85,7 +86,7 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
         ("ahead, slower", vec![walker([2.5, 3.02], [0.2, 0.0])]),
         ("oncoming, aside", vec![walker([9.0, 2.4], [-0.4, 0.0])]),
         ("two", vec![walker([4.0, 0.5], [0.0, 0.5]), walker([6.0, 5.5], [0.0, -0.4])]),
-        ("to and fro", vec![Mover::new(0.25, Motion::WayPoints(tofro)).unwrap()]),
+        ("to and fro", vec![MovingObstacle::new(0.25, Motion::WayPoints(tofro)).unwrap()]),
     ];
     let mut all_waited = 0;
     for (name, movers) in cases {
@@ -124,7 +125,7 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
 fn who_stops_in_the_way_is_gone_around() {
     let frame = |t_s: f64, x: f64, y: f64| KeyFrame { t_s, position: Point::new(x, y) };
     let frames = KeyFrames::new(vec![frame(0.0, 5.0, 0.8), frame(5.5, 5.0, 3.0)]).unwrap();
-    let episode = across(vec![Mover::new(0.25, Motion::KeyFrames(frames)).unwrap()]);
+    let episode = across(vec![MovingObstacle::new(0.25, Motion::KeyFrames(frames)).unwrap()]);
     let Seen { report, sensed, .. } = watched(&episode);
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let run = report.run.unwrap();
@@ -147,7 +148,7 @@ fn who_comes_straight_on_meets_a_robot_that_stands() {
 fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
     let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
-    let post = |x: f64, y: f64, radius_m: f64| Circle::standing(Point::new(x, y), radius_m);
+    let post = |x: f64, y: f64, radius_m: f64| Disc::new(Point::new(x, y), radius_m);
     let (mut driving, mut standing) = (0, 0);
     for case in 0..49u32 {
         let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
@@ -161,7 +162,7 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
                 post(2.07, 1.664, 0.147),
                 post(2.112, 2.149, 0.199),
             ],
-            movers: vec![Mover::new(0.138, walker).unwrap()],
+            movers: vec![MovingObstacle::new(0.138, walker).unwrap()],
             ..Episode::new(map.clone(), Robot::small(), start, Point::new(3.5, 1.5))
         };
         episode = episode.with_each_robot(guard);

@@ -2,12 +2,11 @@
 //! way-points: whole runs.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, wrap_angle};
+use keyway::geometry::{Disc, Point, wrap_angle};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Controller, Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
-use keyway_sim::sim::Circle;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -42,11 +41,11 @@ fn two_corridors() -> OccupancyGrid {
 }
 
 /// Circles of radius 0.1 m side by side.
-fn fence(from: [f64; 2], to: [f64; 2]) -> Vec<Circle> {
+fn fence(from: [f64; 2], to: [f64; 2]) -> Vec<Disc> {
     let (from, to) = (Point::from(from), Point::from(to));
     let count = (from.distance(to) / 0.15).ceil();
     let place = |i: i32| from.lerp(to, f64::from(i) / count);
-    (0..=count as i32).map(|i| Circle::standing(place(i), 0.1)).collect()
+    (0..=count as i32).map(|i| Disc::new(place(i), 0.1)).collect()
 }
 
 fn clearance_m(report: &RobotReport) -> f64 {
@@ -63,7 +62,7 @@ fn end(report: &RobotReport) -> [f64; 5] {
     end
 }
 
-fn across(obstacles: Vec<Circle>) -> Episode {
+fn across(obstacles: Vec<Disc>) -> Episode {
     let (start, goal) = (Point::new(1.0, 1.2), Point::new(9.0, 1.0));
     Episode { obstacles, ..Episode::new(two_corridors(), Robot::small(), start, goal) }
 }
@@ -115,7 +114,7 @@ fn a_key_point_under_an_obstacle_is_replaced() {
     let clear =
         run_episode(&Episode::new(map.clone(), Robot::small(), start, goal)).unwrap().first();
     let corner = clear.key_points_m.as_ref().unwrap()[0];
-    let obstacles = vec![Circle::standing(corner, 0.12)];
+    let obstacles = vec![Disc::new(corner, 0.12)];
     let episode = Episode { obstacles, ..Episode::new(map, Robot::small(), start, goal) };
     let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
@@ -323,7 +322,7 @@ fn a_square_of_which_a_disc_fills_a_corner_is_no_way_into_the_disc() {
     let position = Point::new(1.7778, 0.8987);
     let start = Start { position, heading_rad: Some(42.84f64.to_radians()) };
     let discs = [(Point::new(1.2227, 1.6275), 0.03), (Point::new(1.8043, 0.4905), 0.1103)];
-    let obstacles = discs.map(|(centre, radius_m)| Circle::standing(centre, radius_m)).to_vec();
+    let obstacles = discs.map(|(centre, radius_m)| Disc::new(centre, radius_m)).to_vec();
     let episode = Episode::new(map, long_robot(0.0), position, Point::new(0.5, 0.5));
     let report = run_episode(&Episode { obstacles, ..facing(episode, start) }).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
@@ -346,7 +345,7 @@ proptest! {
         let robot = long_robot(if reverses { -0.3 } else { 0.0 });
         let position = Point::new(start.0, start.1);
         let start = Start { position, heading_rad: Some(start.2.to_radians()) };
-        let hidden = hidden.iter().map(|&(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
+        let hidden = hidden.iter().map(|&(x, y, radius_m)| Disc::new(Point::new(x, y), radius_m));
         let goal = Point::new(goal.0, goal.1);
         let episode = facing(Episode::new(map, robot, position, goal), start);
         let episode = Episode { obstacles: hidden.collect(), ..episode };

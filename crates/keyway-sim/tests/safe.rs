@@ -2,7 +2,7 @@
 //! and nothing that moves while the robot moves. Motion is ideal, and nothing hides anything.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, Pose};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::local::{
     AdaptiveDwaConfig, DwaConfig, GuidedDwaConfig, KeyPointDwaConfig, LocalConfig,
 };
@@ -10,7 +10,7 @@ use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
-use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
+use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
 use proptest::prelude::*;
 
 const WIDTH_M: f64 = 6.0;
@@ -93,7 +93,7 @@ fn the_safety_margin_of_a_robot_is_kept() {
         let mut episode =
             Episode::new(map, robot.clone(), Point::new(1.0, 2.6), Point::new(5.0, 2.6));
         episode.robots[0].stack = Stack::by_name(stack, &robot).unwrap();
-        episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.6), 0.1)];
+        episode.obstacles = vec![Disc::new(Point::new(4.0, 2.6), 0.1)];
         let report = run_episode(&episode).unwrap().first();
         assert_eq!(report.outcome, EpisodeOutcome::Reached, "{stack} {safety_margin_m:?}");
         report.run.unwrap().min_clearance_m.unwrap()
@@ -117,10 +117,10 @@ proptest! {
     ) {
         let mut episode = safe_episode(room(&blocks), &robot(is_long, reverses, delay_s), which, ends);
         episode.robots[0].start = Start { heading_rad: Some(yaw_deg.to_radians()), ..episode.robots[0].start };
-        let disc = |(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m);
+        let disc = |(x, y, radius_m)| Disc::new(Point::new(x, y), radius_m);
         episode.obstacles = discs.into_iter().map(disc).collect();
         let between = episode.robots[0].start.position.lerp(episode.robots[0].goal.position, on_way.0);
-        episode.obstacles.push(Circle::standing(between, on_way.1));
+        episode.obstacles.push(Disc::new(between, on_way.1));
         // Otherwise a new route leads around what is seen.
         episode.robots[0].stack.controller.watch_route = watches;
         let Some(report) = driven(&episode) else { return Err(TestCaseError::reject("no room")) };
@@ -137,9 +137,9 @@ proptest! {
         let mut episode = safe_episode(room(&[]), &robot(is_long, false, delay_s), which, ends);
         let mover = |(points, speed_mps, radius_m): &(Vec<(f64, f64)>, f64, f64)| {
             let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect();
-            Mover::new(*radius_m, Motion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()
+            MovingObstacle::new(*radius_m, Motion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()
         };
-        let movers: Option<Vec<Mover>> = ways.iter().map(mover).collect();
+        let movers: Option<Vec<MovingObstacle>> = ways.iter().map(mover).collect();
         let Some(movers) = movers else { return Err(TestCaseError::reject("no way")) };
         let start = episode.robots[0].start.position;
         prop_assume!(movers.iter().all(|mover| mover.at(0.0).centre.distance(start) > 2.5));

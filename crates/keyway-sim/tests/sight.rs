@@ -1,15 +1,14 @@
 //! A robot drives where it has seen that nothing stands, and no faster than it can stop there.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Point, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Blocked, Controller, Stack, Step};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::{
-    Action, Circle, Control, Disturbances, Outcome, Participant, RunRules, StandingPolygon, World,
-    simulate,
+    Action, Control, Disturbances, Outcome, Participant, RunRules, StandingPolygon, World, simulate,
 };
 
 /// A hall of 16 m x 4 m in cells of 5 cm, with walls around and nothing in it.
@@ -174,7 +173,7 @@ fn slow_and_lossy_sensors_drive() {
         robot.sensor.period_s = period_s;
         let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
         let mut episode = Episode::new(hall(), robot, start, goal);
-        episode.obstacles = vec![Circle::standing(Point::new(8.0, 2.1), 0.3)];
+        episode.obstacles = vec![Disc::new(Point::new(8.0, 2.1), 0.3)];
         episode.robots[0].disturbances = Disturbances { seed: 3, ..Disturbances::default() };
         episode.robots[0].disturbances.sensor.dropped_scans = dropped_scans;
         let RobotReport { outcome, run, .. } = run_episode(&episode).unwrap().first();
@@ -186,11 +185,7 @@ fn slow_and_lossy_sensors_drive() {
 }
 
 /// Drives a robot whose scans are changed on their way through a world; how its run ends.
-fn drive_changed(
-    robot: &Robot,
-    unknown: Vec<Circle>,
-    change: impl Fn(&mut Scan) + Sync,
-) -> Outcome {
+fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) + Sync) -> Outcome {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let stack = Stack::keyway(robot);
     let mut controller = Controller::new(&hall(), &stack.fit(robot).unwrap(), start, goal).unwrap();
@@ -228,7 +223,7 @@ fn a_robot_does_not_stop_for_its_own_housing() {
                 scan.ranges_m[post - 3..post + 4].fill(0.12);
             }
         };
-        let post = Circle::standing(Point::new(4.0, 2.0), 0.2);
+        let post = Disc::new(Point::new(4.0, 2.0), 0.2);
         assert_eq!(drive_changed(&robot, vec![post], housing), Outcome::Reached, "{robot:?}");
     }
     // The same by the least range of the sensor, which may be larger than the robot.
@@ -245,7 +240,7 @@ fn nothing_is_touched_in_a_blind_sector() {
     for (from, to) in [(120, 240), (150, 210), (170, 190), (0, 360)] {
         let blind = |scan: &mut Scan| scan.ranges_m[from..to].fill(f64::NAN);
         for y in [1.8, 2.0, 2.15] {
-            let post = Circle::standing(Point::new(4.0, y), 0.15);
+            let post = Disc::new(Point::new(4.0, y), 0.15);
             let outcome = drive_changed(&Robot::small(), vec![post], blind);
             assert!(!matches!(outcome, Outcome::Collided { .. }), "{from} {to} {y} {outcome:?}");
         }

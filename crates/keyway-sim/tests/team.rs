@@ -1,7 +1,7 @@
 //! Several robots in one world, each with its own stack.
 #![allow(clippy::unwrap_used)]
 
-use keyway::geometry::{Point, Pose};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{NavigateError, Stack};
 use keyway::robot::Robot;
@@ -10,7 +10,7 @@ use keyway_sim::episode::{
     run_episode, watch_episode,
 };
 use keyway_sim::report::ContactPart;
-use keyway_sim::sim::{Circle, Obstacle, StandingPolygon};
+use keyway_sim::sim::{Obstacle, StandingPolygon};
 
 /// A hall of 8 m x 8 m, with a wall across it at x = 4 m if so.
 fn hall(has_wall: bool) -> OccupancyGrid {
@@ -175,6 +175,6 @@ fn what_cannot_be_driven_is_refused_with_the_robot() {
     );
     assert!(is_no_room, "{in_the_wall}");
     let mut team = Episode::of_robots(hall(false), vec![free]);
-    team.obstacles = vec![Circle::standing(Point::new(1.0, 1.0), -1.0)];
+    team.obstacles = vec![Disc::new(Point::new(1.0, 1.0), -1.0)];
     assert_eq!(run_episode(&team).unwrap_err().robot, None);
 }

@@ -1,10 +1,10 @@
 //! Values that are written in a form of their own.
 
 use keyway::ConfigError;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::map::GridFrame;
 use keyway_lab::batch::Shard;
-use keyway_sim::sim::{Circle, Motion, Mover, WayPoints};
+use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -22,7 +22,7 @@ pub(crate) struct PoseArg {
 
 /// `X,Y,RADIUS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CircleArg(pub(crate) Circle);
+pub(crate) struct CircleArg(pub(crate) Disc);
 
 /// `X,Y,RADIUS,VX,VY`, or `X,Y,RADIUS,SPEED:X,Y` with as many further points as needed.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,9 +103,7 @@ impl FromStr for CircleArg {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match numbers(text, "X,Y,RADIUS")?[..] {
-            [x, y, radius_m] if radius_m >= 0.0 => {
-                Ok(Self(Circle::standing(Point::new(x, y), radius_m)))
-            }
+            [x, y, radius_m] if radius_m >= 0.0 => Ok(Self(Disc::new(Point::new(x, y), radius_m))),
             [_, _, radius_m] => Err(format!("the radius must be at least 0, got {radius_m:?}")),
             _ => Err("expected three numbers X,Y,RADIUS".to_owned()),
         }
@@ -121,13 +119,13 @@ impl MovingArg {
     }
 
     /// The obstacle, with its points where they are in the world: one for each that was given.
-    pub(crate) fn mover(&self, points: Vec<Point>) -> Result<Mover, ConfigError> {
+    pub(crate) fn mover(&self, points: Vec<Point>) -> Result<MovingObstacle, ConfigError> {
         let motion = match (self.pace, &points[..]) {
             (Pace::Velocity(velocity_mps), &[from, ..]) => Motion::Straight { from, velocity_mps },
             (Pace::Velocity(_), []) => return Err(ConfigError::new("position", "is missing")),
             (Pace::Round(speed_mps), _) => Motion::WayPoints(WayPoints::around(points, speed_mps)?),
         };
-        Mover::new(self.radius_m, motion)
+        MovingObstacle::new(self.radius_m, motion)
     }
 }
 

@@ -2,7 +2,7 @@
 //! every run ends.
 
 use keyway::files::{find_robot, find_stack};
-use keyway::geometry::{Point, Segment};
+use keyway::geometry::{Disc, Point, Segment};
 use keyway::map::formats::read_map;
 use keyway::map::{LayerConfig, SearchMap};
 use keyway::navigate::Stack;
@@ -13,7 +13,6 @@ use keyway::plan::{
 use keyway::search::{CornerRule, Cost, Query, Workspace};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::scene_files::read_scene;
-use keyway_sim::sim::Circle;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -215,7 +214,7 @@ fn movers_pass_through_nothing() {
         for (mover, tenth_s) in
             episode.movers.iter().flat_map(|mover| (0..3000).map(move |tenth_s| (mover, tenth_s)))
         {
-            let Circle { centre, radius_m, .. } = mover.at(f64::from(tenth_s) / 10.0);
+            let Disc { centre, radius_m, .. } = mover.at(f64::from(tenth_s) / 10.0);
             let away_m = |point: Point| (point - centre).dot(point - centre).sqrt() - radius_m;
             let from_walls_m = map.clearance().of_point(centre, 5.0) - radius_m;
             let standing = episode.obstacles.iter();

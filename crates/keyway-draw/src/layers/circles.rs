@@ -6,26 +6,17 @@ use crate::color::{OBSTACLE, Rgb};
 use crate::legend::{Entry, Sample};
 use crate::marks::hatched_disc;
 use crate::view::Extent;
-use keyway::geometry::Point;
-
-/// A disc in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    /// Its centre \[m\].
-    pub centre: Point,
-    /// Its radius \[m\].
-    pub radius_m: f64,
-}
+use keyway::geometry::Disc;
 
 /// Hatched discs.
 #[derive(Clone, Debug)]
-pub struct Discs<'a> {
+pub struct HatchedDiscs<'a> {
     all: &'a [Disc],
     label: String,
     color: Rgb,
 }
 
-impl<'a> Discs<'a> {
+impl<'a> HatchedDiscs<'a> {
     /// Hatched discs in a colour.
     pub fn new(discs: &'a [Disc], label: impl Into<String>, color: Rgb) -> Self {
         Self { all: discs, label: label.into(), color }
@@ -41,14 +32,13 @@ impl<'a> Discs<'a> {
         Self::new(discs, "moving obstacle", OBSTACLE)
     }
 
-    /// Discs that can be drawn: finite, and not of negative size.
+    /// HatchedDiscs that can be drawn: finite, and not of negative size.
     fn drawable(&self) -> impl Iterator<Item = &Disc> {
-        let fits = |d: &&Disc| d.centre.is_finite() && d.radius_m.is_finite() && d.radius_m >= 0.0;
-        self.all.iter().filter(fits)
+        self.all.iter().filter(|disc| disc.is_valid())
     }
 }
 
-impl Layer for Discs<'_> {
+impl Layer for HatchedDiscs<'_> {
     fn depth(&self) -> Depth {
         Depth::Obstacles
     }

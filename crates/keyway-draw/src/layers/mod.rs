@@ -16,7 +16,7 @@ mod walked;
 
 pub use caption::Caption;
 pub use cells::CellTint;
-pub use circles::{Disc, Discs};
+pub use circles::HatchedDiscs;
 pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{Driven, DrivenPoint, Footprints};
 pub use estimated::EstimatedMovers;

@@ -8,7 +8,7 @@ use crate::line_style::LineStyle;
 use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
-use keyway_sim::sim::{Motion, Mover};
+use keyway_sim::sim::{Motion, MovingObstacle};
 
 /// Moments that are marked in a run, at most.
 const MOST_MOMENTS: usize = 6;
@@ -28,7 +28,7 @@ const STEPS: u32 = 4000;
 /// lies outside the map does not make the picture larger.
 #[derive(Clone, Debug)]
 pub struct Movers<'a> {
-    all: &'a [Mover],
+    all: &'a [MovingObstacle],
     /// Those of one robot or several, with the colour of the times along them.
     runs: Vec<(&'a [DrivenPoint], Rgb)>,
 }
@@ -47,13 +47,13 @@ impl<'a> Movers<'a> {
     const OUTLINE: LineStyle = LineStyle { color: OBSTACLE, width_px: 0.9, dashes: "" };
 
     /// Movers while a robot drives a run; without a run, at its beginning.
-    pub fn new(movers: &'a [Mover], run: &'a [DrivenPoint]) -> Self {
+    pub fn new(movers: &'a [MovingObstacle], run: &'a [DrivenPoint]) -> Self {
         Self { all: movers, runs: vec![(run, INK)] }
     }
 
     /// Movers while several robots drive, each with a colour for the times along its way. The times
     /// are shown without movers, too: the robots move among each other.
-    pub const fn among(movers: &'a [Mover], runs: Vec<(&'a [DrivenPoint], Rgb)>) -> Self {
+    pub const fn among(movers: &'a [MovingObstacle], runs: Vec<(&'a [DrivenPoint], Rgb)>) -> Self {
         Self { all: movers, runs }
     }
 
@@ -63,7 +63,7 @@ impl<'a> Movers<'a> {
         ends_s.fold(0.0, f64::max)
     }
 
-    fn draw_mover(&self, canvas: &mut Canvas<'_>, mover: &Mover, moments: &Ticks) {
+    fn draw_mover(&self, canvas: &mut Canvas<'_>, mover: &MovingObstacle, moments: &Ticks) {
         let view = *canvas.view();
         let radius_px = mover.radius_m() * view.px_per_m();
         for way in ways(mover.motion(), self.end_s()) {

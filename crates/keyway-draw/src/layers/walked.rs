@@ -4,7 +4,7 @@ use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
 use crate::legend::{Entry, Sample};
-use keyway::sense::Disc;
+use keyway::geometry::Disc;
 
 /// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines
 /// through. It does not make the picture larger.

@@ -31,8 +31,9 @@ fn area_m2(vertices: &[Point]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use keyway::geometry::Disc;
     use keyway::map::{Cell, OccupancyGrid};
-    use keyway_sim::sim::{Circle, Mover, StandingPolygon};
+    use keyway_sim::sim::{MovingObstacle, StandingPolygon};
 
     #[test]
     fn a_share_by_hand() {
@@ -41,8 +42,8 @@ mod tests {
         let (start, goal) = (Point::new(0.5, 0.5), Point::new(1.5, 0.5));
         let mut episode = Episode::of_robots(map, Vec::new());
         assert_eq!(occupied_share(&episode), Some(0.3));
-        episode.obstacles = vec![Circle::standing(goal, 0.5)];
-        episode.movers = vec![Mover::straight(start, 1.0, start).unwrap()];
+        episode.obstacles = vec![Disc::new(goal, 0.5)];
+        episode.movers = vec![MovingObstacle::straight(start, 1.0, start).unwrap()];
         let share = occupied_share(&episode).unwrap();
         assert!((share - (3.0 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
         // A triangle of half a square metre, and a cell.

@@ -4,7 +4,7 @@ use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
 use keyway_sim::episode::Episode;
 use keyway_sim::metrics::statistics;
-use keyway_sim::sim::{Run, Sample};
+use keyway_sim::sim::{Run, TrajectoryPoint};
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Part {
         let run_up_m = 0.5 * limits.v_max_mps.powi(2) / limits.acceleration_mps2;
         let ends = [first, last].map(|sample| sample.pose.point());
         let is_under_way = |at: Point| ends.iter().all(|end| end.distance(at) > run_up_m);
-        let share = |sample: &Sample| {
+        let share = |sample: &TrajectoryPoint| {
             let at = sample.pose.point();
             is_under_way(at).then(|| covered_share(&episode.known, at))
         };

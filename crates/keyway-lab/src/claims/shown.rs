@@ -4,11 +4,11 @@ use super::clutter_speeds::Part;
 use super::driven::Keeper;
 use super::experiment::{Experiment, SCENE_SEED};
 use super::method::How;
-use keyway::geometry::{Point, Polyline};
+use keyway::geometry::{Disc, Point, Polyline};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::search::Recording;
 use keyway_sim::episode::{Episode, EpisodeError};
-use keyway_sim::sim::{Circle, Mover, Run};
+use keyway_sim::sim::{MovingObstacle, Run};
 
 /// Content of a picture for a method.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +23,9 @@ pub struct Shown {
     /// is the whole run.
     pub part: Option<Vec<bool>>,
     /// Static obstacles that are not on the map.
-    pub obstacles: Vec<Circle>,
+    pub obstacles: Vec<Disc>,
     /// Moving obstacles.
-    pub movers: Vec<Mover>,
+    pub movers: Vec<MovingObstacle>,
 }
 
 /// A map with its ends, and the results of every method there.

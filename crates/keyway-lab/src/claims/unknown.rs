@@ -1,11 +1,10 @@
 //! Unknown obstacles on a path.
 
 use keyway::ConfigError;
-use keyway::geometry::{Point, Polyline};
+use keyway::geometry::{Disc, Point, Polyline};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, RandomObstacles};
-use keyway_sim::sim::Circle;
 
 /// Returns the static discs of a seed: those that a run of [`Robot::paper`] between the two ends
 /// meets with the same seed.
@@ -16,7 +15,7 @@ pub(super) fn standing(
     unknown: Option<&RandomObstacles>,
     grid: &OccupancyGrid,
     (ends, seed): ([Cell; 2], u64),
-) -> Result<Vec<Circle>, ConfigError> {
+) -> Result<Vec<Disc>, ConfigError> {
     let Some(unknown) = unknown else { return Ok(Vec::new()) };
     let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
     let mut episode = Episode::new(grid.clone(), Robot::paper(), start, goal);
@@ -25,7 +24,7 @@ pub(super) fn standing(
 }
 
 /// Smallest distance from a line to discs \[m\], 0 where it goes through one; `None` without discs.
-pub(super) fn clearance_m(line: &Polyline, discs: &[Circle]) -> Option<f64> {
+pub(super) fn clearance_m(line: &Polyline, discs: &[Disc]) -> Option<f64> {
     let from = |centre: Point| {
         let distances = line.segments().map(|segment| segment.distance_sq_to_point(centre).sqrt());
         distances.fold(f64::INFINITY, f64::min)
@@ -41,8 +40,8 @@ mod tests {
     fn distances_by_hand() {
         let line = Polyline::new(vec![[0.0, 0.0].into(), [4.0, 0.0].into(), [4.0, 3.0].into()]);
         let clearance = |discs: &[([f64; 2], f64)]| {
-            let discs: Vec<Circle> =
-                discs.iter().map(|&(at, radius_m)| Circle::standing(at.into(), radius_m)).collect();
+            let discs: Vec<Disc> =
+                discs.iter().map(|&(at, radius_m)| Disc::new(at.into(), radius_m)).collect();
             clearance_m(&line, &discs)
         };
         assert_eq!(clearance(&[]), None);

@@ -11,7 +11,7 @@ use super::table::{rows, some_rows};
 use super::{NamedScene, ScenesError};
 use keyway::geometry::Point;
 use keyway_sim::episode::Start;
-use keyway_sim::scene_files::{SceneError, SceneFile, SceneRules, UnknownCircle, UnknownObstacle};
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneRules, UnknownDisc, UnknownObstacle};
 use keyway_sim::sim::Arrival;
 use keyway_sim::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
@@ -71,9 +71,9 @@ impl BarnRequest {
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let cylinders: Vec<Cylinder> =
             some_rows(&self.cylinders).map_err(ScenesError::of_table("cylinders"))?;
-        let mut worlds: BTreeMap<u32, Vec<UnknownCircle>> = BTreeMap::new();
+        let mut worlds: BTreeMap<u32, Vec<UnknownDisc>> = BTreeMap::new();
         for Cylinder { world, x, y, radius } in cylinders {
-            let circle = UnknownCircle { position: Point::new(x, y), radius_m: radius };
+            let circle = UnknownDisc { position: Point::new(x, y), radius_m: radius };
             worlds.entry(world).or_default().push(circle);
         }
         let best_s = self.best_times_s()?;
@@ -94,7 +94,7 @@ impl BarnRequest {
 
 fn named(
     world: u32,
-    cylinders: Vec<UnknownCircle>,
+    cylinders: Vec<UnknownDisc>,
     is_known: bool,
     reference_time_s: Option<f64>,
 ) -> Result<NamedScene, SceneError> {
@@ -102,7 +102,7 @@ fn named(
     let mut map = GeneratedMap { origin: MAP_CORNER, ..empty };
     let mut unknown = cylinders;
     if is_known {
-        let disc = |circle: &UnknownCircle| [circle.position.x, circle.position.y, circle.radius_m];
+        let disc = |circle: &UnknownDisc| [circle.position.x, circle.position.y, circle.radius_m];
         map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
         // A cylinder near an end is an obstacle, too.
         map.free_ends_m = 0.0;

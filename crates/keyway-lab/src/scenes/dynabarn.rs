@@ -13,7 +13,7 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway_sim::episode::Start;
 use keyway_sim::scene_files::{SceneFile, SceneRules, UnknownObstacle};
-use keyway_sim::sim::{Arrival, KeyFrame, Motion, Mover, Spline, StandingPolygon};
+use keyway_sim::sim::{Arrival, KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
 use keyway_sim::worlds::GeneratedMap;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -82,7 +82,7 @@ impl DynabarnRequest {
         let laps = self.laps()?;
         let cylinders: Vec<Cylinder> =
             some_rows(&self.worlds).map_err(ScenesError::of_table("worlds"))?;
-        let mut worlds: BTreeMap<u32, Vec<Mover>> = BTreeMap::new();
+        let mut worlds: BTreeMap<u32, Vec<MovingObstacle>> = BTreeMap::new();
         for Cylinder { world, plugin, radius } in cylinders {
             let Some(lap) = laps.get(&plugin) else {
                 return Err(ScenesError::NoKeyFrames { world, plugin });
@@ -111,9 +111,9 @@ impl DynabarnRequest {
     }
 }
 
-fn mover(lap: &Lap, radius_m: f64) -> Result<Mover, ConfigError> {
+fn mover(lap: &Lap, radius_m: f64) -> Result<MovingObstacle, ConfigError> {
     let spline = Spline::new(lap.frames.clone(), lap.duration_s)?;
-    Mover::new(radius_m, Motion::Spline(spline))
+    MovingObstacle::new(radius_m, Motion::Spline(spline))
 }
 
 /// Returns the walls: boxes of 20 m x 0.5 m in the middle of three sides of the field.
@@ -130,7 +130,7 @@ fn walls() -> Result<Vec<UnknownObstacle>, ScenesError> {
     sides.into_iter().map(|(middle, size_m)| wall(middle, size_m)).collect()
 }
 
-fn named(world: u32, moving: Vec<Mover>) -> Result<NamedScene, ScenesError> {
+fn named(world: u32, moving: Vec<MovingObstacle>) -> Result<NamedScene, ScenesError> {
     let [width_m, height_m] = MAP_SIZE_M;
     let map = GeneratedMap { origin: MAP_CORNER, ..GeneratedMap::empty(width_m, height_m, CELL_M) };
     let scene = SceneFile {

@@ -9,8 +9,8 @@ use crate::report::{
     Clock, Controlled, RunPart, SmoothedPart, WayPointPart, timed, trajectory_row,
 };
 use crate::sim::{
-    Action, Control, Mover, Obstacle, Outcome, Participant, Run, RunRules, World, WorldError,
-    simulate_on,
+    Action, Control, MovingObstacle, Obstacle, Outcome, Participant, Run, RunRules, World,
+    WorldError, simulate_on,
 };
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
@@ -289,7 +289,7 @@ impl Driver<'_> {
             Outcome::Reached => return None,
             Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
                 let with = match with {
-                    Obstacle::Circle(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Disc(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
@@ -304,7 +304,8 @@ impl Driver<'_> {
                     (true, true) => ", while the robot turned on the spot",
                 };
                 let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
-                let darted = mover_speed_mps.filter(|&speed_mps| speed_mps > Mover::DART_MPS);
+                let darted =
+                    mover_speed_mps.filter(|&speed_mps| speed_mps > MovingObstacle::DART_MPS);
                 let darted =
                     darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
                 let darted = darted.unwrap_or_default();

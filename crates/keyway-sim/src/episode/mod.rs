@@ -9,16 +9,16 @@
 //!
 //! ```
 //! use keyway_sim::episode::{Episode, EpisodeOutcome, run_episode};
-//! use keyway::geometry::Point;
+//! use keyway::geometry::{Disc, Point};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
-//! use keyway_sim::sim::Circle;
+//! use keyway_sim::sim::Disc;
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
 //! let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));
 //! let mut episode = Episode::new(map, Robot::small(), start, goal);
 //! // In the middle of the way, and not on the map.
-//! episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+//! episode.obstacles = vec![Disc::new(Point::new(4.0, 2.1), 0.3)];
 //! let report = run_episode(&episode)?.first();
 //! assert_eq!(report.outcome, EpisodeOutcome::Reached);
 //! let run = report.run.as_ref().expect("there was a route to drive");
@@ -51,9 +51,9 @@ pub use run::{RunOptions, run_episode, watch_episode};
 pub use start::Start;
 
 use crate::report::{MapSource, Placed};
-use crate::sim::{Circle, Mover, StandingPolygon};
+use crate::sim::{MovingObstacle, StandingPolygon};
 use keyway::ConfigError;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::given::Given;
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::navigate::Goal;
@@ -90,13 +90,13 @@ pub struct Episode {
     /// Identification of the map in the report.
     pub source: MapSource,
     /// Real static obstacles that are not on the map.
-    pub obstacles: Vec<Circle>,
+    pub obstacles: Vec<Disc>,
     /// Real static polygons that are not on the map.
     pub polygons: Vec<StandingPolygon>,
     /// Occupied cells that the map does not show, in ascending order.
     pub hidden_cells: Vec<Cell>,
     /// Moving obstacles.
-    pub movers: Vec<Mover>,
+    pub movers: Vec<MovingObstacle>,
     /// Number of random ones among these obstacles, and of those not placed
     /// ([`RandomObstacles::put_into`]).
     pub random: Option<Placed>,

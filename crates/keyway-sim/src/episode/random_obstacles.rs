@@ -24,9 +24,9 @@ mod lane;
 
 use super::{Episode, EpisodeRobot, Start};
 use crate::report::Placed;
-use crate::sim::{Circle, Motion, Mover, WayPoints};
+use crate::sim::{Motion, MovingObstacle, WayPoints};
 use keyway::ConfigError;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::map::{BitGrid, Cell, CellState, Clearance, GridFrame, OccupancyGrid};
 use keyway::navigate::Goal;
 use keyway::random::Random;
@@ -113,8 +113,8 @@ impl RandomObstacles {
             unless_few("moving.count", count)?;
             ConfigError::unless_range("moving.radius_m", radius_m)?;
             ConfigError::unless_range("moving.speed_mps", speed_mps)?;
-            if speed_mps[1] > Mover::FASTEST_MPS {
-                let expected = format!("no faster than {} m/s", Mover::FASTEST_MPS);
+            if speed_mps[1] > MovingObstacle::FASTEST_MPS {
+                let expected = format!("no faster than {} m/s", MovingObstacle::FASTEST_MPS);
                 return Err(ConfigError::must_be("moving.speed_mps[1]", &expected, speed_mps[1]));
             }
         }
@@ -170,8 +170,8 @@ impl RandomObstacles {
 /// Obstacles of a seed.
 #[derive(Default)]
 struct Drawn {
-    discs: Vec<Circle>,
-    movers: Vec<Mover>,
+    discs: Vec<Disc>,
+    movers: Vec<MovingObstacle>,
     placed: Placed,
 }
 
@@ -211,7 +211,7 @@ struct Ground {
     /// Paths, one for each robot.
     lanes: Vec<Lane>,
     near_way_m: f64,
-    discs: Vec<Circle>,
+    discs: Vec<Disc>,
 }
 
 impl Ground {
@@ -233,10 +233,10 @@ impl Ground {
 
     /// Places the first of [`RandomObstacles::TRIES`] discs that leaves every robot a path, if any
     /// does.
-    fn place(&mut self, mut draw: impl FnMut(&Self) -> Option<Circle>) {
+    fn place(&mut self, mut draw: impl FnMut(&Self) -> Option<Disc>) {
         for _ in 0..RandomObstacles::TRIES {
             let Some(disc) = draw(self) else { continue };
-            let larger = Circle { radius_m: disc.radius_m + RandomObstacles::MARGIN_M, ..disc };
+            let larger = Disc { radius_m: disc.radius_m + RandomObstacles::MARGIN_M, ..disc };
             let covered = self.free_cells_of(&larger);
             self.lanes.iter_mut().for_each(|lane| lane.set(&covered, CellState::Occupied));
             if self.lanes.iter_mut().all(Lane::still_has_way) {
@@ -251,11 +251,11 @@ impl Ground {
     }
 
     /// Draws a static disc near the path; `None` if it may not be there.
-    fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Circle> {
+    fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Disc> {
         let radius_m = random.between(kind.radius_m);
         let (_, at, across) = self.on_way(random)?;
         let aside_m = random.between([-self.near_way_m, self.near_way_m]);
-        let disc = Circle::standing(at + across * aside_m, radius_m);
+        let disc = Disc::new(at + across * aside_m, radius_m);
         let is_free = |cell| !self.known.get(cell);
         let is_on_ground = self.frame.cell_from_world(disc.centre).is_some_and(is_free);
         let leaves_ends = self.leave_ends(radius_m, |end| end.distance(disc.centre));
@@ -263,7 +263,7 @@ impl Ground {
     }
 
     /// Draws a disc that walks across the path; `None` if it may not be there.
-    fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<Mover> {
+    fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<MovingObstacle> {
         let radius_m = random.between(kind.radius_m);
         let speed_mps = random.between(kind.speed_mps);
         let (lane, at, across) = self.on_way(random)?;
@@ -283,7 +283,7 @@ impl Ground {
         }
         // A closed course along a line: to one end, past its start to the other end, and back.
         let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
-        Mover::new(radius_m, Motion::WayPoints(motion)).ok()
+        MovingObstacle::new(radius_m, Motion::WayPoints(motion)).ok()
     }
 
     /// Farthest position from `at` in a direction that a disc reaches without contact; `None` if it
@@ -298,7 +298,7 @@ impl Ground {
 
     /// True if a disc at a position touches neither the obstacles of the map nor another disc.
     fn has_room(&self, place: Point, radius_m: f64) -> bool {
-        let is_beside = |disc: &Circle| disc.centre.distance(place) >= disc.radius_m + radius_m;
+        let is_beside = |disc: &Disc| disc.centre.distance(place) >= disc.radius_m + radius_m;
         Clearance::new(&self.frame, &self.known).is_clear_point(place, radius_m)
             && self.discs.iter().all(is_beside)
     }
@@ -333,7 +333,7 @@ impl Ground {
     }
 
     /// Returns the cells that a disc touches and that contain no obstacle yet.
-    fn free_cells_of(&self, disc: &Circle) -> Vec<Cell> {
+    fn free_cells_of(&self, disc: &Disc) -> Vec<Cell> {
         let frame = &self.frame;
         let centre = frame.grid_from_world(disc.centre);
         let reach = disc.radius_m / frame.resolution_m();

@@ -39,7 +39,8 @@ mod tests {
     use super::*;
     use crate::episode::run_episode;
     use crate::report::trajectory_row;
-    use crate::sim::{Action, Circle, Control};
+    use crate::sim::{Action, Control};
+    use keyway::geometry::Disc;
     use keyway::geometry::Point;
     use keyway::map::OccupancyGrid;
     use keyway::navigate::Step;
@@ -51,7 +52,7 @@ mod tests {
         let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
         let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));
         let mut episode = Episode::new(map, Robot::small(), start, goal);
-        episode.obstacles = vec![Circle::standing(Point::new(4.0, 2.1), 0.3)];
+        episode.obstacles = vec![Disc::new(Point::new(4.0, 2.1), 0.3)];
         let mut run = episode.stepper().unwrap();
         let EpisodeRobot { robot, stack, .. } = &episode.robots[0];
         let mut controller =

@@ -4,9 +4,9 @@ use super::{
     Episode, EpisodeError, EpisodeOutcome, EpisodeRobot, EpisodeRules, RobotReport, RunError,
 };
 use crate::report::{Clock, Inputs, Parameters, PlanPart, timed};
-use crate::sim::{Circle, RunRules, World};
+use crate::sim::{RunRules, World};
 use keyway::ConfigError;
-use keyway::geometry::Pose;
+use keyway::geometry::{Disc, Pose};
 use keyway::map::{BitGrid, Clearance, LayerConfig, SearchMap, UnknownPolicy};
 use keyway::navigate::{FittedStack, NavigateError, Progress, touches};
 use keyway::plan::{Plan, PlanError};
@@ -155,7 +155,7 @@ impl Task<'_> {
 
     /// Returns all inputs of the result; `time_limit_s` is the limit of this run.
     pub(super) fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
-        let to_row = |circle: &Circle| [circle.centre.x, circle.centre.y, circle.radius_m];
+        let to_row = |circle: &Disc| [circle.centre.x, circle.centre.y, circle.radius_m];
         Inputs {
             version: Inputs::VERSION,
             map: self.episode.source.name.clone(),

@@ -20,7 +20,7 @@
 //! # Cost
 //! One distance to the nearest obstacle for every sample of the run. Allocates nothing.
 
-use crate::sim::{Run, Sample, World};
+use crate::sim::{Run, TrajectoryPoint, World};
 use keyway::geometry::Point;
 use keyway::robot::{Footprint, Robot};
 use serde::{Deserialize, Serialize};
@@ -76,12 +76,12 @@ impl Mrpb {
 }
 
 /// Distance from the robot's centre to the nearest obstacle \[m\]; `reach_m` where none is nearer.
-fn distance_m(world: &World, sample: &Sample, reach_m: f64) -> f64 {
+fn distance_m(world: &World, sample: &TrajectoryPoint, reach_m: f64) -> f64 {
     world.at(sample.t_s).distance(&Footprint::POINT, sample.pose, reach_m)
 }
 
-fn path_smoothness_m2(samples: &[Sample]) -> f64 {
-    let second_difference = |three: &[Sample]| {
+fn path_smoothness_m2(samples: &[TrajectoryPoint]) -> f64 {
+    let second_difference = |three: &[TrajectoryPoint]| {
         let [a, b, c] = [0, 1, 2].map(|i: usize| three[i].pose.point());
         let Point { x, y } = (c - b) - (b - a);
         x * x + y * y
@@ -89,9 +89,10 @@ fn path_smoothness_m2(samples: &[Sample]) -> f64 {
     samples.windows(3).map(second_difference).sum()
 }
 
-fn velocity_smoothness_mps2(samples: &[Sample]) -> Option<f64> {
-    let rate =
-        |two: &[Sample]| (two[1].velocity.v - two[0].velocity.v).abs() / (two[1].t_s - two[0].t_s);
+fn velocity_smoothness_mps2(samples: &[TrajectoryPoint]) -> Option<f64> {
+    let rate = |two: &[TrajectoryPoint]| {
+        (two[1].velocity.v - two[0].velocity.v).abs() / (two[1].t_s - two[0].t_s)
+    };
     let cycles = samples.len().checked_sub(1).filter(|&cycles| cycles > 0)?;
     Some(samples.windows(2).map(rate).sum::<f64>() / cycles as f64)
 }
@@ -99,13 +100,13 @@ fn velocity_smoothness_mps2(samples: &[Sample]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Circle, KeyFrame, KeyFrames, Motion, Mover, MoverWay, Outcome, WayPoints};
-    use keyway::geometry::{Pose, Velocity};
+    use crate::sim::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, Outcome, WayPoints};
+    use keyway::geometry::{Disc, Pose, Velocity};
     use keyway::map::OccupancyGrid;
 
     /// A run with cycles of 0.5 s, given by positions on a line, and speeds.
     fn run(driven: &[(f64, f64)]) -> Run {
-        let sample = |(i, &(x, v)): (usize, &(f64, f64))| Sample {
+        let sample = |(i, &(x, v)): (usize, &(f64, f64))| TrajectoryPoint {
             t_s: i as f64 * 0.5,
             pose: Pose::new(x, 2.5, 0.0),
             velocity: Velocity::new(v, 0.0),
@@ -123,7 +124,7 @@ mod tests {
         }
     }
 
-    fn world(circles: Vec<Circle>) -> World {
+    fn world(circles: Vec<Disc>) -> World {
         World::from_known(&OccupancyGrid::from_ascii(&[".........."; 5]), circles).unwrap()
     }
 
@@ -133,7 +134,7 @@ mod tests {
     #[test]
     fn measures_by_hand() {
         // Its edge is 0.5 m from the positions 2.5 and 4.5.
-        let post = Circle::standing(Point::new(3.5, 2.5), 0.5);
+        let post = Disc::new(Point::new(3.5, 2.5), 0.5);
         let world = world(vec![post]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &world, 0.6);
         assert_eq!(mrpb.min_distance_m, Some(0.0));
@@ -153,7 +154,8 @@ mod tests {
         let frame = |t_s, x, y| KeyFrame { t_s, position: Point::new(x, y) };
         let frames = vec![frame(0.0, 9.0, 0.5), frame(1.0, 2.5, 3.0), frame(1.5, 9.0, 0.5)];
         let motion = Motion::KeyFrames(KeyFrames::new(frames.clone()).unwrap());
-        let among = |motion| world(vec![]).with_movers(vec![Mover::new(0.25, motion).unwrap()]);
+        let among =
+            |motion| world(vec![]).with_movers(vec![MovingObstacle::new(0.25, motion).unwrap()]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &among(motion), 0.6);
         assert!((mrpb.min_distance_m.unwrap() - 0.25).abs() < 1e-12);
         // One sample has no duration.

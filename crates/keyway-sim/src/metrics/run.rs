@@ -102,11 +102,11 @@ fn total_variation(values: impl Iterator<Item = f64> + Clone) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::Sample;
+    use crate::sim::TrajectoryPoint;
     use keyway::geometry::{Pose, Velocity};
 
     fn run(velocities: &[(f64, f64)], length_m: f64) -> Run {
-        let sample = |(i, &(v, omega)): (usize, &(f64, f64))| Sample {
+        let sample = |(i, &(v, omega)): (usize, &(f64, f64))| TrajectoryPoint {
             t_s: i as f64 * 0.5,
             pose: Pose::default(),
             velocity: Velocity::new(v, omega),
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn a_turn_on_the_spot_is_a_jump_and_a_bend_is_none() {
         let count = |states: &[(f64, f64)]| {
-            let sample = |(i, &(v, theta_deg)): (usize, &(f64, f64))| Sample {
+            let sample = |(i, &(v, theta_deg)): (usize, &(f64, f64))| TrajectoryPoint {
                 t_s: i as f64 * 0.5,
                 pose: Pose::new(0.0, 0.0, theta_deg.to_radians()),
                 velocity: Velocity::new(v, 0.0),

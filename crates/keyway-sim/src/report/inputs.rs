@@ -1,6 +1,6 @@
 //! Inputs of a result.
 
-use crate::sim::{Arrival, Disturbances, Mover, StandingPolygon};
+use crate::sim::{Arrival, Disturbances, MovingObstacle, StandingPolygon};
 use keyway::geometry::Point;
 use keyway::map::{Cell, LayerConfig};
 use keyway::navigate::Stack;
@@ -44,7 +44,7 @@ pub struct Inputs {
     /// Occupied cells that the map does not show.
     pub hidden_cells: Vec<Cell>,
     /// Moving obstacles.
-    pub moving: Vec<Mover>,
+    pub moving: Vec<MovingObstacle>,
     /// Number of random obstacles; `None` where none was requested.
     pub random: Option<Placed>,
     /// Disturbances of the robot; `None` without any, and for a route.

@@ -1,7 +1,7 @@
 //! Report of a simulated run.
 
 use crate::metrics::{Mrpb, RunMetrics};
-use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample};
+use crate::sim::{MoverWay, MovingObstacle, Obstacle, Outcome, Run, TrajectoryPoint};
 use keyway::geometry::Point;
 use keyway::local::RefusalCounts;
 use keyway::navigate::RecoveryCounts;
@@ -141,7 +141,7 @@ impl RunPart {
 impl RunPart {
     /// Moving obstacles as they moved in this run: those that give way follow their recorded
     /// positions.
-    pub fn movers(&self, given: &[Mover]) -> Vec<Mover> {
+    pub fn movers(&self, given: &[MovingObstacle]) -> Vec<MovingObstacle> {
         let mut movers = given.to_vec();
         for way in &self.gave_way {
             if let Some(mover) = movers.get_mut(way.index) {
@@ -153,7 +153,7 @@ impl RunPart {
 }
 
 /// Returns one sample as `[t_s, x_m, y_m, yaw_rad, v_mps, omega_radps]`.
-pub fn trajectory_row(sample: &Sample) -> [f64; 6] {
-    let Sample { t_s, pose, velocity } = *sample;
+pub fn trajectory_row(sample: &TrajectoryPoint) -> [f64; 6] {
+    let TrajectoryPoint { t_s, pose, velocity } = *sample;
     [t_s, pose.x, pose.y, pose.theta, velocity.v, velocity.omega]
 }

@@ -7,7 +7,7 @@ use super::scene_version::{VERSION, Versioned};
 use super::unknown::{Standing, UnknownObstacle};
 use crate::episode::{Episode, EpisodeRobot, RandomObstacles, Start};
 use crate::report::MapSource;
-use crate::sim::{Disturbances, Mover};
+use crate::sim::{Disturbances, MovingObstacle};
 use crate::worlds::GeneratedMap;
 use keyway::files::from_toml;
 use keyway::geometry::Point;
@@ -104,7 +104,7 @@ pub struct SceneFile {
     pub unknown: Vec<UnknownObstacle>,
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub moving: Vec<Mover>,
+    pub moving: Vec<MovingObstacle>,
     /// Obstacles near the ways of the robots that are drawn by the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub random: Option<RandomObstacles>,
@@ -195,7 +195,7 @@ impl SceneFile {
     }
 
     /// Moving obstacles, with the seed of the scene where they need one.
-    fn seeded_movers(&self) -> Vec<Mover> {
+    fn seeded_movers(&self) -> Vec<MovingObstacle> {
         (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
     }
 
@@ -291,7 +291,7 @@ impl SceneFile {
     /// True if another seed gives another run.
     pub fn is_random(&self) -> bool {
         let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
-        let takes_seed = self.moving.iter().any(Mover::needs_seed);
+        let takes_seed = self.moving.iter().any(MovingObstacle::needs_seed);
         is_generated || takes_seed || self.random.is_some() || !self.disturbances.is_none()
     }
 

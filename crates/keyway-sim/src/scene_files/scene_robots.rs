@@ -53,7 +53,8 @@ mod tests {
     use super::*;
     use crate::episode::Episode;
     use crate::scene_files::{SceneError, SceneFile};
-    use crate::sim::{Circle, Disturbances};
+    use crate::sim::Disturbances;
+    use keyway::geometry::Disc;
     use keyway::map::formats::map_from_bytes;
     use keyway::map::{Cell, CellState};
     use keyway::navigate::Stack;
@@ -136,7 +137,7 @@ mod tests {
         };
         let episode = |text: &str| SceneFile::from_toml(text).unwrap().episode(map(), small);
         let shown = episode(&format!("{TWO}{walk}{shapes}")).unwrap();
-        assert_eq!(shown.obstacles, [Circle::standing(Point::new(2.0, 3.0), 0.5)]);
+        assert_eq!(shown.obstacles, [Disc::new(Point::new(2.0, 3.0), 0.5)]);
         assert_eq!(shown.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
         assert_eq!(shown.polygons[0].vertices().len(), 3);
         // As for one robot, the walk follows from the seed of the scene.

@@ -1,8 +1,8 @@
 //! Static obstacles of a scene that are not on its map.
 
-use crate::sim::{Circle, StandingPolygon};
+use crate::sim::StandingPolygon;
 use keyway::ConfigError;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::map::{Cell, GridFrame};
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub enum UnknownObstacle {
     /// A round one.
-    Circle(UnknownCircle),
+    Disc(UnknownDisc),
     /// A polygon of any shape.
     Polygon(StandingPolygon),
     /// Cells of the map that are in truth occupied.
@@ -23,7 +23,7 @@ pub enum UnknownObstacle {
 
 /// A round obstacle that no map shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnknownCircle {
+pub struct UnknownDisc {
     /// Its centre \[m\].
     pub position: Point,
     /// Its radius \[m\].
@@ -62,7 +62,7 @@ impl UnknownObstacle {
     /// Field that determines the kind, if scenes of version 1 do not have it.
     pub(super) const fn newer(&self) -> Option<&'static str> {
         match self {
-            Self::Circle(_) => None,
+            Self::Disc(_) => None,
             Self::Polygon(_) => Some("unknown.vertices_m"),
             Self::Cells(_) => Some("unknown.cells"),
         }
@@ -76,7 +76,7 @@ impl UnknownObstacle {
 
     fn validate(&self) -> Result<(), ConfigError> {
         // Polygons are checked at construction, and cells when there is a map.
-        let Self::Circle(UnknownCircle { position, radius_m }) = self else { return Ok(()) };
+        let Self::Disc(UnknownDisc { position, radius_m }) = self else { return Ok(()) };
         for (field, value) in [("position[0]", position.x), ("position[1]", position.y)] {
             if !value.is_finite() {
                 return Err(ConfigError::must_be(field, "a finite number", value));
@@ -91,7 +91,7 @@ impl UnknownObstacle {
     /// Adds the obstacle to the others, on a map.
     fn put_into(&self, standing: &mut Standing, frame: &GridFrame) -> Result<(), ConfigError> {
         match self {
-            Self::Circle(circle) => standing.obstacles.push((*circle).into()),
+            Self::Disc(circle) => standing.obstacles.push((*circle).into()),
             Self::Polygon(polygon) => standing.polygons.push(polygon.clone()),
             Self::Cells(cells) => {
                 if let Some(i) = cells.iter().position(|&cell| !frame.contains(cell)) {
@@ -117,7 +117,7 @@ fn within(index: usize, error: ConfigError) -> ConfigError {
 /// [`Episode`](crate::episode::Episode).
 #[derive(Default)]
 pub(super) struct Standing {
-    pub(super) obstacles: Vec<Circle>,
+    pub(super) obstacles: Vec<Disc>,
     pub(super) polygons: Vec<StandingPolygon>,
     pub(super) hidden_cells: Vec<Cell>,
 }
@@ -145,7 +145,7 @@ impl TryFrom<UnknownTable> for UnknownObstacle {
                 radius_m: Some(radius_m),
                 vertices_m: None,
                 cells: None,
-            } => Ok(Self::Circle(UnknownCircle { position, radius_m })),
+            } => Ok(Self::Disc(UnknownDisc { position, radius_m })),
             UnknownTable {
                 vertices_m: Some(vertices),
                 position: None,
@@ -190,7 +190,7 @@ impl From<UnknownObstacle> for UnknownTable {
     fn from(obstacle: UnknownObstacle) -> Self {
         let none = Self::default();
         match obstacle {
-            UnknownObstacle::Circle(UnknownCircle { position, radius_m }) => {
+            UnknownObstacle::Disc(UnknownDisc { position, radius_m }) => {
                 Self { position: Some(position), radius_m: Some(radius_m), ..none }
             }
             UnknownObstacle::Polygon(polygon) => Self { vertices_m: Some(polygon.into()), ..none },
@@ -199,15 +199,15 @@ impl From<UnknownObstacle> for UnknownTable {
     }
 }
 
-impl From<UnknownCircle> for UnknownObstacle {
-    fn from(circle: UnknownCircle) -> Self {
-        Self::Circle(circle)
+impl From<UnknownDisc> for UnknownObstacle {
+    fn from(circle: UnknownDisc) -> Self {
+        Self::Disc(circle)
     }
 }
 
-impl From<UnknownCircle> for Circle {
-    fn from(circle: UnknownCircle) -> Self {
-        Self::standing(circle.position, circle.radius_m)
+impl From<UnknownDisc> for Disc {
+    fn from(circle: UnknownDisc) -> Self {
+        Self::new(circle.position, circle.radius_m)
     }
 }
 
@@ -243,7 +243,7 @@ mod tests {
         let scene = SceneFile::from_toml(&format!("{SCENE}{SHAPES}")).unwrap();
         assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
         let episode = episode(&format!("{SCENE}{SHAPES}")).unwrap();
-        assert_eq!(episode.obstacles, [Circle::standing(Point::new(2.0, 3.0), 0.5)]);
+        assert_eq!(episode.obstacles, [Disc::new(Point::new(2.0, 3.0), 0.5)]);
         assert_eq!(episode.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
         assert_eq!(episode.polygons[0].vertices()[3], Point::new(1.0, 0.5));
     }

@@ -1,8 +1,8 @@
 //! Obstacles that give way during a simulation.
 
 use super::social_force::{Body, add_forces};
-use super::{Circle, KeyFrame, KeyFrames, Motion, Mover, MoverWay, WayPoints, World};
-use keyway::geometry::Point;
+use super::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints, World};
+use keyway::geometry::{Disc, Point};
 use std::borrow::Cow;
 
 /// An obstacle that gives way, between two cycles. In the simulated world its mover follows key
@@ -24,7 +24,7 @@ impl GivingWay {
 
     /// All obstacles of a world that give way, at rest at their first places.
     pub(super) fn begin(world: &mut Cow<'_, World>) -> Vec<Self> {
-        let giving_way = |(index, mover): (usize, &Mover)| {
+        let giving_way = |(index, mover): (usize, &MovingObstacle)| {
             let Motion::GivesWay(course) = mover.motion() else { return None };
             let centre = course.points()[0];
             let body = Body { centre, radius_m: mover.radius_m(), velocity_mps: Point::default() };
@@ -118,8 +118,8 @@ impl GivingWay {
 
 /// An obstacle at a time, with its mean velocity over the cycle before; at rest if it has just
 /// jumped.
-fn body_of(mover: &Mover, t_s: f64, cycle_s: f64) -> Body {
-    let Circle { centre, radius_m } = mover.at(t_s);
+fn body_of(mover: &MovingObstacle, t_s: f64, cycle_s: f64) -> Body {
+    let Disc { centre, radius_m } = mover.at(t_s);
     let before_s = t_s - cycle_s;
     let has_jumped = mover.motion().last_jump_s(t_s).is_some_and(|jump_s| jump_s > before_s);
     let moved_m = centre - mover.motion().position(before_s);

@@ -14,16 +14,16 @@
 //! errors of its localisation. The record shows the true motion.
 //!
 //! ```
-//! use keyway::geometry::{Point, Pose, Velocity};
+//! use keyway::geometry::{Disc, Point, Pose, Velocity};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
 //! use keyway::sense::Scan;
 //! use keyway_sim::sim::{
-//!     Action, Circle, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
+//!     Action, Disc, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
 //! };
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........"]);
-//! let post = Circle::standing(Point::new(5.0, 1.0), 0.25);
+//! let post = Disc::new(Point::new(5.0, 1.0), 0.25);
 //! let world = World::from_known(&map, vec![post])?;
 //! let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
 //! let radius_m = robot.footprint.inscribed_radius_m();
@@ -40,7 +40,7 @@
 //! let one =
 //!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
 //! let run = simulate(&world, &mut [one])?.remove(0);
-//! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
+//! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Disc(0), .. }));
 //! // Until the footprint touched the post.
 //! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
 //!
@@ -78,7 +78,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod circle;
 mod cycle_motion;
 mod disturbances;
 mod drive;
@@ -99,15 +98,14 @@ mod sweep;
 mod test_shapes;
 mod world;
 
-pub use circle::Circle;
 pub use disturbances::{ActuationNoise, Disturbances, LocalisationNoise, SensorNoise};
 pub use drive::{SimError, simulate, simulate_on};
 pub use mover::{
-    KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+    KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
 };
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
-pub use run::{MoverWay, Outcome, Run, Sample};
+pub use run::{MoverWay, Outcome, Run, TrajectoryPoint};
 pub use standing_polygon::StandingPolygon;
 pub use stepper::Stepper;
 pub use world::{Obstacle, World, WorldAt, WorldError};

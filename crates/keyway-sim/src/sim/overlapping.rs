@@ -1,17 +1,17 @@
 //! Overlaps between many discs.
 
-use super::Circle;
+use keyway::geometry::Disc;
 
 /// For each disc, the later discs in the list that it overlaps or touches, in their order.
 ///
 /// The discs are sorted by where they begin along the x axis. Each is compared only with discs that
 /// begin before it ends. So the cost grows with the discs that share a strip and with the overlaps.
-pub(super) fn overlapping(discs: &[Circle]) -> Vec<Vec<usize>> {
-    let begins = |(disc, index): (&Circle, usize)| (disc.centre.x - disc.radius_m, index, *disc);
-    let mut along: Vec<(f64, usize, Circle)> = discs.iter().zip(0..).map(begins).collect();
+pub(super) fn overlapping(discs: &[Disc]) -> Vec<Vec<usize>> {
+    let begins = |(disc, index): (&Disc, usize)| (disc.centre.x - disc.radius_m, index, *disc);
+    let mut along: Vec<(f64, usize, Disc)> = discs.iter().zip(0..).map(begins).collect();
     along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut later = vec![Vec::new(); discs.len()];
-    for (place, &(_, one, Circle { centre, radius_m, .. })) in along.iter().enumerate() {
+    for (place, &(_, one, Disc { centre, radius_m, .. })) in along.iter().enumerate() {
         let end = centre.x + radius_m;
         let beside = along[place + 1..].iter().take_while(|(begin, ..)| *begin <= end);
         for (_, other, disc) in beside {
@@ -30,7 +30,7 @@ pub(super) fn overlapping(discs: &[Circle]) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use keyway::geometry::Point;
+    use keyway::geometry::{Disc, Point};
     use proptest::prelude::*;
 
     proptest! {
@@ -40,9 +40,9 @@ mod tests {
         ) {
             let disc = |&(x, y, radius_m): &(f64, f64, f64)| {
                 let on_line = |at: f64| if is_level { at.round() } else { at };
-                Circle::standing(Point::new(on_line(x), on_line(y)), on_line(radius_m))
+                Disc::new(Point::new(on_line(x), on_line(y)), on_line(radius_m))
             };
-            let discs: Vec<Circle> = discs.iter().map(disc).collect();
+            let discs: Vec<Disc> = discs.iter().map(disc).collect();
             let meets = |a: usize, b: usize| {
                 let radii_m = discs[a].radius_m + discs[b].radius_m;
                 (discs[a].centre - discs[b].centre).norm_sq() <= radii_m * radii_m

@@ -1,6 +1,6 @@
 //! Record of a run.
 
-use super::{KeyFrame, KeyFrames, Motion, Mover, Obstacle, World};
+use super::{KeyFrame, KeyFrames, Motion, MovingObstacle, Obstacle, World};
 use keyway::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -25,7 +25,7 @@ pub enum Outcome {
         /// known ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
         jumped_onto: bool,
         /// Speed of a touched moving obstacle at the contact \[m/s\]; a speed above
-        /// [`Mover::DART_MPS`](super::Mover::DART_MPS) is a dart.
+        /// [`MovingObstacle::DART_MPS`](super::MovingObstacle::DART_MPS) is a dart.
         mover_speed_mps: Option<f64>,
     },
     /// The time limit passed.
@@ -36,7 +36,7 @@ pub enum Outcome {
 
 /// State of the robot at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct TrajectoryPoint {
     /// Time since the start \[s\].
     pub t_s: f64,
     /// Pose in the world frame.
@@ -71,7 +71,7 @@ pub struct MoverWay {
 
 impl MoverWay {
     /// The obstacle on this way, without giving way.
-    pub fn mover(&self, of: &Mover) -> Mover {
+    pub fn mover(&self, of: &MovingObstacle) -> MovingObstacle {
         of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
     }
 
@@ -89,7 +89,7 @@ pub struct Run {
     /// Outcome of the run.
     pub outcome: Outcome,
     /// The start, the end of every cycle, and the contact if there was one.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TrajectoryPoint>,
     /// Arc length driven \[m\].
     pub length_m: f64,
     /// Smallest clearance of the footprint from an obstacle or another robot over the whole motion,

@@ -29,9 +29,8 @@
 //! The model does not forbid contact. It costs a few operations for each two bodies near each
 //! other; the angle and the exponentials are computed only for terms that count.
 
-use super::Circle;
 use super::overlapping::overlapping;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use std::f64::consts::FRAC_PI_2;
 
 /// Relaxation time towards the desired velocity \[s\].
@@ -65,7 +64,7 @@ pub(super) struct Body {
 /// Adds the forces that all bodies exert on each other \[m/s²\], for each body in the order of the
 /// others. A body without a force does not give way and feels none.
 pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
-    let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+    let reaches: Vec<Disc> = bodies.iter().map(Body::reach).collect();
     for (one, others) in overlapping(&reaches).into_iter().enumerate() {
         for other in others {
             if forces[one].is_none() && forces[other].is_none() {
@@ -96,11 +95,11 @@ impl Body {
 
     /// Disc of influence: two bodies exert forces on each other only if their discs overlap. |D| is
     /// at most the sum of what the two bodies add to it.
-    fn reach(&self) -> Circle {
+    fn reach(&self) -> Disc {
         let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
         // Rounding must not make it smaller.
         let radius_m = (self.radius_m + FARTHEST * range_m) * (1.0 + 1e-9);
-        Circle { centre: self.centre, radius_m }
+        Disc { centre: self.centre, radius_m }
     }
 
     /// Force that another body exerts on this one \[m/s²\].
@@ -197,7 +196,7 @@ mod tests {
         let mut random = Random::new(3);
         let mut at = || random.between([0.0, 200.0]);
         let bodies: Vec<Body> = (0..1000).map(|_| body(at(), at(), 1.0)).collect();
-        let reaches: Vec<Circle> = bodies.iter().map(Body::reach).collect();
+        let reaches: Vec<Disc> = bodies.iter().map(Body::reach).collect();
         let pairs: usize = overlapping(&reaches).iter().map(Vec::len).sum();
         // Discs of 7.25 m around each: 2.1 % of all pairs, fewer at the border.
         assert!((5_000..10_500).contains(&pairs), "{pairs} of {}", 1000 * 999 / 2);

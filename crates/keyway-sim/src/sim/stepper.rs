@@ -112,7 +112,8 @@ impl Stepper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Action, Circle, SensorNoise, simulate};
+    use crate::sim::{Action, SensorNoise, simulate};
+    use keyway::geometry::Disc;
     use keyway::map::OccupancyGrid;
 
     /// Drives in the direction of the longest range; its answers depend on all its inputs.
@@ -132,7 +133,7 @@ mod tests {
     #[test]
     fn it_is_the_run_that_simulate_makes() {
         let map = OccupancyGrid::from_ascii(&["........", "..##....", "........", "........"]);
-        let posts = vec![Circle::standing(Point::new(5.0, 1.0), 0.25)];
+        let posts = vec![Disc::new(Point::new(5.0, 1.0), 0.25)];
         let world = World::from_known(&map, posts).unwrap();
         let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.3), Point::new(7.5, 3.5));
         let sensor = SensorNoise { range_m: 0.02, ..SensorNoise::default() };

@@ -1,8 +1,8 @@
 //! True stationary and moving obstacles of a world.
 
 use super::free_squares::FreeSquares;
-use super::{Circle, Mover, StandingPolygon};
-use keyway::geometry::{Point, Pose};
+use super::{MovingObstacle, StandingPolygon};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{BitGrid, Cell, Clearance, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use serde::{Deserialize, Serialize};
@@ -17,9 +17,9 @@ pub struct World {
     /// Squares that no map has, if any.
     hidden: Option<BitGrid>,
     free: FreeSquares,
-    circles: Vec<Circle>,
+    circles: Vec<Disc>,
     polygons: Vec<StandingPolygon>,
-    movers: Vec<Mover>,
+    movers: Vec<MovingObstacle>,
 }
 
 /// Object that a robot may touch.
@@ -32,7 +32,7 @@ pub enum Obstacle {
     /// The square of a cell that no map has ([`World::with_hidden`]).
     HiddenSquare,
     /// The circle of this index in [`World::circles`].
-    Circle(usize),
+    Disc(usize),
     /// The polygon of this index in [`World::polygons`].
     Polygon(usize),
     /// The moving obstacle of this index in [`World::movers`].
@@ -83,7 +83,7 @@ pub enum WorldError {
         "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
         centre.x, centre.y
     )]
-    Circle {
+    Disc {
         /// Its index.
         index: usize,
         /// Its centre \[m\].
@@ -100,15 +100,11 @@ impl World {
     ///
     /// # Errors
     /// When the grid has a different size, or a circle is not valid.
-    pub fn new(
-        frame: GridFrame,
-        squares: BitGrid,
-        circles: Vec<Circle>,
-    ) -> Result<Self, WorldError> {
+    pub fn new(frame: GridFrame, squares: BitGrid, circles: Vec<Disc>) -> Result<Self, WorldError> {
         check_size(&frame, &squares)?;
-        if let Some(index) = circles.iter().position(|circle| !circle.is_usable()) {
-            let Circle { centre, radius_m } = circles[index];
-            return Err(WorldError::Circle { index, centre, radius_m });
+        if let Some(index) = circles.iter().position(|circle| !circle.is_valid()) {
+            let Disc { centre, radius_m } = circles[index];
+            return Err(WorldError::Disc { index, centre, radius_m });
         }
         let free = FreeSquares::around(&squares);
         let (polygons, movers) = (Vec::new(), Vec::new());
@@ -120,7 +116,7 @@ impl World {
     ///
     /// # Errors
     /// When a circle is not valid.
-    pub fn from_known(known: &OccupancyGrid, circles: Vec<Circle>) -> Result<Self, WorldError> {
+    pub fn from_known(known: &OccupancyGrid, circles: Vec<Disc>) -> Result<Self, WorldError> {
         Self::new(*known.frame(), known.occupied().clone(), circles)
     }
 
@@ -151,12 +147,12 @@ impl World {
 
     /// Adds further moving obstacles.
     #[must_use]
-    pub fn with_movers(mut self, movers: Vec<Mover>) -> Self {
+    pub fn with_movers(mut self, movers: Vec<MovingObstacle>) -> Self {
         self.movers.extend(movers);
         self
     }
 
-    pub(super) fn movers_mut(&mut self) -> &mut [Mover] {
+    pub(super) fn movers_mut(&mut self) -> &mut [MovingObstacle] {
         &mut self.movers
     }
 
@@ -175,7 +171,7 @@ impl World {
     }
 
     /// Round stationary obstacles.
-    pub fn circles(&self) -> &[Circle] {
+    pub fn circles(&self) -> &[Disc] {
         &self.circles
     }
 
@@ -185,7 +181,7 @@ impl World {
     }
 
     /// Moving obstacles.
-    pub fn movers(&self) -> &[Mover] {
+    pub fn movers(&self) -> &[MovingObstacle] {
         &self.movers
     }
 
@@ -245,7 +241,7 @@ impl World {
         for (index, circle) in self.circles.iter().enumerate() {
             let distance_m = to_circle(footprint, pose, circle, nearest.0);
             if distance_m < nearest.0 {
-                nearest = (distance_m, Obstacle::Circle(index));
+                nearest = (distance_m, Obstacle::Disc(index));
             }
         }
         for (index, polygon) in self.polygons.iter().enumerate() {
@@ -269,7 +265,7 @@ impl<'a> WorldAt<'a> {
     }
 
     /// Round obstacles at this time: first the stationary ones, then the moving ones.
-    pub fn circles(&self) -> impl Iterator<Item = Circle> + 'a {
+    pub fn circles(&self) -> impl Iterator<Item = Disc> + 'a {
         let World { circles, movers, .. } = self.world;
         let t_s = self.t_s;
         circles.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
@@ -310,7 +306,7 @@ impl<'a> WorldAt<'a> {
 
 /// Distance from a footprint at a pose to a circle: 0 if they meet, `reach_m` if they are at least
 /// that far apart.
-pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Circle, reach_m: f64) -> f64 {
+pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Disc, reach_m: f64) -> f64 {
     let (core, radius_m) = footprint.core();
     let radii_m = circle.radius_m + radius_m;
     // No part of the core is farther from the centre of rotation than its swing.
@@ -345,8 +341,8 @@ mod tests {
     use crate::sim::test_shapes::{grid_of, star};
     use proptest::prelude::*;
 
-    fn circle(x: f64, y: f64, radius_m: f64) -> Circle {
-        Circle::standing(Point::new(x, y), radius_m)
+    fn circle(x: f64, y: f64, radius_m: f64) -> Disc {
+        Disc::new(Point::new(x, y), radius_m)
     }
 
     fn point() -> Footprint {
@@ -382,12 +378,12 @@ mod tests {
         assert_eq!((border(2.0, 2.25), border(5.5, 1.0)), (0.75, -0.5));
         let nearest = |x, y| world.nearest_standing(&point(), Pose::new(x, y, 0.0));
         assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
-        assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
+        assert_eq!(nearest(3.4, 1.9), Obstacle::Disc(0));
         assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
         // A box that reaches 1.2 m ahead of its centre is nearest to the circle there.
         let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
         let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
-        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));
+        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Disc(0));
         let gap_m = world.at(0.0).distance(&ahead, Pose::new(2.2, 2.0, 0.0), 9.0);
         assert!((gap_m - 0.1).abs() < 1e-12);
     }
@@ -417,7 +413,8 @@ mod tests {
     #[test]
     fn movers_are_obstacles_too() {
         let known = OccupancyGrid::from_ascii(&[".....", ".....", "....."]);
-        let mover = Mover::straight(Point::new(1.0, 2.0), 0.5, Point::new(0.5, -0.25)).unwrap();
+        let mover =
+            MovingObstacle::straight(Point::new(1.0, 2.0), 0.5, Point::new(0.5, -0.25)).unwrap();
         let world = World::from_known(&known, vec![circle(4.5, 0.5, 0.1)]).unwrap();
         let world = world.with_movers(vec![mover]);
         let gap = |t_s| world.at(t_s).distance(&point(), Pose::new(3.0, 2.0, 0.0), 9.0);
@@ -443,7 +440,7 @@ mod tests {
         for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0)] {
             let circles = vec![circle(0.0, 0.0, 0.0), bad];
             let error = World::new(frame, BitGrid::new(5, 1, false), circles).unwrap_err();
-            assert!(matches!(error, WorldError::Circle { index: 1, .. }), "{error}");
+            assert!(matches!(error, WorldError::Disc { index: 1, .. }), "{error}");
         }
     }
 }

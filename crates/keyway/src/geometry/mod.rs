@@ -1,10 +1,11 @@
-//! Points, poses, angles, segments, arcs, cubic curves, and the paths they make in the plane.
+//! Points, poses, angles, segments, arcs, discs, cubic curves, and the paths they make in the plane.
 //! Depends on nothing else here.
 
 mod angle;
 mod arc;
 mod cubic;
 mod cubic_length;
+mod disc;
 mod outline;
 mod path;
 mod planned_line;
@@ -17,6 +18,7 @@ mod segment;
 pub use angle::{degrees, wrap_angle};
 pub use arc::Arc;
 pub use cubic::Cubic;
+pub use disc::Disc;
 pub use outline::{holds_point, outline};
 pub use path::{Path, PathError, PathPiece};
 pub use planned_line::PlannedLine;

@@ -1,8 +1,8 @@
 //! What one decision may look at.
 
-use crate::geometry::{Point, Polyline, Pose, Velocity};
+use crate::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
-use crate::sense::{Disc, Mover, SeenCells};
+use crate::sense::{Mover, SeenCells};
 
 /// Everything a local planner sees in one control cycle; built by the caller. It is that of the
 /// instant at which the command acts: of now, or

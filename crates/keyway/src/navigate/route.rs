@@ -4,7 +4,7 @@ use super::headings::fits_within;
 use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
 use super::{FittedStack, Goal, HeadingRange, Stack};
 use crate::ConfigError;
-use crate::geometry::{Point, Pose, degrees};
+use crate::geometry::{Disc, Point, Pose, degrees};
 use crate::given::{Computed, Given};
 use crate::map::{
     Cell, CellState, CellWindow, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid,
@@ -14,7 +14,6 @@ use crate::plan::{GlobalPlanner, PathEnd, PlanError};
 use crate::robot::{Footprint, Robot};
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
 use crate::search::{Query, Workspace};
-use crate::sense::Disc;
 use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;

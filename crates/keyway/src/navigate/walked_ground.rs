@@ -6,9 +6,9 @@
 //! would (\[Karlin1988\]): then it loses no more than twice what somebody loses who knows it
 //! beforehand, but for the time between two looks.
 
-use crate::geometry::{Point, Segment};
+use crate::geometry::{Disc, Point, Segment};
 use crate::robot::Robot;
-use crate::sense::{Disc, Mover};
+use crate::sense::Mover;
 
 /// Where movers were seen lately, and around which of it the robot goes.
 #[derive(Clone, Debug, Default)]

@@ -13,7 +13,7 @@ pub(crate) mod test_scan;
 mod tracker;
 
 pub use layer::SensedLayer;
-pub use mover::{Disc, Mover, MoverBounds};
+pub use mover::{Mover, MoverBounds};
 pub use projected::{Hit, ProjectedScan};
 pub use scan::{Reading, Scan, ScanError};
 pub use seen::{SeenCells, SeenGround, SeenWanted};

@@ -1,7 +1,7 @@
 //! Something that moves, as far as it is known, and where it may be in a while.
 
 use crate::ConfigError;
-use crate::geometry::Point;
+use crate::geometry::{Disc, Point};
 use serde::{Deserialize, Serialize};
 
 /// A round thing that moves, as estimated at one instant. Frames and units are those of the map.
@@ -58,16 +58,6 @@ pub struct MoverBounds {
     /// at once, and its estimated velocity says nothing of where it goes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration_mps2: Option<f64>,
-}
-
-/// A disc, such as the ground that a mover may cover.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Disc {
-    /// Its centre \[m\].
-    pub centre: Point,
-    /// Its radius \[m\].
-    pub radius_m: f64,
 }
 
 impl MoverBounds {
@@ -155,30 +145,6 @@ impl Mover {
         self.centre.is_finite()
             && self.velocity_mps.is_finite()
             && lengths.iter().all(|length| (0.0..f64::INFINITY).contains(length))
-    }
-}
-
-impl Disc {
-    /// The smallest disc that holds what two discs share; the smaller of the two when they share
-    /// nothing.
-    fn shared_with(&self, other: &Self) -> Self {
-        let (small, large) =
-            if self.radius_m <= other.radius_m { (self, other) } else { (other, self) };
-        let apart = large.centre - small.centre;
-        let apart_m = apart.norm();
-        // Both circles cross in a chord, which lies this far from the smaller one's centre.
-        let to_chord_m = 0.5
-            * (apart_m
-                - (large.radius_m - small.radius_m) * (large.radius_m + small.radius_m) / apart_m);
-        let half_chord_sq = (small.radius_m - to_chord_m) * (small.radius_m + to_chord_m);
-        // Also when they have one centre, where the way to the chord is no number.
-        if !(to_chord_m > 0.0 && half_chord_sq > 0.0) {
-            return *small;
-        }
-        // Each part beyond the chord is less than half of its disc, so the chord is the widest
-        // line.
-        let middle = small.centre + apart * (to_chord_m / apart_m);
-        Self { centre: middle, radius_m: half_chord_sq.sqrt() }
     }
 }
 

@@ -3,20 +3,20 @@
 use super::watch::{Moment, Wanted, Watcher};
 use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
 use crate::error::{CliError, Kind};
+use keyway::geometry::Disc;
 use keyway::map::{BitGrid, BlockedBy, Hindrance};
 use keyway::navigate::NavigateError;
 use keyway::plan::PlanError;
 use keyway::route::Route;
-use keyway::sense::Disc;
 use keyway_lab::measure::wall_clock;
 use keyway_sim::episode::{Episode, RobotReport, RunError, RunOptions, watch_episode};
-use keyway_sim::sim::Mover;
+use keyway_sim::sim::MovingObstacle;
 
 /// What came of an episode.
 pub(crate) struct Driven {
     pub(crate) report: RobotReport,
     /// What moves, as it did.
-    pub(crate) movers: Vec<Mover>,
+    pub(crate) movers: Vec<MovingObstacle>,
     /// `None` when there was no route to drive.
     pub(crate) drive: Option<Drive>,
 }

@@ -8,13 +8,13 @@ use crate::inputs::{
     refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
 };
 use keyway::files::{FieldValue, StackBase};
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeRobot, Start};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
-use keyway_sim::sim::{Circle, Disturbances, Mover};
+use keyway_sim::sim::{Disturbances, MovingObstacle};
 use std::path::{Path, PathBuf};
 
 /// An episode, and the files from which it was read.
@@ -105,15 +105,15 @@ fn sources(args: &NavigateArgs, map_files: Vec<PathBuf>) -> Vec<PathBuf> {
     files.chain(args.robot.iter().chain(&args.stack.stack).map(PathBuf::from)).collect()
 }
 
-fn added_obstacles(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Circle>, CliError> {
+fn added_obstacles(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Disc>, CliError> {
     let added = |CircleArg(circle): &CircleArg| {
         let centre = position(frame, circle.centre, args.cells, "--obstacle")?;
-        Ok(Circle { centre, ..*circle })
+        Ok(Disc { centre, ..*circle })
     };
     args.obstacle.iter().map(added).collect()
 }
 
-fn added_movers(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Mover>, CliError> {
+fn added_movers(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<MovingObstacle>, CliError> {
     let added = |moving: &MovingArg| {
         let place = |&point: &Point| position(frame, point, args.cells, "--moving");
         let points = moving.points().iter().map(place).collect::<Result<_, _>>()?;

@@ -13,7 +13,7 @@ use crate::report_text::WithFiles;
 use keyway_draw::layers::DrivenPoint;
 use keyway_lab::results::OutDir;
 use keyway_sim::episode::Episode;
-use keyway_sim::sim::Mover;
+use keyway_sim::sim::MovingObstacle;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -130,7 +130,7 @@ fn write_own_files(
     Ok(())
 }
 
-fn stage<'a>(episode: &'a Episode, movers: &'a [Mover]) -> Stage<'a> {
+fn stage<'a>(episode: &'a Episode, movers: &'a [MovingObstacle]) -> Stage<'a> {
     let robot = &episode.robots[0];
     Stage {
         map: &episode.known,

@@ -21,7 +21,7 @@ use keyway_sim::episode::{
 };
 use keyway_sim::parallel::processors;
 use keyway_sim::scene_files::SceneFile;
-use keyway_sim::sim::Mover;
+use keyway_sim::sim::MovingObstacle;
 use std::fmt::Write as _;
 
 /// Drives all robots of a scene.
@@ -101,7 +101,7 @@ pub(crate) fn drive(team: &Episode) -> Result<EpisodeReport, CliError> {
 }
 
 /// What moves, as it did until the last run had ended.
-fn moved(team: &Episode, report: &EpisodeReport) -> Vec<Mover> {
+fn moved(team: &Episode, report: &EpisodeReport) -> Vec<MovingObstacle> {
     let runs = report.robots.iter().filter_map(|robot| robot.run.as_ref());
     let last = runs.max_by_key(|run| run.cycles);
     last.map_or_else(|| team.movers.clone(), |run| run.movers(&team.movers))

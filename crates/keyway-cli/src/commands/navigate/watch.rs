@@ -1,12 +1,12 @@
 //! What is kept of a run while it is driven: for pictures, animations and explanations.
 
 use crate::commands::why;
-use keyway::geometry::{Point, Polyline, Pose, Velocity};
+use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{Controller, NavigateError};
 use keyway::route::Route;
-use keyway::sense::{Disc, Mover, Reading, Scan};
+use keyway::sense::{Mover, Reading, Scan};
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use keyway::geometry::{Polyline, Velocity};
 use keyway_draw::layers::{
-    Disc, Discs, DrivenPoint, Goal, Layer, Meeting, Movers, PathLine, SearchNodes, SearchTrace,
+    DrivenPoint, Goal, HatchedDiscs, Layer, Meeting, Movers, PathLine, SearchNodes, SearchTrace,
     Start,
 };
 use keyway_draw::{
@@ -32,7 +32,6 @@ pub(super) struct Stage<'a> {
 struct Actor<'a> {
     name: &'static str,
     shown: &'a Shown,
-    discs: Vec<Disc>,
     /// The run; nothing of a path.
     points: Vec<DrivenPoint>,
     /// The stretches of the part of the run that is compared; none where that is all of it.
@@ -135,16 +134,14 @@ impl<'a> Stage<'a> {
 
 impl<'a> Actor<'a> {
     fn new(name: &'static str, shown: &'a Shown) -> Self {
-        let discs = shown.obstacles.iter();
-        let discs = discs.map(|it| Disc { centre: it.centre, radius_m: it.radius_m }).collect();
         let samples = shown.run.iter().flat_map(|run| &run.samples);
-        let point = |sample: &keyway_sim::sim::Sample| DrivenPoint {
+        let point = |sample: &keyway_sim::sim::TrajectoryPoint| DrivenPoint {
             t_s: sample.t_s,
             pose: sample.pose,
             velocity: sample.velocity,
         };
         let points: Vec<DrivenPoint> = samples.map(point).collect();
-        let mut actor = Self { name, shown, discs, points, stretches: Vec::new() };
+        let mut actor = Self { name, shown, points, stretches: Vec::new() };
         if shown.part.is_some() {
             let compared = actor.compared();
             let stretches = compared.split(|point| !point.velocity.v.is_finite());
@@ -186,7 +183,7 @@ impl<'a> Actor<'a> {
             return vec![Box::new(line.label("path"))];
         }
         vec![
-            Box::new(Discs::unknown_obstacles(&self.discs)),
+            Box::new(HatchedDiscs::unknown_obstacles(&self.shown.obstacles)),
             Box::new(line.label("way driven")),
             Box::new(Movers::new(&self.shown.movers, &self.points)),
         ]

@@ -1,4 +1,5 @@
 use super::*;
+use keyway::geometry::Disc;
 use keyway::map::{GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 
@@ -51,7 +52,7 @@ fn has_way(episode: &Episode, radius_m: f64, beside_discs_m: f64) -> bool {
     let is_free = |cell: Cell| {
         let at = frame.world_from_cell(cell);
         let is_beside =
-            |disc: &Circle| disc.centre.distance(at) >= disc.radius_m + beside_discs_m - 1e-9;
+            |disc: &Disc| disc.centre.distance(at) >= disc.radius_m + beside_discs_m - 1e-9;
         frame.contains(cell)
             && episode.obstacles.iter().all(is_beside)
             && to_squares_m(&squares, at) >= radius_m - 1e-9
@@ -95,7 +96,7 @@ fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
         for with_door in [false, true] {
             let episode = drawn(&config(6, 0), with_door, robot.clone(), seed);
             assert_eq!(episode.random.unwrap().unknown_placed as usize, episode.obstacles.len());
-            for &Circle { centre, radius_m } in &episode.obstacles {
+            for &Disc { centre, radius_m } in &episode.obstacles {
                 assert!((0.1..=0.4).contains(&radius_m));
                 assert!(with_door || (centre.y - 2.55).abs() <= 0.4, "{centre:?}");
                 for end in [episode.robots[0].start.position, episode.robots[0].goal.position] {
@@ -145,10 +146,10 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
         for mover in &episode.movers {
             let (mut low_m, mut high_m) = (f64::INFINITY, f64::NEG_INFINITY);
             for step in 0..600 {
-                let Circle { centre, radius_m } = mover.at(f64::from(step) * 0.1);
+                let Disc { centre, radius_m } = mover.at(f64::from(step) * 0.1);
                 (low_m, high_m) = (low_m.min(centre.y), high_m.max(centre.y));
                 assert!(to_squares_m(&squares, centre) >= radius_m - 1e-9, "{centre:?}");
-                let is_beside = |disc: &Circle| disc.distance(centre) >= radius_m - 1e-9;
+                let is_beside = |disc: &Disc| disc.distance(centre) >= radius_m - 1e-9;
                 assert!(episode.obstacles.iter().all(is_beside), "{centre:?}");
                 for end in [episode.robots[0].start.position, episode.robots[0].goal.position] {
                     assert!(end.distance(centre) - radius_m - 0.18 >= 0.6 - 1e-9, "{centre:?}");
@@ -264,7 +265,7 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
             assert!(has_way(&alone, radius_m, radius_m + RandomObstacles::MARGIN_M), "{seed}: {i}");
             let reach_m = robot.footprint.circumscribed_radius_m() + 0.6 - 1e-9;
             for end in [start.position, goal.position] {
-                let is_off = |disc: &Circle| disc.centre.distance(end) >= reach_m + disc.radius_m;
+                let is_off = |disc: &Disc| disc.centre.distance(end) >= reach_m + disc.radius_m;
                 assert!(team.obstacles.iter().all(is_off), "{seed}: {i}");
                 let times = (0..600).map(|i| f64::from(i) * 0.1);
                 for mover in &team.movers {
@@ -272,7 +273,7 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
                 }
             }
             // Only the wider robot's path is so far to the left and so far up.
-            let is_near = |disc: &&Circle| {
+            let is_near = |disc: &&Disc| {
                 let Point { x, y } = disc.centre;
                 match i {
                     0 => x < 4.0 && y > 3.8,
@@ -302,6 +303,6 @@ fn a_robot_without_a_way_keeps_its_ends_free() {
     config.put_into(&mut team, 1).unwrap();
     assert!(team.obstacles.len() > 10);
     let reach_m = Robot::small().footprint.circumscribed_radius_m() + 0.6 - 1e-9;
-    let apart_m = |disc: &Circle| disc.centre.distance(goal) - disc.radius_m;
+    let apart_m = |disc: &Disc| disc.centre.distance(goal) - disc.radius_m;
     assert!(team.obstacles.iter().all(|disc| apart_m(disc) >= reach_m));
 }

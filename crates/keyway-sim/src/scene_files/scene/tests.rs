@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::episode::EpisodeRules;
-use crate::scene_files::UnknownCircle;
-use crate::sim::{Arrival, Circle, KeyFrame, KeyFrames, Motion};
+use crate::scene_files::UnknownDisc;
+use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion};
+use keyway::geometry::Disc;
 use keyway::map::formats::map_from_bytes;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::path::Path;
@@ -16,9 +17,9 @@ fn error(text: &str) -> String {
 
 const MOVING: &str = "[[moving]]\nradius_m = 0.25\nkey_frames = [[0, 1, 2], [4, 3, 2]]\n";
 
-fn mover() -> Mover {
+fn mover() -> MovingObstacle {
     let frames = [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]].map(KeyFrame::from).to_vec();
-    Mover::new(0.25, Motion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
+    MovingObstacle::new(0.25, Motion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
 }
 
 #[test]
@@ -29,14 +30,15 @@ fn defaults_and_round_trip() {
     assert_eq!(scene.start.unwrap().heading_rad, None);
     assert_eq!(scene.goal, Some(Point::new(3.5, 4.0).into()));
     assert!(scene.via.is_empty());
-    let straight = Mover::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
+    let straight =
+        MovingObstacle::straight(Point::new(1.0, 2.0), 0.0, Point::new(0.0, -0.5)).unwrap();
     let full = SceneFile {
         description: Some("a hall".to_owned()),
         stack: "s0-key-point".to_owned(),
         start: Some(Start { position: Point::new(-1.0, 2.0), heading_rad: Some(-FRAC_PI_2) }),
         via: vec![Point::new(0.5, 1.5), Point::new(1.0, 2.5)],
         goal: Some(Goal { position: Point::new(3.5, 4.0), heading_rad: Some(FRAC_PI_4) }),
-        unknown: vec![UnknownCircle { position: Point::new(0.5, 0.5), radius_m: 0.15 }.into()],
+        unknown: vec![UnknownDisc { position: Point::new(0.5, 0.5), radius_m: 0.15 }.into()],
         moving: vec![mover(), straight],
         ..scene
     };
@@ -56,7 +58,7 @@ fn a_scene_is_an_episode_on_its_map() {
     assert_eq!((episode.source.name.as_str(), episode.source.digest), ("a.map", digest));
     let one = episode.robots[0].clone();
     assert_eq!((Some(one.start), Some(one.goal)), (scene.start, scene.goal));
-    let circle = Circle::standing(Point::new(2.0, 3.0), 0.5);
+    let circle = Disc::new(Point::new(2.0, 3.0), 0.5);
     assert_eq!((episode.obstacles, one.robot), (vec![circle], robot.clone()));
     assert_eq!((one.stack, episode.movers), (stack, vec![mover()]));
     let other = SceneFile { stack: "mine.toml".to_owned(), ..scene };

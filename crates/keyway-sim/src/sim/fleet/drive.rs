@@ -7,7 +7,7 @@ use crate::sim::lidar::Beams;
 use crate::sim::rules::{Arrival, StuckWatch, cycles_within};
 use crate::sim::social_force::Body;
 use crate::sim::sweep::{MoverSweep, Moving, PairSweep, StandingSweep};
-use crate::sim::{Mover, MoverWay, Obstacle, Outcome, Run, Sample, World};
+use crate::sim::{MoverWay, MovingObstacle, Obstacle, Outcome, Run, TrajectoryPoint, World};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
@@ -33,7 +33,7 @@ pub(super) struct Drive<'a> {
     sensing: Option<Sensing>,
     pub(super) actuation: Option<Actuation>,
     localisation: Option<Localisation>,
-    samples: Vec<Sample>,
+    samples: Vec<TrajectoryPoint>,
     pub(super) progress: StuckWatch,
     /// Motion in the current cycle.
     pub(super) motion: CycleMotion,
@@ -80,7 +80,7 @@ impl<'a> Drive<'a> {
             sensing: Sensing::new(disturbances.sensor, source),
             actuation,
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
-            samples: vec![Sample { t_s: 0.0, pose, velocity }],
+            samples: vec![TrajectoryPoint { t_s: 0.0, pose, velocity }],
             progress: StuckWatch::new(&rules, cycle_s),
             motion: CycleMotion::standing(pose, cycle_s),
             touched: None,
@@ -133,7 +133,7 @@ impl<'a> Drive<'a> {
         StandingSweep { world, robot: self.moving() }
     }
 
-    pub(super) fn beside<'s>(&'s self, mover: &'s Mover, cycle_s: f64) -> MoverSweep<'s> {
+    pub(super) fn beside<'s>(&'s self, mover: &'s MovingObstacle, cycle_s: f64) -> MoverSweep<'s> {
         MoverSweep { mover, robot: self.moving(), start_s: self.time_s(cycle_s) }
     }
 
@@ -157,7 +157,7 @@ impl<'a> Drive<'a> {
         self.length_m += self.motion.driven_m(end);
         let t_s = (self.cycles as f64 + end / CycleMotion::END) * cycle_s;
         self.cycles += 1;
-        self.samples.push(Sample { t_s, pose: self.pose, velocity: self.velocity });
+        self.samples.push(TrajectoryPoint { t_s, pose: self.pose, velocity: self.velocity });
         if let Some(with) = self.touched {
             self.collide(end, with, world, cycle_s);
         }
@@ -166,19 +166,21 @@ impl<'a> Drive<'a> {
     /// Ends the run with a contact at a place on the current motion.
     pub(super) fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
         let (jumped_onto, mover_speed_mps) = match with {
-            Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
+            Touched::MovingObstacle { jumped_onto, speed_mps, .. } => {
+                (jumped_onto, Some(speed_mps))
+            }
             Touched::Standing | Touched::Robot(_) => (false, None),
         };
         let with = match with {
             Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
-            Touched::Mover { index, .. } => Obstacle::Mover(index),
+            Touched::MovingObstacle { index, .. } => Obstacle::Mover(index),
             Touched::Robot(index) => Obstacle::Robot(index),
         };
         match with {
             Obstacle::Border => {}
             Obstacle::Square
             | Obstacle::HiddenSquare
-            | Obstacle::Circle(_)
+            | Obstacle::Disc(_)
             | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,

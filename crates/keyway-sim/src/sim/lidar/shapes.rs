@@ -1,8 +1,7 @@
 //! Ranges to circles and polygons.
 
 use super::beams::Beams;
-use crate::sim::Circle;
-use keyway::geometry::{Point, Pose, Segment, outline};
+use keyway::geometry::{Disc, Point, Pose, Segment, outline};
 use keyway::robot::Footprint;
 
 /// Ranges of all beams, lowered shape by shape.
@@ -16,7 +15,7 @@ pub(super) struct Shapes<'a> {
 }
 
 impl Shapes<'_> {
-    pub(super) fn add_circle(&mut self, circle: &Circle) {
+    pub(super) fn add_circle(&mut self, circle: &Disc) {
         if circle.distance(self.from) > self.range_max_m {
             return;
         }
@@ -32,7 +31,7 @@ impl Shapes<'_> {
     pub(super) fn add_footprint(&mut self, footprint: &Footprint, pose: Pose) {
         let polygon = match footprint {
             Footprint::Circle(disc) => {
-                return self.add_circle(&Circle::standing(pose.point(), disc.radius_m()));
+                return self.add_circle(&Disc::new(pose.point(), disc.radius_m()));
             }
             Footprint::Polygon(polygon) => polygon,
         };
@@ -69,12 +68,12 @@ impl Shapes<'_> {
 
 /// Squared distance from a point to a circle's centre minus the squared radius \[m²\]; not positive
 /// inside.
-pub(super) fn outside(from: Point, circle: &Circle) -> f64 {
+pub(super) fn outside(from: Point, circle: &Disc) -> f64 {
     (circle.centre - from).norm_sq() - circle.radius_m * circle.radius_m
 }
 
 /// Distance along a beam to a circle \[m\]; infinity if the beam misses it.
-pub(super) fn range_to_circle(from: Point, direction: Point, circle: &Circle) -> f64 {
+pub(super) fn range_to_circle(from: Point, direction: Point, circle: &Disc) -> f64 {
     let to_centre = circle.centre - from;
     let outside = outside(from, circle);
     if outside <= 0.0 {

@@ -2,8 +2,8 @@ use super::shapes::{outside, range_to_circle, range_to_edge};
 use super::*;
 use crate::sim::mover::{moving_obstacle, place_of};
 use crate::sim::test_shapes::grid_of;
-use crate::sim::{Circle, Mover, World};
-use keyway::geometry::outline;
+use crate::sim::{MovingObstacle, World};
+use keyway::geometry::{Disc, outline};
 use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -38,13 +38,13 @@ fn beam_by_beam(
         let mut nearest_m =
             square.map_or(f64::INFINITY, |passed| passed.enter * frame.resolution_m());
         let mover_at =
-            |mover: &Mover| Circle::standing(mover.motion().position(t_s), mover.radius_m());
+            |mover: &MovingObstacle| Disc::new(mover.motion().position(t_s), mover.radius_m());
         let mut circles = world.circles().to_vec();
         circles.extend(world.movers().iter().map(mover_at));
         for (footprint, at) in robots {
             match footprint {
                 Footprint::Circle(disc) => {
-                    circles.push(Circle::standing(at.point(), disc.radius_m()));
+                    circles.push(Disc::new(at.point(), disc.radius_m()));
                 }
                 Footprint::Polygon(polygon) => {
                     let vertices = polygon.vertices().iter();
@@ -74,7 +74,7 @@ fn sensor(beams: u32, field_of_view_deg: f64, range_m: f64) -> RangeSensor {
 #[test]
 fn ranges_by_hand() {
     let known = OccupancyGrid::from_ascii(&["....#", ".....", "#...."]);
-    let circle = Circle::standing(Point::new(2.5, 2.5), 0.25);
+    let circle = Disc::new(Point::new(2.5, 2.5), 0.25);
     let world = World::from_known(&known, vec![circle]).unwrap();
     let cast = |x, y, degrees: f64| {
         let pose = Pose::new(x, y, degrees.to_radians());
@@ -139,7 +139,7 @@ fn square_by_bisection(start: Point, direction: Point, range: f64, corner: Point
 }
 
 /// First sample inside the circle, refined by bisection.
-fn circle_by_sampling(start: Point, direction: Point, range: f64, circle: &Circle) -> f64 {
+fn circle_by_sampling(start: Point, direction: Point, range: f64, circle: &Disc) -> f64 {
     let inside = |t: f64| (start + direction * t).distance(circle.centre) <= circle.radius_m;
     let nearest = (circle.centre - start).dot(direction).clamp(0.0, range);
     if !inside(nearest) {
@@ -166,8 +166,8 @@ proptest! {
         for &cell in &cells {
             squares.set(cell, true);
         }
-        let circles: Vec<Circle> = circles.into_iter()
-            .map(|(x, y, radius_m)| Circle::standing(world_point(x, y), radius_m)).collect();
+        let circles: Vec<Disc> = circles.into_iter()
+            .map(|(x, y, radius_m)| Disc::new(world_point(x, y), radius_m)).collect();
         let world = World::new(frame, squares, circles.clone()).unwrap();
         let at = world_point(x, y);
         let scan = world.at(0.0).cast(Pose::new(at.x, at.y, theta), &sensor(24, 360.0, range));
@@ -241,7 +241,7 @@ proptest! {
         let frame = GridFrame::new(40, 31, 0.1, Pose::new(0.25, -0.5, yaw)).unwrap();
         let occupied: Vec<bool> = cells.iter().map(|&cell| cell < density).collect();
         let known = grid_of(frame, &occupied);
-        let circles = circles.into_iter().map(|(x, y, radius_m)| Circle::standing(Point::new(x, y), radius_m));
+        let circles = circles.into_iter().map(|(x, y, radius_m)| Disc::new(Point::new(x, y), radius_m));
         let world = World::from_known(&known, circles.collect()).unwrap().with_movers(movers);
         let mut from = Pose::new(from.0, from.1, from.2);
         if on_lines {

@@ -29,7 +29,7 @@ impl KeyFrames {
     ///
     /// # Errors
     /// When there is no key frame, a number is not finite, times do not increase, or the speed
-    /// between two key frames is higher than [`Mover::FASTEST_MPS`](super::Mover::FASTEST_MPS).
+    /// between two key frames is higher than [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS).
     /// Paths begin with `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
         unless_in_order("key_frames", &frames, 1)?;

@@ -12,9 +12,8 @@ pub use spline::Spline;
 use table::MoverTable;
 pub use way_points::WayPoints;
 
-use super::Circle;
 use keyway::ConfigError;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::given::Given;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
@@ -29,11 +28,11 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```
 /// use keyway::geometry::Point;
-/// use keyway_sim::sim::{Motion, Mover, WayPoints};
+/// use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
 ///
 /// let corners = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 1.0)];
 /// let motion = Motion::WayPoints(WayPoints::to_and_fro(corners, 0.5)?);
-/// let mover = Mover::new(0.25, motion)?;
+/// let mover = MovingObstacle::new(0.25, motion)?;
 /// assert_eq!(mover.at(9.0).centre, Point::new(4.0, 0.5));
 /// assert_eq!(mover.at(12.0).centre, Point::new(4.0, 0.0));
 /// # Ok::<(), keyway::ConfigError>(())
@@ -41,7 +40,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MoverTable", into = "MoverTable")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "MoverTable"))]
-pub struct Mover {
+pub struct MovingObstacle {
     radius_m: f64,
     motion: Motion,
 }
@@ -119,7 +118,7 @@ impl Motion {
     }
 }
 
-impl Mover {
+impl MovingObstacle {
     /// Highest speed of an obstacle \[m/s\], except along a [`Spline`]. Contact is exact at every
     /// instant, so fast motion costs computing time.
     pub const FASTEST_MPS: f64 = 100.0;
@@ -199,9 +198,9 @@ impl Mover {
         self.motion.speed_bound_mps(t_s, t_s)
     }
 
-    /// Circle that it covers at a time.
-    pub fn at(&self, t_s: f64) -> Circle {
-        Circle::standing(self.motion.position(t_s), self.radius_m)
+    /// Disc that it covers at a time.
+    pub fn at(&self, t_s: f64) -> Disc {
+        Disc::new(self.motion.position(t_s), self.radius_m)
     }
 }
 
@@ -214,7 +213,7 @@ fn unless_finite(path: &str, point: Point) -> Result<(), ConfigError> {
 }
 
 fn unless_usable_speed(path: &str, speed_mps: f64) -> Result<(), ConfigError> {
-    unless_faster(path, speed_mps, Mover::FASTEST_MPS)
+    unless_faster(path, speed_mps, MovingObstacle::FASTEST_MPS)
 }
 
 /// Returns an error for a speed above a limit or NaN.

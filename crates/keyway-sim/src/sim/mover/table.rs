@@ -1,6 +1,8 @@
 //! The form of a moving obstacle in files and reports.
 
-use super::{KeyFrame, KeyFrames, Motion, Mover, RandomWalk, RandomWalkConfig, Spline, WayPoints};
+use super::{
+    KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+};
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
@@ -8,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// A round moving obstacle: its `radius_m` and the fields of one motion.
 #[derive(Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(rename = "Mover", extend("oneOf" = [
+#[cfg_attr(feature = "schema", schemars(rename = "MovingObstacle", extend("oneOf" = [
     {"required": ["position", "velocity_mps"], "propertyNames": {"enum": ["radius_m", "position", "velocity_mps"]}},
     {"required": ["key_frames"], "propertyNames": {"enum": ["radius_m", "key_frames"]}},
     {"required": ["spline", "duration_s"], "propertyNames": {"enum": ["radius_m", "spline", "duration_s"]}},
@@ -61,7 +63,7 @@ pub(super) struct MoverTable {
 const MOTIONS: &str = "`position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, \
      or `way_points` and `speed_mps`, or `random_walk`";
 
-impl TryFrom<MoverTable> for Mover {
+impl TryFrom<MoverTable> for MovingObstacle {
     type Error = ConfigError;
 
     fn try_from(table: MoverTable) -> Result<Self, ConfigError> {
@@ -136,8 +138,8 @@ fn not_one_motion(given: &[&str]) -> ConfigError {
     ConfigError::new("the motion", format!("must be {MOTIONS}, got {given}"))
 }
 
-impl From<Mover> for MoverTable {
-    fn from(Mover { radius_m, motion }: Mover) -> Self {
+impl From<MovingObstacle> for MoverTable {
+    fn from(MovingObstacle { radius_m, motion }: MovingObstacle) -> Self {
         let radius_only = Self {
             radius_m,
             position: None,

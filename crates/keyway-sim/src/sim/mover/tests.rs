@@ -54,7 +54,7 @@ fn random_walk() -> impl Strategy<Value = Motion> {
 }
 
 /// An obstacle of any motion near the origin, at up to 6 m/s.
-pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = Mover> {
+pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = MovingObstacle> {
     let straight =
         (place(), place()).prop_map(|(from, velocity_mps)| Motion::Straight { from, velocity_mps });
     let frames = (prop::collection::vec((0.5..1.2f64, place()), 1..7), 0.0..1.0f64);
@@ -72,11 +72,12 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = Mover> {
         },
     );
     let motion = prop_oneof![straight, key_frames, spline(), way_points, random_walk()];
-    (motion, 0.0..0.3f64).prop_map(|(motion, radius_m)| Mover::new(radius_m, motion).unwrap())
+    (motion, 0.0..0.3f64)
+        .prop_map(|(motion, radius_m)| MovingObstacle::new(radius_m, motion).unwrap())
 }
 
 /// Place of an obstacle, found by walking along its motion from the beginning.
-pub(in crate::sim) fn place_of(mover: &Mover, t_s: f64) -> Point {
+pub(in crate::sim) fn place_of(mover: &MovingObstacle, t_s: f64) -> Point {
     match mover.motion() {
         Motion::Straight { from, velocity_mps } => {
             Point::new(from.x + velocity_mps.x * t_s, from.y + velocity_mps.y * t_s)
@@ -230,7 +231,7 @@ proptest! {
     #[test]
     fn files_keep_every_motion(mover in moving_obstacle()) {
         let text = toml::to_string(&mover).unwrap();
-        prop_assert_eq!(toml::from_str::<Mover>(&text).unwrap(), mover);
+        prop_assert_eq!(toml::from_str::<MovingObstacle>(&text).unwrap(), mover);
     }
 }
 
@@ -277,8 +278,9 @@ fn way_points_by_hand() {
 
 #[test]
 fn refuses_what_cannot_be() {
-    let error =
-        |value: serde_json::Value| serde_json::from_value::<Mover>(value).unwrap_err().to_string();
+    let error = |value: serde_json::Value| {
+        serde_json::from_value::<MovingObstacle>(value).unwrap_err().to_string()
+    };
     let cases = [
         (
             json!({"radius_m": -1, "position": [0, 0], "velocity_mps": [1, 0]}),
@@ -324,7 +326,8 @@ fn refuses_what_cannot_be() {
         assert!(error.contains(expected), "{error}");
     }
     let nan = Point::new(0.0, f64::NAN);
-    let of = |from, velocity_mps| Mover::straight(from, 0.1, velocity_mps).unwrap_err().path;
+    let of =
+        |from, velocity_mps| MovingObstacle::straight(from, 0.1, velocity_mps).unwrap_err().path;
     assert_eq!(of(nan, Point::default()), "position[1]");
     assert_eq!(of(Point::default(), nan), "velocity_mps[1]");
     assert_eq!(of(Point::default(), Point::new(f64::MAX, f64::MAX)), "velocity_mps");
@@ -336,7 +339,7 @@ fn refuses_what_cannot_be() {
     assert_eq!(frames(far), "key_frames[1]");
     let course = |points, speed_mps| WayPoints::around(points, speed_mps).unwrap_err().path;
     assert_eq!(course(vec![Point::default(), nan], 1.0), "way_points[1][1]");
-    let fast = |x: f64| Mover::straight(Point::default(), 0.1, Point::new(x, 0.0));
+    let fast = |x: f64| MovingObstacle::straight(Point::default(), 0.1, Point::new(x, 0.0));
     assert!(fast(100.0).is_ok());
     let text = fast(101.0).unwrap_err().to_string();
     assert_eq!(text, "velocity_mps must be no faster than 100 m/s, got 101 m/s");

@@ -1,14 +1,15 @@
 //! A robot and a moving obstacle, which may jump on its way.
 
 use super::{Moving, Sweep, TOLERANCE_M};
+use crate::sim::MovingObstacle;
 use crate::sim::cycle_motion::CycleMotion;
 use crate::sim::world::to_circle;
-use crate::sim::{Circle, Mover};
+use keyway::geometry::Disc;
 
 /// A robot and a moving obstacle. The motion is cut in two where the obstacle jumps: before that
 /// instant the old place counts, from then on the new one.
 pub(in crate::sim) struct MoverSweep<'a> {
-    pub(in crate::sim) mover: &'a Mover,
+    pub(in crate::sim) mover: &'a MovingObstacle,
     pub(in crate::sim) robot: Moving<'a>,
     /// Time at the motion's beginning \[s\].
     pub(in crate::sim) start_s: f64,
@@ -73,7 +74,7 @@ impl<'a> MoverSweep<'a> {
 /// A part of the motion without a jump, from a place to another. Times stay from `from_s` to
 /// `to_s`, and at `to_s` the obstacle is where it was just before, however places are rounded.
 struct Stretch<'a> {
-    mover: &'a Mover,
+    mover: &'a MovingObstacle,
     robot: Moving<'a>,
     start_s: f64,
     from: f64,
@@ -94,7 +95,7 @@ impl Sweep for Stretch<'_> {
         let t_s = self.time_s(place);
         let moves = self.mover.motion();
         let centre = if t_s < self.to_s { moves.position(t_s) } else { moves.position_before(t_s) };
-        let circle = Circle::standing(centre, self.mover.radius_m());
+        let circle = Disc::new(centre, self.mover.radius_m());
         to_circle(footprint, motion.pose(place), &circle, reach_m)
     }
 

@@ -1,12 +1,12 @@
 use super::*;
 use crate::sim::mover::{moving_obstacle, place_of};
 use crate::sim::test_shapes::{grid_of, star};
-use crate::sim::{Circle, KeyFrame, Motion, Mover, Spline, StandingPolygon};
-use keyway::geometry::{Point, Pose, Segment, Velocity, holds_point, outline};
+use crate::sim::{KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
+use keyway::geometry::{Disc, Point, Pose, Segment, Velocity, holds_point, outline};
 use keyway::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use proptest::prelude::*;
 
-fn open(circles: Vec<Circle>) -> World {
+fn open(circles: Vec<Disc>) -> World {
     let frame = GridFrame::new(100, 100, 0.1, Pose::new(-5.0, -5.0, 0.0)).unwrap();
     World::from_known(&OccupancyGrid::all_free(frame), circles).unwrap()
 }
@@ -20,7 +20,7 @@ fn a_stretch_is_certified_by_its_ends_or_halved() {
 
 #[test]
 fn a_turn_on_the_spot_touches_nothing_new() {
-    let world = open(vec![Circle::standing(Point::new(0.3, 0.0), 0.1)]);
+    let world = open(vec![Disc::new(Point::new(0.3, 0.0), 0.1)]);
     let turn = Velocity::new(0.0, 1.0);
     let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
     let footprint = Footprint::circle(0.2).unwrap();
@@ -55,7 +55,7 @@ proptest! {
             let near = (cell.x - 10).abs().max((cell.y - 10).abs()) <= 2;
             if *each.next().unwrap() && !near { CellState::Occupied } else { CellState::Free }
         });
-        let circle = Circle::standing(Point::new(circle.0, circle.1), circle.2);
+        let circle = Disc::new(Point::new(circle.0, circle.1), circle.2);
         let footprint = Footprint::circle(radius_m).unwrap();
         let world = World::from_known(&known, vec![circle]).unwrap();
         prop_assume!(world.at(0.0).distance(&footprint, start, 1.0) > TOLERANCE_M);
@@ -104,7 +104,7 @@ proptest! {
     ) {
         let frame = GridFrame::new(20, 20, 0.1, Pose::default()).unwrap();
         let known = grid_of(frame, &occupied);
-        let circle = Circle::standing(Point::new(circle.0, circle.1), circle.2);
+        let circle = Disc::new(Point::new(circle.0, circle.1), circle.2);
         let world = World::from_known(&known, vec![circle]).unwrap();
         let vertices = star(&radii, offset);
         let footprint = Footprint::polygon(vertices.clone()).unwrap();
@@ -142,7 +142,7 @@ proptest! {
         let footprint = Footprint::circle(radius_m).unwrap();
         let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
         let gap_m = |place: f64| {
-            let robot = Circle::standing(motion.pose(place).point(), radius_m);
+            let robot = Disc::new(motion.pose(place).point(), radius_m);
             polygon_gap_m(&vertices, Pose::default(), &robot)
         };
         prop_assume!(gap_m(0.0) > TOLERANCE_M);
@@ -170,7 +170,7 @@ proptest! {
         };
         // Positions come from the motion's parameters, not from its own code.
         let gap_m = |place: f64| {
-            let circle = Circle::standing(place_of(&mover, start_s + place / 4.0), mover.radius_m());
+            let circle = Disc::new(place_of(&mover, start_s + place / 4.0), mover.radius_m());
             match &shape {
                 Footprint::Circle(disc) => {
                     circle.centre.distance(motion.pose(place).point()) - disc.radius_m() - circle.radius_m
@@ -199,7 +199,7 @@ proptest! {
 }
 
 /// Distance from a polygon to a circle by its edges; negative inside.
-fn polygon_gap_m(vertices: &[Point], pose: Pose, circle: &Circle) -> f64 {
+fn polygon_gap_m(vertices: &[Point], pose: Pose, circle: &Disc) -> f64 {
     let placed: Vec<Point> = vertices.iter().map(|&v| pose.world_from_body(v)).collect();
     let gap = |i: usize| {
         let edge = Segment::new(placed[i], placed[(i + 1) % placed.len()]);
@@ -287,9 +287,9 @@ proptest! {
 }
 
 /// An obstacle that moves aside from (x, 0), and again in each lap of 0.45 s.
-fn comes_again(x: f64) -> Mover {
+fn comes_again(x: f64) -> MovingObstacle {
     let frames = [[0.0, x, 0.0], [0.4, x, 5.0]].map(KeyFrame::from).to_vec();
-    Mover::new(0.1, Motion::Spline(Spline::new(frames, 0.45).unwrap())).unwrap()
+    MovingObstacle::new(0.1, Motion::Spline(Spline::new(frames, 0.45).unwrap())).unwrap()
 }
 
 #[test]
@@ -297,7 +297,8 @@ fn a_jump_is_no_way() {
     // The jump passes over the robot, which a continuous motion would hit.
     let frames = [[0.0, -2.0, 0.0], [0.1, -2.0, 0.5], [0.2, 2.0, 0.5], [0.3, 2.0, 0.0]];
     let frames = frames.map(|[t_s, x, y]| KeyFrame::from([t_s, x, y + 3.0 * t_s])).to_vec();
-    let mover = Mover::new(0.1, Motion::Spline(Spline::new(frames, 0.3).unwrap())).unwrap();
+    let mover =
+        MovingObstacle::new(0.1, Motion::Spline(Spline::new(frames, 0.3).unwrap())).unwrap();
     let footprint = Footprint::circle(0.2).unwrap();
     let motion = CycleMotion::standing(Pose::default(), 0.05);
     let robot = Moving { footprint: &footprint, motion: &motion };
@@ -339,7 +340,7 @@ fn contact_by_a_jump_is_at_its_instant() {
     // An obstacle that has stood there for longer than a cycle did not just jump.
     let standing = [[0.0, 2.25, 0.0], [0.3, 2.25, 0.0], [0.4, 2.25, 5.0]].map(KeyFrame::from);
     let standing = Spline::new(standing.to_vec(), 0.5).unwrap();
-    let mover = Mover::new(0.1, Motion::Spline(standing)).unwrap();
+    let mover = MovingObstacle::new(0.1, Motion::Spline(standing)).unwrap();
     let motion = CycleMotion::standing(start, 0.1);
     let robot = Moving { footprint: &footprint, motion: &motion };
     let jumped = |start_s, place| MoverSweep { mover: &mover, robot, start_s }.jumped_before(place);

@@ -21,8 +21,7 @@
 
 use super::buckets::Buckets;
 use super::lattice::Lattice;
-use crate::geometry::Point;
-use crate::sense::Disc;
+use crate::geometry::{Disc, Point};
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// What is left of the way from the points of a lattice.

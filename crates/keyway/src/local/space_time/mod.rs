@@ -91,10 +91,10 @@ use super::{
     Rejections, Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
-use crate::geometry::{Point, Velocity};
+use crate::geometry::{Disc, Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::{Limits, Robot};
-use crate::sense::{Disc, Mover, SeenCells};
+use crate::sense::{Mover, SeenCells};
 use commitment::{go_on, reluctance_s};
 use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};

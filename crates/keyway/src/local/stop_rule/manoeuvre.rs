@@ -2,11 +2,11 @@
 
 use super::start::{Body, Covered, ROUNDING_M, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
-use crate::geometry::{Point, Pose, Velocity, wrap_angle};
+use crate::geometry::{Disc, Point, Pose, Velocity, wrap_angle};
 use crate::local::rear::{Seen, SeenAhead};
 use crate::map::{self, Cell, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
 use crate::robot::Robot;
-use crate::sense::{Disc, Mover, MoverBounds};
+use crate::sense::{Mover, MoverBounds};
 use arrayvec::ArrayVec;
 
 /// Memory to work in.

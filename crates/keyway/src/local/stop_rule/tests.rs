@@ -408,7 +408,7 @@ proptest! {
         };
         let (core, radius_m) = robot.footprint.core();
         let room_m = |on_way: Pose, after_s: f64| {
-            let gap_m = |disc: crate::sense::Disc| core.distance_to_m(on_way, disc.centre) - disc.radius_m - radius_m;
+            let gap_m = |disc: crate::geometry::Disc| core.distance_to_m(on_way, disc.centre) - disc.radius_m - radius_m;
             let by_speed_m = gap_m(mover.by_speed(after_s, &bounds));
             let by_mover_m = mover.by_estimate(after_s, &bounds).map_or(by_speed_m, |disc| gap_m(disc).max(by_speed_m));
             ground.room_m(&robot.footprint, on_way).min(by_mover_m)

@@ -15,7 +15,7 @@ use super::under_way::UnderWay;
 use super::walked_ground::{Hold, WalkedGround};
 use super::watch::Watch;
 use super::{Blocked, FittedStack, Goal, Misfit, NavigateError, RecoveryCounts, Stack, Step};
-use crate::geometry::{Point, Pose, Velocity};
+use crate::geometry::{Disc, Point, Pose, Velocity};
 use crate::guide::{Guidance, Guide, GuideMemory};
 use crate::local::{
     DriveMemory, Evaluation, Explanation, LocalPlanner, Refusal, RefusalCounts, Scratch,
@@ -23,7 +23,7 @@ use crate::local::{
 use crate::map::{BitGrid, DistanceField, Edit, FieldConfig, OccupancyGrid};
 use crate::robot::Robot;
 use crate::route::Route;
-use crate::sense::{Disc, Mover, Scan, SeenGround, SensedLayer, Tracker};
+use crate::sense::{Mover, Scan, SeenGround, SensedLayer, Tracker};
 use guarding::Guard;
 use looking::Look;
 use std::sync::Arc;

@@ -1,12 +1,11 @@
 //! When a new route is planned while the robot drives, and what becomes of it.
 
 use super::Controller;
-use crate::geometry::{Point, Pose, Velocity};
+use crate::geometry::{Disc, Point, Pose, Velocity};
 use crate::guide::GuideMemory;
 use crate::navigate::route::turning_clearance_m;
 use crate::navigate::watch::{RestOfRoute, Watch};
 use crate::route::Route;
-use crate::sense::Disc;
 
 /// What came of planning again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

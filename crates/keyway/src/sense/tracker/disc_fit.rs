@@ -12,8 +12,7 @@
 //! r (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than
 //! it is.
 
-use crate::geometry::Point;
-use crate::sense::Disc;
+use crate::geometry::{Disc, Point};
 
 /// A disc, and how well hits tell where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]

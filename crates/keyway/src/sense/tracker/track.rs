@@ -2,9 +2,9 @@
 
 use super::disc_fit::{Fit, fit, fit_of_radius};
 use super::{EVIDENCE_BEAMS, TrackerConfig};
-use crate::geometry::Point;
+use crate::geometry::{Disc, Point};
 use crate::map::Cell;
-use crate::sense::{Disc, Mover};
+use crate::sense::Mover;
 use arrayvec::ArrayVec;
 
 /// A thing that no map shows: its state, and what shows whether it moves.

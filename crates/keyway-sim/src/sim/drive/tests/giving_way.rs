@@ -1,16 +1,16 @@
 //! Runs among obstacles that give way.
 
 use super::*;
-use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, MoverWay, WayPoints};
+use crate::sim::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints};
 
 /// An obstacle that moves to and fro between two places at 1 m/s.
-fn between(from: Point, to: Point) -> Mover {
+fn between(from: Point, to: Point) -> MovingObstacle {
     let course = WayPoints::to_and_fro(vec![from, to], 1.0).unwrap();
-    Mover::new(0.25, Motion::GivesWay(course)).unwrap()
+    MovingObstacle::new(0.25, Motion::GivesWay(course)).unwrap()
 }
 
 /// A run among moving obstacles with one commanded velocity.
-fn among(movers: Vec<Mover>, start: Pose, command: Velocity, time_limit_s: f64) -> Run {
+fn among(movers: Vec<MovingObstacle>, start: Pose, command: Velocity, time_limit_s: f64) -> Run {
     let mut left = 1e6;
     let controller = move |_: Pose, _: Velocity, _: &Scan| {
         left -= 1.0;
@@ -79,7 +79,8 @@ fn two_who_meet_head_on_pass_each_other_on_the_right() {
 #[test]
 fn what_a_robot_meets_is_where_the_obstacle_was() {
     let (left, right) = (Point::new(-3.0, 0.4), Point::new(3.0, -0.2));
-    let crossing = Mover::straight(Point::new(0.0, -3.0), 0.3, Point::new(0.1, 0.6)).unwrap();
+    let crossing =
+        MovingObstacle::straight(Point::new(0.0, -3.0), 0.3, Point::new(0.1, 0.6)).unwrap();
     let movers = vec![crossing.clone(), between(left, right), between(right, left)];
     for command in [Velocity::ZERO, Velocity::new(0.5, 0.1), Velocity::new(0.5, -0.6)] {
         let run = among(movers.clone(), Pose::new(-1.0, 0.0, 0.0), command, 15.0);
@@ -95,7 +96,7 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
                 assert_eq!(frame.t_s, sample.t_s);
             }
             let frames = KeyFrames::new(way.key_frames.clone()).unwrap();
-            driven.push(Mover::new(0.25, Motion::KeyFrames(frames)).unwrap());
+            driven.push(MovingObstacle::new(0.25, Motion::KeyFrames(frames)).unwrap());
         }
         let again = among(driven, Pose::new(-1.0, 0.0, 0.0), command, 15.0);
         assert_eq!(Run { movers: vec![], ..run }, again);

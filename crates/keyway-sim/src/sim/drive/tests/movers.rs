@@ -1,17 +1,17 @@
 //! Runs among moving obstacles.
 
 use super::*;
-use crate::sim::{KeyFrame, KeyFrames, Motion, Mover, Spline, WayPoints};
+use crate::sim::{KeyFrame, KeyFrames, Motion, MovingObstacle, Spline, WayPoints};
 use keyway::robot::Footprint;
 
 const STAY: Velocity = Velocity::ZERO;
 
-fn open(movers: Vec<Mover>) -> World {
+fn open(movers: Vec<MovingObstacle>) -> World {
     world(&[]).with_movers(movers)
 }
 
-fn straight(x: f64, y: f64, vx: f64, vy: f64) -> Mover {
-    Mover::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
+fn straight(x: f64, y: f64, vx: f64, vy: f64) -> MovingObstacle {
+    MovingObstacle::straight(Point::new(x, y), 0.25, Point::new(vx, vy)).unwrap()
 }
 
 fn contact(run: &Run) -> (f64, Pose, Obstacle, bool) {
@@ -72,7 +72,7 @@ fn corners_within_a_cycle_count() {
     for (nearest_m, touches) in [(0.44, false), (0.42, true)] {
         let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 0.0) };
         let frames = KeyFrames::new(vec![frame(0.2, 3.0), frame(0.5, nearest_m), frame(0.8, 3.0)]);
-        let mover = Mover::new(0.25, Motion::KeyFrames(frames.unwrap())).unwrap();
+        let mover = MovingObstacle::new(0.25, Motion::KeyFrames(frames.unwrap())).unwrap();
         let run = drive(&open(vec![mover]), &brisk(1.0), FAR, &limit(2.0), STAY);
         if touches {
             let (t_s, _, with, _) = contact(&run);
@@ -90,7 +90,7 @@ fn the_first_of_several_contacts_counts() {
     // A post ahead is reached after a while; a moving obstacle from the side comes earlier or
     // later.
     let post = world(&[(2.0, 0.0, 0.25)]);
-    for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Circle(0))] {
+    for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Disc(0))] {
         let world = post.clone().with_movers(vec![straight(1.0, 3.0, 0.0, -speed_mps)]);
         let run = drive(&world, &robot(), FAR, &limit(20.0), Velocity::new(0.5, 0.0));
         assert_eq!(contact(&run).2, with, "{speed_mps}");
@@ -101,7 +101,7 @@ fn the_first_of_several_contacts_counts() {
 fn clearances_from_what_stands_and_what_moves_are_apart() {
     let ends = vec![Point::new(-3.0, 2.0), Point::new(3.0, 2.0)];
     let patrol = Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
-    let patrol = Mover::new(0.25, patrol).unwrap();
+    let patrol = MovingObstacle::new(0.25, patrol).unwrap();
     let run = drive(
         &world(&[(0.0, -1.0, 0.5)]).with_movers(vec![patrol]),
         &robot(),
@@ -154,14 +154,15 @@ fn the_speed_at_a_contact_is_said() {
     // 8 m in 0.4 s: the cubic of Hermite gives the contact at 0.43 m, and its derivative the speed
     // there.
     let frames = [[1.0, 4.0, 0.0], [1.4, -4.0, 0.0]].map(KeyFrame::from).to_vec();
-    let darts = Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap();
+    let darts =
+        MovingObstacle::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap();
     let (speed, t_s) = speed_mps(&open(vec![darts]));
     let u = (t_s - 1.0) / 0.4;
     let place_m = 4.0 - 4.0 * u - 12.0 * u * u + 8.0 * u * u * u;
     assert!((place_m - 0.43).abs() < 1e-3, "{place_m}");
     let expected_mps = (4.0 + 24.0 * u - 24.0 * u * u) / 0.4;
     assert!((speed.unwrap() - expected_mps).abs() < 1e-9, "{speed:?} {expected_mps}");
-    assert!(expected_mps > Mover::DART_MPS);
+    assert!(expected_mps > MovingObstacle::DART_MPS);
     // A stationary obstacle has no speed.
     let wall =
         drive(&world(&[(1.0, 0.0, 0.1)]), &robot(), FAR, &limit(9.0), Velocity::new(0.5, 0.0));
@@ -169,9 +170,9 @@ fn the_speed_at_a_contact_is_said() {
 }
 
 /// An obstacle at (x, 0) for a second, then aside; after 3 s it jumps back.
-fn jumping_to(x: f64) -> Mover {
+fn jumping_to(x: f64) -> MovingObstacle {
     let frames = [[0.0, x, 0.0], [1.0, x, 0.0], [1.5, x, 5.0]].map(KeyFrame::from).to_vec();
-    Mover::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
+    MovingObstacle::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
 }
 
 #[test]
@@ -202,7 +203,7 @@ fn a_jump_at_every_time_of_a_cycle_is_met() {
         let duration_s = 2.0 + f64::from(lap) * 0.0125;
         let frames = [[0.0, 1.0, 0.0], [1.0, 1.0, 5.0]].map(KeyFrame::from).to_vec();
         let motion = Motion::Spline(Spline::new(frames, duration_s).unwrap());
-        let world = open(vec![Mover::new(0.25, motion).unwrap()]);
+        let world = open(vec![MovingObstacle::new(0.25, motion).unwrap()]);
         let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
         assert!(matches!(run.outcome, Outcome::Collided { jumped_onto: true, .. }), "{duration_s}");
         assert!((contact(&run).0 - duration_s).abs() < 1e-9, "{duration_s}");

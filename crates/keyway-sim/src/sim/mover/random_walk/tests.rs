@@ -1,5 +1,5 @@
 use super::*;
-use crate::sim::Mover;
+use crate::sim::MovingObstacle;
 use serde_json::json;
 
 fn config(seed: u64) -> RandomWalkConfig {
@@ -86,7 +86,7 @@ fn tables_are_refused_with_the_field() {
                               "leg_s": [1, 2], "seed": 1});
         walk[field] = value;
         let table = json!({"radius_m": 1, "random_walk": walk});
-        serde_json::from_value::<Mover>(table).unwrap_err().to_string()
+        serde_json::from_value::<MovingObstacle>(table).unwrap_err().to_string()
     };
     for (field, value, expected) in [
         (

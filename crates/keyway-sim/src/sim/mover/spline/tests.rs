@@ -1,4 +1,4 @@
-use super::super::{Motion, Mover};
+use super::super::{Motion, MovingObstacle};
 use super::*;
 use proptest::prelude::*;
 use serde_json::json;
@@ -164,7 +164,7 @@ fn numbers_beyond_measure_are_refused() {
     let still = &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
     assert_eq!(path(still, f64::INFINITY), "duration_s");
     assert_eq!(path(still, f64::NAN), "duration_s");
-    assert!(Mover::new(-1.0, Motion::Spline(spline(still, 1.0))).is_err());
+    assert!(MovingObstacle::new(-1.0, Motion::Spline(spline(still, 1.0))).is_err());
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn tables_are_refused_with_the_field() {
         ),
     ];
     for (value, expected) in cases {
-        let error = serde_json::from_value::<Mover>(value).unwrap_err().to_string();
+        let error = serde_json::from_value::<MovingObstacle>(value).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
 }
