@@ -2,7 +2,7 @@
 
 use super::part::Part;
 use super::{
-    AgainstFirst, Measured, Record, Row, StackSummary, against_first_latex, against_first_markdown,
+    AgainstFirst, Record, Row, RunTimes, StackSummary, against_first_latex, against_first_markdown,
     summary_latex, summary_markdown,
 };
 use crate::results::{OutDir, ResultsError, json_text};
@@ -44,7 +44,7 @@ pub(super) struct TimeLine {
     /// Digest of the run.
     pub(super) digest: String,
     #[serde(flatten)]
-    pub(super) measured: Measured,
+    pub(super) measured: RunTimes,
 }
 
 /// Writes the runs, their robots and their times, and the part of a batch that they are.

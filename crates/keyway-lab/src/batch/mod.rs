@@ -44,7 +44,7 @@ pub use keep::Keep;
 pub use part::{Shard, ShardError};
 pub use parts_error::PartsError;
 pub use pictures::{PictureFile, Pictures};
-pub use record::{Measured, Record};
+pub use record::{Record, RunTimes};
 pub use report::BatchReport;
 pub use request::{BatchRequest, MergeRequest};
 pub use row::{ContactWhile, Row, RunId};

@@ -3,7 +3,7 @@
 use super::clutter::occupied_share;
 use super::row::{Row, RunId, World};
 use super::team_row::of_all;
-use crate::results::Entry;
+use crate::results::JournalEntry;
 use keyway_sim::episode::{Episode, EpisodeReport};
 use serde::{Deserialize, Serialize};
 
@@ -16,20 +16,20 @@ pub struct Record {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<Row>,
     /// Times of the run.
-    pub measured: Measured,
+    pub measured: RunTimes,
 }
 
 /// Times of a run; they differ from run to run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Measured {
+pub struct RunTimes {
     /// Wall clock of the whole run \[s\].
     pub wall_s: f64,
     /// Mean wall clock of a decision \[us\].
     pub mean_cycle_us: Option<f64>,
 }
 
-impl Measured {
+impl RunTimes {
     fn of(report: &EpisodeReport, wall_s: f64) -> Self {
         let runs = || report.robots.iter().filter_map(|robot| robot.run.as_ref());
         let cycles: f64 = runs().map(|run| run.cycles as f64).sum();
@@ -48,7 +48,7 @@ impl Record {
         reference_time_s: Option<f64>,
         wall_s: f64,
     ) -> Self {
-        let measured = Measured::of(report, wall_s);
+        let measured = RunTimes::of(report, wall_s);
         let world = World { occupied_share: occupied_share(episode), reference_time_s };
         let rows = report.robots.iter().map(|robot| Row::of(id, robot, &world));
         let mut robots: Vec<Row> = rows.collect();
@@ -64,7 +64,7 @@ impl Record {
     }
 }
 
-impl Entry for Record {
+impl JournalEntry for Record {
     const NOT_ONE: &'static str =
         "it is not the journal of a batch of this version; move it away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"run\":{";

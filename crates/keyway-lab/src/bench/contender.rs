@@ -3,7 +3,7 @@
 use super::GridError;
 use super::mistakes::Mistake;
 use super::raw_map::RawMap;
-use super::tally::{Answer, GridRow, PathFound, row};
+use super::tally::{GridAnswer, GridRow, PathFound, row};
 use crate::corner_rule::corner_rule;
 use crate::measure::{Times, timed};
 use keyway::map::formats::Scenario;
@@ -23,7 +23,7 @@ pub(super) struct Contender<'a> {
     preparation: Duration,
     workspace: Workspace,
     plan: Plan,
-    pub(super) answers: Vec<Answer>,
+    pub(super) answers: Vec<GridAnswer>,
 }
 
 impl<'a> Contender<'a> {
@@ -49,7 +49,7 @@ impl<'a> Contender<'a> {
         timed(|| planner.plan_into(map, &query, workspace, None, plan))
     }
 
-    pub(super) fn answer(&mut self, scenario: &Scenario, raw: &RawMap) -> Answer {
+    pub(super) fn answer(&mut self, scenario: &Scenario, raw: &RawMap) -> GridAnswer {
         let Scenario { start, goal, optimal_length, .. } = *scenario;
         let (result, times) = self.plan(scenario);
         let statistics = match &result {
@@ -67,7 +67,7 @@ impl<'a> Contender<'a> {
         let is_reachable = raw.is_passable(start)
             && raw.is_passable(goal)
             && (optimal_length > 0.0 || start == goal);
-        Answer {
+        GridAnswer {
             times,
             expanded: statistics.expanded(),
             generated: statistics.generated(),
@@ -100,7 +100,7 @@ impl<'a> Contender<'a> {
     /// The answers that are wrong.
     pub(super) fn mistakes(&self, file: &str, scenarios: &[Scenario]) -> Vec<Mistake> {
         let config = &self.stack.planner;
-        let mistake = |(scenario, answer): (&Scenario, &Answer)| {
+        let mistake = |(scenario, answer): (&Scenario, &GridAnswer)| {
             let (expected_cells, got) = answer.mistake(config.is_optimal())?;
             Some(Mistake {
                 scenarios: file.to_owned(),

@@ -23,7 +23,7 @@ pub use scale::{
     ScaleCurve, ScaleCurves, ScaleError, ScaleReport, ScaleRequest, ScaleRow, ScaleTask,
     scale_table,
 };
-pub use tally::{Answer, GridRow};
+pub use tally::{GridAnswer, GridRow};
 
 use crate::progress::Progress;
 use contender::Contender;
@@ -49,7 +49,7 @@ pub struct FileResult {
     pub rows: Vec<GridRow>,
     /// The answers that are wrong.
     pub mistakes: Vec<Mistake>,
-    answers: Vec<Vec<Answer>>,
+    answers: Vec<Vec<GridAnswer>>,
 }
 
 /// Error of planners on a map.
@@ -112,7 +112,7 @@ impl GridRow {
 /// A row for each planner over the answers of all files, which are taken out of them.
 pub fn totals(stacks: &[Stack], files: &mut [FileResult]) -> Vec<GridRow> {
     let total = |(i, stack): (usize, &Stack)| {
-        let answers: Vec<Answer> =
+        let answers: Vec<GridAnswer> =
             files.iter_mut().flat_map(|file| std::mem::take(&mut file.answers[i])).collect();
         let of_planner = files.iter().map(|file| &file.rows[i]);
         let preparation_ms: f64 = of_planner.clone().map(|row| row.preprocessing_ms).sum();

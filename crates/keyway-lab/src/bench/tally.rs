@@ -37,7 +37,7 @@ pub struct GridRow {
 }
 
 /// What a planner answered to one query.
-pub struct Answer {
+pub struct GridAnswer {
     pub(super) times: Times,
     pub(super) expanded: u64,
     pub(super) generated: u64,
@@ -58,7 +58,7 @@ pub(super) enum PathFound {
     Legal { length_cells: f64 },
 }
 
-impl Answer {
+impl GridAnswer {
     /// Whether the answer contradicts the published one. An illegal path is counted as such, but
     /// says that there is a path, as does a planner that says that it missed one.
     fn is_mismatch(&self, is_optimal: bool) -> bool {
@@ -108,14 +108,14 @@ pub(super) fn row(
     map: String,
     planner: &'static str,
     is_optimal: bool,
-    answers: &[Answer],
+    answers: &[GridAnswer],
     (preprocessing, memory_bytes): (Duration, usize),
 ) -> GridRow {
     let walls: Vec<f64> = answers.iter().map(|answer| answer.times.wall_us()).collect();
     let cpus: Option<Vec<f64>> = answers.iter().map(|answer| answer.times.cpu_us()).collect();
-    let excesses: Vec<f64> = answers.iter().filter_map(Answer::excess).collect();
-    let count = |test: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| test(a)).count();
-    let of_all = |value: &dyn Fn(&Answer) -> u64| {
+    let excesses: Vec<f64> = answers.iter().filter_map(GridAnswer::excess).collect();
+    let count = |test: &dyn Fn(&GridAnswer) -> bool| answers.iter().filter(|a| test(a)).count();
+    let of_all = |value: &dyn Fn(&GridAnswer) -> u64| {
         Spread::of_values(answers.iter().map(|answer| value(answer) as f64).collect())
     };
     let cpu_us = cpus.map(Spread::of_values).unwrap_or_default();
@@ -150,10 +150,10 @@ pub(super) fn row(
 mod tests {
     use super::*;
 
-    fn answer(path: PathFound, optimum: Option<f64>) -> Answer {
+    fn answer(path: PathFound, optimum: Option<f64>) -> GridAnswer {
         let times = Times { wall: Duration::from_micros(5), cpu: None };
         let least = optimum.unwrap_or_default();
-        Answer { times, expanded: 3, generated: 4, path, optimum, least }
+        GridAnswer { times, expanded: 3, generated: 4, path, optimum, least }
     }
 
     fn legal(length_cells: f64) -> PathFound {
@@ -198,9 +198,9 @@ mod tests {
 
     #[test]
     fn any_angle_paths_may_be_shorter() {
-        let answer = Answer { least: 4.5, ..answer(legal(4.6), Some(5.0)) };
+        let answer = GridAnswer { least: 4.5, ..answer(legal(4.6), Some(5.0)) };
         assert!(!answer.is_mismatch(false));
-        let impossible = Answer { path: legal(4.4), ..answer };
+        let impossible = GridAnswer { path: legal(4.4), ..answer };
         assert!(impossible.is_mismatch(false));
     }
 
@@ -208,7 +208,7 @@ mod tests {
     fn a_row_by_hand() {
         let slow = Times { wall: Duration::from_micros(8), cpu: None };
         let answers = [
-            Answer { times: slow, ..answer(legal(11.0), Some(10.0)) },
+            GridAnswer { times: slow, ..answer(legal(11.0), Some(10.0)) },
             answer(legal(10.0), Some(10.0)),
             answer(PathFound::None, None),
             answer(PathFound::Illegal, Some(3.0)),

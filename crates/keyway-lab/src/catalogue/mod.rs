@@ -61,7 +61,7 @@ impl EntryKind {
 
 /// A named part.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct CatalogueEntry {
     /// Its kind.
     pub kind: EntryKind,
     /// Its name.
@@ -86,7 +86,7 @@ pub enum StackValues {
 }
 
 /// Returns all entries, with defaults for a robot.
-pub fn catalogue(robot: &Robot, values: StackValues) -> Vec<Entry> {
+pub fn catalogue(robot: &Robot, values: StackValues) -> Vec<CatalogueEntry> {
     let planners = PlannerConfig::NAMES.iter().map(|&name| {
         let schema = schema_for!(PlannerConfig).to_value();
         let config = PlannerConfig::by_name(name);
@@ -161,7 +161,7 @@ fn alternative(
     schema: &Value,
     config: &Value,
     paper: &Value,
-) -> Entry {
+) -> CatalogueEntry {
     let summary = summary_of(schema, name);
     let published = match kind {
         EntryKind::Planner | EntryKind::Smoother => of_part(name),
@@ -169,10 +169,10 @@ fn alternative(
         EntryKind::Guide | EntryKind::Stack | EntryKind::Robot => Vec::new(),
     };
     let parameters = parameters(path, schema, config, paper);
-    Entry { kind, name, summary, parameters, published, file: None }
+    CatalogueEntry { kind, name, summary, parameters, published, file: None }
 }
 
-fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
+fn stack_entry(name: &'static str, stack: &Stack) -> CatalogueEntry {
     let schema = schema_for!(Stack).to_value();
     let (about, source) = Stack::about(name).unwrap_or_default();
     let summary = source.map_or_else(|| about.to_owned(), |source| format!("{about} [{source}]"));
@@ -180,7 +180,7 @@ fn stack_entry(name: &'static str, stack: &Stack) -> Entry {
     let parameters = parameters("", &schema, &value(stack), &paper);
     let file = Some(file(stack, &format!("{name}: {summary}"), &parameters));
     let published = of_stack(name).into_iter().collect();
-    Entry { kind: EntryKind::Stack, name, summary, parameters, published, file }
+    CatalogueEntry { kind: EntryKind::Stack, name, summary, parameters, published, file }
 }
 
 /// Returns the values of a published stack in those of its parts that have a paper.
@@ -195,7 +195,7 @@ fn paper_stack(stack: &Stack) -> Value {
     })
 }
 
-fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
+fn robot_entry(name: &'static str, robot: &Robot) -> CatalogueEntry {
     let schema = schema_for!(Robot).to_value();
     let summary = plain(&format!(
         "{}, up to {} m/s, sensor range {} m",
@@ -203,5 +203,12 @@ fn robot_entry(name: &'static str, robot: &Robot) -> Entry {
     ));
     let parameters = parameters("", &schema, &value(robot), &Value::Null);
     let file = Some(file(robot, &format!("{name}: {summary}"), &parameters));
-    Entry { kind: EntryKind::Robot, name, summary, parameters, published: Vec::new(), file }
+    CatalogueEntry {
+        kind: EntryKind::Robot,
+        name,
+        summary,
+        parameters,
+        published: Vec::new(),
+        file,
+    }
 }

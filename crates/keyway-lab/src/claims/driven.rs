@@ -43,7 +43,7 @@ pub enum Vehicle {
 
 /// A run on one map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Driven {
+pub struct RunFigures {
     /// Outcome of the run.
     pub outcome: EpisodeOutcome,
     /// Simulated time \[s\].
@@ -103,14 +103,15 @@ impl Driving {
         grid: &OccupancyGrid,
         task: ([Cell; 2], u64),
         clock: Clock<'_>,
-    ) -> Result<Option<Driven>, EpisodeError> {
+    ) -> Result<Option<RunFigures>, EpisodeError> {
         let mut run = Keeper::default();
         let Some((episode, report)) = self.watch(grid, task, clock, &mut run)? else {
             return Ok(None);
         };
         let both = report.run.as_ref().zip(run.0.as_ref());
-        Ok(both
-            .map(|(part, run)| Driven::new(&report, part, run).of_part(self.part, run, &episode)))
+        Ok(both.map(|(part, run)| {
+            RunFigures::new(&report, part, run).of_part(self.part, run, &episode)
+        }))
     }
 
     /// Drives once with an observer; `None` if the robot has no room at an end.
@@ -149,7 +150,7 @@ impl Driving {
     }
 }
 
-impl Driven {
+impl RunFigures {
     fn new(report: &RobotReport, part: &RunPart, run: &Run) -> Self {
         let cycle_s = part.mean_cycle_us.map(|us| us * 1e-6);
         let route_s = report.plan.time_s.map(|plan_s| {
@@ -201,7 +202,7 @@ mod tests {
         part: Part::Whole,
     };
 
-    fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<Driven> {
+    fn drive(driving: &Driving, rows: &[&str], clock: Clock<'_>) -> Option<RunFigures> {
         let grid = OccupancyGrid::from_ascii(rows);
         driving.run(&grid, ([Cell::new(0, 0), Cell::new(5, 0)], 1), clock).unwrap()
     }

@@ -1,6 +1,6 @@
 //! An experiment: methods on a family of maps, and on the paper's scene.
 
-use super::method::{How, Method, Outcome};
+use super::method::{How, Method, MethodResult};
 use super::planned::PlanTimes;
 use super::reconstruction::Reconstruction;
 use keyway::ConfigError;
@@ -31,7 +31,7 @@ pub struct Experiment {
     /// Methods to compare; for paths, the yardstick is one of them.
     pub methods: &'static [Method],
     /// Scene file of this experiment, if there is one.
-    pub scene: Option<Scene>,
+    pub scene: Option<ExperimentScene>,
     /// Basis for reconstructing the paper's map, or the reason why nothing can be fitted.
     pub reconstruction: Result<&'static Reconstruction, &'static str>,
 }
@@ -39,7 +39,7 @@ pub struct Experiment {
 /// A scene of the project's repository: a map that was reconstructed by hand, or the first map that
 /// fits.
 #[derive(Debug)]
-pub struct Scene {
+pub struct ExperimentScene {
     /// The scene file in the project's repository.
     pub file: &'static str,
     /// Start and goal.
@@ -55,7 +55,7 @@ pub struct MapRow {
     pub seed: Option<u64>,
     /// Outcomes in the order of the methods; `None` for a method without a path, or without a route
     /// to drive.
-    pub outcomes: Vec<Option<Outcome>>,
+    pub outcomes: Vec<Option<MethodResult>>,
 }
 
 /// Number of timed plans of each method; the median counts.
@@ -136,7 +136,7 @@ impl Experiment {
         grid: &OccupancyGrid,
         task: ([Cell; 2], u64),
         clock: Clock<'_>,
-    ) -> Result<Vec<Option<Outcome>>, EpisodeError> {
+    ) -> Result<Vec<Option<MethodResult>>, EpisodeError> {
         let mut contenders: Vec<(&Method, Workspace)> =
             self.methods.iter().map(|method| (method, Workspace::default())).collect();
         let mut outcomes = Vec::new();
@@ -156,7 +156,7 @@ impl Experiment {
                 }
             }
             for (outcome, times) in outcomes.iter_mut().zip(times) {
-                if let Some(Outcome::Planned(planned)) = outcome {
+                if let Some(MethodResult::Planned(planned)) = outcome {
                     planned.times = PlanTimes::medians(&times);
                 }
             }
@@ -165,12 +165,12 @@ impl Experiment {
         Ok(outcomes)
     }
 
-    fn measure_excess(&self, outcomes: &mut [Option<Outcome>]) {
+    fn measure_excess(&self, outcomes: &mut [Option<MethodResult>]) {
         let Some((yardstick, _)) = self.method(Self::YARDSTICK) else { return };
-        let shortest = outcomes[yardstick].as_ref().and_then(Outcome::planned);
+        let shortest = outcomes[yardstick].as_ref().and_then(MethodResult::planned);
         let Some(shortest_m) = shortest.map(|shortest| shortest.path.length_m) else { return };
         for outcome in outcomes.iter_mut().flatten() {
-            if let Outcome::Planned(planned) = outcome {
+            if let MethodResult::Planned(planned) = outcome {
                 planned.excess =
                     (shortest_m > 0.0).then(|| planned.path.length_m / shortest_m - 1.0);
             }
@@ -178,7 +178,7 @@ impl Experiment {
     }
 }
 
-impl Scene {
+impl ExperimentScene {
     /// Returns the map; `None` cannot happen, since a test reads all maps.
     pub(super) fn grid(&self) -> Option<OccupancyGrid> {
         parse_movingai_map(self.map.as_bytes(), ImagePlacement::default()).ok()
@@ -190,7 +190,7 @@ impl MapRow {
     pub fn counts(&self, experiment: &Experiment) -> bool {
         let mut all = experiment.methods.iter().zip(&self.outcomes);
         all.all(|(method, outcome)| {
-            !method.must_succeed || outcome.as_ref().is_some_and(Outcome::succeeded)
+            !method.must_succeed || outcome.as_ref().is_some_and(MethodResult::succeeded)
         })
     }
 }

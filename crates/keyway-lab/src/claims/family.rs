@@ -1,7 +1,7 @@
 //! Maps of a family that count.
 
 use super::experiment::{Experiment, MapRow};
-use super::method::Outcome;
+use super::method::MethodResult;
 use super::reconstruction::Fitted;
 
 /// Results of an experiment.
@@ -28,7 +28,7 @@ impl Family {
         if self.rows.len() < wanted {
             self.succeeded.resize(experiment.methods.len(), 0);
             for (count, outcome) in self.succeeded.iter_mut().zip(&row.outcomes) {
-                *count += usize::from(outcome.as_ref().is_some_and(Outcome::succeeded));
+                *count += usize::from(outcome.as_ref().is_some_and(MethodResult::succeeded));
             }
             if row.counts(experiment) {
                 self.rows.push(row);

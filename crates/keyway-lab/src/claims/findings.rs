@@ -93,7 +93,7 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::claims::{Bound, Claim, Driven, Measure, Outcome, Planned};
+    use crate::claims::{Bound, Claim, Measure, MethodResult, Planned, RunFigures};
     use keyway_sim::episode::EpisodeOutcome;
     use keyway_sim::metrics::PathMetrics;
 
@@ -101,7 +101,7 @@ mod tests {
         Claim::named("S0-1")[0].experiment
     }
 
-    fn outcome(expanded: u64, clearance_m: Option<f64>) -> Outcome {
+    fn outcome(expanded: u64, clearance_m: Option<f64>) -> MethodResult {
         let path = PathMetrics {
             length_m: 10.0,
             points: 3,
@@ -111,7 +111,7 @@ mod tests {
             non_smooth_turns: 1,
             min_clearance_m: clearance_m,
         };
-        Outcome::Planned(Planned {
+        MethodResult::Planned(Planned {
             expanded,
             path,
             revisited: 0,
@@ -122,7 +122,7 @@ mod tests {
     }
 
     /// A row with the first outcome for the first method, and the second one for the second.
-    fn row(old: Option<Outcome>, new: Option<Outcome>) -> MapRow {
+    fn row(old: Option<MethodResult>, new: Option<MethodResult>) -> MapRow {
         MapRow { seed: Some(1), outcomes: vec![old, new] }
     }
 
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn runs_are_measured_that_reached_their_goal() {
         let run = |outcome, time_s| {
-            Some(Outcome::Driven(Driven {
+            Some(MethodResult::Driven(RunFigures {
                 outcome,
                 time_s,
                 length_m: 7.0,

@@ -1,7 +1,7 @@
 //! Measures of claims.
 
-use super::driven::Driven;
-use super::method::Outcome;
+use super::driven::RunFigures;
+use super::method::MethodResult;
 use super::planned::Planned;
 use serde::Serialize;
 
@@ -130,14 +130,14 @@ impl Measure {
 
     /// Returns its value on one map; `None` without a path, an obstacle or a clock, or, except for
     /// [`Self::Reached`], if the goal was not reached.
-    pub(super) fn of(self, outcome: Option<&Outcome>) -> Option<f64> {
+    pub(super) fn of(self, outcome: Option<&MethodResult>) -> Option<f64> {
         let share = |is: bool| Some(if is { 1.0 } else { 0.0 });
         match (self, outcome) {
             (Self::Missed, outcome) => share(outcome.is_none()),
-            (Self::Reached, outcome) => share(outcome.is_some_and(Outcome::succeeded)),
-            (_, Some(Outcome::Planned(planned))) => self.of_plan(planned),
-            (_, Some(Outcome::Driven(driven))) if driven.reached() => self.of_run(driven),
-            (_, None | Some(Outcome::Driven(_))) => None,
+            (Self::Reached, outcome) => share(outcome.is_some_and(MethodResult::succeeded)),
+            (_, Some(MethodResult::Planned(planned))) => self.of_plan(planned),
+            (_, Some(MethodResult::Driven(driven))) if driven.reached() => self.of_run(driven),
+            (_, None | Some(MethodResult::Driven(_))) => None,
         }
     }
 
@@ -162,7 +162,7 @@ impl Measure {
         })
     }
 
-    fn of_run(self, driven: &Driven) -> Option<f64> {
+    fn of_run(self, driven: &RunFigures) -> Option<f64> {
         match self {
             Self::RunTime => Some(driven.time_s),
             Self::DrivenLength | Self::WayLength => Some(driven.length_m),

@@ -1,7 +1,7 @@
 //! Methods of a comparison, and their outcomes on a map.
 
 use super::clutter_speeds::Part;
-use super::driven::{Driven, Driving, Vehicle};
+use super::driven::{Driving, RunFigures, Vehicle};
 use super::planned::{Planned, Planning};
 use keyway::local::LocalConfig;
 use keyway::map::{Cell, OccupancyGrid};
@@ -35,11 +35,11 @@ pub enum How {
 /// Result of a method on one map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum MethodResult {
     /// A path.
     Planned(Planned),
     /// A run.
-    Driven(Driven),
+    Driven(RunFigures),
 }
 
 /// Half of a cell of the papers' maps \[m\].
@@ -130,17 +130,17 @@ impl Method {
         task: ([Cell; 2], u64),
         workspace: &mut Workspace,
         clock: Clock<'_>,
-    ) -> Result<Option<Outcome>, EpisodeError> {
+    ) -> Result<Option<MethodResult>, EpisodeError> {
         Ok(match &self.how {
             How::Plan(planning) => {
-                planning.run(grid, task, workspace, clock)?.map(Outcome::Planned)
+                planning.run(grid, task, workspace, clock)?.map(MethodResult::Planned)
             }
-            How::Drive(driving) => driving.run(grid, task, clock)?.map(Outcome::Driven),
+            How::Drive(driving) => driving.run(grid, task, clock)?.map(MethodResult::Driven),
         })
     }
 }
 
-impl Outcome {
+impl MethodResult {
     /// True if there is a path, and a driving robot drove it to its end.
     pub fn succeeded(&self) -> bool {
         match self {
@@ -158,7 +158,7 @@ impl Outcome {
     }
 
     /// Returns the run; `None` for a path.
-    pub const fn driven(&self) -> Option<&Driven> {
+    pub const fn driven(&self) -> Option<&RunFigures> {
         match self {
             Self::Planned(_) => None,
             Self::Driven(driven) => Some(driven),

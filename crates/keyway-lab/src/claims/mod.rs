@@ -51,12 +51,12 @@ mod zhuyin2024;
 pub use ablations::{Ablation, AblationReport};
 pub use claim::{Bound, Claim, Direction, Expected, Figure, Rule};
 pub use clutter_speeds::Part;
-pub use driven::{Driven, Driving, Vehicle};
-pub use experiment::{Experiment, MapRow, Scene};
+pub use driven::{Driving, RunFigures, Vehicle};
+pub use experiment::{Experiment, ExperimentScene, MapRow};
 pub use family::Family;
 pub use findings::{Finding, change_on};
 pub use measure::{Measure, Scale};
-pub use method::{How, Method, Outcome};
+pub use method::{How, Method, MethodResult};
 pub use planned::{PlanTimes, Planned, Planning};
 pub use reconstruction::{Baseline, Fitted, Published, Reconstruction};
 pub use report::{

@@ -5,7 +5,7 @@
 //! with collinear points removed, and a classic DWA guided by the turning points of A*.
 
 use super::claim::{Bound, Claim, Figure};
-use super::experiment::{Experiment, Scene};
+use super::experiment::{Experiment, ExperimentScene};
 use super::measure::Measure;
 use super::method::Method;
 use super::planned::Planning;
@@ -80,7 +80,11 @@ static WEIGHTS: Experiment = Experiment {
         ),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene { file: "scenes/s1/weights.toml", ends: WEIGHTS_ENDS, map: SCENE_MAP }),
+    scene: Some(ExperimentScene {
+        file: "scenes/s1/weights.toml",
+        ends: WEIGHTS_ENDS,
+        map: SCENE_MAP,
+    }),
     reconstruction: Ok(&FITTED_WEIGHTS),
 };
 
@@ -102,20 +106,25 @@ static SMOOTHING: Experiment = Experiment {
         ),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
+    scene: Some(ExperimentScene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP }),
     reconstruction: Ok(&FITTED),
 };
 
 /// An experiment with runs; each compares only the methods of its claim, so that no map is left out
 /// because of another method.
-const fn runs(name: &'static str, methods: &'static [Method], scene: Scene) -> Experiment {
+const fn runs(
+    name: &'static str,
+    methods: &'static [Method],
+    scene: ExperimentScene,
+) -> Experiment {
     let scene = Some(scene);
     let reconstruction = Ok(&FITTED);
     let (about, ends, kind) = (ABOUT, ENDS, None);
     Experiment { name, about, family: FAMILY, kind, ends, methods, scene, reconstruction }
 }
 
-const RANDOM_00: Scene = Scene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
+const RANDOM_00: ExperimentScene =
+    ExperimentScene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
 
 /// Figure 6: one evaluation function against the other, without a route as guidance. So both drive
 /// straight to the goal, and both measure the distance as the paper does.
@@ -126,7 +135,7 @@ static AGAINST_CLASSIC: Experiment = runs(
         Method::driving(ADAPTIVE, TO_GOAL)
             .with_local(LocalConfig::AdaptiveDwa(AdaptiveDwaConfig::PAPER)),
     ],
-    Scene {
+    ExperimentScene {
         file: "scenes/s1/scattered.toml",
         ends: ENDS,
         map: include_str!("maps/s1_scattered.map"),
@@ -155,7 +164,7 @@ static HALF_ENCLOSED: Experiment = Experiment {
         Method::driving(TO_GOAL, TO_GOAL).may_fail(),
         Method::driving(FUSED, FUSED).may_fail(),
     ],
-    scene: Some(Scene {
+    scene: Some(ExperimentScene {
         file: "scenes/s1/half_enclosed.toml",
         ends: HALF_ENCLOSED_ENDS,
         map: include_str!("maps/s1_half_enclosed.map"),

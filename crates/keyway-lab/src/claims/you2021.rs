@@ -5,7 +5,7 @@
 
 use super::claim::{Bound, Claim, Figure};
 use super::clutter_speeds::Part;
-use super::experiment::{Experiment, Scene};
+use super::experiment::{Experiment, ExperimentScene};
 use super::measure::Measure;
 use super::method::Method;
 use super::planned::Planning;
@@ -33,7 +33,7 @@ pub(super) const ABOUT: &str =
 pub(super) const FAMILY: GeneratedMap =
     square(20.0, 0.0, Pattern::Blocks(Blocks { share: 0.2, side_m: [1.0, 3.0] }));
 pub(super) const ENDS: [Cell; 2] = [Cell::new(0, 0), Cell::new(19, 19)];
-const SCENE: Scene = Scene {
+const SCENE: ExperimentScene = ExperimentScene {
     file: "scenes/you2021/corner_to_corner.toml",
     ends: ENDS,
     map: include_str!("maps/you2021.map"),

@@ -1,7 +1,7 @@
 //! Comparison of each row of a map with the first one: is the difference more than chance?
 
 use super::Compared;
-use super::contest::Entry;
+use super::contest::ContestEntry;
 use super::row::SAME_M;
 use crate::significance::{Differences, holm_of, p_value};
 use crate::table::{number, rows, with_range};
@@ -51,7 +51,7 @@ pub(super) fn against_first(map: &Compared) -> Vec<AgainstFirst> {
     all
 }
 
-fn compare(map: &Compared, first: &Entry, other: &Entry) -> AgainstFirst {
+fn compare(map: &Compared, first: &ContestEntry, other: &ContestEntry) -> AgainstFirst {
     let queries = || other.answers.iter().zip(&first.answers);
     let solved = McNemarTest::of_pairs(
         queries().map(|(this, first)| [this.found.is_some(), first.found.is_some()]),

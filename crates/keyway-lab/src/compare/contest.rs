@@ -20,7 +20,7 @@ use keyway_sim::metrics::PathMetrics;
 use keyway_sim::report::PlanOutcome;
 
 /// One planner with one smoother, and their answers to each query.
-pub struct Entry {
+pub struct ContestEntry {
     /// Name of the planner.
     pub planner: &'static str,
     /// Name of the smoother.
@@ -80,7 +80,7 @@ pub struct Oracle {
 /// Results of a comparison on one map.
 pub struct Contest {
     /// All pairs of a planner and a smoother.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ContestEntry>,
     /// Planners of `all` that cannot plan on this map.
     pub left_out: Vec<LeftOut>,
     /// The shortest lines, for each corner rule of the planners.
@@ -265,13 +265,13 @@ impl Contender {
         map: &'a SearchMap,
         smoothers: &'a [SmootherConfig],
         oracles: &'a [Oracle],
-    ) -> impl Iterator<Item = Entry> + 'a {
+    ) -> impl Iterator<Item = ContestEntry> + 'a {
         let corners = self.corners();
         let oracle = oracles.iter().find(move |oracle| oracle.corners == corners);
         let shortest_m = move |i: usize| {
             oracle.and_then(|oracle| oracle.lines[i].as_ref()).map(Polyline::length_m)
         };
-        smoothers.iter().zip(&self.smoothed).map(move |(smoother, smoothed)| Entry {
+        smoothers.iter().zip(&self.smoothed).map(move |(smoother, smoothed)| ContestEntry {
             planner: self.name,
             smoother: smoother.name(),
             corners,

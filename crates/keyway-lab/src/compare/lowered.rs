@@ -1,7 +1,7 @@
 //! Planners that lowered a constraint, and the lowered values.
 
 use super::Compared;
-use super::contest::Entry;
+use super::contest::ContestEntry;
 use keyway::plan::{PlanNote, Relaxed};
 
 /// Text below the table; `None` where every constraint was kept.
@@ -31,7 +31,7 @@ fn relaxed(note: PlanNote) -> Option<Relaxed> {
     }
 }
 
-fn line(map: &str, entry: &Entry) -> Option<String> {
+fn line(map: &str, entry: &ContestEntry) -> Option<String> {
     let notes = entry.answers.iter().filter_map(|answer| answer.note);
     let lowered: Vec<Relaxed> = notes.filter_map(relaxed).collect();
     let Relaxed { asked_m, .. } = *lowered.first()?;

@@ -24,7 +24,7 @@ mod unsolved;
 
 pub use against_first::{AgainstFirst, against_first_note};
 pub use columns::{ChosenColumns, ColumnError};
-pub use contest::{Answer, Contest, Entry, Found, Oracle};
+pub use contest::{Answer, Contest, ContestEntry, Found, Oracle};
 pub use ends::Ends;
 pub use files::CompareFiles;
 pub use left_out::{LeftOut, left_out_note};

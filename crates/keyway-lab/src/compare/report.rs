@@ -1,7 +1,7 @@
 //! The report of a comparison, `keyway.compare/1`.
 
 use super::against_first::{AgainstFirst, against_first};
-use super::contest::{Answer, Entry, Found, Oracle};
+use super::contest::{Answer, ContestEntry, Found, Oracle};
 use super::left_out::LeftOut;
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
@@ -166,7 +166,7 @@ pub fn query_rows(map: &Compared) -> impl Iterator<Item = QueryRow<'_>> {
     map.contest.entries.iter().flat_map(row)
 }
 
-fn query_row<'a>(map: &'a Compared, entry: &'a Entry, query: usize) -> QueryRow<'a> {
+fn query_row<'a>(map: &'a Compared, entry: &'a ContestEntry, query: usize) -> QueryRow<'a> {
     let ends = map.queries[query];
     let Answer { outcome, reason, plan, found, .. } = &entry.answers[query];
     let found = found.as_ref();

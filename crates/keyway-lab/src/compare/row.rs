@@ -1,6 +1,6 @@
 //! Rows of the table, from the answers.
 
-use super::contest::{Answer, Entry, Found};
+use super::contest::{Answer, ContestEntry, Found};
 use super::figures::Summaries;
 use crate::measure::{mean, quantile};
 use keyway::search::CornerRule;
@@ -36,17 +36,17 @@ pub struct CompareRow {
 }
 
 /// For each query, whether it is compared: solved by every planner that solved any query.
-pub(super) fn compared(entries: &[Entry]) -> Vec<bool> {
+pub(super) fn compared(entries: &[ContestEntry]) -> Vec<bool> {
     let queries = entries.first().map_or(0, |entry| entry.answers.len());
-    let solved = |entry: &Entry, query: usize| entry.answers[query].found.is_some();
-    let has_solved = |entry: &&Entry| (0..queries).any(|query| solved(entry, query));
-    let able: Vec<&Entry> = entries.iter().filter(has_solved).collect();
+    let solved = |entry: &ContestEntry, query: usize| entry.answers[query].found.is_some();
+    let has_solved = |entry: &&ContestEntry| (0..queries).any(|query| solved(entry, query));
+    let able: Vec<&ContestEntry> = entries.iter().filter(has_solved).collect();
     let by_all = |query| !able.is_empty() && able.iter().all(|entry| solved(entry, query));
     (0..queries).map(by_all).collect()
 }
 
 /// Returns the compared query whose paths differ most in length (ties: the first).
-pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usize> {
+pub(super) fn most_different(entries: &[ContestEntry], compared: &[bool]) -> Option<usize> {
     let spread_m = |query: usize| {
         let found = entries.iter().filter_map(|entry| entry.answers[query].found.as_ref());
         let lengths = found.map(|found| found.metrics.length_m);
@@ -62,7 +62,7 @@ pub(super) fn most_different(entries: &[Entry], compared: &[bool]) -> Option<usi
 }
 
 /// Counts over all queries, and means over the compared ones.
-pub(super) fn row(map: &str, entry: &Entry, compared: &[bool]) -> CompareRow {
+pub(super) fn row(map: &str, entry: &ContestEntry, compared: &[bool]) -> CompareRow {
     // If a planner solved nothing, the others were compared without it.
     let is_found =
         |(answer, is_compared): &(&Answer, &bool)| **is_compared && answer.found.is_some();
@@ -135,9 +135,15 @@ mod tests {
         Answer { outcome, reason: None, plan: Some(micros(100)), note: None, found: None }
     }
 
-    fn entry(answers: Vec<Answer>) -> Entry {
+    fn entry(answers: Vec<Answer>) -> ContestEntry {
         let corners = CornerRule::Forbid;
-        Entry { planner: "p", smoother: "s", corners, preparation: Some(micros(2000)), answers }
+        ContestEntry {
+            planner: "p",
+            smoother: "s",
+            corners,
+            preparation: Some(micros(2000)),
+            answers,
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Unsolved queries, with the reasons.
 
 use super::Compared;
-use super::contest::Entry;
+use super::contest::ContestEntry;
 use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
@@ -18,7 +18,7 @@ pub struct Unsolved {
 }
 
 /// Returns all planners without a path for a query, in the order of the table.
-pub(super) fn unsolved(entries: &[Entry], query: usize) -> Vec<Unsolved> {
+pub(super) fn unsolved(entries: &[ContestEntry], query: usize) -> Vec<Unsolved> {
     let mut all: Vec<Unsolved> = Vec::new();
     for entry in entries {
         let answer = &entry.answers[query];

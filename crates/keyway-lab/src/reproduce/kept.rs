@@ -1,7 +1,7 @@
 //! Results of maps that were measured before.
 
 use crate::claims::{Experiment, MapRow};
-use crate::results::{Entry, digest};
+use crate::results::{JournalEntry, digest};
 use keyway_sim::report::Inputs;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -34,7 +34,7 @@ pub enum MapGroup {
     Family,
 }
 
-impl Entry for MapLine {
+impl JournalEntry for MapLine {
     const NOT_ONE: &'static str = "it is not the journal of a reproduction of this version; move it \
                                    away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"experiment\":";

@@ -3,7 +3,7 @@
 use super::kept::{MapGroup, MapLine};
 use super::measure::Measured;
 use super::report::Measurements;
-use crate::claims::{Experiment, Outcome};
+use crate::claims::{Experiment, MethodResult};
 use keyway_sim::episode::EpisodeOutcome;
 use serde::Serialize;
 
@@ -58,14 +58,14 @@ fn method_rows(experiment: &'static Experiment, line: &MapLine) -> impl Iterator
         seed: row.seed,
         counts: row.counts(experiment),
         method: method.name,
-        succeeded: outcome.as_ref().is_some_and(Outcome::succeeded),
+        succeeded: outcome.as_ref().is_some_and(MethodResult::succeeded),
         ..outcome.as_ref().map(measures).unwrap_or_default()
     })
 }
 
-fn measures(outcome: &Outcome) -> MethodRow {
+fn measures(outcome: &MethodResult) -> MethodRow {
     match outcome {
-        Outcome::Planned(planned) => MethodRow {
+        MethodResult::Planned(planned) => MethodRow {
             expanded: Some(planned.expanded),
             length_m: Some(planned.path.length_m),
             excess: planned.excess,
@@ -82,7 +82,7 @@ fn measures(outcome: &Outcome) -> MethodRow {
             smoothing_s: planned.times.map(|times| times.smoothing_s),
             ..MethodRow::default()
         },
-        Outcome::Driven(driven) => MethodRow {
+        MethodResult::Driven(driven) => MethodRow {
             length_m: Some(driven.length_m),
             min_clearance_m: driven.min_clearance_m,
             non_smooth_turns: Some(driven.non_smooth_turns),

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A piece of finished work.
-pub trait Entry: Serialize + DeserializeOwned {
+pub trait JournalEntry: Serialize + DeserializeOwned {
     /// The error of a line that is not of such work.
     const NOT_ONE: &'static str;
     /// With which every line begins.
@@ -40,7 +40,7 @@ pub struct Journal<E> {
 /// Name of the journal in its folder.
 pub const JOURNAL_NAME: &str = "journal.jsonl";
 
-impl<E: Entry> Journal<E> {
+impl<E: JournalEntry> Journal<E> {
     /// Opens the one of a folder for appending, and makes it where there is none.
     ///
     /// # Errors
@@ -95,13 +95,13 @@ impl<E> Drop for Journal<E> {
 
 /// The entries of a journal, and how many of its bytes they are: what follows is a line that was
 /// not written to its end.
-fn entries_of<E: Entry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
+fn entries_of<E: JournalEntry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let (lines, torn) = text.split_at(whole);
     if !torn.starts_with(E::BEGIN) && !E::BEGIN.starts_with(torn) {
         // The part behind the last line end is the torn line.
         let line = text.split(|&byte| byte == b'\n').count();
-        return Err(LinesError::Entry { path: path.to_owned(), line, what: E::NOT_ONE });
+        return Err(LinesError::JournalEntry { path: path.to_owned(), line, what: E::NOT_ONE });
     }
     Ok((json_lines::entries(path, lines, E::NOT_ONE)?, whole))
 }
@@ -120,7 +120,7 @@ mod tests {
         run: u32,
     }
 
-    impl Entry for Piece {
+    impl JournalEntry for Piece {
         const NOT_ONE: &'static str = "it is no piece";
         const BEGIN: &'static [u8] = b"{\"run\":";
     }

@@ -33,7 +33,7 @@ pub enum LinesError {
     },
     /// A line is not what it should be.
     #[error("{}: line {line}: {what}", path.display())]
-    Entry {
+    JournalEntry {
         /// The file.
         path: PathBuf,
         /// The line, from 1.
@@ -71,7 +71,7 @@ pub fn entries<E: DeserializeOwned>(
     what: &'static str,
 ) -> Result<Vec<E>, LinesError> {
     let entry = |(line, text)| {
-        serde_json::from_slice(text).map_err(|_| LinesError::Entry {
+        serde_json::from_slice(text).map_err(|_| LinesError::JournalEntry {
             path: path.to_owned(),
             line,
             what,

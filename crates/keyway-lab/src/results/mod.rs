@@ -11,7 +11,7 @@ mod manifest;
 
 pub use error::ResultsError;
 pub use folder::{OutDir, check_folder};
-pub use journal::{Entry, JOURNAL_NAME, Journal};
+pub use journal::{JOURNAL_NAME, Journal, JournalEntry};
 pub use json_lines::{LinesError, entries, read_lines};
 pub use json_text::json_text;
 pub use lock::OutputLock;

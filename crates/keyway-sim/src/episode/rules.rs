@@ -16,7 +16,7 @@ pub struct EpisodeRules {
     /// See [`RunRules::stuck_window_s`] \[s\].
     pub stuck_window_s: f64,
     /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: what its controller takes for
-    /// progress in that time ([`Progress::step_m`](keyway::navigate::Progress::step_m)).
+    /// progress in that time ([`WayProgress::step_m`](keyway::navigate::WayProgress::step_m)).
     pub stuck_progress_m: Option<f64>,
 }
 

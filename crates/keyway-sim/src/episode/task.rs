@@ -8,7 +8,7 @@ use crate::sim::{RunRules, World};
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Pose};
 use keyway::map::{BitGrid, Clearance, LayerConfig, SearchMap, UnknownPolicy};
-use keyway::navigate::{FittedStack, NavigateError, Progress, touches};
+use keyway::navigate::{FittedStack, NavigateError, WayProgress, touches};
 use keyway::plan::{Plan, PlanError};
 use keyway::route::Route;
 use keyway::search::{Query, SearchStatistics, Workspace};
@@ -88,7 +88,7 @@ impl Task<'_> {
             stuck_progress_m,
         } = self.episode.rules;
         let usual_s = 60.0 + 4.0 * length_m / self.robot.robot.limits.v_max_mps;
-        let usual_m = Progress::step_m(&self.robot.robot, stuck_window_s);
+        let usual_m = WayProgress::step_m(&self.robot.robot, stuck_window_s);
         RunRules {
             goal_tolerance_m: goal_tolerance_m
                 .unwrap_or(self.robot.stack.controller.goal_tolerance_m),

@@ -1,7 +1,7 @@
 //! Rules that end a run without contact.
 
 use keyway::ConfigError;
-use keyway::navigate::Progress;
+use keyway::navigate::WayProgress;
 use serde::{Deserialize, Serialize};
 
 /// Rules that end a run.
@@ -68,7 +68,7 @@ pub(super) fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
 pub(super) struct StuckWatch {
     step_m: f64,
     window_cycles: u64,
-    progress: Progress,
+    progress: WayProgress,
     /// The cycle of the last progress.
     since_cycle: u64,
     route: Option<u32>,
@@ -79,7 +79,7 @@ impl StuckWatch {
         Self {
             step_m: rules.stuck_progress_m,
             window_cycles: cycles_within(rules.stuck_window_s, cycle_s),
-            progress: Progress::NEW,
+            progress: WayProgress::NEW,
             since_cycle: 0,
             route: None,
         }

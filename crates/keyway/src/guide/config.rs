@@ -2,7 +2,7 @@
 
 use super::parameters::GuideParameters;
 use super::{
-    Carrot, CarrotConfig, Goal, GoalConfig, Guide, KeyPoints, KeyPointsConfig, LocalGoals,
+    Carrot, CarrotConfig, GoalConfig, GoalGuide, Guide, KeyPoints, KeyPointsConfig, LocalGoals,
     LocalGoalsConfig,
 };
 use crate::ConfigError;
@@ -19,7 +19,7 @@ registry! {
     /// Points of the smoothed route at a fixed spacing, one after the other.
     LocalGoals(LocalGoalsConfig) => LocalGoals;
     /// The end of the route, from the beginning on.
-    Goal(GoalConfig) => Goal;
+    Goal(GoalConfig) => GoalGuide;
 }
 
 impl GuideConfig {

@@ -10,7 +10,7 @@ use crate::geometry::{Point, Polyline};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of [`Goal`]: none.
+/// Parameters of [`GoalGuide`]: none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -18,9 +18,9 @@ pub struct GoalConfig {}
 
 /// Guides straight to the goal.
 #[derive(Clone, Debug, Default)]
-pub struct Goal {}
+pub struct GoalGuide {}
 
-impl Goal {
+impl GoalGuide {
     /// Its name in stacks and reports.
     pub const NAME: &'static str = "goal";
 }
@@ -31,11 +31,11 @@ impl GuideParameters for GoalConfig {
     }
 
     fn build(&self) -> Result<BoxedGuide, ConfigError> {
-        Ok(Box::new(Goal {}))
+        Ok(Box::new(GoalGuide {}))
     }
 }
 
-impl Guide for Goal {
+impl Guide for GoalGuide {
     fn guide(&self, view: &GuideView<'_>, _: &mut GuideMemory) -> Option<Guidance> {
         let &point = view.path.points().last()?;
         Some(Guidance { point, remaining_m: view.position.distance(point) })
@@ -59,9 +59,9 @@ mod tests {
         let position = Point::new(0.0, 0.0);
         let obstacles = Clearance::new(map.frame(), map.occupied());
         let view = GuideView { path, position, obstacles, clearance_m: 0.1 };
-        let guided = Goal {}.guide(&view, &mut GuideMemory::default());
+        let guided = GoalGuide {}.guide(&view, &mut GuideMemory::default());
         let point = Point::new(4.0, 3.0);
         assert_eq!(guided, Some(Guidance { point, remaining_m: 5.0 }));
-        assert_eq!(Goal {}.points(path), [point]);
+        assert_eq!(GoalGuide {}.points(path), [point]);
     }
 }

@@ -27,7 +27,7 @@ mod parameters;
 
 pub use carrot::{Carrot, CarrotConfig};
 pub use config::GuideConfig;
-pub use goal::{Goal, GoalConfig};
+pub use goal::{GoalConfig, GoalGuide};
 pub use key_points::{KeyPoints, KeyPointsConfig, PassedWhen};
 pub use local_goals::{LocalGoals, LocalGoalsConfig};
 

@@ -27,7 +27,7 @@ pub use costmap::{Costmap, CostmapConfig};
 pub use field::{CellWindow, DistanceField, DistanceTo, FieldConfig};
 pub use footprint::Core;
 pub(crate) use footprint::{
-    Apart, Line, NearBoxes, Placement, Reach, Surroundings, Sweep, Turned, on_grid,
+    Apart, Line, NearBoxes, NearObstacles, Placement, Reach, Sweep, Turned, on_grid,
 };
 #[cfg(feature = "formats")]
 use frame::is_origin;

@@ -59,7 +59,7 @@ pub use fitted::FittedStack;
 pub use goal::Goal;
 pub use headings::HeadingRange;
 pub use misfit::Misfit;
-pub use progress::Progress;
+pub use progress::WayProgress;
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use route::NavigateError;
 pub use stack::{ControllerConfig, Stack};

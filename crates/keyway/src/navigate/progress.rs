@@ -5,11 +5,11 @@ use crate::robot::Robot;
 
 /// The shortest remaining way so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub struct WayProgress {
     shortest_m: f64,
 }
 
-impl Progress {
+impl WayProgress {
     /// Nothing is known of the way yet: whatever comes first is progress.
     pub const NEW: Self = Self { shortest_m: f64::INFINITY };
 
@@ -48,14 +48,14 @@ mod tests {
     fn steps_by_hand() {
         // 0.5 m/s for 3 s are 1.5 m; at 0.01 m/s they are 3 cm.
         let mut robot = Robot::small();
-        assert_eq!(Progress::step_m(&robot, 3.0), 0.05);
+        assert_eq!(WayProgress::step_m(&robot, 3.0), 0.05);
         robot.limits.v_max_mps = 0.01;
-        assert!((Progress::step_m(&robot, 3.0) - 0.003).abs() < 1e-15);
+        assert!((WayProgress::step_m(&robot, 3.0) - 0.003).abs() < 1e-15);
     }
 
     #[test]
     fn progress_is_a_way_that_becomes_shorter() {
-        let mut progress = Progress::NEW;
+        let mut progress = WayProgress::NEW;
         let progressed =
             [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_progressed(m, 0.05));
         assert_eq!(progressed, [true, false, true, false, false, true]);

@@ -1,6 +1,6 @@
 //! What is watched while a robot drives: its progress, and the rest of its route.
 
-use super::Progress;
+use super::WayProgress;
 use crate::geometry::{Point, Polyline, Segment, Square};
 use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
 
@@ -15,7 +15,7 @@ pub(super) struct Watch {
     pub(super) no_progress_s: f64,
     /// How long the robot has waited for something that moves \[s\].
     mover_s: f64,
-    progress: Progress,
+    progress: WayProgress,
 }
 
 impl Watch {
@@ -24,7 +24,7 @@ impl Watch {
         blocked_s: 0.0,
         no_progress_s: 0.0,
         mover_s: 0.0,
-        progress: Progress::NEW,
+        progress: WayProgress::NEW,
     };
 
     /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot

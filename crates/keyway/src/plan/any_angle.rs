@@ -5,8 +5,8 @@ use super::best_first::check_budget;
 use super::{Plan, PlanCost, PlanError, Stop};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::search::{
-    Accumulated, CornerRule, DistanceTo, Euclidean, Expanded, Frontier, Metric, Moves, Neighbours,
-    Observer, Query, Rule, SearchStatistics, Side, Sides, Sight, Step, Successors, Uniform,
+    Accumulated, CornerRule, DistanceTo, Euclidean, Expanded, Frontier, GridStep, Metric, Moves,
+    Neighbours, Observer, Query, Rule, SearchStatistics, Side, Sides, Sight, Successors, Uniform,
     Workspace, cells,
 };
 
@@ -19,9 +19,9 @@ pub(super) trait Ways {
         lines: &Lines<'_>,
         parent: Expanded,
         node: Expanded,
-        step: Step,
+        step: GridStep,
         known: Option<u64>,
-    ) -> Option<(Expanded, Step)>;
+    ) -> Option<(Expanded, GridStep)>;
 
     /// The true parent and value of a node just taken from the open list, if it was put in with
     /// others.
@@ -53,9 +53,9 @@ impl<'m> Lines<'m> {
     }
 
     /// The straight line between two cells, its length rounded down, whether it is free or not.
-    pub(super) fn line(&self, from: CellIndex, to: CellIndex) -> Step {
+    pub(super) fn line(&self, from: CellIndex, to: CellIndex) -> GridStep {
         let (a, b) = (self.map.cell(from), self.map.cell(to));
-        Step { to, cost: Euclidean.length(a.x.abs_diff(b.x), a.y.abs_diff(b.y)) }
+        GridStep { to, cost: Euclidean.length(a.x.abs_diff(b.x), a.y.abs_diff(b.y)) }
     }
 
     /// True if two cells see each other.
@@ -64,7 +64,7 @@ impl<'m> Lines<'m> {
     }
 
     /// The steps from a cell, which are also those to it.
-    pub(super) fn for_each_step(&self, at: CellIndex, visit: impl FnMut(Step)) {
+    pub(super) fn for_each_step(&self, at: CellIndex, visit: impl FnMut(GridStep)) {
         self.steps.for_each(at, visit);
     }
 }

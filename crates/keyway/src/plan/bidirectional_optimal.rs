@@ -62,8 +62,8 @@ use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError, Stop, two_sided};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    Accumulated, CornerRule, DistanceTo, Frontier, Moves, Neighbours, Observer, Octile, Query,
-    Reversed, Side, Sides, Step, StepCost, Successors, Workspace, cells,
+    Accumulated, CornerRule, DistanceTo, Frontier, GridStep, Moves, Neighbours, Observer, Octile,
+    Query, Reversed, Side, Sides, StepCost, Successors, Workspace, cells,
 };
 use serde::{Deserialize, Serialize};
 
@@ -244,7 +244,7 @@ impl<N: Successors> Half<'_, N> {
             return;
         }
         let rule = Accumulated(self.to_target);
-        self.steps.for_each(node.at, |step: Step| {
+        self.steps.for_each(node.at, |step: GridStep| {
             if other.is_closed(step.to) {
                 return;
             }

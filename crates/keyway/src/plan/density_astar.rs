@@ -56,7 +56,7 @@ use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Heuristic, PathCost, Plan, PlanError, best_first};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    CornerRule, DistanceTo, Euclidean, Metric, Moves, Observer, Query, Rule, Step, Workspace,
+    CornerRule, DistanceTo, Euclidean, GridStep, Metric, Moves, Observer, Query, Rule, Workspace,
 };
 use serde::{Deserialize, Serialize};
 use summed_area::SummedArea;
@@ -320,7 +320,7 @@ impl<M: Metric> Rule for Weighted<'_, M> {
         self.closed == Closed::Reopen
     }
 
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 
@@ -336,7 +336,7 @@ impl<M: Metric> Rule for WeightedLine<'_, M> {
     const TAKES_EQUAL: bool = true;
     const ENDS_AT_GENERATION: bool = true;
 
-    fn value(&self, _: u64, step: Step) -> u64 {
+    fn value(&self, _: u64, step: GridStep) -> u64 {
         self.0.from_start.from(step.to)
     }
 

@@ -38,7 +38,7 @@ use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{CellIndex, Connectivity, SearchMap};
-use crate::search::{CornerRule, Expanded, Frontier, Observer, Query, Step, Workspace};
+use crate::search::{CornerRule, Expanded, Frontier, GridStep, Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`LazyThetaStar`].
@@ -76,9 +76,9 @@ impl Ways for SeenWhenExpanded {
         lines: &Lines<'_>,
         parent: Expanded,
         _: Expanded,
-        step: Step,
+        step: GridStep,
         _: Option<u64>,
-    ) -> Option<(Expanded, Step)> {
+    ) -> Option<(Expanded, GridStep)> {
         Some((parent, lines.line(parent.at, step.to)))
     }
 
@@ -92,7 +92,7 @@ impl Ways for SeenWhenExpanded {
             return None;
         }
         let mut best: Option<(u64, CellIndex)> = None;
-        lines.for_each_step(node.at, |Step { to: neighbour, cost }| {
+        lines.for_each_step(node.at, |GridStep { to: neighbour, cost }| {
             if !frontier.is_closed(neighbour) {
                 return;
             }

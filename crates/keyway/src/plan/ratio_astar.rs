@@ -46,7 +46,7 @@ use super::{GlobalPlanner, Heuristic, Plan, PlanError, best_first};
 use crate::ConfigError;
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
-    AtGeneration, CornerRule, DistanceTo, Metric, Moves, Observer, Query, Rule, Step, Workspace,
+    AtGeneration, CornerRule, DistanceTo, GridStep, Metric, Moves, Observer, Query, Rule, Workspace,
 };
 use serde::{Deserialize, Serialize};
 
@@ -176,7 +176,7 @@ impl<M: Metric> Rule for WeightRatio<M> {
     const TAKES_EQUAL: bool = true;
 
     // Eq. (6) and (8); with the start's g' = 0 this is the sum of eq. (9).
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 
@@ -239,7 +239,7 @@ mod tests {
         let map = SearchMap::new(&map, LayerConfig::default()).unwrap();
         let to_goal = DistanceTo::new(&map, Euclidean, Cell::new(3, 4));
         let rule = WeightRatio { x: 1.0, to_goal };
-        let step = |x, y, cost| Step { to: map.index(Cell::new(x, y)), cost };
+        let step = |x, y, cost| GridStep { to: map.index(Cell::new(x, y)), cost };
         let straight = step(1, 0, Cost::KEY_STRAIGHT);
         let diagonal = step(2, 1, Cost::KEY_DIAGONAL);
         assert_eq!(rule.value(2 * Q, straight), 3 * Q);

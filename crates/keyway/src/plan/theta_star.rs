@@ -50,7 +50,7 @@ use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanError};
 use crate::map::{Connectivity, SearchMap};
-use crate::search::{CornerRule, Expanded, Observer, Query, Step, Workspace};
+use crate::search::{CornerRule, Expanded, GridStep, Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`ThetaStar`].
@@ -88,9 +88,9 @@ impl Ways for SeenWhenGenerated {
         lines: &Lines<'_>,
         parent: Expanded,
         node: Expanded,
-        step: Step,
+        step: GridStep,
         known: Option<u64>,
-    ) -> Option<(Expanded, Step)> {
+    ) -> Option<(Expanded, GridStep)> {
         let line = lines.line(parent.at, step.to);
         if known.is_some_and(|known| known <= parent.g + line.cost) {
             return None;

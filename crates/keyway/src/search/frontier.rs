@@ -1,7 +1,7 @@
 //! One side of a best-first search.
 
 use super::open_list::{Entry, OpenList};
-use super::{Observer, Rule, Side, SideStatistics, Step, Successors};
+use super::{GridStep, Observer, Rule, Side, SideStatistics, Successors};
 use crate::map::{Cell, CellIndex, SearchMap};
 
 /// The node that was just taken from the open list.
@@ -120,7 +120,12 @@ impl Frontier {
 
     /// Records the way over `step` from an expanded node, if the rule prefers it to the one that is
     /// known. Returns the node's new value, or `None` when the known way stays.
-    pub(crate) fn offer<R: Rule>(&mut self, from: Expanded, step: Step, rule: &R) -> Option<u64> {
+    pub(crate) fn offer<R: Rule>(
+        &mut self,
+        from: Expanded,
+        step: GridStep,
+        rule: &R,
+    ) -> Option<u64> {
         let g = rule.value(from.g, step);
         let [known, state] = self.nodes[step.to.as_usize()];
         let is_reached = self.is_of_this_query(state);

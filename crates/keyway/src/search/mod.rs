@@ -32,7 +32,7 @@ pub(crate) use frontier::{Expanded, Frontier};
 pub(crate) use metric::{DistanceTo, Euclidean, Manhattan, Mean, Metric, Octile, Zero};
 pub(crate) use neighbours::Reversed;
 pub use neighbours::{
-    CornerRule, Moves, Neighbours, Step, StepCost, Successors, Uniform, UnknownCost,
+    CornerRule, GridStep, Moves, Neighbours, StepCost, Successors, Uniform, UnknownCost,
 };
 pub(crate) use neighbours_24::Neighbours24;
 pub use observer::{Observer, Side};

@@ -38,7 +38,7 @@ impl CornerRule {
 
 /// One step of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct GridStep {
     /// Where it leads.
     pub to: CellIndex,
     /// What it costs, as a [`Cost::key`].
@@ -48,7 +48,7 @@ pub struct Step {
 /// What is reached from a cell.
 pub trait Successors {
     /// Calls `visit` for every step from `at`, in a fixed order.
-    fn for_each(&self, at: CellIndex, visit: impl FnMut(Step));
+    fn for_each(&self, at: CellIndex, visit: impl FnMut(GridStep));
 }
 
 /// What a step costs, as a factor on its length.
@@ -139,7 +139,7 @@ impl<'m, C> Neighbours<'m, C> {
 }
 
 impl<C: StepCost> Successors for Neighbours<'_, C> {
-    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
+    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(GridStep)) {
         let mut open =
             self.open_directions[pattern::around(self.words, self.stride, at.as_usize())];
         while open != 0 {
@@ -148,7 +148,7 @@ impl<C: StepCost> Successors for Neighbours<'_, C> {
             let to = CellIndex(at.0.wrapping_add_signed(self.offsets[direction]));
             let is_diagonal = direction % 2 == 1;
             let length = if is_diagonal { Cost::KEY_DIAGONAL } else { Cost::KEY_STRAIGHT };
-            visit(Step { to, cost: length * self.cost.factor(at, to) });
+            visit(GridStep { to, cost: length * self.cost.factor(at, to) });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Steps to all cells of the 5 x 5 around a cell.
 
-use super::neighbours::{CornerRule, Step, Successors};
+use super::neighbours::{CornerRule, GridStep, Successors};
 use super::{Cost, Euclidean, Metric, pattern};
 use crate::map::{CellIndex, SearchMap};
 
@@ -68,12 +68,12 @@ impl Reach {
 }
 
 impl Successors for Neighbours24<'_> {
-    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(Step)) {
+    fn for_each(&self, at: CellIndex, mut visit: impl FnMut(GridStep)) {
         let blocked = pattern::around(self.words, self.stride, at.as_usize());
         let neighbour = |offset| CellIndex(at.0.wrapping_add_signed(offset));
         for reach in &self.reaches {
             if blocked & reach.near == 0 && reach.far.iter().all(|&o| self.is_free(neighbour(o))) {
-                visit(Step { to: neighbour(reach.to), cost: reach.cost });
+                visit(GridStep { to: neighbour(reach.to), cost: reach.cost });
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What a node is worth, and which way to it is kept.
 
-use super::Step;
+use super::GridStep;
 use super::metric::{DistanceTo, Euclidean, Metric};
 use crate::map::CellIndex;
 
@@ -24,7 +24,7 @@ pub(crate) trait Rule {
     }
 
     /// The value of a node that is reached by `step` from one with value `g`.
-    fn value(&self, g: u64, step: Step) -> u64;
+    fn value(&self, g: u64, step: GridStep) -> u64;
 
     /// The value by which a node with value `g` is ordered.
     fn key(&self, at: CellIndex, g: u64) -> u64;
@@ -35,7 +35,7 @@ pub(crate) trait Rule {
 pub(crate) struct Accumulated<M>(pub(crate) DistanceTo<M>);
 
 impl<M: Metric> Rule for Accumulated<M> {
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 
@@ -61,7 +61,7 @@ impl<M: Metric> Rule for StraightLine<M> {
     const TAKES_EQUAL: bool = true;
     const ENDS_AT_GENERATION: bool = true;
 
-    fn value(&self, _: u64, step: Step) -> u64 {
+    fn value(&self, _: u64, step: GridStep) -> u64 {
         self.from_start.from(step.to)
     }
 
@@ -82,7 +82,7 @@ impl<R: Rule> Rule for AtGeneration<R> {
         self.0.reopens()
     }
 
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         self.0.value(g, step)
     }
 
@@ -97,7 +97,7 @@ impl<R: Rule> Rule for AtGeneration<R> {
 pub(crate) struct Greedy<M>(pub(crate) DistanceTo<M>);
 
 impl<M: Metric> Rule for Greedy<M> {
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 

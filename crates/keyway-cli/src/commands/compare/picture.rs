@@ -4,7 +4,7 @@ use keyway::geometry::Polyline;
 use keyway::route::CHORD_CELLS;
 use keyway_draw::layers::{CellTint, Goal, Layer, PathLine, Start};
 use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
-use keyway_lab::compare::{Compared, Entry};
+use keyway_lab::compare::{Compared, ContestEntry};
 
 /// The last colour of the series is that of the shortest line.
 const COLORS: usize = SERIES.len() - 1;
@@ -76,10 +76,10 @@ fn is_same(a: &Polyline, b: &Polyline) -> bool {
 /// The paths of one query, and the shortest line under the corner rule of the first planner. More
 /// paths than can be told apart in one picture have panels.
 pub(super) fn picture(map: &Compared, query: usize) -> Svg {
-    let entries: Vec<&Entry> = map.contest.entries.iter().collect();
+    let entries: Vec<&ContestEntry> = map.contest.entries.iter().collect();
     let title = format!("{}, query {} of {}", map.name, query + 1, map.queries.len());
     if entries.len() <= MAX_LINES {
-        let name = |entry: &Entry| Some(format!("{}, {}", entry.planner, entry.smoother));
+        let name = |entry: &ContestEntry| Some(format!("{}, {}", entry.planner, entry.smoother));
         let lines = lines(map, query, &entries, name);
         let all = layers(&lines, |_, index, count| style(index, count));
         return all.fold(common(map, query).title(title), MapPicture::with_boxed).svg();
@@ -88,7 +88,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let title =
         format!("{title}{}", shared.as_ref().map_or(String::new(), |one| format!(", {one}")));
     // What is the same everywhere goes into the title.
-    let name = |entry: &Entry| shared.is_none().then(|| inner(entry).to_owned());
+    let name = |entry: &ContestEntry| shared.is_none().then(|| inner(entry).to_owned());
     let lines = |panel: &Panel<'_>| lines(map, query, &panel.entries, name);
     let lines: Vec<Vec<Line>> = panels.iter().map(lines).collect();
     let mut picture = MapPanels::new(common(map, query).title(title));
@@ -119,8 +119,8 @@ fn common(map: &Compared, query: usize) -> MapPicture<'_> {
 fn lines(
     map: &Compared,
     query: usize,
-    entries: &[&Entry],
-    name: impl Fn(&Entry) -> Option<String>,
+    entries: &[&ContestEntry],
+    name: impl Fn(&ContestEntry) -> Option<String>,
 ) -> Vec<Line> {
     let deviation_m = CHORD_CELLS * map.map.frame().resolution_m();
     let found = entries.iter().enumerate().filter_map(|(i, entry)| {
@@ -155,16 +155,16 @@ struct Groups<'a> {
 }
 
 /// Of a planner or of a smoother.
-type Name = fn(&Entry) -> &'static str;
+type Name = fn(&ContestEntry) -> &'static str;
 
 struct Panel<'a> {
     title: String,
-    entries: Vec<&'a Entry>,
+    entries: Vec<&'a ContestEntry>,
 }
 
 /// As few paths in a panel as possible: planners side by side when there are more of them than
 /// smoothers.
-fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
+fn groups<'a>(entries: &[&'a ContestEntry]) -> Groups<'a> {
     let planner: Name = |entry| entry.planner;
     let smoother: Name = |entry| entry.smoother;
     let names = |name: Name| -> Vec<&'static str> {
@@ -180,9 +180,10 @@ fn groups<'a>(entries: &[&'a Entry]) -> Groups<'a> {
     let by_planner = planners.len() > smoothers.len();
     let (outer, inner) = if by_planner { (planner, smoother) } else { (smoother, planner) };
     let panels_of = |title: &'static str| -> Vec<Panel<'a>> {
-        let own: Vec<&Entry> = entries.iter().copied().filter(|one| outer(one) == title).collect();
+        let own: Vec<&ContestEntry> =
+            entries.iter().copied().filter(|one| outer(one) == title).collect();
         let count = own.len().div_ceil(MAX_LINES);
-        let titled = |(i, entries): (usize, &[&'a Entry])| {
+        let titled = |(i, entries): (usize, &[&'a ContestEntry])| {
             let part = if count > 1 { format!(" ({} of {count})", i + 1) } else { String::new() };
             Panel { title: format!("{title}{part}"), entries: entries.to_vec() }
         };
@@ -227,15 +228,15 @@ mod tests {
         let labels: Vec<Vec<String>> = lines.into_iter().map(|line| line.labels).collect();
         assert_eq!(labels, [vec!["a", "c"], vec!["b"], vec!["d"]]);
     }
-    fn entry(planner: &'static str, smoother: &'static str) -> Entry {
+    fn entry(planner: &'static str, smoother: &'static str) -> ContestEntry {
         let corners = CornerRule::Forbid;
-        Entry { planner, smoother, corners, preparation: None, answers: Vec::new() }
+        ContestEntry { planner, smoother, corners, preparation: None, answers: Vec::new() }
     }
 
     /// Titles of the panels and what is in each.
     fn panels(planners: &[&'static str], smoothers: &[&'static str]) -> Vec<(String, Vec<String>)> {
         let pairs = planners.iter().flat_map(|p| smoothers.iter().map(|s| entry(p, s)));
-        let entries: Vec<Entry> = pairs.collect();
+        let entries: Vec<ContestEntry> = pairs.collect();
         let groups = groups(&entries.iter().collect::<Vec<_>>());
         let inner = |panel: &Panel<'_>| {
             panel.entries.iter().map(|one| (groups.inner)(one).to_owned()).collect()

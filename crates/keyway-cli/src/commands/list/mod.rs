@@ -6,7 +6,8 @@ use crate::error::{CliError, Kind};
 use crate::inputs::{DEFAULT_ROBOT, PAPER_ROBOT, published_stack, robot};
 use keyway::files::did_you_mean;
 use keyway_lab::catalogue::{
-    Entry, EntryKind, Parameter, PublishedSetup, PublishedUse, StackValues, catalogue, value_text,
+    CatalogueEntry, EntryKind, Parameter, PublishedSetup, PublishedUse, StackValues, catalogue,
+    value_text,
 };
 use keyway_lab::table::{facts, paragraph, rows};
 use serde::Serialize;
@@ -75,7 +76,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-fn listed(entry: &Entry, is_whole: bool) -> Listed<'_> {
+fn listed(entry: &CatalogueEntry, is_whole: bool) -> Listed<'_> {
     Listed {
         kind: entry.kind,
         name: entry.name,
@@ -98,13 +99,14 @@ fn published(&PublishedUse { source, method, setup }: &PublishedUse) -> Publishe
     Published { source, method, options }
 }
 
-fn show_names(entries: &[Entry]) -> Result<(), CliError> {
-    let row = |e: &Entry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
+fn show_names(entries: &[CatalogueEntry]) -> Result<(), CliError> {
+    let row =
+        |e: &CatalogueEntry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
     print(&rows(&["kind", "name", "what it is"], entries.iter().map(row).collect(), 3))?;
     print("\n`keyway list NAME` prints the parameters of one.")
 }
 
-fn show(entry: &Entry, robot: &str) -> Result<(), CliError> {
+fn show(entry: &CatalogueEntry, robot: &str) -> Result<(), CliError> {
     if let Some(file) = &entry.file {
         return print(file.trim_end());
     }
@@ -118,7 +120,7 @@ fn show(entry: &Entry, robot: &str) -> Result<(), CliError> {
     show_published(entry)
 }
 
-fn show_parameters(entry: &Entry, robot: &str) -> Result<(), CliError> {
+fn show_parameters(entry: &CatalogueEntry, robot: &str) -> Result<(), CliError> {
     let default = format!("default for {robot}");
     let value = if entry.kind.depends_on_robot() { default.as_str() } else { "value" };
     let row = |p: &Parameter| {
@@ -134,7 +136,7 @@ fn show_parameters(entry: &Entry, robot: &str) -> Result<(), CliError> {
 }
 
 /// The methods of the papers, each as a line of options to paste.
-fn show_published(entry: &Entry) -> Result<(), CliError> {
+fn show_published(entry: &CatalogueEntry) -> Result<(), CliError> {
     if entry.published.is_empty() {
         return Ok(());
     }

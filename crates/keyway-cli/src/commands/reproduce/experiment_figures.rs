@@ -4,7 +4,7 @@ use super::figures::made;
 use super::stage::Stage;
 use crate::error::{CliError, Kind};
 use keyway_draw::{BoxGroup, BoxPlot, Svg, box_plot};
-use keyway_lab::claims::{Driven, How, MapRow, Method, Outcome, Part};
+use keyway_lab::claims::{How, MapRow, Method, MethodResult, Part, RunFigures};
 use keyway_lab::reproduce::{Measured, PageFigure, ReproduceRequest};
 use keyway_sim::metrics::statistics::Sample;
 
@@ -51,7 +51,7 @@ struct Spread {
     what: &'static str,
     /// True if a method may have it.
     is_of: fn(&Method) -> bool,
-    value: fn(&Outcome) -> Option<f64>,
+    value: fn(&MethodResult) -> Option<f64>,
 }
 
 const EXPANDED: Spread = Spread {
@@ -81,7 +81,7 @@ fn part(method: &Method) -> Option<Part> {
     }
 }
 
-fn arrived(outcome: &Outcome) -> Option<&Driven> {
+fn arrived(outcome: &MethodResult) -> Option<&RunFigures> {
     outcome.driven().filter(|run| run.reached())
 }
 

@@ -8,7 +8,7 @@
 //! as in the paper's tables: a robot that follows the path also touches the mapped walls whose
 //! corners it cuts.
 
-use super::super::experiment::{Experiment, Scene};
+use super::super::experiment::{Experiment, ExperimentScene};
 use super::super::method::Method;
 use super::super::planned::Planning;
 use super::super::planners::{EUCLIDEAN_ASTAR, JPS};
@@ -110,7 +110,7 @@ pub(super) static ROADWAYS: Experiment = Experiment {
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
     // The first of the three roadways.
-    scene: Some(Scene {
+    scene: Some(ExperimentScene {
         file: "scenes/zhuyin2024/turning_roadway.toml",
         ends: [Cell::new(1, 1), Cell::new(40, 39)],
         map: include_str!("../maps/zhuyin2024_turning_roadway.map"),
@@ -145,7 +145,7 @@ pub(super) static COAL_MINE: Experiment = Experiment {
         past_three(GUIDED, GUIDED),
         Method::new(Experiment::YARDSTICK, JPS, None),
     ],
-    scene: Some(Scene {
+    scene: Some(ExperimentScene {
         file: "scenes/zhuyin2024/coal_mine.toml",
         ends: [Cell::new(2, 1), Cell::new(2, 22)],
         map: include_str!("../maps/zhuyin2024_coal_mine.map"),

@@ -2,11 +2,11 @@
 //!
 //! Among many obstacles most candidates do, and that is told faster than how near the others come:
 //! at a pose the places of all speeds lie on a line, and the part of it on which a convex core
-//! meets a box is found by cutting it once for each side of either ([`Surroundings::meets`]).
+//! meets a box is found by cutting it once for each side of either ([`NearObstacles::meets`]).
 
 use super::counting::Counting;
 use super::motion::Motion;
-use crate::map::{Core, Placement, Surroundings, Sweep, Turned};
+use crate::map::{Core, NearObstacles, Placement, Sweep, Turned};
 use std::ops::Range;
 
 /// Where contacts are looked for.
@@ -14,7 +14,7 @@ use std::ops::Range;
 pub(super) struct Contacts<'w, 'a> {
     pub(super) counting: &'w Counting,
     pub(super) motion: &'w Motion,
-    pub(super) surroundings: &'w mut Surroundings<'a>,
+    pub(super) surroundings: &'w mut NearObstacles<'a>,
     pub(super) core: &'w Core<'w>,
     pub(super) all_mps: &'w [f64],
     /// Memory for the core at a pose.

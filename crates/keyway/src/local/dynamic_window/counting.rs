@@ -1,7 +1,7 @@
 //! What counts as contact and as near. All lengths are in cells.
 
 use super::motion::Motion;
-use crate::map::Surroundings;
+use crate::map::NearObstacles;
 use std::ops::Range;
 
 /// What counts as contact and as near.
@@ -28,7 +28,7 @@ impl Counting {
     pub(super) fn near_poses(
         &self,
         motion: &Motion,
-        surroundings: &Surroundings<'_>,
+        surroundings: &NearObstacles<'_>,
         ends_mps: [f64; 2],
     ) -> Range<usize> {
         let is_near = |&pose: &usize| {

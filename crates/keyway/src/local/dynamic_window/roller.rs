@@ -9,7 +9,7 @@ use super::speeds::{Bounds, Speeds};
 use super::stretch::Stretch;
 use super::window::Lattice;
 use crate::local::Scene;
-use crate::map::{NearBoxes, Placement, Reach, Surroundings, Turned, on_grid};
+use crate::map::{NearBoxes, NearObstacles, Placement, Reach, Turned, on_grid};
 
 /// What all rollouts of a cycle share.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ impl Roller<'_> {
         let frame = field.frame();
         let mut counting = self.counting(lattice);
         let reach = self.reach(&counting, lattice);
-        let mut surroundings = Surroundings::new(core, field, reach, near);
+        let mut surroundings = NearObstacles::new(core, field, reach, near);
         let (origin, ahead) = on_grid(self.scene.pose, frame);
         turned.turn(core, ahead);
         let start = Placement { origin, turned };

@@ -3,7 +3,7 @@
 //!
 //! At any time the places of all speeds lie on a line ([`super::motion`]), and of each box near
 //! that line one measurement bounds how far all of them are from it, by two straight lines over the
-//! speed ([`Surroundings::apart`]). So the speeds are judged together first, then in parts, and
+//! speed ([`NearObstacles::apart`]). So the speeds are judged together first, then in parts, and
 //! with each part only the boxes go on that leave a doubt: that may be the nearest, or too near.
 //! Where a robot drives along a wall, both lines are the distance itself, and nothing is measured
 //! again. In open ground one look per pose decides for all speeds. All lengths are in cells.
@@ -12,7 +12,7 @@ use super::counting::Counting;
 use super::motion::{Motion, Timing};
 use super::stretch::Stretch;
 use crate::geometry::{Pose, Velocity};
-use crate::map::{Apart, Core, GridFrame, Line, Placement, Surroundings, Sweep, Turned, on_grid};
+use crate::map::{Apart, Core, GridFrame, Line, NearObstacles, Placement, Sweep, Turned, on_grid};
 use std::ops::Range;
 
 /// What is known of the speeds that are being judged.
@@ -80,7 +80,7 @@ pub(super) struct Speeds<'w, 'a> {
     pub(super) counting: &'w Counting,
     pub(super) timing: &'w Timing,
     pub(super) motion: &'w Motion,
-    pub(super) surroundings: &'w mut Surroundings<'a>,
+    pub(super) surroundings: &'w mut NearObstacles<'a>,
     pub(super) bounds: &'w mut Bounds,
     pub(super) all_mps: &'w [f64],
     pub(super) omega_radps: f64,

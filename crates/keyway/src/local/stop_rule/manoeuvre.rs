@@ -23,7 +23,7 @@ pub(super) struct Work {
 /// A body among what stands around it.
 struct Ground<'a> {
     body: Body<'a>,
-    squares: map::Surroundings<'a>,
+    squares: map::NearObstacles<'a>,
     turned: &'a mut Turned,
 }
 
@@ -130,7 +130,7 @@ impl<'a> Manoeuvres<'a> {
             let farthest_m = body.radius_m + config.margin_m + reach.moves_m;
             let distance = farthest_m / around.obstacles.frame().resolution_m();
             let reach = map::Reach { distance, way: 0.0, spread: 0.0 };
-            let squares = map::Surroundings::new(&body.core, around.obstacles, reach, boxes);
+            let squares = map::NearObstacles::new(&body.core, around.obstacles, reach, boxes);
             Ground { body, squares: squares.without(left_out), turned }
         });
         let grounds = grounds.collect();

@@ -16,7 +16,7 @@ mod turned;
 pub use core::Core;
 pub(crate) use line::Line;
 pub(crate) use near_box::{Apart, Sweep};
-pub(crate) use surroundings::{NearBoxes, Reach, Surroundings};
+pub(crate) use surroundings::{NearBoxes, NearObstacles, Reach};
 pub(crate) use turned::{Placement, Turned, on_grid};
 
 impl Footprint {

@@ -70,7 +70,7 @@ struct Block {
 pub(crate) struct Reach {
     /// Distances of at least this are not told apart.
     pub(crate) distance: f64,
-    /// The distance and half the length of a way for which [`Surroundings::is_kept`] is asked,
+    /// The distance and half the length of a way for which [`NearObstacles::is_kept`] is asked,
     /// together.
     pub(crate) way: f64,
     /// On a way that is no longer than this to both sides, what is nearest anywhere is around its
@@ -80,7 +80,7 @@ pub(crate) struct Reach {
 
 /// A core among the obstacles of a field.
 #[derive(Debug)]
-pub(crate) struct Surroundings<'a> {
+pub(crate) struct NearObstacles<'a> {
     field: &'a DistanceField,
     /// Distance of the farthest vertex from the centre of rotation.
     swing: f64,
@@ -97,7 +97,7 @@ pub(crate) struct Surroundings<'a> {
     memory: &'a mut NearBoxes,
 }
 
-impl<'a> Surroundings<'a> {
+impl<'a> NearObstacles<'a> {
     /// So many boxes are looked at for one that goes on in the next row.
     const OPEN: usize = 16;
 

@@ -68,7 +68,7 @@ proptest! {
         let footprint = footprint(&radii, offset, is_round);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
-        let mut surroundings = Surroundings::new(&core, &field, Reach { distance: reach, way: 0.0, spread: 0.0 }, &mut memory);
+        let mut surroundings = NearObstacles::new(&core, &field, Reach { distance: reach, way: 0.0, spread: 0.0 }, &mut memory);
         for (x, y, theta) in poses {
             let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
             let pose = Pose::new(at.x, at.y, theta);
@@ -109,7 +109,7 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance, way: 0.0, spread };
-        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
         let mut turned = Turned::default();
         turned.turn(&core, Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M));
         let middle = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &turned };
@@ -175,7 +175,7 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let mut surroundings =
-            Surroundings::new(&core, &field, Reach { distance: 30.0, way: 10.0, spread: 0.0 }, &mut memory);
+            NearObstacles::new(&core, &field, Reach { distance: 30.0, way: 10.0, spread: 0.0 }, &mut memory);
         let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
         let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
         at_first.turn(&core, ahead);
@@ -227,7 +227,7 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 30.0, way: 30.0, spread: 0.0 };
-        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
         let turned = Turned::default();
         let [from, to] = [from, to].map(|(x, y)| Placement { origin: Point::new(x, y), turned: &turned });
         let is_kept = surroundings.is_kept(&from, &to, distance);
@@ -260,7 +260,7 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 30.0, way: 10.0, spread: 0.0 };
-        let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
         let ahead = |theta: f64| Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
         let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
         at_first.turn(&core, ahead(theta));
@@ -296,7 +296,7 @@ fn many_cells_are_remembered_until_the_next_round() {
     let (core, _) = footprint.core();
     let mut memory = NearBoxes::default();
     for round in 0..3 {
-        let mut surroundings = Surroundings::new(
+        let mut surroundings = NearObstacles::new(
             &core,
             &field,
             Reach { distance: 1.0, way: 0.0, spread: 0.0 },
@@ -322,7 +322,7 @@ fn tiles_hold_their_points() {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 1.0, way: 0.0, spread: 0.0 };
-        let surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+        let surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
         let size = f64::from(1 << surroundings.tile_bits);
         for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
             let point = Point::new(0.37 * f64::from(x), 0.37 * f64::from(y));
@@ -344,7 +344,7 @@ fn beside_a_wall_the_bounds_meet() {
     let (core, _) = footprint.core();
     let mut memory = NearBoxes::default();
     let reach = Reach { distance: 20.0, way: 0.0, spread: 4.0 };
-    let mut surroundings = Surroundings::new(&core, &field, reach, &mut memory);
+    let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
     for heading in [0.0, 0.1, -0.7, 2.0] {
         let mut turned = Turned::default();
         turned.turn(&core, Point::new(libm::cos(heading), libm::sin(heading)) * (1.0 / CELL_M));

@@ -4,7 +4,7 @@ use super::{Asked, Controller};
 use crate::geometry::{Point, Pose, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::{NoCommand, Scene};
-use crate::navigate::Progress;
+use crate::navigate::WayProgress;
 
 impl Controller {
     /// The local planner's command towards the current guide point.
@@ -27,7 +27,7 @@ impl Controller {
         };
         let longest_s = self.stack.controller.longest_wait_s;
         let waits_s = if self.waits_for_mover() { longest_s } else { 0.0 };
-        let progress_m = Progress::step_m(&self.robot, self.stack.controller.no_progress_s);
+        let progress_m = WayProgress::step_m(&self.robot, self.stack.controller.no_progress_s);
         self.watch.note_cycle([remaining_m, progress_m], is_blocked, waits_s, cycle_s);
         self.recovery.note_progress(remaining_m);
         Ok(decision?.command)

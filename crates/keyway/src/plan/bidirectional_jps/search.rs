@@ -7,8 +7,8 @@ use crate::map::{Cell, CellIndex, SearchMap};
 use crate::plan::best_first::check_budget;
 use crate::plan::{Miss, Plan, PlanError, Stop, path_cost};
 use crate::search::{
-    Cost, DistanceTo, Expanded, Frontier, Metric, Observer, Query, Rule, SearchMemory,
-    SearchStatistics, Side, Step, Workspace, cells,
+    Cost, DistanceTo, Expanded, Frontier, GridStep, Metric, Observer, Query, Rule, SearchMemory,
+    SearchStatistics, Side, Workspace, cells,
 };
 
 /// The aim of a side.
@@ -69,7 +69,7 @@ pub(super) struct TowardsTarget<M> {
 }
 
 impl<M: Metric> Rule for TowardsTarget<M> {
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 
@@ -194,7 +194,7 @@ impl<M: Metric> Method<M> {
             let Some(to) = scan.node else { continue };
             let index = map.index(to);
             let cost = Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y)).key();
-            let step = Step { to: index, cost };
+            let step = GridStep { to: index, cost };
             let Some(g) = active.frontier.offer(node, step, rule) else { continue };
             if seen.is_watching() {
                 seen.generated(active.side, to, from, cells(g));

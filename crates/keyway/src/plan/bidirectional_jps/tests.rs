@@ -221,7 +221,7 @@ fn renewed_keys_follow_the_target() {
         frontier.start(&map, root, 0);
         let from = frontier.take_best().unwrap();
         for (to, cost) in [(low, Cost::new(1, 1)), (high, Cost::new(2, 0))] {
-            let step = crate::search::Step { to, cost: cost.key() };
+            let step = crate::search::GridStep { to, cost: cost.key() };
             frontier.offer(from, step, &rule(3, 4, 0));
         }
         frontier.renew_keys(&rule(2, 4, b_g2));

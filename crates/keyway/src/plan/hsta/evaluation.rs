@@ -2,7 +2,7 @@
 
 use super::{Correction, HstaConfig, Weight};
 use crate::map::{Cell, CellIndex, SearchMap};
-use crate::search::{Euclidean, Metric, Rule, Step};
+use crate::search::{Euclidean, GridStep, Metric, Rule};
 
 /// Which terms f has, and the unit of k.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ impl Terms {
 }
 
 impl Rule for Evaluation<'_> {
-    fn value(&self, g: u64, step: Step) -> u64 {
+    fn value(&self, g: u64, step: GridStep) -> u64 {
         g + step.cost
     }
 
