@@ -289,7 +289,7 @@ impl Driver<'_> {
             Outcome::Reached => return None,
             Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
                 let with = match with {
-                    Obstacle::Disc(index) => format!("unknown obstacle {index}"),
+                    Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),

@@ -12,7 +12,6 @@
 //! use keyway::geometry::{Disc, Point};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
-//! use keyway_sim::sim::Disc;
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
 //! let (start, goal) = (Point::new(0.6, 2.0), Point::new(7.4, 2.0));

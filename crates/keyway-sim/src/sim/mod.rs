@@ -19,7 +19,7 @@
 //! use keyway::robot::Robot;
 //! use keyway::sense::Scan;
 //! use keyway_sim::sim::{
-//!     Action, Disc, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
+//!     Action, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
 //! };
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "........"]);
@@ -40,7 +40,7 @@
 //! let one =
 //!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
 //! let run = simulate(&world, &mut [one])?.remove(0);
-//! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Disc(0), .. }));
+//! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
 //! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
 //!

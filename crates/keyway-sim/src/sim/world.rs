@@ -32,7 +32,7 @@ pub enum Obstacle {
     /// The square of a cell that no map has ([`World::with_hidden`]).
     HiddenSquare,
     /// The circle of this index in [`World::circles`].
-    Disc(usize),
+    Circle(usize),
     /// The polygon of this index in [`World::polygons`].
     Polygon(usize),
     /// The moving obstacle of this index in [`World::movers`].
@@ -83,7 +83,7 @@ pub enum WorldError {
         "circle {index} needs a finite centre and a radius of at least 0, got ({}, {}) and {radius_m} m",
         centre.x, centre.y
     )]
-    Disc {
+    Circle {
         /// Its index.
         index: usize,
         /// Its centre \[m\].
@@ -104,7 +104,7 @@ impl World {
         check_size(&frame, &squares)?;
         if let Some(index) = circles.iter().position(|circle| !circle.is_valid()) {
             let Disc { centre, radius_m } = circles[index];
-            return Err(WorldError::Disc { index, centre, radius_m });
+            return Err(WorldError::Circle { index, centre, radius_m });
         }
         let free = FreeSquares::around(&squares);
         let (polygons, movers) = (Vec::new(), Vec::new());
@@ -241,7 +241,7 @@ impl World {
         for (index, circle) in self.circles.iter().enumerate() {
             let distance_m = to_circle(footprint, pose, circle, nearest.0);
             if distance_m < nearest.0 {
-                nearest = (distance_m, Obstacle::Disc(index));
+                nearest = (distance_m, Obstacle::Circle(index));
             }
         }
         for (index, polygon) in self.polygons.iter().enumerate() {
@@ -349,6 +349,17 @@ mod tests {
         Footprint::circle(0.0).unwrap()
     }
 
+    /// Their names in reports.
+    #[test]
+    fn what_was_touched_in_reports() {
+        use Obstacle::{Border, Circle, HiddenSquare, Mover, Polygon, Robot, Square};
+        let all = [Square, HiddenSquare, Border, Circle(1), Polygon(2), Mover(3), Robot(4)];
+        let expected = serde_json::json!([
+            "square", "hidden_square", "border", {"circle": 1}, {"polygon": 2}, {"mover": 3}, {"robot": 4}
+        ]);
+        assert_eq!(serde_json::to_value(all).unwrap(), expected);
+    }
+
     #[test]
     fn distances_by_hand() {
         let known = OccupancyGrid::from_ascii(&["?....", ".....", "#...."]);
@@ -378,12 +389,12 @@ mod tests {
         assert_eq!((border(2.0, 2.25), border(5.5, 1.0)), (0.75, -0.5));
         let nearest = |x, y| world.nearest_standing(&point(), Pose::new(x, y, 0.0));
         assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
-        assert_eq!(nearest(3.4, 1.9), Obstacle::Disc(0));
+        assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
         assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
         // A box that reaches 1.2 m ahead of its centre is nearest to the circle there.
         let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
         let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
-        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Disc(0));
+        assert_eq!(world.nearest_standing(&ahead, Pose::new(2.2, 2.0, 0.0)), Obstacle::Circle(0));
         let gap_m = world.at(0.0).distance(&ahead, Pose::new(2.2, 2.0, 0.0), 9.0);
         assert!((gap_m - 0.1).abs() < 1e-12);
     }
@@ -440,7 +451,7 @@ mod tests {
         for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0)] {
             let circles = vec![circle(0.0, 0.0, 0.0), bad];
             let error = World::new(frame, BitGrid::new(5, 1, false), circles).unwrap_err();
-            assert!(matches!(error, WorldError::Disc { index: 1, .. }), "{error}");
+            assert!(matches!(error, WorldError::Circle { index: 1, .. }), "{error}");
         }
     }
 }

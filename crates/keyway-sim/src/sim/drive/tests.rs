@@ -128,7 +128,7 @@ fn a_thin_obstacle_between_two_cycle_ends_is_contact() {
     let Outcome::Collided { pose, with, robot_stood: false, .. } = run.outcome else {
         panic!("{:?}", run.outcome)
     };
-    assert_eq!(with, Obstacle::Disc(0));
+    assert_eq!(with, Obstacle::Circle(0));
     let touching = 4.0 - 0.005 - robot.footprint.inscribed_radius_m();
     assert!(pose.x <= touching && pose.x > touching - 1e-4, "{pose:?}");
     let last = run.samples.last().unwrap();
@@ -147,7 +147,7 @@ fn two_millimetres_are_not_contact() {
         let run = drive(&world, &brisk(1.0), FAR, &limit(4.0), Velocity::new(2.0, 0.0));
         if touches {
             let Outcome::Collided { with, .. } = run.outcome else { panic!("{:?}", run.outcome) };
-            assert_eq!(with, Obstacle::Disc(1), "the nearer one first");
+            assert_eq!(with, Obstacle::Circle(1), "the nearer one first");
         } else {
             assert_eq!(run.outcome, Outcome::Timeout);
             assert!((run.min_clearance_m.unwrap() - gap_m).abs() < 1e-4);
@@ -158,7 +158,7 @@ fn two_millimetres_are_not_contact() {
 #[test]
 fn contact_at_the_start_and_with_the_border() {
     let run = drive(&world(&[(0.1, 0.0, 0.0)]), &robot(), FAR, &limit(4.0), Velocity::ZERO);
-    assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Disc(0), .. }));
+    assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
     assert_eq!((run.cycles, run.min_clearance_m), (0, Some(0.0)));
     let far_off = world(&[(0.0, 5.0, 1.0)]);
     let run = drive(&far_off, &brisk(0.5), FAR, &limit(40.0), Velocity::new(3.0, 0.0));

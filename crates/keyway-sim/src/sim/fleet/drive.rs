@@ -166,21 +166,19 @@ impl<'a> Drive<'a> {
     /// Ends the run with a contact at a place on the current motion.
     pub(super) fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
         let (jumped_onto, mover_speed_mps) = match with {
-            Touched::MovingObstacle { jumped_onto, speed_mps, .. } => {
-                (jumped_onto, Some(speed_mps))
-            }
+            Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
             Touched::Standing | Touched::Robot(_) => (false, None),
         };
         let with = match with {
             Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
-            Touched::MovingObstacle { index, .. } => Obstacle::Mover(index),
+            Touched::Mover { index, .. } => Obstacle::Mover(index),
             Touched::Robot(index) => Obstacle::Robot(index),
         };
         match with {
             Obstacle::Border => {}
             Obstacle::Square
             | Obstacle::HiddenSquare
-            | Obstacle::Disc(_)
+            | Obstacle::Circle(_)
             | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,

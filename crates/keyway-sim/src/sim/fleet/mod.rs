@@ -50,7 +50,7 @@ enum Touched {
     Standing,
     /// The moving obstacle of this index, with its speed; `jumped_onto` if it has just jumped
     /// there.
-    MovingObstacle { index: usize, jumped_onto: bool, speed_mps: f64 },
+    Mover { index: usize, jumped_onto: bool, speed_mps: f64 },
     /// The robot of this index.
     Robot(usize),
 }
@@ -221,7 +221,7 @@ impl<'a> Fleet<'a> {
         } else if movers_m <= 0.0 {
             mover.map(|index| {
                 let speed_mps = self.world.movers()[index].speed_mps(0.0);
-                Touched::MovingObstacle { index, jumped_onto: false, speed_mps }
+                Touched::Mover { index, jumped_onto: false, speed_mps }
             })
         } else {
             nearest_robot.filter(|_| robots_m <= 0.0).map(Touched::Robot)
@@ -269,7 +269,7 @@ impl<'a> Fleet<'a> {
         let sweep = drive.beside(&self.world.movers()[mover], self.cycle_s);
         let place = sweep.first_contact(until)?;
         let (jumped_onto, speed_mps) = (sweep.jumped_before(place), sweep.mover_speed_mps(place));
-        let with = Touched::MovingObstacle { index: mover, jumped_onto, speed_mps };
+        let with = Touched::Mover { index: mover, jumped_onto, speed_mps };
         Some(Contact { place, robot, with })
     }
 

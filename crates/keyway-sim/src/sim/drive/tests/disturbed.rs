@@ -138,7 +138,7 @@ fn a_late_robot_touches_later() {
         let (run, _) = driven(&world, &robot, disturbances, 9.0, command);
         let touched = Outcome::Collided {
             pose: run.samples.last().unwrap().pose,
-            with: Obstacle::Disc(0),
+            with: Obstacle::Circle(0),
             robot_stood: false,
             jumped_onto: false,
             mover_speed_mps: None,

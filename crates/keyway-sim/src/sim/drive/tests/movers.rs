@@ -90,7 +90,7 @@ fn the_first_of_several_contacts_counts() {
     // A post ahead is reached after a while; a moving obstacle from the side comes earlier or
     // later.
     let post = world(&[(2.0, 0.0, 0.25)]);
-    for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Disc(0))] {
+    for (speed_mps, with) in [(1.0, Obstacle::Mover(0)), (0.2, Obstacle::Circle(0))] {
         let world = post.clone().with_movers(vec![straight(1.0, 3.0, 0.0, -speed_mps)]);
         let run = drive(&world, &robot(), FAR, &limit(20.0), Velocity::new(0.5, 0.0));
         assert_eq!(contact(&run).2, with, "{speed_mps}");

@@ -237,7 +237,7 @@ fn contacts_in_one_cycle_happen_in_their_order() {
         (&fast, Pose::new(-3.0, 0.5, 0.0), FAR, ahead(4.0)),
     ];
     let runs = drive_all(&world, &limit(2.0), &tasks);
-    assert_eq!((touched(&runs[0]), touched(&runs[1])), (Obstacle::Disc(0), Obstacle::Robot(0)));
+    assert_eq!((touched(&runs[0]), touched(&runs[1])), (Obstacle::Circle(0), Obstacle::Robot(0)));
     assert_eq!((runs[0].cycles, runs[1].cycles), (1, 1));
     let end = |run: &Run| *run.samples.last().unwrap();
     assert!((end(&runs[0]).pose.x - 0.32).abs() < 1e-4);
@@ -263,7 +263,7 @@ fn clearances_are_those_of_one_instant() {
         (&fast, Pose::new(0.3, 0.5, FRAC_PI_2), FAR, ahead(4.0)),
     ];
     let runs = drive_all(&world(&[(0.7, 0.0, 0.1)]), &limit(1.0), &tasks);
-    assert_eq!(touched(&runs[0]), Obstacle::Disc(0));
+    assert_eq!(touched(&runs[0]), Obstacle::Circle(0));
     let least_m = runs[1].min_clearance_m.unwrap();
     assert!((least_m - (0.34_f64.sqrt() - 0.36)).abs() < 1e-4, "{least_m}");
 }
