@@ -3,7 +3,7 @@
 
 use crate::commands::Moment;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
-use keyway::local::{Explanation, Shares};
+use keyway::local::{Explanation, ScoredCandidate, Shares};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_draw::layers::{
@@ -245,17 +245,16 @@ fn fan_table(explanation: &Explanation) -> TextTable {
     let best = [("chosen", explanation.chosen()), ("second best", explanation.runner_up())];
     let best: Vec<_> = best.into_iter().filter_map(|(name, it)| Some((name, it?))).collect();
     let mut table = TextTable::new();
-    if let Some((_, (_, first))) = best.first() {
+    if let Some((_, ScoredCandidate { shares: first, .. })) = best.first() {
         let row = |head: &str, cells: &dyn Fn(&Shares) -> [String; 2]| {
-            let cells = best.iter().flat_map(|(_, (_, shares))| cells(shares));
+            let cells = best.iter().flat_map(|(_, one)| cells(one.shares));
             std::iter::once(head.to_owned()).chain(cells).collect::<Vec<_>>()
         };
         let head = best.iter().flat_map(|(name, _)| [*name, "share"]);
         table = table.row(std::iter::once("").chain(head));
         let speeds = |head: &str, value: &dyn Fn(Velocity) -> f64| {
-            let cells = best
-                .iter()
-                .flat_map(|(_, (velocity, _))| [fixed(value(*velocity), 3), String::new()]);
+            let cells =
+                best.iter().flat_map(|(_, one)| [fixed(value(one.velocity), 3), String::new()]);
             std::iter::once(head.to_owned()).chain(cells).collect::<Vec<_>>()
         };
         table = table.row(speeds("candidate's speed [m/s]", &|velocity| velocity.v));

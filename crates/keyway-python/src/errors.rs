@@ -55,7 +55,7 @@ pub(crate) fn why_without_path(error: &PlanError) -> String {
         } => "; to lift it within 1 m of start and goal, set the parameter `map.free_ends_m` to 1"
             .to_owned(),
         error => error.advice().map_or_else(String::new, |advice| {
-            let Advice { purpose, planner, parameter, value } = advice;
+            let Advice { purpose, planner, parameter, value, .. } = advice;
             format!("; {purpose}, set the parameter `{planner}.{parameter}` to {value}")
         }),
     };

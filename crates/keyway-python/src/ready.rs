@@ -118,7 +118,7 @@ impl Ready {
         let radius_m = named.as_ref().map(|robot| robot.footprint.inscribed_radius_m());
         let robot = named.unwrap_or_else(Robot::small);
         let stack = stack(&robot, radius_m.or(choice.radius_m), choice)?;
-        Self::of_stack(grid, stack, robot, &mut |PrepareProgress { done, total }| {
+        Self::of_stack(grid, stack, robot, &mut |PrepareProgress { done, total, .. }| {
             if watch.is_stopped_at(done, total) { Break(()) } else { Continue(()) }
         })
     }

@@ -92,7 +92,7 @@ impl Simulation {
     ) -> PyResult<Option<&'static str>> {
         let ended = py.detach(|| {
             let mut stepper = self.lock();
-            let straight_m = stepper.state().0.point().distance(self.goal);
+            let straight_m = stepper.state().pose.point().distance(self.goal);
             let remaining_m = remaining.unwrap_or(straight_m);
             let action = Action::Drive(Velocity::new(v, omega));
             stepper.step(&Control { action, remaining_m, route: 0 })
@@ -109,14 +109,14 @@ impl Simulation {
     /// Where the robot takes itself to be (x, y, theta) [m, m, rad].
     #[getter]
     fn pose(&self) -> (f64, f64, f64) {
-        let (Pose { x, y, theta }, _) = self.lock().told();
+        let Pose { x, y, theta } = self.lock().told().pose;
         (x, y, theta)
     }
 
     /// How the robot takes itself to move (v, omega) [m/s, rad/s].
     #[getter]
     fn velocity(&self) -> (f64, f64) {
-        let (_, Velocity { v, omega, .. }) = self.lock().told();
+        let Velocity { v, omega, .. } = self.lock().told().velocity;
         (v, omega)
     }
 

@@ -178,7 +178,7 @@ proptest! {
             let query = Query::new(start, start);
             let mut found = NearestFirst::new(&planner, &map, &query, &goals, &mut workspace);
             for &expected in &order {
-                let GoalPlan { index, goal, result } = found.next().unwrap();
+                let GoalPlan { index, goal, result, .. } = found.next().unwrap();
                 prop_assert_eq!((index, goal), (expected, goals[expected]), "{}", config.name());
                 prop_assert_eq!(result.ok().and_then(|plan| plan.cost.steps()), cost(goal));
                 // Only this goal, and the reachable goals that might have come before it, were

@@ -66,7 +66,7 @@ pub(crate) fn remedy(error: &PlanError) -> String {
             ..
         } => "; to lift it within 1 m of start and goal, add --set map.free_ends_m=1".to_owned(),
         error => error.advice().map_or_else(String::new, |advice| {
-            let Advice { purpose, planner, parameter, value } = advice;
+            let Advice { purpose, planner, parameter, value, .. } = advice;
             format!("; {purpose}, add --set {planner}.{parameter}={value}")
         }),
     }

@@ -76,7 +76,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
 
 fn prepare(map: &SearchMap) -> Result<Prepared, CliError> {
     let bar = progress_bar();
-    let prepared = Prepared::build_with_progress(map, |PrepareProgress { done, total }| {
+    let prepared = Prepared::build_with_progress(map, |PrepareProgress { done, total, .. }| {
         bar.set_length(total);
         bar.set_position(done);
         ControlFlow::Continue(())
@@ -98,7 +98,7 @@ fn progress_bar() -> ProgressBar {
 }
 
 fn table(report: &PrepareReport) -> String {
-    let Preparation { corner_cells, edges, label_entries, memory_bytes } = report.preparation;
+    let Preparation { corner_cells, edges, label_entries, memory_bytes, .. } = report.preparation;
     let megabytes = |bytes: f64| quantity(Some(bytes / 1e6), 3, "MB");
     facts([
         ("file", megabytes(report.file_bytes as f64)),

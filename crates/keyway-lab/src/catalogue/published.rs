@@ -101,9 +101,9 @@ pub(super) fn of_part(name: &str) -> Vec<PublishedUse> {
 
 /// Returns the stack of this name as published, if anybody published it.
 pub(super) fn of_stack(stack: &'static str) -> Option<PublishedUse> {
-    let (method, source) = Stack::about(stack)?;
+    let (method, source) = (Stack::summary(stack)?, Stack::source(stack)?);
     let setup = PublishedSetup::Drive { stack, set: &[] };
-    Some(PublishedUse { source: source?, method, setup })
+    Some(PublishedUse { source, method, setup })
 }
 
 /// Returns the published stacks in which the local planner of this name is used.

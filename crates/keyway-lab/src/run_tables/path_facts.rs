@@ -10,7 +10,7 @@ use std::fmt::Display;
 
 /// Text about a constraint that was lowered.
 pub(super) fn lowered(plan: &PlanPart) -> Option<(&'static str, String)> {
-    plan.relaxed.map(|Relaxed { asked_m, used_m }| {
+    plan.relaxed.map(|Relaxed { asked_m, used_m, .. }| {
         let text =
             format!("lowered from {asked_m:.3} m to {used_m:.3} m, the largest that leaves a path");
         ("constraint", text)
@@ -35,7 +35,7 @@ pub(super) fn smoothed_facts(
     let points = format!("{} removed, {} inserted", part.removed_points, part.inserted_points);
     facts.push(("points", points));
     let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    for SharpCorner { at, why } in &part.sharp_corners {
+    for SharpCorner { at, why, .. } in &part.sharp_corners {
         places
             .entry(targets.why_sharp(*why))
             .or_default()

@@ -2,7 +2,7 @@
 
 use super::Cycle;
 use keyway::geometry::{Point, Velocity};
-use keyway::local::{Explanation, Refusal, Rejections, Remedy, Shares};
+use keyway::local::{Explanation, Refusal, Rejections, Remedy, ScoredCandidate, Shares};
 use keyway::navigate::Step;
 use keyway::sense::Mover;
 use serde::Serialize;
@@ -135,8 +135,8 @@ impl From<Velocity> for Speeds {
     }
 }
 
-impl From<(Velocity, &Shares)> for Scored {
-    fn from((velocity, shares): (Velocity, &Shares)) -> Self {
+impl From<ScoredCandidate<'_>> for Scored {
+    fn from(ScoredCandidate { velocity, shares, .. }: ScoredCandidate<'_>) -> Self {
         Self { velocity: velocity.into(), score: shares.total(), shares: shares.clone() }
     }
 }

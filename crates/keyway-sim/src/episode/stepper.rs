@@ -39,7 +39,7 @@ mod tests {
     use super::*;
     use crate::episode::run_episode;
     use crate::report::trajectory_row;
-    use crate::sim::{Action, Control};
+    use crate::sim::{Action, Control, RobotState};
     use keyway::geometry::Disc;
     use keyway::geometry::Point;
     use keyway::map::OccupancyGrid;
@@ -58,7 +58,7 @@ mod tests {
         let mut controller =
             Controller::new(&episode.known, &stack.fit(robot).unwrap(), start, goal).unwrap();
         while run.outcome().is_none() {
-            let (pose, velocity) = run.told();
+            let RobotState { pose, velocity } = run.told();
             let action = match controller.step(pose, velocity, run.scan()) {
                 Step::Arrived => Action::Arrived,
                 step => Action::Drive(step.command()),

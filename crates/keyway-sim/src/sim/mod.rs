@@ -105,7 +105,7 @@ pub use mover::{
 };
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, RunRules};
-pub use run::{MoverWay, Outcome, Run, TrajectoryPoint};
+pub use run::{MoverWay, Outcome, RobotState, Run, TrajectoryPoint};
 pub use standing_polygon::StandingPolygon;
 pub use stepper::Stepper;
 pub use world::{Obstacle, World, WorldAt, WorldError};

@@ -45,6 +45,15 @@ pub struct TrajectoryPoint {
     pub velocity: Velocity,
 }
 
+/// Pose and velocity of a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotState {
+    /// Pose in the world frame.
+    pub pose: Pose,
+    /// Velocity.
+    pub velocity: Velocity,
+}
+
 impl Run {
     /// The world of the run, with the obstacles that give way on their recorded ways.
     pub fn world<'a>(&self, given: &'a World) -> Cow<'a, World> {

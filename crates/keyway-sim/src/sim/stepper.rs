@@ -2,7 +2,9 @@
 
 use super::drive::{check, command};
 use super::fleet::{Entrant, Fleet};
-use super::{Control, Disturbances, Outcome, Participant, Run, RunRules, SimError, World};
+use super::{
+    Control, Disturbances, Outcome, Participant, RobotState, Run, RunRules, SimError, World,
+};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
@@ -23,7 +25,7 @@ use std::borrow::Cow;
 /// let (robot, rules) = (Robot::small(), RunRules::default());
 /// let mut run = Stepper::new(world, robot, (start, goal), Disturbances::default(), rules)?;
 /// while run.outcome().is_none() {
-///     let (pose, _) = run.told();
+///     let pose = run.told().pose;
 ///     let action = Action::Drive(Velocity::new(0.5, 0.0));
 ///     run.step(&Control { action, remaining_m: pose.point().distance(goal), route: 0 })?;
 /// }
@@ -76,14 +78,15 @@ impl Stepper {
 
     /// Pose and velocity that the robot was told; once the run has ended, the true ones, as it is
     /// not told any more.
-    pub fn told(&self) -> (Pose, Velocity) {
+    pub fn told(&self) -> RobotState {
         let (pose, velocity, _) = self.fleet.told(0);
-        if self.outcome().is_some() { self.state() } else { (pose, velocity) }
+        if self.outcome().is_some() { self.state() } else { RobotState { pose, velocity } }
     }
 
     /// The robot's true pose and velocity.
-    pub fn state(&self) -> (Pose, Velocity) {
-        self.fleet.state(0)
+    pub fn state(&self) -> RobotState {
+        let (pose, velocity) = self.fleet.state(0);
+        RobotState { pose, velocity }
     }
 
     /// Drives one cycle. Does nothing once the run has ended.
@@ -151,12 +154,12 @@ mod tests {
         let mut run =
             Stepper::new(world, robot.clone(), (start, goal), disturbances, rules).unwrap();
         while run.outcome().is_none() {
-            let (pose, velocity) = run.told();
+            let RobotState { pose, velocity } = run.told();
             let control = wander(pose, velocity, run.scan());
             run.step(&control).unwrap();
         }
         assert!(expected.cycles > 20, "{:?}", expected.outcome);
-        assert_eq!(Some(run.told().0), expected.samples.last().map(|sample| sample.pose));
+        assert_eq!(Some(run.told().pose), expected.samples.last().map(|sample| sample.pose));
         assert_eq!(run.into_run(), Some(expected));
     }
 
@@ -175,6 +178,6 @@ mod tests {
         let given_up = run.step(&control(Action::GiveUp)).unwrap_err();
         assert_eq!(given_up, SimError::GivenUp { cycle: 0 });
         assert_eq!(run.step(&control(Action::Drive(Velocity::new(0.1, 0.0)))), Ok(None));
-        assert!(run.state().0.x > 1.0);
+        assert!(run.state().pose.x > 1.0);
     }
 }

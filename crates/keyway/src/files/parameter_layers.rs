@@ -153,6 +153,7 @@ pub enum ParameterLayer {
 /// Parameter of a layer that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}{fault}", layer_text(.layer.as_ref()))]
+#[non_exhaustive]
 pub struct LayerError {
     /// Layer with the parameter; `None` where the fault shows in the result of all layers.
     pub layer: Option<ParameterLayer>,

@@ -143,6 +143,7 @@ pub enum RobotLayersError {
      in metres, not in millimetres",
     radius_text(*radius_m)
 )]
+#[non_exhaustive]
 pub struct RadiusBeyondMap {
     /// The radius \[m\].
     pub radius_m: f64,

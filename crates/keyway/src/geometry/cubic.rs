@@ -54,7 +54,7 @@ impl Cubic {
 
     /// The point at parameter `u`.
     pub fn at(&self, u: f64) -> Point {
-        self.split(u).0.end()
+        self.split(u)[0].end()
     }
 
     /// Last point.
@@ -127,13 +127,13 @@ impl Cubic {
         if halvings == 0 || is_beyond(0.0) || is_beyond(1.0) {
             return false;
         }
-        let (before, after) = self.split(0.5);
+        let [before, after] = self.split(0.5);
         before.is_certainly_within(limit, halvings - 1)
             && after.is_certainly_within(limit, halvings - 1)
     }
 
     /// The parts before and after `u`.
-    pub fn split(&self, u: f64) -> (Self, Self) {
+    pub fn split(&self, u: f64) -> [Self; 2] {
         // De Casteljau's construction, on the legs.
         let [a, b, c] = self.legs;
         let (ab, bc) = (a.lerp(b, u), b.lerp(c, u));
@@ -141,7 +141,7 @@ impl Cubic {
         let before = Self { start: self.start, legs: [a * u, ab * u, tangent * u] };
         let w = 1.0 - u;
         let after = Self { start: before.end(), legs: [tangent * w, bc * w, c * w] };
-        (before, after)
+        [before, after]
     }
 
     /// The straight line between the ends.
@@ -247,7 +247,7 @@ mod tests {
         if halvings == 0 {
             return (cubic.chord().length(), cubic.polygon_length());
         }
-        let (before, after) = cubic.split(0.5);
+        let [before, after] = cubic.split(0.5);
         let (a, b) = (length_bounds(&before, halvings - 1), length_bounds(&after, halvings - 1));
         (a.0 + b.0, a.1 + b.1)
     }
@@ -373,7 +373,7 @@ mod tests {
         #[test]
         fn both_parts_are_the_curve(control in control(), u in 0.0..1.0f64, v in 0.0..1.0f64) {
             let cubic = Cubic::bezier(control);
-            let (before, after) = cubic.split(u);
+            let [before, after] = cubic.split(u);
             prop_assert!(before.at(v).distance(cubic.at(u * v)) < 1e-12);
             prop_assert!(after.at(v).distance(cubic.at(u + (1.0 - u) * v)) < 1e-12);
         }

@@ -315,7 +315,7 @@ fn flatten(cubic: &Cubic, deviation_m: f64, halvings: u32, points: &mut Vec<Poin
         points.push(cubic.end());
         return;
     }
-    let (first, second) = cubic.split(0.5);
+    let [first, second] = cubic.split(0.5);
     flatten(&first, deviation_m, halvings + 1, points);
     flatten(&second, deviation_m, halvings + 1, points);
 }

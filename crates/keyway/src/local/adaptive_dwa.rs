@@ -157,7 +157,7 @@ impl AdaptiveDwa {
     }
 
     /// By which the weights of heading and of speed are multiplied at a distance \[m\].
-    pub fn factors(&self, dist_m: f64) -> (f64, f64) {
+    fn factors(&self, dist_m: f64) -> (f64, f64) {
         let (a, radius_m) = (self.a, self.safe_radius_m);
         let beyond_m = (dist_m - radius_m).max(radius_m);
         (a + (1.0 - a) * beyond_m / radius_m, a + radius_m / beyond_m)

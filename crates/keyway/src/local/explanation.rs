@@ -99,6 +99,16 @@ pub enum Change {
     },
 }
 
+/// An admissible candidate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ScoredCandidate<'a> {
+    /// Its velocity.
+    pub velocity: Velocity,
+    /// The shares of its score.
+    pub shares: &'a Shares,
+}
+
 impl JudgedCandidate {
     /// Its score; `None` when it was refused.
     pub const fn score(&self) -> Option<f64> {
@@ -110,13 +120,13 @@ impl JudgedCandidate {
 }
 
 impl Explanation {
-    /// The best candidate and its shares.
-    pub fn chosen(&self) -> Option<(Velocity, &Shares)> {
+    /// The best candidate.
+    pub fn chosen(&self) -> Option<ScoredCandidate<'_>> {
         self.admissible(self.chosen?)
     }
 
-    /// The second best candidate and its shares.
-    pub fn runner_up(&self) -> Option<(Velocity, &Shares)> {
+    /// The second best candidate.
+    pub fn runner_up(&self) -> Option<ScoredCandidate<'_>> {
         self.admissible(self.runner_up?)
     }
 
@@ -136,10 +146,12 @@ impl Explanation {
         others.reduce(better).map(|(place, _)| place)
     }
 
-    fn admissible(&self, index: usize) -> Option<(Velocity, &Shares)> {
+    fn admissible(&self, index: usize) -> Option<ScoredCandidate<'_>> {
         let JudgedCandidate { velocity, fate, .. } = self.candidates.get(index)?;
         match fate {
-            Fate::Admissible { shares, .. } => Some((*velocity, shares)),
+            Fate::Admissible { shares, .. } => {
+                Some(ScoredCandidate { velocity: *velocity, shares })
+            }
             Fate::Refused { .. } => None,
         }
     }

@@ -60,7 +60,7 @@ pub use dynamic_window::{
     Admissible, DistanceAt, DynamicWindow, Prediction, Rollout, Term, TermValue, Weighing,
     WindowConfig,
 };
-pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy};
+pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy, ScoredCandidate};
 pub use follower::{Follower, FollowerConfig};
 pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};

@@ -6,6 +6,7 @@ use crate::geometry::Point;
 
 /// A cell that a ray passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RayCell {
     /// The cell.
     pub cell: Cell,

@@ -218,9 +218,15 @@ impl Stack {
         parts.source.and_then(|_| parts.as_published())
     }
 
-    /// What a stack is, in a sentence, and its key in docs/PAPERS.md, where it was published.
-    pub fn about(name: &str) -> Option<(&'static str, Option<&'static str>)> {
-        of_name(name).map(|parts| (parts.about, parts.source))
+    /// A sentence about the stack of this name.
+    pub fn summary(name: &str) -> Option<&'static str> {
+        of_name(name).map(|parts| parts.about)
+    }
+
+    /// The key in docs/PAPERS.md of the paper that published the stack of this name; `None` for one
+    /// that is nobody's.
+    pub fn source(name: &str) -> Option<&'static str> {
+        of_name(name)?.source
     }
 }
 
@@ -330,7 +336,7 @@ mod tests {
                 assert_eq!(names, [planner, smoother, guide, local], "{name}");
                 assert!(stack.map.clearance_m > robot.footprint.circumscribed_radius_m());
             }
-            let source = Stack::about(name).unwrap().1;
+            let source = Stack::source(name);
             let published = Stack::published_by_name(name);
             assert_eq!(published.is_some(), source.is_some(), "{name}");
             if let Some(stack) = published {
@@ -338,7 +344,7 @@ mod tests {
                 assert_eq!((stack.map.clearance_m, stack.controller.goal_tolerance_m), (0.0, 0.5));
             }
         }
-        assert_eq!((Stack::by_name("none", &Robot::small()), Stack::about("none")), (None, None));
+        assert_eq!((Stack::by_name("none", &Robot::small()), Stack::summary("none")), (None, None));
         let usual = Stack::by_name(Stack::DEFAULT, &Robot::jackal());
         assert_eq!(usual, Some(Stack::keyway(&Robot::jackal())));
         let classic = Stack::by_name("key-point-fusion", &Robot::jackal());

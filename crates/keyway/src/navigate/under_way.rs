@@ -1,7 +1,7 @@
 //! Commands that were given and have no effect yet.
 
 use crate::geometry::{Pose, Velocity};
-use crate::robot::{Limits, Robot, in_cycles};
+use crate::robot::{CycleCount, Limits, Robot};
 use std::collections::VecDeque;
 
 /// The commands that are on their way to the motors, for a robot with a known delay
@@ -28,7 +28,7 @@ pub(super) struct UnderWay {
 impl UnderWay {
     pub(super) fn new(robot: &Robot) -> Self {
         let Robot { ref limits, cycle_s, actuation_delay_s, .. } = *robot;
-        let (whole, rest) = in_cycles(actuation_delay_s, cycle_s);
+        let CycleCount { whole, part: rest, .. } = CycleCount::of(actuation_delay_s, cycle_s);
         let is_whole = rest == 0.0;
         Self {
             limits: limits.clone(),

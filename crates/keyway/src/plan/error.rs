@@ -100,6 +100,7 @@ pub enum PlanError {
 
 /// Advice against an error: a parameter of the planner that failed, and its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Advice {
     /// Its purpose: "to lower the constraint as far as needed".
     pub purpose: &'static str,

@@ -120,6 +120,7 @@ pub enum PlanNote {
 
 /// A constraint that was lowered as little as was needed to leave a path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Relaxed {
     /// The constraint that was asked for \[m\].
     pub asked_m: f64,

@@ -17,6 +17,7 @@ use std::collections::{BinaryHeap, VecDeque};
 
 /// A goal and the path to it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct GoalPlan {
     /// Its place in the list of goals that was given.
     pub index: usize,

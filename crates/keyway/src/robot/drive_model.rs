@@ -61,15 +61,27 @@ impl Robot {
     }
 }
 
-/// A time in whole cycles, and the rest as a part of one: 0.3 s are three cycles of 0.1 s although
-/// their quotient is rounded to less.
-pub fn in_cycles(duration_s: f64, cycle_s: f64) -> (usize, f64) {
-    let count = duration_s / cycle_s;
-    let nearest = count.round();
-    if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {
-        return (nearest as usize, 0.0);
+/// A time in cycles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CycleCount {
+    /// Whole cycles.
+    pub whole: usize,
+    /// The rest, as a part of a cycle.
+    pub part: f64,
+}
+
+impl CycleCount {
+    /// A time in cycles: 0.3 s are three cycles of 0.1 s although their quotient is rounded to
+    /// less.
+    pub fn of(duration_s: f64, cycle_s: f64) -> Self {
+        let count = duration_s / cycle_s;
+        let nearest = count.round();
+        if (count - nearest).abs() <= 1e-9 * nearest.max(1.0) {
+            return Self { whole: nearest as usize, part: 0.0 };
+        }
+        Self { whole: count.floor() as usize, part: count - count.floor() }
     }
-    (count.floor() as usize, count - count.floor())
 }
 
 impl Limits {

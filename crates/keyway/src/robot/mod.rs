@@ -7,7 +7,7 @@ mod sensor;
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 
-pub use drive_model::{Ramp, in_cycles};
+pub use drive_model::{CycleCount, Ramp};
 #[cfg(test)]
 pub(crate) use footprint::star;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};

@@ -44,6 +44,7 @@ pub const CHORD_CELLS: f64 = 0.05;
 
 /// A planned way from one position to another.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Route {
     /// The planner's path.
     pub plan: Plan,

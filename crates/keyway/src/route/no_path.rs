@@ -7,6 +7,7 @@ use std::fmt::{self, Display, Formatter};
 
 /// What separates a start and a goal that no path joins.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NoPath {
     /// The clearance that would leave a path, or how the two are parted.
     pub separation: Separation,

@@ -4,6 +4,7 @@ use crate::map::{BitGrid, CellWindow};
 
 /// What nobody walks through: obstacles, but for what is only unknown.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Walls<'a> {
     /// All cells that are obstacles.
     pub obstacles: &'a BitGrid,

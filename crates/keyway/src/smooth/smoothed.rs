@@ -25,6 +25,7 @@ pub struct Smoothed {
 
 /// A corner that stayed as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SharpCorner {
     /// Where \[m\].
     pub at: Point,

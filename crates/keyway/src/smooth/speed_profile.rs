@@ -150,6 +150,7 @@ impl SpeedLimit {
 
 /// A place on the path, and when and how fast the robot passes it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SpeedSample {
     /// The place.
     #[serde(flatten)]
@@ -171,6 +172,7 @@ impl SpeedSample {
 
 /// The fastest way to drive along a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct SpeedProfile {
     /// Samples in order, joints of the path's pieces among them. The arc length grows from each to
     /// the next, except at a corner that needs a stop: that is listed twice, and the robot arrives

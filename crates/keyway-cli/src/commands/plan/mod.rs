@@ -165,7 +165,11 @@ fn corner_setting(planner: &PlannerConfig) -> String {
 fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
     let why = match &answer.failure {
         Some(RouteFailure::Plan(error)) => why(error),
-        Some(RouteFailure::Separated(NoPath { separation, is_joined_through_unknown: true })) => {
+        Some(RouteFailure::Separated(NoPath {
+            separation,
+            is_joined_through_unknown: true,
+            ..
+        })) => {
             format!("{separation}; {THROUGH_UNKNOWN}, and there is one")
         }
         Some(RouteFailure::Separated(NoPath {

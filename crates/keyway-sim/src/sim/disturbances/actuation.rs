@@ -4,7 +4,7 @@ use super::gaussian::Gaussian;
 use super::{ActuationNoise, Kind, Source};
 use crate::sim::cycle_motion::{CycleMotion, Knee};
 use keyway::geometry::{Pose, Velocity};
-use keyway::robot::{Limits, Robot, in_cycles};
+use keyway::robot::{CycleCount, Limits, Robot};
 use std::collections::VecDeque;
 
 /// A robot's motors with delay and errors.
@@ -33,7 +33,7 @@ impl Actuation {
     ) -> Option<Self> {
         let cycle_s = robot.cycle_s;
         let delay_s = robot.actuation_delay_s + noise.delay_s;
-        let (whole, late) = in_cycles(delay_s, cycle_s);
+        let CycleCount { whole, part: late, .. } = CycleCount::of(delay_s, cycle_s);
         let actuation = Self {
             noise,
             cycle_s,

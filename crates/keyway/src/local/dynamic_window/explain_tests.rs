@@ -225,9 +225,9 @@ proptest! {
             prop_assert_eq!(count, rejection.count as usize, "{}", rejection.rule);
         }
         let chosen = explanation.chosen();
-        prop_assert_eq!(chosen.map(|(velocity, _)| velocity), decision.ok().map(|decision| decision.command));
-        prop_assert_eq!(chosen.map(|(_, shares)| shares.clone()).unwrap_or_default(), evaluation.chosen);
-        prop_assert_eq!(explanation.runner_up().map(|(_, shares)| shares.clone()), evaluation.runner_up);
+        prop_assert_eq!(chosen.map(|one| one.velocity), decision.ok().map(|decision| decision.command));
+        prop_assert_eq!(chosen.map(|one| one.shares.clone()).unwrap_or_default(), evaluation.chosen);
+        prop_assert_eq!(explanation.runner_up().map(|one| one.shares.clone()), evaluation.runner_up);
 
         let window = DynamicWindow::new(config.window.clone(), robot.clone()).unwrap();
         let mut shrunk = Vec::new();

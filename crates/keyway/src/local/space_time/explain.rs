@@ -85,7 +85,7 @@ impl SpaceTime {
         explanation.chosen = explanation.best(|_, _| true);
         let lowest_mps = self.extent(scene, &judge).lowest_mps;
         let targets = Targets::of(&start, &judge, lowest_mps, true);
-        let chosen = explanation.chosen().map(|(velocity, _)| velocity);
+        let chosen = explanation.chosen().map(|one| one.velocity);
         let is_chosen = |velocity: Velocity| {
             chosen.is_some_and(|it| {
                 (it.v - velocity.v).abs().max((it.omega - velocity.omega).abs()) < SAME

@@ -324,9 +324,9 @@ fn the_chosen_course_is_that_of_the_decision() {
         for _ in 0..3 {
             let explanation = drive.explain();
             let decision = drive.decide().unwrap();
-            let (velocity, shares) = explanation.chosen().unwrap();
+            let crate::local::ScoredCandidate { velocity, shares } = explanation.chosen().unwrap();
             assert_eq!((velocity, shares), (decision.command, &decision.evaluation.chosen));
-            let (second, _) = explanation.runner_up().unwrap();
+            let second = explanation.runner_up().unwrap().velocity;
             assert!(explanation.remedies.is_empty() && second != velocity);
             for candidate in &explanation.candidates {
                 assert_eq!(candidate.poses.len(), 10);

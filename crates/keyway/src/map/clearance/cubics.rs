@@ -60,7 +60,7 @@ impl Clearance<'_> {
                 at_least_m = at_least_m.min(part_at_least_m);
                 continue;
             }
-            let (before, after) = part.split(0.5);
+            let [before, after] = part.split(0.5);
             parts.extend([after, before].map(|half| (half, halvings + 1, around.clone())));
         }
         ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
@@ -81,7 +81,7 @@ impl Clearance<'_> {
         if of_hull >= of_ends - tolerance_m || halvings == MAX_HALVINGS {
             return of_ends.min(of_hull);
         }
-        let (before, after) = cubic.split(0.5);
+        let [before, after] = cubic.split(0.5);
         self.cubic_to_border(before, tolerance_m, halvings + 1).min(self.cubic_to_border(
             after,
             tolerance_m,
@@ -250,7 +250,7 @@ impl Judge<'_> {
         if halvings == MAX_HALVINGS || !self.is_clear_point(part.end(), near.clone()) {
             return false;
         }
-        let (before, after) = part.split(0.5);
+        let [before, after] = part.split(0.5);
         self.is_clear(&before, near.clone(), halvings + 1)
             && self.is_clear(&after, near, halvings + 1)
     }

@@ -48,6 +48,7 @@ const SHOWN: usize = 40;
 
 /// What the YAML file of a map says.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RosMap {
     /// The image file, absolute or relative to the folder of the YAML file.
     pub image: String,

@@ -89,6 +89,7 @@ pub struct Prepared {
 
 /// The outcome of a preparation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Preparation {
     /// Cells at which shortest paths may turn.
     pub corner_cells: u64,
