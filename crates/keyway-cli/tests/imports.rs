@@ -14,8 +14,8 @@ type Layers = &'static [&'static [&'static str]];
 
 /// Modules that a robot carries.
 const KEYWAY: Layers = &[
-    &["file_system", "given", "random", "registry", "geometry"],
-    &["config_error"],
+    &["file_error", "given", "random", "registry", "geometry"],
+    &["file_system", "config_error"],
     &["robot"],
     &["map"],
     &["search"],

@@ -34,11 +34,20 @@
 //! # Ok::<(), keyway::navigate::NavigateError>(())
 //! ```
 //!
+//! | feature | what it adds |
+//! |---|---|
+//! | `files`, the default | reading and writing files; turns `formats` on |
+//! | `formats` | maps, prepared maps, robots, stacks and parameters from bytes, and back |
+//! | `images` | BMP, GIF, JPEG and TIFF images as maps; turns `formats` on |
+//! | `schema` | JSON schemas of all parameters |
+//!
 //! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
 //! example `own_robot` is such a loop.
 
 mod config_error;
 #[cfg(feature = "formats")]
+pub mod file_error;
+#[cfg(feature = "files")]
 pub mod file_system;
 #[cfg(feature = "formats")]
 pub mod files;

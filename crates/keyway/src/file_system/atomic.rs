@@ -1,24 +1,13 @@
 //! Writing a file so that a reader sees the old content or the new, never a part.
 
-use super::system_error::system_error_in_words;
+use crate::file_error::WriteError;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use thiserror::Error;
 
 /// Temporary files that one file may have at once: one for each program that is writing it.
 const TEMPORARY_FILES: u32 = 16;
-
-/// A file that could not be written; what was there before is kept.
-#[derive(Debug, Error)]
-#[error("cannot write {}: {}", path.display(), system_error_in_words(reason))]
-pub struct WriteError {
-    /// The file asked for.
-    pub path: PathBuf,
-    /// What the operating system said.
-    pub reason: io::Error,
-}
 
 /// Writes `bytes` to a temporary file in the same folder and renames it to `path`, replacing what
 /// was there (its permissions are kept; a symbolic link is replaced, not followed). What is neither

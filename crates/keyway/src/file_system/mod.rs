@@ -2,12 +2,11 @@
 
 mod atomic;
 mod read;
-mod system_error;
 #[cfg(test)]
 pub(crate) mod test_folder;
 
+pub use crate::file_error::{ReadError, WriteError, system_error_in_words};
 pub(crate) use atomic::Staged;
-pub use atomic::{WriteError, check_writable, remove_leftovers, write_atomically};
+pub use atomic::{check_writable, remove_leftovers, write_atomically};
+pub use read::read_file;
 pub(crate) use read::read_file_if;
-pub use read::{ReadError, read_file};
-pub use system_error::system_error_in_words;

@@ -1,46 +1,13 @@
 //! Reading a file, but no more of it than it can sensibly hold.
 
-use super::system_error::system_error_in_words;
+use crate::file_error::ReadError;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use thiserror::Error;
+use std::path::Path;
 
 /// The most that is read from a pipe or a device, which say nothing about their size and may never
 /// end.
 const STREAM_BYTES: u64 = 256 << 20;
-
-/// A file that cannot be read.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// The operating system refused.
-    #[error("cannot read {}: {}", path.display(), system_error_in_words(reason))]
-    System {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        reason: io::Error,
-    },
-    /// A folder.
-    #[error("cannot read {}: it is a folder, expected a file", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// More than such a file can sensibly hold, or a device that never ends.
-    #[error(
-        "cannot read {}: it holds more than {}, the most that is read here",
-        path.display(),
-        size_text(*limit_bytes)
-    )]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// The limit \[bytes\].
-        limit_bytes: u64,
-    },
-}
 
 /// Reads a whole file of at most `limit_bytes`. Pipes and devices are read as well, but never more
 /// than 256 MiB of them.
@@ -83,16 +50,6 @@ pub(crate) fn read_file_if<E: From<ReadError>>(
         return Err(too_large());
     }
     Ok(bytes)
-}
-
-fn size_text(bytes: u64) -> String {
-    let units = [(30, "GiB"), (20, "MiB"), (10, "KiB"), (0, "bytes")];
-    let whole =
-        units.into_iter().find(|(shift, _)| bytes >> shift << shift == bytes && bytes >> shift > 0);
-    whole.map_or_else(
-        || format!("{bytes} bytes"),
-        |(shift, unit)| format!("{} {unit}", bytes >> shift),
-    )
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 use super::*;
 use crate::geometry::{Polyline, Pose};
-use crate::map::formats::read_map;
+use crate::map::formats::map_from_bytes;
 use crate::map::{Cell, CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
 use crate::plan::{Plan, PlannerConfig};
 use crate::search::{Query, Workspace};
@@ -314,7 +314,8 @@ fn paths_of_planners_on_the_bundled_maps() {
     for (file, clearance_m, radius_m) in
         [("small_house.yaml", 0.2, 0.1), ("small_house.yaml", 0.23, 0.33), ("rooms.map", 0.4, 0.5)]
     {
-        let grid = read_map(&folder.join(file), None).unwrap().grid;
+        let (path, read) = (folder.join(file), |path: &FilePath| Ok(std::fs::read(path).unwrap()));
+        let grid = map_from_bytes(&path, &std::fs::read(&path).unwrap(), read, None).unwrap().grid;
         let config = LayerConfig { clearance_m, ..LayerConfig::default() };
         let map = SearchMap::new(&grid, config).unwrap();
         let free: Vec<Cell> = map.frame().cells().filter(|&cell| map.is_free(cell)).collect();

@@ -1,7 +1,7 @@
 //! Why a map file could not be read or written.
 
 use super::{ImageError, MovingAiError, RosMapError, ScenarioError, TooManyCells};
-use crate::file_system::{ReadError, WriteError};
+use crate::file_error::{ReadError, WriteError};
 use std::path::PathBuf;
 use thiserror::Error;
 

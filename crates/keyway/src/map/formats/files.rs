@@ -1,65 +1,62 @@
-//! The formats of map files, and writing them; errors name the file.
+//! Map files: reading and writing them; errors name the file.
 
+use super::reader::{Check, SCENARIOS_BYTES};
 use super::{
-    ImageKind, MapFileError, RosMap, Scenario, image, image_from_grid, movingai_map_from_grid,
-    parse_scenarios,
+    ImageKind, ImagePlacement, LoadedMap, MapFileError, MapFormat, MapReader, RosMap, Scenario,
+    image_from_grid, movingai_map_from_grid, ros_map_image, scenarios_for_from_bytes,
+    scenarios_from_bytes,
 };
-use crate::file_system::Staged;
-use crate::file_system::{read_file, write_atomically};
-use crate::map::{Cell, GridFrame, MAX_CELLS, OccupancyGrid};
-use serde::{Deserialize, Serialize};
-use std::fmt;
+use crate::file_system::{Staged, read_file, read_file_if, write_atomically};
+use crate::map::{GridFrame, OccupancyGrid};
 use std::path::{Path, PathBuf};
 
-/// No map file may be larger: what the largest map takes as a plain image, four bytes for a cell.
-pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
-pub(super) const YAML_BYTES: u64 = 1 << 20;
-const SCENARIOS_BYTES: u64 = 1 << 30;
-
-/// The formats of map files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum MapFormat {
-    /// YAML and image, as the map server of ROS reads them.
-    Ros,
-    /// `.map` of the MovingAI benchmarks.
-    MovingAi,
-    /// A PGM image alone.
-    Pgm,
-    /// A PNG image alone.
-    Png,
+/// Reads a map of at most [`DEFAULT_MAX_CELLS`](super::DEFAULT_MAX_CELLS) cells; its extension
+/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
+///
+/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
+/// by default cells of 1 m from (0, 0). Images without a YAML file are read by
+/// [`CellRule::IMAGE`](super::CellRule::IMAGE).
+///
+/// ```no_run
+/// use keyway::map::formats::{read_map, write_map};
+/// use std::path::Path;
+///
+/// let loaded = read_map(Path::new("maps/office.yaml"), None)?;
+/// println!("{} ({})", loaded.digest, loaded.format);
+/// write_map(Path::new("office.map"), &loaded.grid)?;
+/// # Ok::<(), keyway::map::formats::MapFileError>(())
+/// ```
+///
+/// # Errors
+/// As for [`MapReader::read`].
+pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
+    MapReader { placement, ..MapReader::default() }.read(path)
 }
 
-impl MapFormat {
-    /// The format that the extension of a file names, in capitals or not.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
-            "yaml" | "yml" => Some(Self::Ros),
-            "map" => Some(Self::MovingAi),
-            "pgm" => Some(Self::Pgm),
-            "png" => Some(Self::Png),
-            _ => None,
-        }
-    }
-
-    pub(super) fn of(path: &Path) -> Result<Self, MapFileError> {
-        Self::from_path(path).ok_or_else(|| MapFileError::Extension { path: path.to_owned() })
-    }
-}
-
-impl fmt::Display for MapFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ros => "ROS map",
-            Self::MovingAi => "MovingAI map",
-            Self::Pgm => "PGM image",
-            Self::Png => "PNG image",
+impl MapReader {
+    /// Reads a map, like [`read_map`].
+    ///
+    /// ```no_run
+    /// use keyway::map::formats::MapReader;
+    /// use std::path::Path;
+    ///
+    /// let reader = MapReader { max_cells: 1 << 30, ..MapReader::default() };
+    /// let loaded = reader.read(Path::new("maps/city.png"))?;
+    /// # Ok::<(), keyway::map::formats::MapFileError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the file, or the image that it names, cannot be read or is malformed; when the extension
+    /// is not one of those; when there is a placement for a YAML file; when the map has too many
+    /// cells.
+    pub fn read(&self, path: &Path) -> Result<LoadedMap, MapFileError> {
+        self.load(path, |path, limit_bytes, check: Check<'_>| {
+            read_file_if(path, limit_bytes, check)
         })
     }
 }
 
-/// Writes a map; its extension (as for [`super::read_map`]) names the format. For a YAML file see
+/// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
 /// [`write_ros_map`], the image is a PGM file. `.map` and image files keep neither where the map
 /// lies nor values, and `.map` files do not keep unknown cells either (they become occupied): see
 /// [`super::MapLoss`].
@@ -111,19 +108,7 @@ fn ros_map_files(
     Ok([(path.to_owned(), yaml), (image_path, ros_map_image(grid, kind))])
 }
 
-/// The image that [`write_ros_map`] writes beside a YAML file.
-pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
-    let Some(values) = grid.values() else { return image_from_grid(grid, kind) };
-    let width = grid.frame().width() as usize;
-    image::encode(grid.frame(), kind, |Cell { x, y }| {
-        match values[y as usize * width + x as usize] {
-            value @ 0..=100 => value,
-            _ => OccupancyGrid::UNKNOWN_VALUE,
-        }
-    })
-}
-
-/// Reads a `.scen` file, see [`parse_scenarios`].
+/// Reads a `.scen` file, see [`parse_scenarios`](super::parse_scenarios).
 ///
 /// # Errors
 /// When the file cannot be read or is malformed.
@@ -131,26 +116,18 @@ pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
     scenarios_from_bytes(path, &read_file(path, SCENARIOS_BYTES)?)
 }
 
-/// The same from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content is malformed.
-pub fn scenarios_from_bytes(name: &Path, bytes: &[u8]) -> Result<Vec<Scenario>, MapFileError> {
-    parse_scenarios(bytes)
-        .map_err(|reason| MapFileError::Scenarios { path: name.to_owned(), reason })
-}
-
 /// Reads a `.scen` file, all of whose scenarios must be for a map of this size.
 ///
 /// # Errors
 /// As for [`read_scenarios`]; and when a scenario is for a map of another size, naming its line.
 pub fn read_scenarios_for(path: &Path, frame: &GridFrame) -> Result<Vec<Scenario>, MapFileError> {
-    let scenarios = read_scenarios(path)?;
-    let checked = scenarios.iter().try_for_each(|scenario| scenario.check_map(frame));
-    checked.map_err(|reason| MapFileError::Scenarios { path: path.to_owned(), reason })?;
-    Ok(scenarios)
+    scenarios_for_from_bytes(path, &read_file(path, SCENARIOS_BYTES)?, frame)
 }
 
 #[cfg(test)]
 #[path = "files_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "reader_tests.rs"]
+mod reader_tests;

@@ -1,12 +1,12 @@
 use super::super::{
-    CellRule, ImageError, ImagePlacement, MapWarning, MovingAiError, RosMapError, ScenarioError,
-    digest, grid_from_image, map_from_bytes, read_map,
+    CellRule, ImageError, MAX_MAP_BYTES, MapWarning, MovingAiError, RosMapError, ScenarioError,
+    digest, grid_from_image, map_from_bytes,
 };
 use super::*;
 use crate::file_system::ReadError;
 use crate::file_system::test_folder::TestFolder;
 use crate::geometry::Pose;
-use crate::map::{CellState, FrameError, OccupancyThresholds};
+use crate::map::{Cell, CellState, FrameError, OccupancyThresholds};
 use proptest::prelude::*;
 use proptest::sample::Index;
 use std::fs;

@@ -98,8 +98,20 @@ pub fn image_from_grid(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
     })
 }
 
+/// The image of a grid for [`RosMap::for_grid`](super::RosMap::for_grid): its states as in
+/// [`image_from_grid`], or, of a grid with values, these as they are, all above 100 as
+/// [`OccupancyGrid::UNKNOWN_VALUE`].
+pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
+    let Some(values) = grid.values() else { return image_from_grid(grid, kind) };
+    let width = grid.frame().width() as usize;
+    encode(grid.frame(), kind, |Cell { x, y }| match values[y as usize * width + x as usize] {
+        value @ 0..=100 => value,
+        _ => OccupancyGrid::UNKNOWN_VALUE,
+    })
+}
+
 /// An 8-bit grey image.
-pub(super) fn encode(frame: &GridFrame, kind: ImageKind, grey: impl Fn(Cell) -> u8) -> Vec<u8> {
+fn encode(frame: &GridFrame, kind: ImageKind, grey: impl Fn(Cell) -> u8) -> Vec<u8> {
     let (width, height) = (frame.width(), frame.height());
     let mut greys = Vec::with_capacity(frame.cell_count() as usize);
     for y in (0..height as i32).rev() {

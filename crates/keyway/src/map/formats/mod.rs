@@ -1,25 +1,17 @@
 //! Readers and writers of map files: ROS YAML with an image, MovingAI `.map` and `.scen`, and plain
 //! images.
 //!
-//! [`read_map`] and [`write_map`] pick the format by the extension. Where there are no files,
-//! [`map_from_bytes`] and [`scenarios_from_bytes`] read the same, with the same errors, and each
-//! format has functions from bytes and to bytes.
-//!
-//! ```no_run
-//! use keyway::map::formats::{read_map, write_map};
-//! use std::path::Path;
-//!
-//! let loaded = read_map(Path::new("maps/office.yaml"), None)?;
-//! println!("{} ({})", loaded.digest, loaded.format);
-//! write_map(Path::new("office.map"), &loaded.grid)?;
-//! # Ok::<(), keyway::map::formats::MapFileError>(())
-//! ```
+//! [`map_from_bytes`] and [`scenarios_from_bytes`] read from memory and pick the format by the
+//! extension of a name; each format has functions from bytes and to bytes, too. With the feature
+//! `files`, `read_map` and `write_map` do the same with files. Limits and errors are equal.
 
 mod cell_limit;
 mod decoded_image;
 mod digest;
 mod error;
+#[cfg(feature = "files")]
 mod files;
+mod format;
 mod image;
 mod layout;
 mod movingai;
@@ -40,15 +32,17 @@ pub use cell_limit::{DEFAULT_MAX_CELLS, TooManyCells};
 pub use decoded_image::ImageError;
 pub use digest::digest;
 pub use error::MapFileError;
-pub use files::{
-    MAX_MAP_BYTES, MapFormat, read_scenarios, read_scenarios_for, ros_map_image,
-    scenarios_from_bytes, write_map, write_ros_map,
-};
-pub use image::{ImageKind, grid_from_image, image_from_grid};
+#[cfg(feature = "files")]
+pub use files::{read_map, read_scenarios, read_scenarios_for, write_map, write_ros_map};
+pub use format::MapFormat;
+pub use image::{ImageKind, grid_from_image, image_from_grid, ros_map_image};
 pub use movingai::{MovingAiError, movingai_map_from_grid, parse_movingai_map};
 pub use notices::{MapLoss, MapWarning};
 pub use placement::ImagePlacement;
-pub use reader::{LoadedMap, MapReader, map_from_bytes, read_map};
+pub use reader::{
+    LoadedMap, MAX_MAP_BYTES, MapReader, map_from_bytes, scenarios_for_from_bytes,
+    scenarios_from_bytes,
+};
 pub use ros::{RosMap, RosMapError};
 pub use rule::{CellRule, MapMode};
 pub use scenarios::{Scenario, ScenarioError, parse_scenarios};

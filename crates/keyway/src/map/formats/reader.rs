@@ -1,18 +1,21 @@
-//! Reading maps: the extension picks the format, errors name the file.
+//! Reading maps from memory: the extension of a name picks the format, errors repeat the name.
 
-use super::files::{MAX_MAP_BYTES, YAML_BYTES};
 use super::image::{grid_of_at_most, size_of_image};
 use super::movingai::{Octile, map_of_at_most, size_of_map};
 use super::rule::Doubts;
 use super::{
     CellRule, DEFAULT_MAX_CELLS, ImageError, ImagePlacement, MapFileError, MapFormat, MapWarning,
-    MovingAiError, RosMap, check_size, digest,
+    MovingAiError, RosMap, Scenario, check_size, digest, parse_scenarios,
 };
-use crate::file_system::ReadError;
-use crate::file_system::read_file_if;
-use crate::map::OccupancyGrid;
+use crate::file_error::{ReadError, check_length};
+use crate::map::{GridFrame, MAX_CELLS, OccupancyGrid};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+
+/// No map file may be larger: what the largest map takes as a plain image, four bytes for a cell.
+pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
+const YAML_BYTES: u64 = 1 << 20;
+pub(super) const SCENARIOS_BYTES: u64 = 1 << 30;
 
 /// A map and what identifies it in reports.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,15 +33,6 @@ pub struct LoadedMap {
 }
 
 /// Settings with which map files are read.
-///
-/// ```no_run
-/// use keyway::map::formats::MapReader;
-/// use std::path::Path;
-///
-/// let reader = MapReader { max_cells: 1 << 30, ..MapReader::default() };
-/// let loaded = reader.read(Path::new("maps/city.png"))?;
-/// # Ok::<(), keyway::map::formats::MapFileError>(())
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapReader {
     /// Placement of a map whose file does not say where it lies; `None`: cells of 1 m from (0, 0).
@@ -53,22 +47,14 @@ impl Default for MapReader {
     }
 }
 
-/// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells; its extension (`.yaml`, `.yml`, `.map`,
-/// `.pgm`, `.png`) names the format.
+/// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells from memory. The extension of `name`
+/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format, and errors and warnings call the map
+/// by it; nothing of this name needs to exist. `image` gives the content of the image that a YAML
+/// file names, by its name there after the folder of `name`; no other format needs it. It answers
+/// with [`ReadError::System`] and [`std::io::ErrorKind::NotFound`] where there is no such image.
 ///
-/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
+/// A YAML file itself says where its map lies. Other maps do not: they lie where `placement` says,
 /// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
-///
-/// # Errors
-/// As for [`MapReader::read`].
-pub fn read_map(path: &Path, placement: Option<ImagePlacement>) -> Result<LoadedMap, MapFileError> {
-    MapReader { placement, ..MapReader::default() }.read(path)
-}
-
-/// Reads a map from memory, like [`read_map`] from files. The extension of `name` names the format,
-/// and errors and warnings call the map by it; nothing of this name needs to exist. `image` gives
-/// the content of the image that a YAML file names, by its name there after the folder of `name`;
-/// no other format needs it.
 ///
 /// ```
 /// use keyway::map::formats::map_from_bytes;
@@ -100,41 +86,32 @@ pub fn map_from_bytes(
 }
 
 /// Refuses a file by its beginning, before the rest is read.
-type Check<'a> = &'a dyn Fn(&[u8]) -> Result<(), MapFileError>;
+pub(super) type Check<'a> = &'a dyn Fn(&[u8]) -> Result<(), MapFileError>;
 
 impl MapReader {
-    /// Reads a map, like [`read_map`].
-    ///
-    /// # Errors
-    /// If the file, or the image that it names, cannot be read or is malformed; when the extension
-    /// is not one of those; when there is a placement for a YAML file; when the map has too many
-    /// cells.
-    pub fn read(&self, path: &Path) -> Result<LoadedMap, MapFileError> {
-        self.load(path, |path, limit_bytes, check: Check<'_>| {
-            read_file_if(path, limit_bytes, check)
-        })
-    }
-
     /// Reads a map from memory, like [`map_from_bytes`].
     ///
     /// # Errors
-    /// As for [`Self::read`]; and what `image` returns.
+    /// If the map, or the image that it names, is malformed or longer than a file of its kind may
+    /// be; when the extension is not one of those; when there is a placement for a YAML file; when
+    /// the map has too many cells; and what `image` returns.
     pub fn from_bytes(
         &self,
         name: &Path,
         bytes: &[u8],
         image: impl Fn(&Path) -> Result<Vec<u8>, ReadError>,
     ) -> Result<LoadedMap, MapFileError> {
-        self.load(name, |path, _, check: Check<'_>| {
+        self.load(name, |path, limit_bytes, check: Check<'_>| {
             let bytes = if path == name { Cow::Borrowed(bytes) } else { Cow::Owned(image(path)?) };
             check(&bytes)?;
+            check_length(path, &bytes, limit_bytes)?;
             Ok(bytes)
         })
     }
 
     /// `read` gives the content of a file of at most this many bytes, if the check of its beginning
     /// allows it.
-    fn load<B: AsRef<[u8]>>(
+    pub(super) fn load<B: AsRef<[u8]>>(
         &self,
         path: &Path,
         read: impl Fn(&Path, u64, Check<'_>) -> Result<B, MapFileError>,
@@ -211,6 +188,29 @@ impl MapReader {
     }
 }
 
-#[cfg(test)]
-#[path = "reader_tests.rs"]
-mod tests;
+/// Reads MovingAI scenarios from memory, see [`parse_scenarios`]; errors call the file `name`.
+///
+/// # Errors
+/// When the content is malformed, or longer than a `.scen` file may be.
+pub fn scenarios_from_bytes(name: &Path, bytes: &[u8]) -> Result<Vec<Scenario>, MapFileError> {
+    check_length(name, bytes, SCENARIOS_BYTES)?;
+    parse_scenarios(bytes)
+        .map_err(|reason| MapFileError::Scenarios { path: name.to_owned(), reason })
+}
+
+/// Reads MovingAI scenarios, all of which must be for a map of this size; errors call the file
+/// `name`.
+///
+/// # Errors
+/// As for [`scenarios_from_bytes`]; and when a scenario is for a map of another size, naming its
+/// line.
+pub fn scenarios_for_from_bytes(
+    name: &Path,
+    bytes: &[u8],
+    frame: &GridFrame,
+) -> Result<Vec<Scenario>, MapFileError> {
+    let scenarios = scenarios_from_bytes(name, bytes)?;
+    let checked = scenarios.iter().try_for_each(|scenario| scenario.check_map(frame));
+    checked.map_err(|reason| MapFileError::Scenarios { path: name.to_owned(), reason })?;
+    Ok(scenarios)
+}

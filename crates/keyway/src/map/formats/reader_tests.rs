@@ -1,3 +1,4 @@
+use super::super::{DEFAULT_MAX_CELLS, png};
 use super::*;
 use crate::file_system::test_folder::TestFolder;
 use crate::map::MAX_CELLS;
@@ -53,7 +54,7 @@ fn the_limit_itself_passes() {
     let pixels = b"\0".repeat(12);
     let whole = |bytes: &[u8]| [bytes, b"0 0 0 0 0 0 0 0 0 0 0 0"].concat();
     let [(_, plain), (_, binary), (_, octile), _] = beginnings(4, 3);
-    let png = super::super::png::encode(4, 3, &pixels);
+    let png = png::encode(4, 3, &pixels);
     let yaml = b"image: b.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
     for (name, content) in [
         ("a.pgm", whole(&plain)),
@@ -63,7 +64,7 @@ fn the_limit_itself_passes() {
         ("e.yaml", yaml.to_vec()),
     ] {
         let path = folder.write(name, &content);
-        let image = |path: &Path| crate::file_system::read_file(path, 1 << 10);
+        let image = |path: &Path| read_file(path, 1 << 10);
         for (max_cells, is_read) in [(12, true), (11, false), (1, false), (u64::MAX, true)] {
             let reader = MapReader { max_cells, ..MapReader::default() };
             for read in [reader.read(&path), reader.from_bytes(&path, &content, image)] {
