@@ -70,9 +70,11 @@ pub use jps::{Jps, JpsConfig};
 pub use lazy_theta_star::{LazyThetaStar, LazyThetaStarConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
 pub use prepare_progress::PrepareProgress;
-pub use prepared::{Preparation, PrepareError, Prepared, PreparedConfig};
+#[cfg(feature = "files")]
+pub use prepared::PreparedFileError;
 #[cfg(feature = "formats")]
-pub use prepared::{PreparedFileError, PreparedFormatError};
+pub use prepared::PreparedFormatError;
+pub use prepared::{Preparation, PrepareError, Prepared, PreparedConfig};
 pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
 pub use rrt::{Rrt, RrtConfig};
 pub use shortest::shortest_line;

@@ -163,42 +163,6 @@ impl Labels {
         best
     }
 
-    /// Checks that queries can rely on the tables, whoever made them: each label ends with its own
-    /// node, and every hop leads nearer to its hub, to the cell of the node it names. `first` must
-    /// be ascending and end with the number of entries. Otherwise the error is the place of an
-    /// entry at fault.
-    #[cfg(feature = "formats")]
-    pub(super) fn check(&self, cells: &[Cell]) -> Result<(), usize> {
-        let mut owners = vec![0; self.entries.len()];
-        for node in 0..cells.len() {
-            owners[self.first[node] as usize..self.first[node + 1] as usize].fill(node as u32);
-        }
-        for (place, (entry, hop)) in self.entries.iter().zip(&self.hops).enumerate() {
-            let node = owners[place];
-            let is_last = place + 1 == self.first[node as usize + 1] as usize;
-            let is_own = entry.hub() == node && entry.key() == 0 && hop.next() == place;
-            let ascends = is_last || entry.hub() < self.entries[place + 1].hub();
-            let is_right =
-                if is_last { is_own } else { ascends && self.leads_on(place, &owners, cells) };
-            if !is_right {
-                return Err(place);
-            }
-        }
-        Ok(())
-    }
-
-    #[cfg(feature = "formats")]
-    fn leads_on(&self, place: usize, owners: &[u32], cells: &[Cell]) -> bool {
-        let (entry, hop) = (self.entries[place], self.hops[place]);
-        let Some(&after) = self.entries.get(hop.next()) else { return false };
-        let (from, to) = (cells[owners[place] as usize], cells[owners[hop.next()] as usize]);
-        let leg = Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
-        from != to
-            && after.hub() == entry.hub()
-            && after.cost() + leg == entry.cost()
-            && octant(from, to) == hop.octant()
-    }
-
     pub(super) fn memory_bytes(&self) -> usize {
         let numbers = self.first.capacity() + self.hops.capacity();
         numbers * size_of::<u32>() + self.entries.capacity() * size_of::<Entry>()

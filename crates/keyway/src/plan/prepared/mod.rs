@@ -37,8 +37,10 @@
 
 mod corners;
 mod diagonals;
-#[cfg(feature = "formats")]
+#[cfg(feature = "files")]
 mod file;
+#[cfg(feature = "formats")]
+mod format;
 mod graph;
 mod hubs;
 mod labels;
@@ -52,8 +54,10 @@ use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, PrepareProgress, Stop};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Observer, Query, Workspace};
+#[cfg(feature = "files")]
+pub use file::PreparedFileError;
 #[cfg(feature = "formats")]
-pub use file::{PreparedFileError, PreparedFormatError};
+pub use format::PreparedFormatError;
 pub use prepare_error::PrepareError;
 
 use corners::Corners;

@@ -1,4 +1,4 @@
-//! Prepared maps as files: what was written is read, and nothing else.
+//! Prepared maps as bytes: what was written is read, and nothing else.
 
 use super::super::{GlobalPlanner, Plan, Prepared};
 use super::*;
@@ -97,21 +97,4 @@ fn one_cell_makes_another_map() {
         let error = Prepared::from_bytes(&bytes, &other).unwrap_err();
         assert_eq!(error, PreparedFormatError::OtherMap, "{cell}");
     }
-}
-
-#[test]
-fn errors_name_the_file() {
-    let folder = std::env::temp_dir().join(format!("keyway-prepared-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("a.prepared");
-    let map = map(&ROWS);
-    let missing = Prepared::load(&path, &map).unwrap_err().to_string();
-    assert!(missing.starts_with(&format!("cannot read {}", path.display())), "{missing}");
-    let prepared = Prepared::build(&map).unwrap();
-    assert_eq!(prepared.save(&path).unwrap(), prepared.to_bytes().len() as u64);
-    assert_eq!(Prepared::load(&path, &map).unwrap().labels, prepared.labels);
-    std::fs::write(&path, "type octile\n").unwrap();
-    let strange = Prepared::load(&path, &map).unwrap_err().to_string();
-    assert!(strange.contains("a.prepared: this is not a prepared map"), "{strange}");
-    std::fs::remove_dir_all(&folder).unwrap();
 }
