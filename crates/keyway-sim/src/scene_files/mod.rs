@@ -1,5 +1,10 @@
 //! Scene files: which robot drives where, in which world, as one small text file.
+//!
+//! [`scene_from_bytes`] and [`disturbances_from_bytes`] read from memory. With the feature `files`,
+//! `read_scene` and `read_disturbances` do the same with files.
 
+mod from_bytes;
+#[cfg(feature = "files")]
 mod read;
 mod scene;
 mod scene_error;
@@ -8,9 +13,9 @@ mod scene_rules;
 mod scene_version;
 mod unknown;
 
-pub use read::{
-    SceneFileError, disturbances_from_bytes, read_disturbances, read_scene, scene_from_bytes,
-};
+pub use from_bytes::{SceneFileError, disturbances_from_bytes, scene_from_bytes};
+#[cfg(feature = "files")]
+pub use read::{read_disturbances, read_scene};
 pub use scene::{SceneFile, SceneMap};
 pub use scene_error::SceneError;
 pub use scene_robots::SceneRobot;

@@ -1,64 +1,17 @@
-//! Files of scenes and disturbances, from a path or from memory.
+//! Files of scenes and disturbances.
 
-use super::{SceneError, SceneFile};
+use super::{SceneFile, SceneFileError, disturbances_from_bytes, scene_from_bytes};
 use crate::sim::Disturbances;
-use keyway::ConfigError;
-use keyway::files::{
-    ConfigFileError, MAX_TOML_BYTES, TextFileError, file_text, from_toml, read_text,
-};
-use std::path::{Path, PathBuf};
-use thiserror::Error;
-
-/// Reason why a scene file, or a file that it names, cannot be used.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum SceneFileError {
-    /// A file cannot be read or is not TOML, or a file of a robot, a stack or disturbances is
-    /// wrong.
-    #[error(transparent)]
-    Config(#[from] ConfigFileError),
-    /// A file is not a scene.
-    #[error("{}: {reason}", path.display())]
-    Scene {
-        /// The file.
-        path: PathBuf,
-        /// Error of the scene.
-        reason: SceneError,
-    },
-}
-
-impl From<TextFileError> for SceneFileError {
-    fn from(error: TextFileError) -> Self {
-        Self::Config(error.into())
-    }
-}
-
-impl SceneFileError {
-    /// Path of the field that is to blame; empty if the error concerns the file, its name, or the
-    /// whole scene.
-    pub fn field(&self) -> &str {
-        match self {
-            Self::Config(error) => error.field(),
-            Self::Scene { .. } => "",
-        }
-    }
-}
+use keyway::file_system::read_file;
+use keyway::files::{MAX_TOML_BYTES, TextFileError};
+use std::path::Path;
 
 /// Reads and checks a scene file.
 ///
 /// # Errors
 /// When the file cannot be read, or does not hold a scene.
 pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
-    scene_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes())
-}
-
-/// Reads and checks a scene from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content is not a scene.
-pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
-    SceneFile::from_toml(file_text(name, bytes)?)
-        .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
+    scene_from_bytes(path, &read_toml(path)?)
 }
 
 /// Reads and checks a file of disturbances: the fields of `[disturbances]` of a scene. The random
@@ -67,47 +20,10 @@ pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFil
 /// # Errors
 /// When the file cannot be read, does not contain disturbances, or names a seed.
 pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
-    disturbances_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes())
+    disturbances_from_bytes(path, &read_toml(path)?)
 }
 
-/// Reads and checks disturbances from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content does not contain disturbances, or names a seed.
-pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
-    let path = || name.to_owned();
-    let disturbances: Disturbances = from_toml(file_text(name, bytes)?)
-        .map_err(|reason| ConfigFileError::Toml { path: path(), reason })?;
-    let no_seed = if disturbances.seed == 0 {
-        Ok(())
-    } else {
-        let expected = "left out: it is that of the scene";
-        Err(ConfigError::must_be("seed", expected, disturbances.seed as f64))
-    };
-    match disturbances.validate().and(no_seed) {
-        Ok(()) => Ok(disturbances),
-        Err(reason) => Err(ConfigFileError::Value { path: path(), reason }.into()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_name_the_source() {
-        let name = Path::new("a/b.toml");
-        let errors = [
-            disturbances_from_bytes(name, b"[actuation]\ndelay_s = -1.0").unwrap_err().to_string(),
-            disturbances_from_bytes(name, b"[motors]").unwrap_err().to_string(),
-            disturbances_from_bytes(name, b"seed = 3").unwrap_err().to_string(),
-            scene_from_bytes(name, b"version = 2").unwrap_err().to_string(),
-            scene_from_bytes(name, b"\xff").unwrap_err().to_string(),
-        ];
-        for error in &errors {
-            assert!(error.starts_with("a/b.toml: "), "{error}");
-        }
-        assert!(errors[0].contains("actuation.delay_s must be a time"), "{}", errors[0]);
-        assert!(errors[2].contains("seed must be left out"), "{}", errors[2]);
-    }
+/// The content of a file of TOML.
+fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
+    Ok(read_file(path, MAX_TOML_BYTES)?)
 }

@@ -1,9 +1,18 @@
-//! Files of robots, stacks and parameters: TOML that says where it is wrong.
+//! Robots, stacks and parameters as TOML that says where it is wrong.
+//!
+//! [`robot_from_bytes`], [`stack_from_bytes`] and [`parameters_from_bytes`] read from memory. With
+//! the feature `files`, `read_robot`, `read_stack` and `read_parameters` do the same with files.
+//! Limits and errors are equal.
 
+mod config_file_error;
 mod meant;
+mod missing;
 mod overlay;
 mod parameter_layers;
+mod parameters;
+#[cfg(feature = "files")]
 mod read;
+mod robot;
 mod robot_size;
 mod stack;
 mod stack_base;
@@ -11,18 +20,20 @@ mod text_file;
 mod toml_messages;
 mod toml_text;
 
+pub use config_file_error::ConfigFileError;
 pub use meant::did_you_mean;
 pub use overlay::{NamedDefault, Overlay, OverlayError, value_from_text};
 pub use parameter_layers::{
     Assignment, AssignmentError, FieldValue, LayerError, LayerFault, ParameterFile, ParameterLayer,
     ParameterLayers,
 };
-pub use read::{
-    ConfigFileError, MAX_TOML_BYTES, find_robot, read_parameters, read_robot, robot_from_bytes,
-};
+pub use parameters::parameters_from_bytes;
+#[cfg(feature = "files")]
+pub use read::{find_robot, find_stack, read_parameters, read_robot, read_stack, read_text};
+pub use robot::robot_from_bytes;
 pub use robot_size::{RadiusBeyondMap, RobotLayersError, RobotSize, StartingValues};
-pub use stack::{find_stack, read_stack, stack_from_bytes};
+pub use stack::stack_from_bytes;
 pub use stack_base::{ParameterError, StackBase};
-pub use text_file::{TextFileError, file_text, read_text};
+pub use text_file::{MAX_TOML_BYTES, TextFileError, file_text};
 use toml_messages::in_plain_words;
 pub use toml_text::{TomlError, from_toml};

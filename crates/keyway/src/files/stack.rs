@@ -1,49 +1,27 @@
-//! Stack files: all of a stack, from a path or from memory.
+//! Stacks from memory: all of a stack as TOML.
 
+use super::missing::missing_fields;
 use super::overlay::{NamedDefault, Overlay, OverlayError};
-use super::read::{file_of, missing_fields};
 use super::toml_text::place_of_field;
-use super::{ConfigFileError, MAX_TOML_BYTES, StackBase, TomlError};
-use super::{file_text, from_toml, read_text};
+use super::{ConfigFileError, MAX_TOML_BYTES, StackBase, TomlError, file_text, from_toml};
 use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::Path;
 use toml::Table;
 
-/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks
-/// like one), relative to `folder`, with the parameters that it has there.
+/// Reads a stack from memory, all of a [`Stack`] as TOML, and checks it for a robot; errors call
+/// the file `name`.
 ///
 /// # Errors
-/// When there is no such stack; as for [`read_stack`].
-pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
-    if let Some(stack) = Stack::by_name(name, robot) {
-        return Ok(stack);
-    }
-    match file_of(name, folder) {
-        Some(path) => read_stack(&path, robot),
-        None => Err(ConfigFileError::NoStack { name: name.to_owned() }),
-    }
-}
-
-/// Reads a stack file, all of a [`Stack`] as TOML, and checks it for a robot.
-///
-/// # Errors
-/// When the file cannot be read, or does not hold a stack that the robot can be driven with.
-pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
-    stack_from_bytes(path, read_text(path, MAX_TOML_BYTES)?.as_bytes(), robot)
-}
-
-/// The same from memory; errors call the file `name`.
-///
-/// # Errors
-/// When the content is not a stack that the robot can be driven with.
+/// When the content holds more than [`MAX_TOML_BYTES`], or is not a stack that the robot can be
+/// driven with.
 pub fn stack_from_bytes(
     name: &Path,
     bytes: &[u8],
     robot: &Robot,
 ) -> Result<Stack, ConfigFileError> {
     let path = || name.to_owned();
-    let text = file_text(name, bytes)?;
+    let text = file_text(name, bytes, MAX_TOML_BYTES)?;
     let stack: Stack = from_toml(text).map_err(|error| {
         let reason = in_part(text, &error, robot).unwrap_or(error);
         ConfigFileError::Toml { path: path(), reason }
@@ -84,20 +62,6 @@ fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn stacks_are_found_by_name_or_as_files() {
-        let (folder, robot) = (Path::new("/nowhere"), Robot::small());
-        let named = find_stack("s0-key-point", folder, &robot).unwrap();
-        assert_eq!(Some(&named), Stack::by_name("s0-key-point", &robot).as_ref());
-        let file = find_stack("mine.toml", folder, &robot).unwrap_err().to_string();
-        assert!(file.contains("/nowhere/mine.toml: there is no such file"), "{file}");
-        let name = find_stack("hay", folder, &robot).unwrap_err().to_string();
-        assert!(
-            name.starts_with("there is no stack `hay`, expected one of keyway, key-point-fusion")
-        );
-        assert!(name.ends_with(", rrt-follow, or a file"), "{name}");
-    }
 
     #[test]
     fn every_stack_is_a_file_with_all_of_it() {

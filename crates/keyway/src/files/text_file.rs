@@ -1,9 +1,12 @@
-//! Text files, read within limits.
+//! Texts of files, within limits.
 
-use crate::file_system::{ReadError, read_file};
+use crate::file_error::{ReadError, check_length};
 use crate::map::formats::{TextError, text_from_bytes};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+
+/// More than any scene, robot, stack or file of parameters holds \[bytes\].
+pub const MAX_TOML_BYTES: u64 = 16 << 20;
 
 /// Error of a text file.
 #[derive(Debug, Error)]
@@ -22,18 +25,15 @@ pub enum TextFileError {
     },
 }
 
-/// Reads the text of a file of at most `limit_bytes`, without a byte order mark.
+/// Text of a file of this name and of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
-/// When the file cannot be read, holds more, or is not UTF-8.
-pub fn read_text(path: &Path, limit_bytes: u64) -> Result<String, TextFileError> {
-    file_text(path, &read_file(path, limit_bytes)?).map(str::to_owned)
-}
-
-/// Text of a file of this name, without a byte order mark.
-///
-/// # Errors
-/// When it is not UTF-8.
-pub fn file_text<'a>(name: &Path, bytes: &'a [u8]) -> Result<&'a str, TextFileError> {
+/// When it holds more, or is not UTF-8.
+pub fn file_text<'a>(
+    name: &Path,
+    bytes: &'a [u8],
+    limit_bytes: u64,
+) -> Result<&'a str, TextFileError> {
+    check_length(name, bytes, limit_bytes)?;
     text_from_bytes(bytes).map_err(|reason| TextFileError::Text { path: name.to_owned(), reason })
 }
