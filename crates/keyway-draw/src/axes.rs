@@ -1,141 +1,124 @@
-//! Axes with ticks and labels around a plot area.
+//! Draws axes around a panel.
 
+use crate::axis::{Axis, GAP_PX, NAME_GAP_PX, NOTE_GAP_PX, ROWS_INSET_PX, TEXT_PX, TICK_PX};
 use crate::color::INK;
-use crate::text::text_width_px;
-use crate::ticks::Ticks;
-use crate::writer::{Anchor, SvgWriter};
+use crate::name_lines::NameLines;
+use crate::text::SMALL_TEXT_PX;
+use crate::writer::{Anchor, SvgWriter, number};
 
-/// Size of tick labels and of the legend \[px\].
-pub(crate) const SMALL_TEXT_PX: f64 = 11.0;
-/// Size of axis labels \[px\].
-pub(crate) const TEXT_PX: f64 = 12.0;
-/// Size of the title \[px\].
-pub(crate) const TITLE_PX: f64 = 13.5;
 /// Width of axes and ticks \[px\].
 const LINE_PX: f64 = 0.8;
-const TICK_PX: f64 = 4.0;
-const GAP_PX: f64 = 4.0;
 /// Height of digits as a share of the text size, to centre them on their tick.
 const DIGIT_HEIGHT: f64 = 0.73;
+const HALF_DIGIT_PX: f64 = 0.5 * DIGIT_HEIGHT * SMALL_TEXT_PX;
 
-/// Height of everything below the plot area that belongs to its lower axis \[px\].
+/// Height of everything below the panel that belongs to its lower axis \[px\].
 pub(crate) const BOTTOM_AXIS_PX: f64 = TICK_PX + GAP_PX + SMALL_TEXT_PX + GAP_PX + TEXT_PX + 4.0;
 
-/// Values along an axis to pixels.
+/// A place on the page.
+type Px = (f64, f64);
+
+/// An axis with the places of its ends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Scale {
-    pub(crate) low: f64,
-    pub(crate) high: f64,
-    pub(crate) low_px: f64,
-    pub(crate) high_px: f64,
+pub(crate) struct Scale<'a> {
+    pub(crate) axis: &'a Axis,
+    low_px: f64,
+    high_px: f64,
 }
 
-impl Scale {
+impl<'a> Scale<'a> {
+    pub(crate) const fn across(axis: &'a Axis, left_px: f64, right_px: f64) -> Self {
+        Self { axis, low_px: left_px, high_px: right_px }
+    }
+
+    /// Categories lead downwards, values upwards.
+    pub(crate) const fn upright(axis: &'a Axis, top_px: f64, bottom_px: f64) -> Self {
+        if axis.is_of_categories {
+            Self { axis, low_px: top_px + ROWS_INSET_PX, high_px: bottom_px - ROWS_INSET_PX }
+        } else {
+            Self { axis, low_px: bottom_px, high_px: top_px }
+        }
+    }
+
     pub(crate) fn px(&self, value: f64) -> f64 {
-        let span = self.high - self.low;
-        let fraction = if span == 0.0 { 0.5 } else { (value - self.low) / span };
+        self.px_at(self.axis.fraction(value))
+    }
+
+    /// Like [`Self::px`], or the end of the axis where a value is beyond it.
+    pub(crate) fn px_within(&self, value: f64) -> f64 {
+        self.px_at(self.axis.fraction(value).clamp(0.0, 1.0))
+    }
+
+    fn px_at(&self, fraction: f64) -> f64 {
         self.low_px + (self.high_px - self.low_px) * fraction
     }
-}
 
-/// Places along an axis, each with its text.
-pub(crate) type Marks = [(f64, String)];
+    /// Ticks with their texts: each from a place to another one, with the text at a third one.
+    fn draw_ticks(&self, out: &mut SvgWriter, anchor: Anchor, places: impl Fn(f64) -> [Px; 3]) {
+        for (value, text) in &self.axis.marks {
+            let [from, to, (x, base)] = places(self.px(*value));
+            out.tag("line").between(from, to).stroke(INK, LINE_PX).leaf();
+            out.label(x, base, SMALL_TEXT_PX, anchor, text);
+        }
+    }
 
-fn marks(ticks: &Ticks) -> Vec<(f64, String)> {
-    ticks.values.iter().copied().zip(ticks.texts()).collect()
-}
-
-/// Ticks, their numbers and the label below a plot whose lower edge is at `y`.
-pub(crate) fn bottom_axis(out: &mut SvgWriter, scale: Scale, y: f64, ticks: &Ticks, label: &str) {
-    marked_bottom_axis(out, scale, y, &marks(ticks), label);
-}
-
-/// Like [`bottom_axis`], with any texts.
-pub(crate) fn marked_bottom_axis(
-    out: &mut SvgWriter,
-    scale: Scale,
-    y: f64,
-    marks: &Marks,
-    label: &str,
-) {
-    for (value, text) in marks {
-        let x = scale.px(*value);
-        out.tag("line").between((x, y), (x, y + TICK_PX)).stroke(INK, LINE_PX).leaf();
+    /// Ticks, their texts and the label below a panel whose lower edge is at `y`.
+    pub(crate) fn draw_below(&self, out: &mut SvgWriter, y: f64) {
         let base = y + TICK_PX + GAP_PX + DIGIT_HEIGHT * SMALL_TEXT_PX;
-        out.label(x, base, SMALL_TEXT_PX, Anchor::Middle, text);
+        self.draw_ticks(out, Anchor::Middle, |x| [(x, y), (x, y + TICK_PX), (x, base)]);
+        if let Some(label) = &self.axis.label {
+            out.label(self.middle_px(), y + BOTTOM_AXIS_PX - 4.0, TEXT_PX, Anchor::Middle, label);
+        }
     }
-    let middle = 0.5 * (scale.low_px + scale.high_px);
-    let base = y + BOTTOM_AXIS_PX - 4.0;
-    out.label(middle, base, TEXT_PX, Anchor::Middle, label);
-}
 
-/// Width of everything beside the plot area that belongs to a left or right axis \[px\].
-pub(crate) fn side_axis_px(ticks: &Ticks) -> f64 {
-    marked_side_axis_px(&marks(ticks))
-}
-
-/// Like [`side_axis_px`], with any texts.
-pub(crate) fn marked_side_axis_px(marks: &Marks) -> f64 {
-    let width_px = |(_, text): &(f64, String)| text_width_px(text, SMALL_TEXT_PX);
-    let widest_px = marks.iter().map(width_px).fold(0.0, f64::max);
-    TICK_PX + GAP_PX + widest_px + 2.0 * GAP_PX + TEXT_PX
-}
-
-/// Ticks, their numbers and the label left of a plot whose left edge is at `x`; `width_px` is the
-/// room taken ([`side_axis_px`], or more to align several plots).
-pub(crate) fn left_axis(
-    out: &mut SvgWriter,
-    scale: Scale,
-    x: f64,
-    width_px: f64,
-    ticks: &Ticks,
-    label: &str,
-) {
-    marked_left_axis(out, scale, x, width_px, &marks(ticks), label);
-}
-
-/// Like [`left_axis`], with any texts.
-pub(crate) fn marked_left_axis(
-    out: &mut SvgWriter,
-    scale: Scale,
-    x: f64,
-    width_px: f64,
-    marks: &Marks,
-    label: &str,
-) {
-    for (value, text) in marks {
-        let y = scale.px(*value);
-        out.tag("line").between((x - TICK_PX, y), (x, y)).stroke(INK, LINE_PX).leaf();
-        let base = y + 0.5 * DIGIT_HEIGHT * SMALL_TEXT_PX;
-        out.label(x - TICK_PX - GAP_PX, base, SMALL_TEXT_PX, Anchor::End, text);
+    /// Ticks, their texts and the label left of a panel whose left edge is at `x`; `width_px` is
+    /// the room taken ([`Axis::side_px`], or more to align several panels). Categories have names
+    /// alone.
+    pub(crate) fn draw_left(&self, out: &mut SvgWriter, x: f64, width_px: f64) {
+        if self.axis.is_of_categories {
+            self.draw_rows(out, &self.axis.names, x - NAME_GAP_PX, Anchor::End);
+        } else {
+            let (end, text) = (x - TICK_PX, x - TICK_PX - GAP_PX);
+            let places = |y| [(end, y), (x, y), (text, y + HALF_DIGIT_PX)];
+            self.draw_ticks(out, Anchor::End, places);
+        }
+        self.draw_upright_label(out, x - width_px + DIGIT_HEIGHT * TEXT_PX);
     }
-    let middle = 0.5 * (scale.low_px + scale.high_px);
-    upright_label(out, x - width_px + DIGIT_HEIGHT * TEXT_PX, middle, label);
-}
 
-/// Like [`left_axis`], on the right.
-pub(crate) fn right_axis(out: &mut SvgWriter, scale: Scale, x: f64, ticks: &Ticks, label: &str) {
-    for (&value, text) in ticks.values.iter().zip(ticks.texts()) {
-        let y = scale.px(value);
-        out.tag("line").between((x, y), (x + TICK_PX, y)).stroke(INK, LINE_PX).leaf();
-        let base = y + 0.5 * DIGIT_HEIGHT * SMALL_TEXT_PX;
-        out.label(x + TICK_PX + GAP_PX, base, SMALL_TEXT_PX, Anchor::Start, &text);
+    /// The notes of categories right of a panel whose right edge is at `x`.
+    pub(crate) fn draw_notes(&self, out: &mut SvgWriter, x: f64) {
+        self.draw_rows(out, &self.axis.notes, x + NOTE_GAP_PX, Anchor::Start);
     }
-    let middle = 0.5 * (scale.low_px + scale.high_px);
-    upright_label(out, x + side_axis_px(ticks) - 2.0, middle, label);
+
+    /// Each in the middle of its row.
+    fn draw_rows(&self, out: &mut SvgWriter, texts: &[NameLines], x: f64, anchor: Anchor) {
+        for (text, (value, _)) in texts.iter().zip(&self.axis.marks) {
+            let below = 0.36 * SMALL_TEXT_PX + 0.5 * (text.height_px() - NameLines::LINE_PX);
+            text.draw(out, x, self.px(*value) + below, anchor);
+        }
+    }
+
+    /// Like [`Self::draw_left`], on the right.
+    pub(crate) fn draw_right(&self, out: &mut SvgWriter, x: f64) {
+        let end = x + TICK_PX;
+        let places = |y| [(x, y), (end, y), (end + GAP_PX, y + HALF_DIGIT_PX)];
+        self.draw_ticks(out, Anchor::Start, places);
+        self.draw_upright_label(out, x + self.axis.side_px() - 2.0);
+    }
+
+    fn middle_px(&self) -> f64 {
+        0.5 * (self.low_px + self.high_px)
+    }
+
+    fn draw_upright_label(&self, out: &mut SvgWriter, x: f64) {
+        let (y, Some(label)) = (self.middle_px(), &self.axis.label) else { return };
+        let turn = format!("rotate(-90 {} {})", number(x), number(y));
+        let tag = out.tag("text").at(x, y).num("font-size", TEXT_PX).anchor(Anchor::Middle);
+        tag.attr("transform", &turn).text(label);
+    }
 }
 
-fn upright_label(out: &mut SvgWriter, x: f64, y: f64, label: &str) {
-    let turn = format!("rotate(-90 {} {})", crate::writer::number(x), crate::writer::number(y));
-    out.tag("text")
-        .at(x, y)
-        .num("font-size", TEXT_PX)
-        .anchor(Anchor::Middle)
-        .attr("transform", &turn)
-        .text(label);
-}
-
-/// The border of a plot area.
+/// The border of a panel.
 pub(crate) fn border(out: &mut SvgWriter, x: f64, y: f64, width: f64, height: f64) {
     out.tag("rect").at(x, y).size(width, height).attr("fill", "none").stroke(INK, LINE_PX).leaf();
 }

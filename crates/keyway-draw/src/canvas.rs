@@ -164,13 +164,8 @@ impl<'a> Canvas<'a> {
         if path.is_empty() {
             return false;
         }
-        let matrix = self.view.px_from_grid(self.map.frame(), first, unit).map(matrix_entry);
-        self.body
-            .tag("path")
-            .attr("transform", &format!("matrix({})", matrix.join(" ")))
-            .fill(color)
-            .attr("d", path)
-            .leaf();
+        let matrix = self.view.px_from_grid(self.map.frame(), first, unit);
+        self.body.tag("path").matrix(matrix).fill(color).attr("d", path).leaf();
         true
     }
 
@@ -180,11 +175,9 @@ impl<'a> Canvas<'a> {
         let mut data = PathData::default();
         for part in points.split(|point| !point.is_finite()) {
             if let [first, rest @ ..] = part {
-                data.move_to(self.view.px_from_world(*first));
                 let rest = if rest.is_empty() { part } else { rest };
-                for &point in rest {
-                    data.line_to(self.view.px_from_world(point));
-                }
+                let all = std::iter::once(first).chain(rest);
+                data.append(all.map(|&point| self.view.px_from_world(point)));
             }
         }
         self.path(&data, style)
@@ -226,17 +219,12 @@ impl<'a> Canvas<'a> {
         }
         let frame = self.map.frame();
         let [a, b, c, d, e, f] = self.view.px_from_grid(frame, Cell::new(0, 0), 1);
-        let matrix = [a, b, c, d, e + 0.5 * (a + c), f + 0.5 * (b + d)].map(matrix_entry);
+        let matrix = [a, b, c, d, e + 0.5 * (a + c), f + 0.5 * (b + d)];
         let width_cells = width_px / (self.view.px_per_m() * frame.resolution_m());
-        self.body
-            .tag("path")
-            .attr("transform", &format!("matrix({})", matrix.join(" ")))
-            .attr("fill", "none")
-            .attr("stroke", &color.to_string())
-            .attr("stroke-width", &matrix_entry(width_cells))
-            .attr("stroke-linecap", "round")
-            .attr("d", data)
-            .leaf();
+        let (stroke, width) = (color.to_string(), matrix_entry(width_cells));
+        let tag = self.body.tag("path").matrix(matrix).attr("fill", "none");
+        let tag = tag.attr("stroke", &stroke).attr("stroke-width", &width);
+        tag.attr("stroke-linecap", "round").attr("d", data).leaf();
         true
     }
 

@@ -1,10 +1,27 @@
-//! Text below a chart: what it shows, and how it was made.
+//! Text above a picture, its title, and below it: what it shows, and how it was made.
 
-use crate::axes::SMALL_TEXT_PX;
-use crate::text::text_width_px;
+use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, SvgWriter};
 
+/// Room at the edge of the page \[px\].
+pub(crate) const EDGE_PX: f64 = 8.0;
+/// Size of the title \[px\].
+const TITLE_PX: f64 = 13.5;
+/// Height of the title with the room below it \[px\].
+pub(crate) const HEAD_PX: f64 = TITLE_PX + 10.0;
 const ROW_PX: f64 = 14.5;
+
+/// Draws a title over what begins at `left`, centred where it fits; returns its right edge \[px\],
+/// 0 without a title.
+pub(crate) fn draw_title(out: &mut SvgWriter, title: &str, left: f64, width_px: f64) -> f64 {
+    if title.is_empty() {
+        return 0.0;
+    }
+    let title_px = text_width_px(title, TITLE_PX);
+    let x = left + 0.5 * (width_px - title_px).max(0.0);
+    out.label(x, EDGE_PX + TITLE_PX - 1.0, TITLE_PX, Anchor::Start, title);
+    x + title_px
+}
 
 /// A text in lines of a width.
 pub(crate) struct Caption {

@@ -1,13 +1,9 @@
 //! Bars with their intervals, one below the other over one axis, and what they are compared with.
 
-use crate::axes::{BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, border, bottom_axis};
-use crate::caption::Caption;
-use crate::color::{GRID, INK, QUIET, Rgb};
-use crate::name_lines::NameLines;
-use crate::svg::Svg;
-use crate::text::text_width_px;
-use crate::ticks::Ticks;
-use crate::writer::{Anchor, PathData, SvgWriter};
+use crate::chart::Margins;
+use crate::color::INK;
+use crate::ticks::span;
+use crate::{Axis, Chart, ChartPoint, LineStyle, PathData, Plot, Rgb, Svg};
 
 const WIDTH_PX: f64 = 380.0;
 const ROW_PX: f64 = 28.0;
@@ -17,11 +13,11 @@ const HALF_MARK_PX: f64 = 5.0;
 /// From the end of the plot to the middle of a break, and between its two lines.
 const BREAK_INSET_PX: f64 = 16.0;
 const BREAK_GAP_PX: f64 = 4.0;
-const EDGE_PX: f64 = 8.0;
 /// A longer name has several lines.
 const NAME_PX: f64 = 250.0;
-const NAME_GAP_PX: f64 = 8.0;
 const INTERVALS: usize = 7;
+/// Width of grid lines: stronger ones, which lead the eye to the notes.
+const GRID_PX: f64 = 0.8;
 /// What is this many times as long as all other rows leaves less than a twenty-fifth of the axis
 /// for them.
 const DWARFING: f64 = 25.0;
@@ -77,57 +73,18 @@ impl IntervalRow<'_> {
 /// A bar that would leave no room for the others is broken: the axis ends where most of the rows
 /// end, and a break says that the bar, or its whisker, goes on. Its numbers belong in its note.
 pub fn interval_chart(chart: &IntervalChart<'_>) -> Svg {
-    let top = EDGE_PX + 4.0;
-    let names: Vec<NameLines> =
-        chart.rows.iter().map(|row| NameLines::new(row.name, NAME_PX)).collect();
-    let notes = chart.rows.iter().map(|row| note_px(row.note).1);
-    let row_px = names.iter().map(NameLines::height_px).chain(notes);
-    let row_px = row_px.map(|height_px| height_px + 6.0).fold(ROW_PX, f64::max);
-    let bottom = top + chart.rows.len() as f64 * row_px + 8.0;
-    let names_px = names.iter().map(NameLines::width_px).fold(0.0, f64::max);
-    let left = EDGE_PX + names_px + NAME_GAP_PX;
-    let right = left + WIDTH_PX;
-    let (low, high) = ends(chart);
-    let scale = Scale { low, high, low_px: left, high_px: right };
-    let ticks = Ticks::new(low, high, INTERVALS);
-    let mut out = SvgWriter::new();
-    for &value in &ticks.values {
-        let (x, color) = (scale.px(value), if value == 0.0 { QUIET } else { GRID });
-        out.tag("line").between((x, top), (x, bottom)).stroke(color, 0.8).leaf();
-    }
-    for (i, (row, name)) in chart.rows.iter().zip(&names).enumerate() {
-        let y = top + 4.0 + (i as f64 + 0.5) * row_px;
-        let base = y + 0.36 * SMALL_TEXT_PX + 0.5 * (name.height_px() - NameLines::LINE_PX);
-        name.draw(&mut out, left - NAME_GAP_PX, base, Anchor::End);
-        draw_row(&mut out, row, scale, y);
-        draw_note(&mut out, row.note, (right + 6.0, y));
-    }
-    border(&mut out, left, top, WIDTH_PX, bottom - top);
-    bottom_axis(&mut out, scale, bottom, &ticks, chart.label);
-    let notes_px = chart.rows.iter().map(|row| note_px(row.note).0).fold(0.0, f64::max);
-    let width = right + 6.0 + notes_px + EDGE_PX;
-    let is_broken = chart.rows.iter().any(|row| row.numbers().any(|value| is_beyond(value, scale)));
+    let ends = ends(chart);
+    let mut axis = Axis::linear(ends.0, ends.1, INTERVALS).label(chart.label).strong_zero();
+    axis.grid_px = GRID_PX;
+    let names = chart.rows.iter().map(|row| row.name);
+    let notes = chart.rows.iter().map(|row| row.note);
+    let mut rows = Axis::categories(names, NAME_PX).notes(notes);
+    rows.row_px = ROW_PX;
+    let is_broken = chart.rows.iter().any(|row| row.numbers().any(|value| is_beyond(value, ends)));
     let caption = [chart.caption, if is_broken { BROKEN } else { "" }].join(" ");
-    let caption = Caption::new(&caption, width - 2.0 * EDGE_PX);
-    let caption_y = bottom + BOTTOM_AXIS_PX + 6.0;
-    caption.draw(&mut out, EDGE_PX, caption_y);
-    let width = width.max(caption.width_px() + 2.0 * EDGE_PX);
-    Svg::page(width, caption_y + caption.height_px() + EDGE_PX, out)
-}
-
-/// Width and height of a note \[px\].
-fn note_px(note: &str) -> (f64, f64) {
-    let widths = note.lines().map(|line| text_width_px(line, SMALL_TEXT_PX));
-    (widths.fold(0.0, f64::max), note.lines().count() as f64 * NameLines::LINE_PX)
-}
-
-/// In the middle of its row.
-fn draw_note(out: &mut SvgWriter, note: &str, (x, y): (f64, f64)) {
-    let first = y + 0.36 * SMALL_TEXT_PX - 0.5 * (note_px(note).1 - NameLines::LINE_PX);
-    for (line, i) in note.lines().zip(0..) {
-        let base = first + f64::from(i) * NameLines::LINE_PX;
-        out.label(x, base, SMALL_TEXT_PX, Anchor::Start, line);
-    }
+    let mut drawn = Chart::new(axis, WIDTH_PX, 0.0).caption(caption);
+    drawn.margins = Margins::ROWS;
+    drawn.panel(rows, |plot| draw_rows(plot, chart.rows, ends)).svg()
 }
 
 /// The axis: 0 and all that is shown, as far as a row may reach, with room at both ends.
@@ -135,9 +92,8 @@ fn ends(chart: &IntervalChart<'_>) -> (f64, f64) {
     let longest = longest(chart.rows);
     let own = chart.rows.iter().flat_map(IntervalRow::numbers);
     let own = own.map(|value| value.clamp(-longest, longest));
-    let (low, high) = chart.ends.unwrap_or_else(|| {
-        own.fold((0.0, 0.0), |(low, high), value| (value.min(low), value.max(high)))
-    });
+    let needed = || span(own.chain([0.0]));
+    let (low, high) = chart.ends.or_else(needed).unwrap_or_default();
     if low == high {
         return (-1.0, 1.0);
     }
@@ -154,51 +110,50 @@ fn longest(rows: &[IntervalRow<'_>]) -> f64 {
     (1..=rows.len() / 2).rfind(is_dwarfed).map_or(f64::INFINITY, |i| reaches[i])
 }
 
-fn is_beyond(value: f64, scale: Scale) -> bool {
-    value < scale.low || value > scale.high
+fn is_beyond(value: f64, (low, high): (f64, f64)) -> bool {
+    value < low || value > high
 }
 
-fn draw_row(out: &mut SvgWriter, row: &IntervalRow<'_>, scale: Scale, y: f64) {
-    let finite = |value: &f64| value.is_finite();
-    let px = |value: f64| scale.px(value.clamp(scale.low, scale.high));
-    if let Some(value) = row.value.filter(finite) {
-        let [from, to] = [0.0_f64.min(value), 0.0_f64.max(value)].map(px);
-        let bar = out.tag("rect").at(from, y - HALF_BAR_PX).size(to - from, 2.0 * HALF_BAR_PX);
-        bar.fill(BAR).stroke(INK, 0.8).leaf();
+fn draw_rows(plot: &mut Plot<'_>, rows: &[IntervalRow<'_>], ends: (f64, f64)) {
+    for (i, row) in rows.iter().enumerate() {
+        draw_row(plot, row, i as f64, ends);
     }
-    if let Some((low, high)) = row.interval.filter(|(low, high)| finite(low) && finite(high)) {
-        out.tag("line").between((px(low), y), (px(high), y)).stroke(INK, 1.6).leaf();
-        for end in [low, high].into_iter().filter(|&end| !is_beyond(end, scale)) {
-            let x = px(end);
-            let cap = out.tag("line").between((x, y - HALF_CAP_PX), (x, y + HALF_CAP_PX));
-            cap.stroke(INK, 1.6).leaf();
-        }
+}
+
+fn draw_row(plot: &mut Plot<'_>, row: &IntervalRow<'_>, at: f64, ends: (f64, f64)) {
+    if let Some(value) = row.value {
+        let half = HALF_BAR_PX / (plot.y_px(1.0) - plot.y_px(0.0));
+        plot.bar(ChartPoint::new(0.0, at - half), ChartPoint::new(value, at + half), BAR);
     }
-    if row.numbers().any(|value| value < scale.low) {
-        draw_break(out, (scale.low_px + BREAK_INSET_PX, y));
+    if let Some((low, high)) = row.interval {
+        plot.interval(at, low, high, LineStyle::solid(INK, 1.6), HALF_CAP_PX);
     }
-    if row.numbers().any(|value| value > scale.high) {
-        draw_break(out, (scale.high_px - BREAK_INSET_PX, y));
+    let (area, y) = (plot.area(), plot.y_px(at));
+    if row.numbers().any(|value| value < ends.0) {
+        draw_break(plot, (area.left_px + BREAK_INSET_PX, y));
     }
-    if let Some(reference) =
-        row.reference.filter(|&value| finite(&value) && !is_beyond(value, scale))
-    {
-        let (x, half) = (scale.px(reference), HALF_MARK_PX);
+    if row.numbers().any(|value| value > ends.1) {
+        draw_break(plot, (area.right_px - BREAK_INSET_PX, y));
+    }
+    let is_within = |value: &f64| value.is_finite() && !is_beyond(*value, ends);
+    if let Some(reference) = row.reference.filter(is_within) {
+        let (x, half) = (plot.x_px(reference), HALF_MARK_PX);
         let mut mark = PathData::line([(x - half, y), (x, y - half), (x + half, y), (x, y + half)]);
         mark.close();
-        out.tag("path").attr("fill", "#fff").stroke(INK, 1.4).attr("d", mark.as_str()).leaf();
+        let tag = plot.writer().tag("path").attr("fill", "#fff").stroke(INK, 1.4);
+        tag.attr("d", mark.as_str()).leaf();
     }
 }
 
 /// Two slanted lines with nothing between them.
-fn draw_break(out: &mut SvgWriter, (x, y): (f64, f64)) {
+fn draw_break(plot: &mut Plot<'_>, (x, y): (f64, f64)) {
     let (half, slant, gap) = (HALF_BAR_PX + 2.0, 3.0, 0.5 * BREAK_GAP_PX);
     let [left, right] =
         [-gap, gap].map(|dx| [(x + dx - slant, y + half), (x + dx + slant, y - half)]);
     let ground = PathData::line([left[0], left[1], right[1], right[0]]);
-    out.tag("path").attr("fill", "#fff").attr("d", ground.as_str()).leaf();
-    for [from, to] in [left, right] {
-        out.tag("line").between(from, to).stroke(INK, 1.0).leaf();
+    plot.writer().tag("path").attr("fill", "#fff").attr("d", ground.as_str()).leaf();
+    for line in [left, right] {
+        plot.segment(line, INK, 1.0);
     }
 }
 

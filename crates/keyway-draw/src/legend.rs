@@ -1,11 +1,11 @@
 //! What the shapes and colours of a picture mean, beside the picture.
 
-use crate::axes::{SMALL_TEXT_PX, Scale, border, right_axis, side_axis_px};
+use crate::axes::{Scale, border};
+use crate::axis::Axis;
 use crate::color::{QUIET, Rgb, viridis};
 use crate::line_style::LineStyle;
 use crate::marks::{KEY_RING_PX, hatched_disc, letter_mark, time_mark};
-use crate::text::text_width_px;
-use crate::ticks::Ticks;
+use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, PathData, SvgWriter};
 
 /// An item of the legend.
@@ -133,8 +133,7 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
         }
         Sample::ShadedLine(colors) => strips(out, (x, y - 0.7), (SAMPLE_PX, 1.4), &colors),
         Sample::Line(style) => {
-            let tag = out.tag("line").between((x, y), (x + SAMPLE_PX, y));
-            tag.stroke(style.color, style.width_px).attr("stroke-dasharray", style.dashes).leaf();
+            out.tag("line").between((x, y), (x + SAMPLE_PX, y)).line_style(style).leaf();
         }
         Sample::ColoredLine => {
             let path = PathData::line([(x + 1.5, y), (x + SAMPLE_PX - 1.5, y)]);
@@ -146,10 +145,7 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
                 tag.stroke(color, crate::layers::DRIVEN_WIDTH_PX).leaf();
             }
         }
-        Sample::Ring(style) => {
-            let tag = out.tag("circle").round(middle, y, KEY_RING_PX).attr("fill", "#fff");
-            tag.stroke(style.color, style.width_px).leaf();
-        }
+        Sample::Ring(style) => draw_sample(out, Sample::SmallRing(style, KEY_RING_PX), x, y),
         Sample::SmallRing(style, radius) => {
             let tag = out.tag("circle").round(middle, y, radius).attr("fill", "#fff");
             tag.stroke(style.color, style.width_px).leaf();
@@ -158,16 +154,13 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
             out.tag("circle").round(middle, y, radius).fill(color).leaf();
         }
         Sample::Circle(style) => {
-            let tag = out.tag("circle").round(middle, y, 6.0).attr("fill", "none");
-            let tag = tag.stroke(style.color, style.width_px);
-            tag.attr("stroke-dasharray", style.dashes).leaf();
+            out.tag("circle").round(middle, y, 6.0).attr("fill", "none").line_style(style).leaf();
         }
         Sample::Box(style) => {
             let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0), (6.0, 5.0)];
             let outline = PathData::line(corners.map(|(dx, dy)| (middle + dx, y + dy)));
             let tag = out.tag("path").attr("d", outline.as_str()).attr("fill", "none");
-            let tag = tag.stroke(style.color, style.width_px);
-            tag.attr("stroke-dasharray", style.dashes).leaf();
+            tag.line_style(style).leaf();
         }
         Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
         Sample::Time(color) => time_mark(out, (middle, y), "5", color),
@@ -202,12 +195,13 @@ const BAR_PX: f64 = 11.0;
 const STRIPS: u32 = 64;
 
 impl ColorBar {
-    fn ticks(&self, height_px: f64) -> Ticks {
-        Ticks::new(self.low, self.high, ((height_px / 24.0) as usize).clamp(2, 6))
+    fn axis(&self, height_px: f64) -> Axis {
+        let intervals = ((height_px / 24.0) as usize).clamp(2, 6);
+        Axis::linear(self.low, self.high, intervals).label(&self.label)
     }
 
     pub(crate) fn width_px(&self, height_px: f64) -> f64 {
-        BAR_PX + side_axis_px(&self.ticks(height_px))
+        BAR_PX + self.axis(height_px).side_px()
     }
 
     /// Draws it with its upper left corner at (x, y).
@@ -219,8 +213,7 @@ impl ColorBar {
             out.tag("rect").at(x, y + top).size(BAR_PX, height_px - top).fill(color).leaf();
         }
         border(out, x, y, BAR_PX, height_px);
-        let scale = Scale { low: self.low, high: self.high, low_px: y + height_px, high_px: y };
-        right_axis(out, scale, x + BAR_PX, &self.ticks(height_px), &self.label);
+        Scale::upright(&self.axis(height_px), y, y + height_px).draw_right(out, x + BAR_PX);
     }
 }
 

@@ -3,8 +3,9 @@
 //! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures
 //! side by side; [`speed_curve`] draws speed and turn rate over time, [`log_chart`] quantities that
 //! grow by powers, [`box_plot`] how values are spread, [`interval_chart`] values with their
-//! intervals, [`point_panels`] points and rates with their intervals. Each gives an [`Svg`], whose
-//! text the caller writes where it belongs.
+//! intervals, [`point_panels`] points and rates with their intervals. All charts are made of a
+//! [`Chart`], whose panels are drawn on through a [`Plot`]; a chart of your own is, too (example
+//! `own_chart`). Each gives an [`Svg`], whose text the caller writes where it belongs.
 //!
 //! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well
 //! (`Svg::to_png`), and an `Animation` plays pictures as GIF or APNG. Without it the crate needs no
@@ -33,9 +34,11 @@
 #[cfg(feature = "raster")]
 mod animation;
 mod axes;
+mod axis;
 mod box_plot;
 mod canvas;
 mod caption;
+mod chart;
 mod color;
 mod interval_chart;
 pub mod layers;
@@ -47,6 +50,7 @@ mod map_picture;
 mod marks;
 mod name_lines;
 mod outline;
+mod plot;
 mod point_panels;
 #[cfg(feature = "raster")]
 mod raster;
@@ -62,19 +66,22 @@ mod writer;
 
 #[cfg(feature = "raster")]
 pub use animation::{Animation, animate_frames, animate_search};
+pub use axis::Axis;
 pub use box_plot::{BoxGroup, BoxPlot, box_plot};
 pub use canvas::Canvas;
+pub use chart::Chart;
 pub use color::{Rgb, SERIES, viridis};
 pub use interval_chart::{IntervalChart, IntervalRow, interval_chart};
 pub use legend::{ColorBar, Entry, Sample};
-pub use line_style::LineStyle;
+pub use line_style::{LineStyle, series_style};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_panels::MapPanels;
 pub use map_picture::{Layout, MapPicture};
-pub use point_panels::{ChartPoint, PointPanels, PointSeries, point_panels};
+pub use plot::{ChartPoint, Plot, PlotArea};
+pub use point_panels::{PointPanels, PointSeries, point_panels};
 #[cfg(feature = "raster")]
 pub use raster::{DrawError, MAX_PNG_SIDE_PX};
-pub use speed_curve::{SpeedCurveOptions, SpeedSeries, series_style, speed_curve};
+pub use speed_curve::{SpeedCurveOptions, SpeedSeries, speed_curve};
 pub use svg::Svg;
 pub use text_table::TextTable;
 pub use ticks::Ticks;

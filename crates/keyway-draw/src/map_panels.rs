@@ -1,18 +1,15 @@
 //! One map many times, each time with something else on it: small multiples.
 
-use crate::axes::{
-    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px,
-};
+use crate::axes::{BOTTOM_AXIS_PX, Scale, border};
+use crate::axis::Axis;
 use crate::canvas::Canvas;
-use crate::caption::Caption;
+use crate::caption::{Caption, EDGE_PX, HEAD_PX, draw_title};
 use crate::color::UNKNOWN;
 use crate::layers::{Depth, Layer};
 use crate::legend::{Entry, Legend};
-use crate::map_picture::{MapPicture, draw_map, map_ticks};
+use crate::map_picture::{MapPicture, draw_map, map_axes};
 use crate::name_lines::NameLines;
 use crate::svg::Svg;
-use crate::text::text_width_px;
-use crate::ticks::Ticks;
 use crate::view::{Extent, View};
 use crate::writer::{Anchor, SvgWriter};
 
@@ -25,8 +22,7 @@ const MAX_SLIMNESS: f64 = 3.0;
 const ROW_PX: f64 = 840.0;
 const LONG_ROW_PX: f64 = 1120.0;
 const MANY_PANELS: usize = 10;
-/// Room at the edge of the page, and between panels \[px\].
-const EDGE_PX: f64 = 8.0;
+/// Between panels \[px\].
 const GAP_PX: f64 = 18.0;
 /// Between a panel and its title \[px\].
 const TITLE_GAP_PX: f64 = 6.0;
@@ -82,7 +78,7 @@ impl<'a> MapPanels<'a> {
         let shared: Vec<Entry> = ground.entries.iter().chain(common).cloned().collect();
         let grid = Grid::new(&view, &drawn, &self.common.title);
         let mut out = SvgWriter::new();
-        grid.draw_title(&mut out, &self.common.title);
+        draw_title(&mut out, &self.common.title, grid.left, grid.width_px());
         let ground = define_ground(&mut out, ground.body);
         for (i, panel) in drawn.into_iter().enumerate() {
             grid.draw(&mut out, i, panel, &ground);
@@ -176,8 +172,8 @@ struct Grid {
     /// Width of a panel with its legend, and from there to the next one \[px\].
     cell_px: f64,
     gap_px: f64,
-    x_ticks: Ticks,
-    y_ticks: Ticks,
+    x_axis: Axis,
+    y_axis: Axis,
     /// Left edge of the plot areas of the first column \[px\].
     left: f64,
     /// Upper edges of the rows, and the lower edge of the last one \[px\].
@@ -188,31 +184,28 @@ struct Grid {
 
 impl Grid {
     fn new(view: &View, panels: &[Drawn<'_>], title: &str) -> Self {
-        let (x_ticks, y_ticks) = map_ticks(view);
+        let (x_axis, y_axis) = map_axes(view);
         let width_px =
             |panel: &Drawn<'_>| panel.legend(view).width_px().max(panel.title(view).width_px());
         let cell_px = panels.iter().map(width_px).fold(view.width_px(), f64::max);
         let count = panels.len();
         let row_px = if count < MANY_PANELS { ROW_PX } else { LONG_ROW_PX };
         // The last number below a panel and the first one below the next stand side by side.
-        let texts = x_ticks.texts();
-        let widest =
-            texts.iter().map(|text| text_width_px(text, SMALL_TEXT_PX)).fold(0.0, f64::max);
-        let gap_px = GAP_PX.max(view.width_px() + widest + 6.0 - cell_px);
+        let gap_px = GAP_PX.max(view.width_px() + x_axis.widest_px() + 6.0 - cell_px);
         let fitting = ((row_px + gap_px) / (cell_px + gap_px)) as usize;
         let rows = count.div_ceil(fitting.clamp(1, count.max(1)));
         // As many in every row as can be.
         let columns = count.div_ceil(rows.max(1)).max(1);
-        let head = EDGE_PX + if title.is_empty() { 2.0 } else { TITLE_PX + 10.0 };
-        let left = EDGE_PX + side_axis_px(&y_ticks);
+        let head = EDGE_PX + if title.is_empty() { 2.0 } else { HEAD_PX };
+        let left = EDGE_PX + y_axis.side_px();
         let mut grid = Self {
             view: *view,
             count,
             columns,
             cell_px,
             gap_px,
-            x_ticks,
-            y_ticks,
+            x_axis,
+            y_axis,
             left,
             tops: vec![head],
             heads_px: Vec::new(),
@@ -242,14 +235,6 @@ impl Grid {
         self.tops.last().copied().unwrap_or_default()
     }
 
-    fn draw_title(&self, out: &mut SvgWriter, title: &str) {
-        if !title.is_empty() {
-            let room = (self.width_px() - text_width_px(title, TITLE_PX)).max(0.0);
-            let (x, y) = (self.left + 0.5 * room, EDGE_PX + TITLE_PX - 1.0);
-            out.label(x, y, TITLE_PX, Anchor::Start, title);
-        }
-    }
-
     fn draw(&self, out: &mut SvgWriter, index: usize, panel: Drawn<'_>, ground: &str) {
         let (row, column) = (index / self.columns, index % self.columns);
         let (width, height) = (self.view.width_px(), self.view.height_px());
@@ -266,15 +251,12 @@ impl Grid {
         out.append(panel.body);
         out.close();
         border(out, left, top, width, height);
-        let (min, max) = self.view.corners();
         if self.is_lowest(row) {
-            let scale = Scale { low: min.x, high: max.x, low_px: left, high_px: left + width };
-            bottom_axis(out, scale, bottom, &self.x_ticks, "x [m]");
+            Scale::across(&self.x_axis, left, left + width).draw_below(out, bottom);
         }
         if column == 0 {
-            let scale = Scale { low: min.y, high: max.y, low_px: bottom, high_px: top };
-            let room = side_axis_px(&self.y_ticks);
-            left_axis(out, scale, left, room, &self.y_ticks, "y [m]");
+            let scale = Scale::upright(&self.y_axis, top, bottom);
+            scale.draw_left(out, left, self.y_axis.side_px());
         }
     }
 }

@@ -1,18 +1,18 @@
 //! A map, what is laid over it, axes and legend: one picture.
 
-use crate::axes::{
-    BOTTOM_AXIS_PX, SMALL_TEXT_PX, Scale, TITLE_PX, border, bottom_axis, left_axis, side_axis_px,
-};
+use crate::axes::{BOTTOM_AXIS_PX, Scale, border};
+use crate::axis::Axis;
 use crate::canvas::Canvas;
+use crate::caption::{EDGE_PX, HEAD_PX, draw_title};
 use crate::color::{FREE, OCCUPIED, UNKNOWN};
 use crate::layers::{Depth, Layer};
 use crate::legend::{ColorBar, Entry, Legend, Sample};
 use crate::svg::Svg;
-use crate::text::text_width_px;
+use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::text_table::TextTable;
 use crate::ticks::Ticks;
 use crate::view::{Extent, Region, View};
-use crate::writer::{Anchor, SvgWriter};
+use crate::writer::SvgWriter;
 use keyway::map::OccupancyGrid;
 
 /// Longer side of the plot area \[px\] unless another is asked for: with it, the picture's text is
@@ -20,8 +20,7 @@ use keyway::map::OccupancyGrid;
 const DEFAULT_SIDE_PX: f64 = 520.0;
 /// A plot this many times taller than wide has its legend at its side.
 const TALL: f64 = 1.25;
-/// Room at the edge of the page, and between its parts \[px\].
-const EDGE_PX: f64 = 8.0;
+/// Between the parts of the page \[px\].
 const GAP_PX: f64 = 14.0;
 /// Cells along the longer side of a picture: more than its PNG has pixels cannot be seen.
 const MAX_SIDE_CELLS: i32 = 4096;
@@ -208,8 +207,8 @@ pub(crate) fn draw_map(canvas: &mut Canvas<'_>) {
 struct Page<'a> {
     title: &'a str,
     canvas: Canvas<'a>,
-    x_ticks: Ticks,
-    y_ticks: Ticks,
+    x_axis: Axis,
+    y_axis: Axis,
     /// Upper left corner of the plot area.
     left: f64,
     top: f64,
@@ -217,10 +216,10 @@ struct Page<'a> {
 
 impl<'a> Page<'a> {
     fn new(title: &'a str, canvas: Canvas<'a>) -> Self {
-        let (x_ticks, y_ticks) = map_ticks(canvas.view());
-        let left = EDGE_PX + side_axis_px(&y_ticks);
-        let top = EDGE_PX + if title.is_empty() { 2.0 } else { TITLE_PX + 10.0 };
-        Self { title, canvas, x_ticks, y_ticks, left, top }
+        let (x_axis, y_axis) = map_axes(canvas.view());
+        let left = EDGE_PX + y_axis.side_px();
+        let top = EDGE_PX + if title.is_empty() { 2.0 } else { HEAD_PX };
+        Self { title, canvas, x_axis, y_axis, left, top }
     }
 
     fn svg(mut self, table: &TextTable) -> Svg {
@@ -243,7 +242,7 @@ impl<'a> Page<'a> {
             let page_width = right.max(self.left + legend.width_px());
             (page_width, bottom + 8.0 + legend.height_px())
         };
-        let page_width = page_width.max(self.draw_title(&mut out, width));
+        let page_width = page_width.max(draw_title(&mut out, self.title, self.left, width));
         let table_px = table.height_px();
         table.draw(&mut out, self.left, page_height + GAP_PX);
         let page_width = page_width.max(self.left + table.width_px());
@@ -270,14 +269,10 @@ impl<'a> Page<'a> {
         out.append(std::mem::take(&mut self.canvas.body));
         out.close();
         border(out, self.left, self.top, width, height);
-        let (min, max) = view.corners();
         let bottom = self.top + height;
-        let x_scale =
-            Scale { low: min.x, high: max.x, low_px: self.left, high_px: self.left + width };
-        bottom_axis(out, x_scale, bottom, &self.x_ticks, "x [m]");
-        let y_scale = Scale { low: min.y, high: max.y, low_px: bottom, high_px: self.top };
-        let room = side_axis_px(&self.y_ticks);
-        left_axis(out, y_scale, self.left, room, &self.y_ticks, "y [m]");
+        Scale::across(&self.x_axis, self.left, self.left + width).draw_below(out, bottom);
+        let y_scale = Scale::upright(&self.y_axis, self.top, bottom);
+        y_scale.draw_left(out, self.left, self.y_axis.side_px());
     }
 
     /// Draws the colour bars; returns the right edge of all that is drawn.
@@ -291,25 +286,15 @@ impl<'a> Page<'a> {
             right = x + bar.width_px(height);
         }
         // The last number below the plot may reach beyond it.
-        let last = self.x_ticks.texts().last().map_or(0.0, |t| text_width_px(t, SMALL_TEXT_PX));
+        let last = self.x_axis.marks.last();
+        let last = last.map_or(0.0, |(_, text)| text_width_px(text, SMALL_TEXT_PX));
         right.max(self.left + view.width_px() + 0.5 * last)
-    }
-
-    /// Draws the title over the plot; returns its right edge.
-    fn draw_title(&self, out: &mut SvgWriter, plot_width: f64) -> f64 {
-        if self.title.is_empty() {
-            return 0.0;
-        }
-        let title_width = text_width_px(self.title, TITLE_PX);
-        // Centred where it fits, otherwise from the left edge of the plot.
-        let x = self.left + 0.5 * (plot_width - title_width).max(0.0);
-        out.label(x, EDGE_PX + TITLE_PX - 1.0, TITLE_PX, Anchor::Start, self.title);
-        x + title_width
     }
 }
 
-/// Ticks with the same step on both axes, coarse enough for their numbers to stand side by side.
-pub(crate) fn map_ticks(view: &View) -> (Ticks, Ticks) {
+/// The axes x and y, whose ticks have the same step, coarse enough for their numbers to stand side
+/// by side.
+pub(crate) fn map_axes(view: &View) -> (Axis, Axis) {
     let (min, max) = view.corners();
     let side_px = view.width_px().max(view.height_px());
     let mut distance = TICK_DISTANCE_PX;
@@ -317,11 +302,10 @@ pub(crate) fn map_ticks(view: &View) -> (Ticks, Ticks) {
         let intervals = ((side_px / distance) as usize).max(1);
         let long = (max.x - min.x).max(max.y - min.y);
         let step = Ticks::new(0.0, long, intervals).step;
-        let x_ticks = Ticks::with_step(min.x, max.x, step);
-        let widest =
-            x_ticks.texts().iter().map(|t| text_width_px(t, SMALL_TEXT_PX)).fold(0.0, f64::max);
-        if widest + 10.0 <= step * view.px_per_m() || intervals == 1 {
-            return (x_ticks, Ticks::with_step(min.y, max.y, step));
+        let axis = |low, high| Axis::with_ticks(low, high, &Ticks::with_step(low, high, step));
+        let x_axis = axis(min.x, max.x).label("x [m]");
+        if x_axis.widest_px() + 10.0 <= step * view.px_per_m() || intervals == 1 {
+            return (x_axis, axis(min.y, max.y).label("y [m]"));
         }
         distance *= 1.25;
     }

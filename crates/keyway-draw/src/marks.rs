@@ -2,6 +2,7 @@
 
 use crate::color::{INK, Rgb};
 use crate::text::text_width_px;
+use crate::ticks::span;
 use crate::writer::{Anchor, PathData, SvgWriter};
 
 /// Distance between the lines of a hatching \[px\].
@@ -22,8 +23,7 @@ pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64,
         // Rotates (+-chord, offset) by -45 degrees: lines rise to the right.
         let turn = std::f64::consts::FRAC_1_SQRT_2;
         let point = |s: f64| (x + (s + offset) * turn, y + (offset - s) * turn);
-        lines.move_to(point(-chord));
-        lines.line_to(point(chord));
+        lines.append([point(-chord), point(chord)]);
     }
     let path = out.tag("path").attr("fill", "none").stroke(color, 0.7);
     path.attr("d", lines.as_str()).leaf();
@@ -39,17 +39,15 @@ pub(crate) fn hatched_polygon(out: &mut SvgWriter, vertices: &[(f64, f64)], colo
     let mut lines = PathData::default();
     // Lines that rise to the right, x + y = c, one of them through (0, 0).
     let step = HATCH_PX * std::f64::consts::SQRT_2;
-    let sums = || vertices.iter().map(|(x, y)| (x + y) / step);
-    let (low, high) = sums()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), sum| (low.min(sum), high.max(sum)));
+    let sums = vertices.iter().map(|(x, y)| (x + y) / step);
+    let (low, high) = span(sums).unwrap_or((0.0, -1.0));
     // A polygon that is far larger than the picture is not hatched throughout.
     for i in (low.ceil() as i64..=high.floor() as i64).take(2000) {
         let line = i as f64 * step;
         let mut crossings = crossings(vertices, line);
         crossings.sort_by(f64::total_cmp);
         for pair in crossings.chunks_exact(2) {
-            lines.move_to((pair[0], line - pair[0]));
-            lines.line_to((pair[1], line - pair[1]));
+            lines.append([(pair[0], line - pair[0]), (pair[1], line - pair[1])]);
         }
     }
     let path = out.tag("path").attr("fill", "none").stroke(color, 0.7);

@@ -1,10 +1,10 @@
 //! A name beside or above what it belongs to, in as many lines as it needs.
 
-use crate::axes::SMALL_TEXT_PX;
-use crate::text::text_width_px;
+use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, SvgWriter};
 
 /// A name in lines of a width. Nothing of it is left out: names that differ look different.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NameLines {
     lines: Vec<String>,
 }
@@ -31,6 +31,11 @@ impl NameLines {
             *(if is_enough { &mut high } else { &mut low }) = middle;
         }
         Self::filled(name, high)
+    }
+
+    /// The lines of a text as they are.
+    pub(crate) fn of_lines(text: &str) -> Self {
+        Self { lines: text.lines().map(str::to_owned).collect() }
     }
 
     /// Each line as long as it can be.

@@ -1,6 +1,9 @@
 //! How wide a text is, so that nothing overlaps it. No font is read: the widths are those of the
 //! bundled one, which is wider than its fallbacks.
 
+/// Size of tick labels, names and legends \[px\].
+pub(crate) const SMALL_TEXT_PX: f64 = 11.0;
+
 /// Advance widths of the characters from space to `~` in the font, in thousandths of the size.
 const ASCII_WIDTHS: [u16; 95] = [
     318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636,

@@ -1,8 +1,7 @@
 //! A small table of text below a picture.
 
-use crate::axes::SMALL_TEXT_PX;
 use crate::color::{GRID, QUIET, Rgb};
-use crate::text::text_width_px;
+use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, SvgWriter};
 
 const ROW_PX: f64 = 17.0;

@@ -11,6 +11,12 @@ pub struct Ticks {
     pub values: Vec<f64>,
 }
 
+/// The smallest and the largest finite value.
+pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    let ends = values.into_iter().filter(|value| value.is_finite()).map(|value| (value, value));
+    ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
+}
+
 /// Distances allowed between ticks, before the power of ten.
 const MANTISSAS: [f64; 5] = [1.0, 2.0, 2.5, 5.0, 10.0];
 /// More ticks than this are a mistake.

@@ -1,6 +1,7 @@
 //! Writes SVG: tags, attributes, escaped text and short numbers, the same bytes for the same calls.
 
 use crate::color::Rgb;
+use crate::line_style::LineStyle;
 use std::fmt::Write as _;
 
 /// Fonts of all pictures: the bundled one for PNG, its nearest relatives in a browser without it.
@@ -123,6 +124,11 @@ impl Tag<'_> {
         self.attr("stroke", &color.to_string()).num("stroke-width", width_px)
     }
 
+    /// Outline in the colour, width and dashes of a line.
+    pub(crate) fn line_style(self, style: LineStyle) -> Self {
+        self.stroke(style.color, style.width_px).attr("stroke-dasharray", style.dashes)
+    }
+
     /// Where a text stands relative to its position.
     pub fn anchor(self, anchor: Anchor) -> Self {
         match anchor {
@@ -130,6 +136,11 @@ impl Tag<'_> {
             Anchor::Middle => self.attr("text-anchor", "middle"),
             Anchor::End => self.attr("text-anchor", "end"),
         }
+    }
+
+    /// Places what is drawn by a matrix, whose entries are those of SVG.
+    pub(crate) fn matrix(self, entries: [f64; 6]) -> Self {
+        self.attr("transform", &format!("matrix({})", entries.map(matrix_entry).join(" ")))
     }
 
     /// Ends an element without content.
@@ -197,10 +208,15 @@ impl PathData {
     /// An open line through the points.
     pub fn line(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut data = Self::default();
-        for (i, point) in points.into_iter().enumerate() {
-            if i == 0 { data.move_to(point) } else { data.line_to(point) }
-        }
+        data.append(points);
         data
+    }
+
+    /// Adds an open line through the points.
+    pub fn append(&mut self, points: impl IntoIterator<Item = (f64, f64)>) {
+        for (i, point) in points.into_iter().enumerate() {
+            if i == 0 { self.move_to(point) } else { self.line_to(point) }
+        }
     }
 
     /// Begins a new line.

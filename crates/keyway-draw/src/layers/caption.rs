@@ -1,7 +1,7 @@
 //! A line of text in a corner of the plot.
 
 use super::{Depth, Layer};
-use crate::axes::TEXT_PX;
+use crate::axis::TEXT_PX;
 use crate::canvas::Canvas;
 use crate::color::FREE;
 use crate::text::text_width_px;

@@ -122,8 +122,7 @@ impl Layer for Driven<'_> {
         for run in pairs.chunk_by(|a, b| color_of(a) == color_of(b)) {
             let color = viridis(color_of(run[0]) / f64::from(COLORS - 1));
             let points = std::iter::once(run[0][0].0).chain(run.iter().map(|pair| pair[1].0));
-            let style = LineStyle { color, width_px: DRIVEN_WIDTH_PX, dashes: "" };
-            canvas.path(&PathData::line(points), style);
+            canvas.path(&PathData::line(points), LineStyle::solid(color, DRIVEN_WIDTH_PX));
         }
         canvas.explain(Entry::new("driven", Sample::ColoredLine));
         canvas.explain_colors(ColorBar { label: "speed [m/s]".to_owned(), low, high });
@@ -142,7 +141,7 @@ pub struct Footprints<'a> {
 }
 
 impl<'a> Footprints<'a> {
-    const STYLE: LineStyle = LineStyle { color: QUIET, width_px: 0.9, dashes: "" };
+    const STYLE: LineStyle = LineStyle::solid(QUIET, 0.9);
 
     /// Outlines of a robot, at distances at which they can be told apart.
     pub const fn new(points: &'a [DrivenPoint], footprint: &'a Footprint) -> Self {
@@ -217,11 +216,7 @@ impl Layer for Footprints<'_> {
                 Footprint::Circle(disc) => {
                     let circle = canvas.writer().tag("circle").attr("fill", "none");
                     let radius_px = disc.radius_m() * view.px_per_m();
-                    circle
-                        .round(x, y, radius_px)
-                        .stroke(style.color, style.width_px)
-                        .attr("stroke-dasharray", style.dashes)
-                        .leaf();
+                    circle.round(x, y, radius_px).line_style(style).leaf();
                 }
                 Footprint::Polygon(polygon) => {
                     let place = |&vertex: &Point| view.px_from_world(pose.world_from_body(vertex));

@@ -32,7 +32,6 @@ impl Layer for EstimatedMovers<'_> {
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
         let view = *canvas.view();
-        let LineStyle { color, width_px, dashes } = Self::STYLE;
         let numbers = |mover: &Mover| [mover.now().centre, mover.velocity_mps];
         let drawable = |mover: &&Mover| {
             let radius_m = mover.now().radius_m;
@@ -44,12 +43,11 @@ impl Layer for EstimatedMovers<'_> {
             let (x, y) = view.px_from_world(now.centre);
             let outline = canvas.writer().tag("circle").attr("fill", "none");
             let radius_px = now.radius_m * view.px_per_m();
-            let outline = outline.round(x, y, radius_px);
-            outline.stroke(color, width_px).attr("stroke-dasharray", dashes).leaf();
+            outline.round(x, y, radius_px).line_style(Self::STYLE).leaf();
             let ahead = now.centre + mover.velocity_mps * Self::AHEAD_S;
             canvas.line(&[now.centre, ahead], Self::STYLE);
             let place = (x, y - radius_px - Self::ABOVE_PX);
-            time_mark(canvas.writer(), place, &format!("track {}", mover.id), color);
+            time_mark(canvas.writer(), place, &format!("track {}", mover.id), Self::STYLE.color);
             is_empty = false;
         }
         if !is_empty {

@@ -5,6 +5,7 @@ use crate::canvas::Canvas;
 use crate::color::{FREE, INK, OVER_DRIVEN, Rgb, viridis};
 use crate::legend::{ColorBar, Entry, Sample};
 use crate::line_style::LineStyle;
+use crate::ticks::span;
 use crate::view::Extent;
 use crate::writer::PathData;
 use keyway::geometry::{Point, Pose};
@@ -33,7 +34,7 @@ pub struct Fan<'a> {
 }
 
 impl<'a> Fan<'a> {
-    const CHOSEN: LineStyle = LineStyle { color: INK, width_px: 2.6, dashes: "" };
+    const CHOSEN: LineStyle = LineStyle::solid(INK, 2.6);
     const RUNNER_UP: LineStyle = LineStyle { color: OVER_DRIVEN, width_px: 5.6, dashes: "6 4" };
 
     /// The fan of a robot at a pose.
@@ -55,10 +56,7 @@ impl<'a> Fan<'a> {
     fn add(&self, line: &mut PathData, candidate: &JudgedCandidate, canvas: &Canvas<'_>) {
         let points = self.points(candidate);
         if points.iter().all(|point| point.is_finite()) {
-            for (i, &point) in points.iter().enumerate() {
-                let px = canvas.view().px_from_world(point);
-                if i == 0 { line.move_to(px) } else { line.line_to(px) }
-            }
+            line.append(points.iter().map(|&point| canvas.view().px_from_world(point)));
         }
     }
 
@@ -77,7 +75,7 @@ impl<'a> Fan<'a> {
     fn draw_refused(&self, canvas: &mut Canvas<'_>) {
         for (i, (rule, because, count)) in self.rules().into_iter().enumerate() {
             let color = RULES[i.min(RULES.len() - 1)];
-            let style = LineStyle { color, width_px: 0.5, dashes: "" };
+            let style = LineStyle::solid(color, 0.5);
             let by_it = |one: &&JudgedCandidate| matches!(&one.fate, Fate::Refused { rule: by, .. } if by == rule);
             let refused: Vec<_> = self.explanation.candidates.iter().filter(by_it).collect();
             let mut line = PathData::default();
@@ -98,28 +96,24 @@ impl<'a> Fan<'a> {
 
     fn draw_admissible(&self, canvas: &mut Canvas<'_>) {
         let scores = || self.explanation.candidates.iter().filter_map(JudgedCandidate::score);
-        let low = scores().fold(f64::INFINITY, f64::min);
-        let high = scores().fold(f64::NEG_INFINITY, f64::max);
-        if !low.is_finite() {
-            return;
-        }
-        let span = if high > low { high - low } else { 1.0 };
+        let Some((low, high)) = span(scores()) else { return };
+        let width = if high > low { high - low } else { 1.0 };
         let mut shades = vec![PathData::default(); SHADES];
         for candidate in &self.explanation.candidates {
             if let Some(score) = candidate.score() {
-                let shade = ((score - low) / span * (SHADES - 1) as f64).round() as usize;
+                let shade = ((score - low) / width * (SHADES - 1) as f64).round() as usize;
                 self.add(&mut shades[shade.min(SHADES - 1)], candidate, canvas);
             }
         }
         // Good ones over bad ones.
         for (i, line) in shades.iter().enumerate() {
             let color = viridis(i as f64 / (SHADES - 1) as f64);
-            canvas.path(line, LineStyle { color, width_px: 1.1, dashes: "" });
+            canvas.path(line, LineStyle::solid(color, 1.1));
         }
         let count = scores().count();
         let sample = Sample::ShadedLine(std::array::from_fn(|i| viridis((i as f64 + 0.5) / 8.0)));
         canvas.explain(Entry::new(format!("{count} admissible, by score"), sample));
-        canvas.explain_colors(ColorBar { label: "score".to_owned(), low, high: low + span });
+        canvas.explain_colors(ColorBar { label: "score".to_owned(), low, high: low + width });
     }
 
     fn draw_best(&self, canvas: &mut Canvas<'_>) {
@@ -148,7 +142,7 @@ impl<'a> Fan<'a> {
             let mut line = PathData::default();
             let fitting = candidates.iter().filter(|one| one.score().is_some() == is_admissible);
             fitting.for_each(|one| self.add(&mut line, one, canvas));
-            let style = LineStyle { color, width_px: 0.7, dashes: "" };
+            let style = LineStyle::solid(color, 0.7);
             if canvas.path(&line, style) {
                 canvas.explain(Entry::new(label, Sample::Line(style)));
             }

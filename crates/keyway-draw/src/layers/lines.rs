@@ -32,8 +32,7 @@ impl<'a> PathLine<'a> {
 
     /// A path to be followed: solid, blue.
     pub fn smoothed(path: &'a Polyline) -> Self {
-        let style = LineStyle { color: SMOOTHED, width_px: 1.6, dashes: "" };
-        Self::new(path, "smoothed path", style)
+        Self::new(path, "smoothed path", LineStyle::solid(SMOOTHED, 1.6))
     }
 
     /// With a white rim, to be seen on coloured ground.
@@ -51,8 +50,7 @@ impl<'a> PathLine<'a> {
     /// Over what was driven, which is wider: both are seen where they run together.
     #[must_use]
     pub fn over_driven(self) -> Self {
-        let style = LineStyle { color: OVER_DRIVEN, width_px: 1.3, dashes: "" };
-        Self { style, depth: Depth::Driven, ..self }
+        Self { style: LineStyle::solid(OVER_DRIVEN, 1.3), depth: Depth::Driven, ..self }
     }
 
     /// What the legend says.
@@ -74,7 +72,7 @@ impl Layer for PathLine<'_> {
     fn draw(&self, canvas: &mut Canvas<'_>) {
         if self.rim_px > 0.0 {
             let width_px = self.style.width_px + 2.0 * self.rim_px;
-            canvas.line(self.path.points(), LineStyle { color: FREE, width_px, dashes: "" });
+            canvas.line(self.path.points(), LineStyle::solid(FREE, width_px));
         }
         if canvas.line(self.path.points(), self.style) {
             canvas.explain(Entry::new(self.label.clone(), Sample::Line(self.style)));

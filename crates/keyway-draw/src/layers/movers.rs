@@ -43,8 +43,8 @@ struct Mark {
 type Taken = Vec<((f64, f64), f64)>;
 
 impl<'a> Movers<'a> {
-    const WAY: LineStyle = LineStyle { color: OBSTACLE, width_px: 1.0, dashes: "" };
-    const OUTLINE: LineStyle = LineStyle { color: OBSTACLE, width_px: 0.9, dashes: "" };
+    const WAY: LineStyle = LineStyle::solid(OBSTACLE, 1.0);
+    const OUTLINE: LineStyle = LineStyle::solid(OBSTACLE, 0.9);
 
     /// Movers while a robot drives a run; without a run, at its beginning.
     pub fn new(movers: &'a [MovingObstacle], run: &'a [DrivenPoint]) -> Self {
@@ -74,12 +74,8 @@ impl<'a> Movers<'a> {
             let outline = canvas.writer().tag("circle").round(x, y, radius_px);
             outline.attr("fill", "none").stroke(Self::OUTLINE.color, Self::OUTLINE.width_px).leaf();
         }
-        hatched_disc(
-            canvas.writer(),
-            view.px_from_world(mover.at(0.0).centre),
-            radius_px,
-            OBSTACLE,
-        );
+        let first = view.px_from_world(mover.at(0.0).centre);
+        hatched_disc(canvas.writer(), first, radius_px, OBSTACLE);
     }
 }
 

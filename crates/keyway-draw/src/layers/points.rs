@@ -26,8 +26,7 @@ impl<'a> Points<'a> {
 
     /// The key points of a path.
     pub fn key_points(points: &'a [Point]) -> Self {
-        let style = LineStyle { color: SMOOTHED, width_px: 1.4, dashes: "" };
-        Self::new(points, "key point", style)
+        Self::new(points, "key point", LineStyle::solid(SMOOTHED, 1.4))
     }
 }
 
@@ -76,11 +75,9 @@ impl Layer for Hits<'_> {
         let mut dots = PathData::default();
         for &point in self.0.iter().filter(|point| point.is_finite()) {
             // A line without length has round ends.
-            dots.move_to(view.px_from_world(point));
-            dots.line_to(view.px_from_world(point));
+            dots.append([view.px_from_world(point); 2]);
         }
-        let style = LineStyle { color: Self::COLOR, width_px: 2.0 * Self::RADIUS_PX, dashes: "" };
-        if canvas.path(&dots, style) {
+        if canvas.path(&dots, LineStyle::solid(Self::COLOR, 2.0 * Self::RADIUS_PX)) {
             canvas.explain(Entry::new("scan", Sample::Dot(Self::COLOR, Self::RADIUS_PX + 0.6)));
         }
     }
@@ -141,11 +138,9 @@ impl Layer for Goal {
         // A circle that the letter hides is not drawn.
         if radius > LETTER_MARK_PX + 2.0 && self.point.is_finite() {
             let (x, y) = canvas.view().px_from_world(self.point);
-            let style = Self::TOLERANCE;
             let circle = canvas.writer().tag("circle").round(x, y, radius).attr("fill", "none");
-            let circle = circle.stroke(style.color, style.width_px);
-            circle.attr("stroke-dasharray", style.dashes).leaf();
-            canvas.explain(Entry::new("goal tolerance", Sample::Circle(style)));
+            circle.line_style(Self::TOLERANCE).leaf();
+            canvas.explain(Entry::new("goal tolerance", Sample::Circle(Self::TOLERANCE)));
         }
     }
 }
@@ -257,7 +252,7 @@ fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (text, dark): Mark<'_>, label
         let px = (x + towards(x, view.width_px()), y + towards(y, view.height_px()));
         let leader = PathData::line([(x, y), px]);
         for (color, width_px) in [(FREE, 3.0), (INK, 1.2)] {
-            canvas.path(&leader, LineStyle { color, width_px, dashes: "" });
+            canvas.path(&leader, LineStyle::solid(color, width_px));
         }
         px
     });

@@ -56,8 +56,7 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
         let mut is_drawn = false;
         for shade in (0..SHADES).rev() {
             let part = &lines[shades::index(side)][usize::from(shade)];
-            let style =
-                LineStyle { color: shades::line(side, shade), width_px: LINE_PX, dashes: "" };
+            let style = LineStyle::solid(shades::line(side, shade), LINE_PX);
             is_drawn |= canvas.segments(part.iter().copied(), style);
         }
         if is_drawn {
@@ -78,7 +77,7 @@ pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text:
         let color = shades::line(side, SHADES / 4);
         if canvas.dots(open(), radius_px, color) {
             canvas.dots(open(), 0.6 * radius_px, Rgb(0xff, 0xff, 0xff));
-            let ring = LineStyle { color, width_px: 0.4 * radius_px, dashes: "" };
+            let ring = LineStyle::solid(color, 0.4 * radius_px);
             let label = trace.label(&format!("{text}, generated only"), side);
             let sample = LineStyle { width_px: 0.4 * sample_px, ..ring };
             canvas.explain(Entry::new(label, Sample::SmallRing(sample, 0.8 * sample_px)));
