@@ -7,13 +7,13 @@ use keyway::local::{Explanation, ScoredCandidate, Shares};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_draw::layers::{
-    Caption, CellTint, Driven, DrivenPoint, EstimatedMovers, Fan, Footprints, Goal, HatchedDiscs,
-    Hits, PathLine, Points, Polygons, Start, WalkedGround,
+    Caption, CellTint, DrivenPath, EstimatedMovers, Fan, Footprints, GoalMark, HatchedDiscs, Hits,
+    PathLine, Points, Polygons, StartMark, WalkedGround,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
 };
-use keyway_sim::sim::{MovingObstacle, StandingPolygon};
+use keyway_sim::sim::{MovingObstacle, StandingPolygon, TrajectoryPoint};
 use std::borrow::Cow;
 
 const INK: Rgb = Rgb(0x22, 0x22, 0x22);
@@ -43,7 +43,7 @@ pub(crate) struct Stage<'a> {
 /// A moment, in the form of layers.
 struct Shown<'a> {
     moment: &'a Moment,
-    robot: [DrivenPoint; 1],
+    robot: [TrajectoryPoint; 1],
     guide: Vec<Point>,
     towards: Polyline,
     discs: Vec<Disc>,
@@ -51,16 +51,16 @@ struct Shown<'a> {
     moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
     /// What was driven before.
-    driven: &'a [DrivenPoint],
+    driven: &'a [TrajectoryPoint],
 }
 
 impl<'a> Stage<'a> {
-    fn shown(&self, moment: &'a Moment, driven: &'a [DrivenPoint]) -> Shown<'a> {
+    fn shown(&self, moment: &'a Moment, driven: &'a [TrajectoryPoint]) -> Shown<'a> {
         let Moment { t_s, pose, velocity, guide, .. } = *moment;
         let until = driven.partition_point(|point| point.t_s <= t_s + 1e-9);
         Shown {
             moment,
-            robot: [DrivenPoint { t_s, pose, velocity }],
+            robot: [TrajectoryPoint { t_s, pose, velocity }],
             guide: vec![guide],
             towards: Polyline::new(vec![pose.point(), guide]),
             discs: self.obstacles.to_vec(),
@@ -91,8 +91,8 @@ impl<'a> Stage<'a> {
             .with(Footprints::new(&shown.robot, footprint).looking("robot", ROBOT))
     }
 
-    fn goal_layer(&self) -> Goal {
-        Goal { point: self.goal, tolerance_m: Some(self.tolerance_m) }
+    fn goal_layer(&self) -> GoalMark {
+        GoalMark { point: self.goal, tolerance_m: Some(self.tolerance_m) }
     }
 
     /// The candidates of one decision. The legend explains only what is in view.
@@ -112,10 +112,10 @@ impl<'a> Stage<'a> {
         }
         shown.guide.retain(|&guide| is_seen(guide, 0.0));
         let explanation = &moment.explanation;
-        let after: Vec<DrivenPoint> = explanation
+        let after: Vec<TrajectoryPoint> = explanation
             .chosen
             .and_then(|chosen| explanation.candidates[chosen].poses.last())
-            .map(|&pose| DrivenPoint { pose, ..shown.robot[0] })
+            .map(|&pose| TrajectoryPoint { pose, ..shown.robot[0] })
             .into_iter()
             .collect();
         let end = Footprints::new(&after, &self.robot.footprint).looking("robot at its end", AFTER);
@@ -149,7 +149,7 @@ impl<'a> Stage<'a> {
     pub(crate) fn animation(
         &self,
         moments: &[Moment],
-        driven: &[DrivenPoint],
+        driven: &[TrajectoryPoint],
         progress: impl FnMut(usize, usize),
     ) -> Result<Animation, DrawError> {
         let run_s = driven.last().map_or(0.0, |point| point.t_s);
@@ -161,10 +161,10 @@ impl<'a> Stage<'a> {
             let Shown { moment, driven, .. }: &Shown<'_> = shown;
             let speed_mps = moment.velocity.v;
             self.picture(shown)
-                .with(Start(self.start))
+                .with(StartMark(self.start))
                 .with(self.goal_layer())
                 .with(Fan::new(moment.pose, &moment.explanation).pale())
-                .with(Driven::new(driven).v_max_mps(v_max_mps))
+                .with(DrivenPath::new(driven).v_max_mps(v_max_mps))
                 .with(Caption(format!("{:.1} s, {speed_mps:.2} m/s", moment.t_s)))
                 .region(region)
                 .side_px(SIDE_PX)
@@ -186,7 +186,7 @@ impl<'a> Stage<'a> {
     }
 
     /// All of the map that matters to a run: where it led, and some room around.
-    fn whole(&self, moments: &[Moment], driven: &[DrivenPoint]) -> Region {
+    fn whole(&self, moments: &[Moment], driven: &[TrajectoryPoint]) -> Region {
         let routes = moments.iter().flat_map(|moment| moment.route.points()).copied();
         let points = routes.chain(driven.iter().map(|point| point.pose.point()));
         let (low, high) = corners(points.chain([self.start, self.goal]));

@@ -7,13 +7,13 @@ use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
 use keyway_draw::layers::{
-    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, Meeting, Movers, OtherGoals,
-    PathLine, Points, Polygons, SearchNodes, SearchTrace, Start, WalkedGround,
+    CellTint, DrivenPath, Footprints, GoalMark, HatchedDiscs, Meeting, Movers, OtherGoals,
+    PathLine, Points, Polygons, SearchNodes, SearchTrace, StartMark, WalkedGround,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
 };
-use keyway_sim::sim::StandingPolygon;
+use keyway_sim::sim::{StandingPolygon, TrajectoryPoint};
 
 /// Pixels of a PNG per unit of its picture.
 pub(crate) const PNG_SCALE: f64 = 2.0;
@@ -74,12 +74,12 @@ impl<'a> PlanPicture<'a> {
             .with(trace)
             .with(SearchNodes(trace))
             .with(Meeting(trace))
-            .with(Start(self.start));
+            .with(StartMark(self.start));
         let PlanGoals { main, others } = self.goals;
         let label = if main.is_some() { "other goal" } else { "goal without a path" };
         let picture = picture.with(OtherGoals::new(others).label(label));
         match *main {
-            Some(point) => picture.with(Goal { point, tolerance_m: None }),
+            Some(point) => picture.with(GoalMark { point, tolerance_m: None }),
             None => picture,
         }
     }
@@ -99,7 +99,7 @@ pub(crate) struct DrivenPicture<'a> {
     pub(crate) sensed: &'a BitGrid,
     /// What the robot went around.
     pub(crate) walked: &'a [Disc],
-    pub(crate) points: &'a [DrivenPoint],
+    pub(crate) points: &'a [TrajectoryPoint],
 }
 
 impl RunPicture<'_> {
@@ -107,14 +107,14 @@ impl RunPicture<'_> {
         let Stage { map, robot, obstacles, polygons, hidden_cells, .. } = self.stage;
         let Stage { movers, start, goal, tolerance_m, .. } = self.stage;
         let polygons: Vec<&[Point]> = polygons.iter().map(StandingPolygon::vertices).collect();
-        let goal = Goal { point: goal, tolerance_m: Some(tolerance_m) };
+        let goal = GoalMark { point: goal, tolerance_m: Some(tolerance_m) };
         let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
         let mut picture = MapPicture::new(map)
             .with(HatchedDiscs::unknown_obstacles(obstacles))
             .with(Polygons::unknown_obstacles(&polygons))
             .with(CellTint::unknown_obstacles(hidden_cells))
             .with(Movers::new(movers, points))
-            .with(Start(start))
+            .with(StartMark(start))
             .with(goal);
         if let Some(driven) = &self.driven {
             picture = picture
@@ -122,7 +122,7 @@ impl RunPicture<'_> {
                 .with(WalkedGround(driven.walked))
                 .with(PathLine::planned(driven.line))
                 .with(Points::key_points(driven.key_points))
-                .with(Driven::new(driven.points).v_max_mps(robot.limits.v_max_mps))
+                .with(DrivenPath::new(driven.points).v_max_mps(robot.limits.v_max_mps))
                 .with(PathLine::smoothed(driven.smoothed).over_driven())
                 .with(Footprints::new(driven.points, &robot.footprint));
         }
@@ -131,7 +131,7 @@ impl RunPicture<'_> {
 }
 
 /// Speed and turn rate of a run over time.
-pub(crate) fn speed_svg(name: &str, points: &[DrivenPoint], robot: &Robot) -> Svg {
+pub(crate) fn speed_svg(name: &str, points: &[TrajectoryPoint], robot: &Robot) -> Svg {
     let options = SpeedCurveOptions {
         v_max_mps: Some(robot.limits.v_max_mps),
         omega_max_radps: Some(robot.limits.omega_max_radps),
@@ -141,8 +141,8 @@ pub(crate) fn speed_svg(name: &str, points: &[DrivenPoint], robot: &Robot) -> Sv
 }
 
 /// A point of a trajectory as it is reported.
-pub(crate) fn driven_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> DrivenPoint {
-    DrivenPoint { t_s, pose: Pose::new(x, y, yaw_rad), velocity: Velocity::new(v, omega) }
+pub(crate) fn driven_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> TrajectoryPoint {
+    TrajectoryPoint { t_s, pose: Pose::new(x, y, yaw_rad), velocity: Velocity::new(v, omega) }
 }
 
 pub(crate) fn png(svg: &Svg) -> Result<Vec<u8>, CliError> {

@@ -3,21 +3,20 @@
 use crate::drive_pictures::{SIDE_PX, centiseconds};
 use keyway::geometry::{Disc, Point, Polyline};
 use keyway_draw::layers::{
-    Caption, CellTint, DrivenPoint, Footprints, HatchedDiscs, Movers, NumberedEnds, PathLine,
-    Polygons,
+    Caption, CellTint, Footprints, HatchedDiscs, Movers, NumberedEnds, PathLine, Polygons,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
     animate_frames, series_style, speed_curve,
 };
 use keyway_sim::episode::{Episode, EpisodeRobot};
-use keyway_sim::sim::{MovingObstacle, StandingPolygon};
+use keyway_sim::sim::{MovingObstacle, StandingPolygon, TrajectoryPoint};
 
 /// A team and what each of its robots drove; nothing without a route.
 #[derive(Clone, Copy)]
 pub(crate) struct TeamPicture<'a> {
     pub(crate) team: &'a Episode,
-    pub(crate) driven: &'a [Vec<DrivenPoint>],
+    pub(crate) driven: &'a [Vec<TrajectoryPoint>],
     /// What moves, as it did.
     pub(crate) movers: &'a [MovingObstacle],
 }
@@ -26,7 +25,7 @@ pub(crate) struct TeamPicture<'a> {
 struct Shown<'a> {
     t_s: f64,
     ways: Vec<Polyline>,
-    robots: Vec<[DrivenPoint; 1]>,
+    robots: Vec<[TrajectoryPoint; 1]>,
     /// What moves, where it is at that time.
     moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
@@ -39,10 +38,11 @@ impl<'a> TeamPicture<'a> {
 
     fn shown(&self, t_s: f64, movers: &[MovingObstacle]) -> Shown<'a> {
         let Episode { robots, polygons, .. } = self.team;
-        let until = |points: &&[DrivenPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
-        let parts: Vec<&[DrivenPoint]> =
+        let until =
+            |points: &&[TrajectoryPoint]| points.partition_point(|one| one.t_s <= t_s + 1e-9);
+        let parts: Vec<&[TrajectoryPoint]> =
             self.driven.iter().map(Vec::as_slice).map(|all| &all[..until(&all)]).collect();
-        let way = |part: &&[DrivenPoint]| {
+        let way = |part: &&[TrajectoryPoint]| {
             Polyline::new(part.iter().map(|one| one.pose.point()).collect())
         };
         Shown {

@@ -5,9 +5,10 @@ use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use keyway_draw::layers::{
-    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, PathLine, Points, Start,
+    CellTint, DrivenPath, Footprints, GoalMark, HatchedDiscs, PathLine, Points, StartMark,
 };
 use keyway_draw::{MapPicture, SpeedCurveOptions, SpeedSeries, Svg, speed_curve};
+use keyway_sim::sim::TrajectoryPoint;
 use std::error::Error;
 use std::path::Path;
 
@@ -69,11 +70,11 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
     let map = room_map(origin)?;
     let frame = *map.frame();
     let to_world = |x: f64, y: f64| frame.world_from_grid(Point::new(x, y) * (1.0 / 0.05));
-    let run: Vec<DrivenPoint> = drive(0.5)
+    let run: Vec<TrajectoryPoint> = drive(0.5)
         .into_iter()
         .map(|p| {
             let at = to_world(p.pose.x, p.pose.y);
-            DrivenPoint { pose: Pose::new(at.x, at.y, p.pose.theta + origin.theta), ..p }
+            TrajectoryPoint { pose: Pose::new(at.x, at.y, p.pose.theta + origin.theta), ..p }
         })
         .collect();
     let corners = [(1.6, 1.6), (3.9, 3.9), (4.8, 4.5), (6.5, 4.5), (9.2, 1.8)];
@@ -97,10 +98,10 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
         .with(PathLine::planned(&planned))
         .with(PathLine::smoothed(&smoothed))
         .with(Points::key_points(&key_points))
-        .with(Driven::new(&run))
+        .with(DrivenPath::new(&run))
         .with(Footprints::new(&run, &footprint))
-        .with(Start(start))
-        .with(Goal { point: goal, tolerance_m: Some(0.3) })
+        .with(StartMark(start))
+        .with(GoalMark { point: goal, tolerance_m: Some(0.3) })
         .svg())
 }
 
@@ -115,9 +116,9 @@ fn route(count: u32) -> Vec<(f64, f64)> {
 }
 
 /// A robot that strays a little from the route, and is slower where it turns.
-fn drive(cruise: f64) -> Vec<DrivenPoint> {
+fn drive(cruise: f64) -> Vec<TrajectoryPoint> {
     let way = route(400);
-    let mut run: Vec<DrivenPoint> = Vec::new();
+    let mut run: Vec<TrajectoryPoint> = Vec::new();
     let (mut t_s, mut before) = (0.0, None);
     for (i, pair) in way.windows(2).enumerate() {
         let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
@@ -129,7 +130,7 @@ fn drive(cruise: f64) -> Vec<DrivenPoint> {
         before = Some(theta);
         let off = 0.12 * (14.0 * s).sin();
         let pose = Pose::new(pair[0].0 - off * theta.sin(), pair[0].1 + off * theta.cos(), theta);
-        run.push(DrivenPoint { t_s, pose, velocity: Velocity::new(v, omega) });
+        run.push(TrajectoryPoint { t_s, pose, velocity: Velocity::new(v, omega) });
         t_s += step / v;
     }
     run

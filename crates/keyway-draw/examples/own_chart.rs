@@ -4,7 +4,7 @@
 //! `cargo run -p keyway-draw --example own_chart -- clearances.svg`
 
 use keyway::geometry::Point;
-use keyway_draw::{Axis, Chart, ChartPoint, Entry, LineStyle, Rgb, SERIES, Sample, Svg};
+use keyway_draw::{Axis, Chart, ChartPoint, LegendEntry, LegendMark, LineStyle, Rgb, SERIES, Svg};
 use std::error::Error;
 
 const BAND: Rgb = Rgb(0xcf, 0xdf, 0xee);
@@ -36,9 +36,9 @@ fn distribution_chart(values: &[f64]) -> Svg {
     let steps = distribution(values);
     let line = LineStyle::solid(SERIES[0], 1.4);
     let entries = [
-        Entry::new("share of the points that keep no more", Sample::Line(line)),
-        Entry::new("95 % confidence band", Sample::Area(BAND)),
-        Entry::new("robot's radius", Sample::Line(LineStyle::LIMIT)),
+        LegendEntry::new("share of the points that keep no more", LegendMark::Line(line)),
+        LegendEntry::new("95 % confidence band", LegendMark::Area(BAND)),
+        LegendEntry::new("robot's radius", LegendMark::Line(LineStyle::LIMIT)),
     ];
     let longest = values.last().copied().unwrap_or(1.0);
     Chart::new(Axis::linear(0.0, longest, 8).label("clearance [m]"), 480.0, 240.0)

@@ -1,7 +1,7 @@
 //! What a layer draws on: the plot area of a map picture, in pixels.
 
 use crate::color::Rgb;
-use crate::legend::{ColorBar, Entry};
+use crate::legend::{ColorBar, LegendEntry};
 use crate::line_style::LineStyle;
 use crate::outline::outline;
 use crate::view::View;
@@ -61,7 +61,7 @@ pub struct Canvas<'a> {
     view: View,
     blocks: Blocks,
     pub(crate) body: SvgWriter,
-    pub(crate) entries: Vec<Entry>,
+    pub(crate) entries: Vec<LegendEntry>,
     pub(crate) bars: Vec<ColorBar>,
     /// Places and radii \[px\] of things that a marker must not hide.
     pub(crate) discs: Vec<((f64, f64), f64)>,
@@ -102,7 +102,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// Lists something in the legend, once. Call it only when there was something to draw.
-    pub fn explain(&mut self, entry: Entry) {
+    pub fn explain(&mut self, entry: LegendEntry) {
         if !self.entries.contains(&entry) {
             self.entries.push(entry);
         }

@@ -3,7 +3,7 @@
 use crate::axes::{BOTTOM_AXIS_PX, Scale, border};
 use crate::axis::Axis;
 use crate::caption::{Caption, EDGE_PX, HEAD_PX, draw_title};
-use crate::legend::{Entry, Legend};
+use crate::legend::{Legend, LegendEntry};
 use crate::name_lines::NameLines;
 use crate::plot::{Plot, PlotArea};
 use crate::svg::Svg;
@@ -31,7 +31,7 @@ const LEGEND_GAP_PX: f64 = 8.0;
 pub struct Chart<'a> {
     title: String,
     caption: String,
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
     x_axis: Axis,
     names: Vec<String>,
     panels: Vec<(Axis, Draw<'a>)>,
@@ -92,7 +92,7 @@ impl<'a> Chart<'a> {
     }
 
     /// The legend, below the panels.
-    pub fn legend(self, entries: impl IntoIterator<Item = Entry>) -> Self {
+    pub fn legend(self, entries: impl IntoIterator<Item = LegendEntry>) -> Self {
         Self { entries: entries.into_iter().collect(), ..self }
     }
 
@@ -198,7 +198,7 @@ impl<'a> Layout<'a> {
 mod tests {
     use super::*;
     use crate::LineStyle;
-    use crate::legend::Sample;
+    use crate::legend::LegendMark;
 
     fn size_px(svg: &Svg) -> [f64; 2] {
         ["width", "height"].map(|side| {
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn every_part_that_is_asked_for_is_there() {
-        let entry = Entry::new("an <entry>", Sample::Line(LineStyle::LIMIT));
+        let entry = LegendEntry::new("an <entry>", LegendMark::Line(LineStyle::LIMIT));
         let svg = chart(2).title("A title").caption("A caption.").legend([entry]).svg();
         for text in ["A title", "A caption.", "an &lt;entry&gt;", "x [m]", "y [m]"] {
             assert!(svg.as_str().contains(&format!(">{text}</text>")), "{text}");

@@ -10,17 +10,17 @@ use crate::writer::{Anchor, PathData, SvgWriter};
 
 /// An item of the legend.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct LegendEntry {
     /// What it is.
     pub label: String,
     /// How it looks.
-    pub sample: Sample,
+    pub sample: LegendMark,
 }
 
 /// A small example of something drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Sample {
+pub enum LegendMark {
     /// Painted cells.
     Area(Rgb),
     /// Painted cells in a scale of colours.
@@ -54,9 +54,9 @@ pub enum Sample {
     },
 }
 
-impl Entry {
+impl LegendEntry {
     /// An item of the legend.
-    pub fn new(label: impl Into<String>, sample: Sample) -> Self {
+    pub fn new(label: impl Into<String>, sample: LegendMark) -> Self {
         Self { label: label.into(), sample }
     }
 
@@ -71,14 +71,14 @@ const COLUMN_GAP_PX: f64 = 18.0;
 
 /// A legend in columns.
 pub(crate) struct Legend<'a> {
-    entries: &'a [Entry],
+    entries: &'a [LegendEntry],
     column_widths: Vec<f64>,
     rows: usize,
 }
 
 impl<'a> Legend<'a> {
     /// As few rows as fit `width_px`; one column when nothing fits.
-    pub(crate) fn new(entries: &'a [Entry], width_px: f64) -> Self {
+    pub(crate) fn new(entries: &'a [LegendEntry], width_px: f64) -> Self {
         for rows in 1..entries.len() {
             let legend = Self::with_rows(entries, rows);
             if legend.width_px() <= width_px {
@@ -88,9 +88,10 @@ impl<'a> Legend<'a> {
         Self::with_rows(entries, entries.len())
     }
 
-    fn with_rows(entries: &'a [Entry], rows: usize) -> Self {
+    fn with_rows(entries: &'a [LegendEntry], rows: usize) -> Self {
         // Down the columns: related entries, which follow each other, stay together.
-        let widest = |column: &[Entry]| column.iter().map(Entry::width_px).fold(0.0, f64::max);
+        let widest =
+            |column: &[LegendEntry]| column.iter().map(LegendEntry::width_px).fold(0.0, f64::max);
         let column_widths = entries.chunks(rows.max(1)).map(widest).collect();
         Self { entries, column_widths, rows }
     }
@@ -119,23 +120,23 @@ impl<'a> Legend<'a> {
 }
 
 /// Draws a sample whose left edge is at `x`, centred at the height `y`.
-fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
+fn draw_sample(out: &mut SvgWriter, sample: LegendMark, x: f64, y: f64) {
     let middle = x + 0.5 * SAMPLE_PX;
     match sample {
-        Sample::Area(color) => {
+        LegendMark::Area(color) => {
             let tag = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
             tag.fill(color).stroke(QUIET, 0.6).leaf();
         }
-        Sample::Shades(colors) => {
+        LegendMark::Shades(colors) => {
             strips(out, (x + 2.0, y - 5.5), (SAMPLE_PX - 4.0, 11.0), &colors);
             let frame = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
             frame.attr("fill", "none").stroke(QUIET, 0.6).leaf();
         }
-        Sample::ShadedLine(colors) => strips(out, (x, y - 0.7), (SAMPLE_PX, 1.4), &colors),
-        Sample::Line(style) => {
+        LegendMark::ShadedLine(colors) => strips(out, (x, y - 0.7), (SAMPLE_PX, 1.4), &colors),
+        LegendMark::Line(style) => {
             out.tag("line").between((x, y), (x + SAMPLE_PX, y)).line_style(style).leaf();
         }
-        Sample::ColoredLine => {
+        LegendMark::ColoredLine => {
             let path = PathData::line([(x + 1.5, y), (x + SAMPLE_PX - 1.5, y)]);
             crate::layers::casing(out, &path);
             for i in 0..8 {
@@ -145,26 +146,28 @@ fn draw_sample(out: &mut SvgWriter, sample: Sample, x: f64, y: f64) {
                 tag.stroke(color, crate::layers::DRIVEN_WIDTH_PX).leaf();
             }
         }
-        Sample::Ring(style) => draw_sample(out, Sample::SmallRing(style, KEY_RING_PX), x, y),
-        Sample::SmallRing(style, radius) => {
+        LegendMark::Ring(style) => {
+            draw_sample(out, LegendMark::SmallRing(style, KEY_RING_PX), x, y)
+        }
+        LegendMark::SmallRing(style, radius) => {
             let tag = out.tag("circle").round(middle, y, radius).attr("fill", "#fff");
             tag.stroke(style.color, style.width_px).leaf();
         }
-        Sample::Dot(color, radius) => {
+        LegendMark::Dot(color, radius) => {
             out.tag("circle").round(middle, y, radius).fill(color).leaf();
         }
-        Sample::Circle(style) => {
+        LegendMark::Circle(style) => {
             out.tag("circle").round(middle, y, 6.0).attr("fill", "none").line_style(style).leaf();
         }
-        Sample::Box(style) => {
+        LegendMark::Box(style) => {
             let corners = [(6.0, 5.0), (-6.0, 5.0), (-6.0, -5.0), (6.0, -5.0), (6.0, 5.0)];
             let outline = PathData::line(corners.map(|(dx, dy)| (middle + dx, y + dy)));
             let tag = out.tag("path").attr("d", outline.as_str()).attr("fill", "none");
             tag.line_style(style).leaf();
         }
-        Sample::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
-        Sample::Time(color) => time_mark(out, (middle, y), "5", color),
-        Sample::Letter { letter, dark } => {
+        LegendMark::HatchedDisc(color) => hatched_disc(out, (middle, y), 6.5, color),
+        LegendMark::Time(color) => time_mark(out, (middle, y), "5", color),
+        LegendMark::Letter { letter, dark } => {
             letter_mark(out, (middle, y), letter.encode_utf8(&mut [0; 4]), dark);
         }
     }
@@ -223,9 +226,10 @@ mod tests {
 
     #[test]
     fn columns_fit_the_width() {
-        let entries: Vec<Entry> = ["free", "occupied", "unknown", "a much longer label", "b", "c"]
-            .map(|label| Entry::new(label, Sample::Area(QUIET)))
-            .to_vec();
+        let entries: Vec<LegendEntry> =
+            ["free", "occupied", "unknown", "a much longer label", "b", "c"]
+                .map(|label| LegendEntry::new(label, LegendMark::Area(QUIET)))
+                .to_vec();
         for width in [50.0, 160.0, 300.0, 2000.0] {
             let legend = Legend::new(&entries, width);
             assert!(legend.width_px() <= width || legend.column_widths.len() == 1);

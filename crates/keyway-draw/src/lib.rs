@@ -18,15 +18,15 @@
 //! use keyway::geometry::{Point, Polyline};
 //! use keyway::map::OccupancyGrid;
 //! use keyway_draw::MapPicture;
-//! use keyway_draw::layers::{Goal, PathLine, Start};
+//! use keyway_draw::layers::{GoalMark, PathLine, StartMark};
 //!
 //! let map = OccupancyGrid::from_ascii(&[".....", ".###.", "....."]);
 //! let (start, goal) = (Point::new(0.5, 0.5), Point::new(4.5, 2.5));
 //! let path = Polyline::new(vec![start, Point::new(4.5, 0.5), goal]);
 //! let picture = MapPicture::new(&map)
 //!     .with(PathLine::planned(&path))
-//!     .with(Start(start))
-//!     .with(Goal { point: goal, tolerance_m: Some(0.3) })
+//!     .with(StartMark(start))
+//!     .with(GoalMark { point: goal, tolerance_m: Some(0.3) })
 //!     .svg();
 //! assert!(picture.as_str().starts_with("<svg"));
 //! ```
@@ -72,7 +72,7 @@ pub use canvas::Canvas;
 pub use chart::Chart;
 pub use color::{Rgb, SERIES, viridis};
 pub use interval_chart::{IntervalChart, IntervalRow, interval_chart};
-pub use legend::{ColorBar, Entry, Sample};
+pub use legend::{ColorBar, LegendEntry, LegendMark};
 pub use line_style::{LineStyle, series_style};
 pub use log_chart::{LogChart, LogLine, LogPanel, log_chart};
 pub use map_panels::MapPanels;

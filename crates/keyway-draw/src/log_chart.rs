@@ -3,7 +3,7 @@
 
 use crate::caption::EDGE_PX;
 use crate::chart::Margins;
-use crate::{Axis, Chart, ChartPoint, Entry, Plot, Sample, Svg, series_style};
+use crate::{Axis, Chart, ChartPoint, LegendEntry, LegendMark, Plot, Svg, series_style};
 
 const DOT_PX: f64 = 2.6;
 const MARGINS: Margins =
@@ -64,11 +64,11 @@ fn drawable<'a>(line: &LogLine<'a>) -> impl Iterator<Item = ChartPoint> + use<'a
 }
 
 /// Each name once, in the style of its first line.
-fn entries(panels: &[LogPanel<'_>]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
+fn entries(panels: &[LogPanel<'_>]) -> Vec<LegendEntry> {
+    let mut entries: Vec<LegendEntry> = Vec::new();
     for (i, line) in panels.iter().flat_map(|panel| panel.lines.iter().enumerate()) {
         if !entries.iter().any(|entry| entry.label == line.name) {
-            entries.push(Entry::new(line.name, Sample::Line(series_style(i))));
+            entries.push(LegendEntry::new(line.name, LegendMark::Line(series_style(i))));
         }
     }
     entries

@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::caption::{Caption, EDGE_PX, HEAD_PX, draw_title};
 use crate::color::UNKNOWN;
 use crate::layers::{Depth, Layer};
-use crate::legend::{Entry, Legend};
+use crate::legend::{Legend, LegendEntry};
 use crate::map_picture::{MapPicture, draw_map, map_axes};
 use crate::name_lines::NameLines;
 use crate::svg::Svg;
@@ -75,7 +75,7 @@ impl<'a> MapPanels<'a> {
         layers.for_each(|layer| layer.draw(&mut ground));
         let drawn: Vec<Drawn<'_>> = self.panels.iter().map(|one| self.drawn(one, view)).collect();
         let common = drawn.first().map_or(&[][..], |panel| &panel.common);
-        let shared: Vec<Entry> = ground.entries.iter().chain(common).cloned().collect();
+        let shared: Vec<LegendEntry> = ground.entries.iter().chain(common).cloned().collect();
         let grid = Grid::new(&view, &drawn, &self.common.title);
         let mut out = SvgWriter::new();
         draw_title(&mut out, &self.common.title, grid.left, grid.width_px());
@@ -121,7 +121,7 @@ impl<'a> MapPanels<'a> {
             layer.draw(&mut canvas);
             let entries = if is_own { &mut drawn.own } else { &mut drawn.common };
             let new = canvas.entries.drain(..).filter(|entry| !entries.contains(entry));
-            let new: Vec<Entry> = new.collect();
+            let new: Vec<LegendEntry> = new.collect();
             entries.extend(new);
         }
         Drawn { body: canvas.body, ..drawn }
@@ -148,9 +148,9 @@ struct Drawn<'a> {
     title: &'a str,
     body: SvgWriter,
     /// What the panel alone shows.
-    own: Vec<Entry>,
+    own: Vec<LegendEntry>,
     /// What all panels show.
-    common: Vec<Entry>,
+    common: Vec<LegendEntry>,
 }
 
 impl Drawn<'_> {

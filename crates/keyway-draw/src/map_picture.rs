@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::caption::{EDGE_PX, HEAD_PX, draw_title};
 use crate::color::{FREE, OCCUPIED, UNKNOWN};
 use crate::layers::{Depth, Layer};
-use crate::legend::{ColorBar, Entry, Legend, Sample};
+use crate::legend::{ColorBar, Legend, LegendEntry, LegendMark};
 use crate::svg::Svg;
 use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::text_table::TextTable;
@@ -184,7 +184,7 @@ impl<'a> MapPicture<'a> {
 #[derive(Clone, Debug)]
 pub struct Layout {
     view: View,
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
     bars: Vec<ColorBar>,
 }
 
@@ -193,13 +193,13 @@ pub(crate) fn draw_map(canvas: &mut Canvas<'_>) {
     let map = canvas.map();
     let (occupied, unknown) = (map.occupied(), map.unknown());
     if canvas.cells(FREE, |cell| !occupied.get(cell) && !unknown.get(cell)) {
-        canvas.explain(Entry::new("free", Sample::Area(FREE)));
+        canvas.explain(LegendEntry::new("free", LegendMark::Area(FREE)));
     }
     if canvas.cells(OCCUPIED, |cell| occupied.get(cell)) {
-        canvas.explain(Entry::new("occupied", Sample::Area(OCCUPIED)));
+        canvas.explain(LegendEntry::new("occupied", LegendMark::Area(OCCUPIED)));
     }
     if canvas.shows_unknown() {
-        canvas.explain(Entry::new("unknown", Sample::Area(UNKNOWN)));
+        canvas.explain(LegendEntry::new("unknown", LegendMark::Area(UNKNOWN)));
     }
 }
 

@@ -1,8 +1,10 @@
 //! Speed and turn rate over time: two charts with one time axis.
 
-use crate::layers::DrivenPoint;
 use crate::ticks::span;
-use crate::{Axis, Chart, ChartPoint, Entry, LineStyle, Plot, Sample, Svg, Ticks, series_style};
+use crate::{
+    Axis, Chart, ChartPoint, LegendEntry, LegendMark, LineStyle, Plot, Svg, Ticks, series_style,
+};
+use keyway_sim::sim::TrajectoryPoint;
 
 /// A run in a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +12,7 @@ pub struct SpeedSeries<'a> {
     /// Its name in the legend.
     pub name: &'a str,
     /// Its states in the order of time.
-    pub points: &'a [DrivenPoint],
+    pub points: &'a [TrajectoryPoint],
 }
 
 /// What a [`speed_curve`] shows besides the runs; nothing by default.
@@ -29,7 +31,7 @@ pub struct SpeedCurveOptions {
 /// What one of the two charts shows of a state.
 struct Quantity {
     label: &'static str,
-    value: fn(&DrivenPoint) -> f64,
+    value: fn(&TrajectoryPoint) -> f64,
     limits: Vec<f64>,
 }
 
@@ -57,19 +59,19 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
 }
 
 /// One run explains itself; several need names.
-fn entries(series: &[SpeedSeries<'_>], has_limits: bool) -> Vec<Entry> {
+fn entries(series: &[SpeedSeries<'_>], has_limits: bool) -> Vec<LegendEntry> {
     let named =
         series.iter().enumerate().filter(|(_, run)| series.len() > 1 && !run.name.is_empty());
-    let named = named.map(|(i, run)| Entry::new(run.name, Sample::Line(series_style(i))));
-    let limit = has_limits.then(|| Entry::new("limit", Sample::Line(LineStyle::LIMIT)));
+    let named = named.map(|(i, run)| LegendEntry::new(run.name, LegendMark::Line(series_style(i))));
+    let limit = has_limits.then(|| LegendEntry::new("limit", LegendMark::Line(LineStyle::LIMIT)));
     named.chain(limit).collect()
 }
 
-fn is_drawable(point: &DrivenPoint) -> bool {
+fn is_drawable(point: &TrajectoryPoint) -> bool {
     point.t_s.is_finite() && point.velocity.v.is_finite() && point.velocity.omega.is_finite()
 }
 
-fn drawable<'a>(series: &[SpeedSeries<'a>]) -> impl Iterator<Item = &'a DrivenPoint> {
+fn drawable<'a>(series: &[SpeedSeries<'a>]) -> impl Iterator<Item = &'a TrajectoryPoint> {
     series.iter().flat_map(|run| run.points).filter(|point| is_drawable(point))
 }
 

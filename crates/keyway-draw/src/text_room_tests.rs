@@ -1,6 +1,6 @@
 //! The text of whole pictures has room.
 
-use crate::layers::{DrivenPoint, Goal, Layer, PathLine, Start};
+use crate::layers::{GoalMark, Layer, PathLine, StartMark};
 use crate::svg::Svg;
 use crate::{
     BoxGroup, BoxPlot, ChartPoint, IntervalChart, IntervalRow, MapPanels, MapPicture, PointPanels,
@@ -10,6 +10,7 @@ use crate::{
 use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::OccupancyGrid;
 use keyway_sim::metrics::statistics;
+use keyway_sim::sim::TrajectoryPoint;
 use resvg::usvg::{Group, Node, Rect, TextChunk};
 
 /// The page's edge stays free \[px\].
@@ -77,7 +78,7 @@ fn of_bars_and_boxes() {
 #[test]
 fn of_curves_and_points() {
     let velocity = Velocity::new(0.5, -0.2);
-    let run = [0.0, 7.0, 9.5].map(|t_s| DrivenPoint { t_s, pose: Pose::default(), velocity });
+    let run = [0.0, 7.0, 9.5].map(|t_s| TrajectoryPoint { t_s, pose: Pose::default(), velocity });
     let series = [LONG, "a", LONG].map(|name| SpeedSeries { name, points: &run });
     let caption = CAPTION.to_owned();
     let options = SpeedCurveOptions { caption, ..SpeedCurveOptions::default() };
@@ -102,8 +103,9 @@ fn of_panels() {
     let [start, goal] = [Point::new(3.5, 3.5), Point::new(17.5, 17.5)];
     let path = Polyline::new(vec![start, goal]);
     for titles in [&[LONG][..], &[LONG, "a", LONG, LONG, "b"]] {
-        let common =
-            MapPicture::new(&map).with(Start(start)).with(Goal { point: goal, tolerance_m: None });
+        let common = MapPicture::new(&map)
+            .with(StartMark(start))
+            .with(GoalMark { point: goal, tolerance_m: None });
         let mut panels = MapPanels::new(common).caption(CAPTION);
         for title in titles {
             let layer: Box<dyn Layer> = Box::new(PathLine::smoothed(&path));

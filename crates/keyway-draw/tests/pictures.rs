@@ -7,14 +7,14 @@ use keyway::local::{Explanation, Fate, JudgedCandidate, Share};
 use keyway::map::{BitGrid, Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Footprint;
 use keyway_draw::layers::{
-    Caption, CellTint, Driven, DrivenPoint, Fan, Footprints, Goal, HatchedDiscs, Hits, Layer,
-    Movers, OtherGoals, PathLine, Points, Polygons, Start,
+    Caption, CellTint, DrivenPath, Fan, Footprints, GoalMark, HatchedDiscs, Hits, Layer, Movers,
+    OtherGoals, PathLine, Points, Polygons, StartMark,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Region, SERIES, SpeedCurveOptions, SpeedSeries, Svg,
     TextTable, speed_curve,
 };
-use keyway_sim::sim::{MovingObstacle, WayPoints};
+use keyway_sim::sim::{MovingObstacle, TrajectoryPoint, WayPoints};
 
 /// Width and height of the page, as its text gives them; where pixels can be made, they have this
 /// size.
@@ -34,8 +34,8 @@ fn png_px(picture: &Svg, scale: f64) -> (u32, u32) {
     (word(16), word(20))
 }
 
-fn run() -> Vec<DrivenPoint> {
-    let state = |i: u32| DrivenPoint {
+fn run() -> Vec<TrajectoryPoint> {
+    let state = |i: u32| TrajectoryPoint {
         t_s: f64::from(i) * 0.1,
         pose: Pose::new(1.0 + f64::from(i) * 0.02, 2.0, 0.0),
         velocity: Velocity::new(0.2 + f64::from(i) * 0.003, -0.1),
@@ -80,11 +80,11 @@ fn everything(map: &OccupancyGrid) -> Svg {
         .with(PathLine::planned(&path))
         .with(PathLine::smoothed(&path))
         .with(Points::key_points(&points))
-        .with(Driven::new(&run))
+        .with(DrivenPath::new(&run))
         .with(Footprints::new(&run, &disc(0.18)))
         .with(Movers::new(&movers(), &run))
-        .with(Start(points[0]))
-        .with(Goal { point: points[2], tolerance_m: Some(0.4) })
+        .with(StartMark(points[0]))
+        .with(GoalMark { point: points[2], tolerance_m: Some(0.4) })
         .svg()
 }
 
@@ -121,7 +121,7 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
         .with(CellTint::blocked(&unset))
         .with(HatchedDiscs::unknown_obstacles(&[]))
         .with(Points::key_points(&[]))
-        .with(Driven::new(&[]))
+        .with(DrivenPath::new(&[]))
         .with(Footprints::new(&[], &disc(0.2)))
         .with(Movers::new(&[], &run()))
         .svg();
@@ -143,8 +143,8 @@ fn movers_and_the_robot_have_marks_at_the_same_times() {
     assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
     assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
     // Standing still is one mark.
-    let resting: Vec<DrivenPoint> =
-        run.iter().map(|point| DrivenPoint { pose: run[0].pose, ..*point }).collect();
+    let resting: Vec<TrajectoryPoint> =
+        run.iter().map(|point| TrajectoryPoint { pose: run[0].pose, ..*point }).collect();
     let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &resting)).svg();
     assert_eq!(picture.as_str().matches(">2 \u{2026} 8</text>").count(), 1);
     let resting = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &[])).svg();
@@ -205,9 +205,9 @@ fn degenerate_maps_and_layers_can_be_drawn() {
                 .with(CellTint::sensed(&small))
                 .with(HatchedDiscs::unknown_obstacles(&strange))
                 .with(Polygons::unknown_obstacles(&polygons))
-                .with(Driven::new(&still).v_max_mps(f64::NAN))
+                .with(DrivenPath::new(&still).v_max_mps(f64::NAN))
                 .with(Footprints::new(&still, &disc(0.1)).every_m(0.0))
-                .with(Goal { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })
+                .with(GoalMark { point: Point::new(0.1, 0.1), tolerance_m: Some(f64::NAN) })
                 .svg();
             assert!(!picture.as_str().contains("NaN"), "{rows:?} {region:?}");
             let (width, height) = page_px(&picture);
@@ -233,9 +233,9 @@ fn a_marker_does_not_hide_an_obstacle() {
     let with_disc = |radius_m: f64| {
         let discs = [Disc { centre: Point::new(3.01, 2.0), radius_m }];
         let discs = HatchedDiscs::unknown_obstacles(&discs);
-        MapPicture::new(&map).with(discs).with(Goal { point, tolerance_m: None }).svg()
+        MapPicture::new(&map).with(discs).with(GoalMark { point, tolerance_m: None }).svg()
     };
-    let alone = MapPicture::new(&map).with(Goal { point, tolerance_m: None }).svg();
+    let alone = MapPicture::new(&map).with(GoalMark { point, tolerance_m: None }).svg();
     let (hidden, wide) = (with_disc(0.02), with_disc(0.4));
     assert_eq!(place(&alone, "G"), place(&wide, "G"), "it looks out on all sides");
     let ((x, y), (beside_x, beside_y)) = (place(&alone, "G"), place(&hidden, "G"));
@@ -267,7 +267,7 @@ fn a_route_does_not_hide_an_obstacle() {
 fn other_goals_are_told_apart() {
     let map = map(0.0);
     let others = [Point::new(0.5, 0.5), Point::new(3.0, 3.0), Point::new(f64::NAN, 0.0)];
-    let goal = Goal { point: Point::new(3.0, 2.0), tolerance_m: None };
+    let goal = GoalMark { point: Point::new(3.0, 2.0), tolerance_m: None };
     let picture = MapPicture::new(&map).with(goal).with(OtherGoals::new(&others)).svg();
     let count = |text: &str| picture.as_str().matches(text).count();
     assert_eq!((count(">G</text>"), count(">goal<"), count(">other goal<")), (5, 1, 1));
@@ -279,7 +279,7 @@ fn a_smoothed_path_is_seen_over_what_was_driven() {
     let (map, run) = (map(0.0), run());
     let path = Polyline::new(run.iter().map(|point| point.pose.point()).collect());
     let picture = MapPicture::new(&map)
-        .with(Driven::new(&run))
+        .with(DrivenPath::new(&run))
         .with(PathLine::smoothed(&path).over_driven())
         .svg();
     let plot = picture.as_str().split("</svg>").next().unwrap();
@@ -301,7 +301,7 @@ fn panels_have_one_map_and_legends_of_their_own() {
         .map(|i| Polyline::new(vec![Point::new(0.5, 0.5), Point::new(3.0, f64::from(i) * 0.5)]))
         .collect();
     let mut panels =
-        MapPanels::new(MapPicture::new(&map).title("All").with(Start(Point::new(0.5, 0.5))));
+        MapPanels::new(MapPicture::new(&map).title("All").with(StartMark(Point::new(0.5, 0.5))));
     for (i, path) in paths.iter().enumerate() {
         let layer: Box<dyn Layer> = Box::new(PathLine::new(path, format!("path {i}"), style));
         panels = panels.panel(format!("panel {i}"), vec![layer]);
@@ -344,9 +344,9 @@ fn large_maps_make_small_files() {
 #[test]
 fn speed_curves_of_none_one_and_several_runs() {
     let run = run();
-    let still: Vec<DrivenPoint> =
-        run.iter().map(|p| DrivenPoint { velocity: Velocity::ZERO, ..*p }).collect();
-    let broken = [DrivenPoint { t_s: f64::NAN, ..run[0] }];
+    let still: Vec<TrajectoryPoint> =
+        run.iter().map(|p| TrajectoryPoint { velocity: Velocity::ZERO, ..*p }).collect();
+    let broken = [TrajectoryPoint { t_s: f64::NAN, ..run[0] }];
     let one = [SpeedSeries { name: "alone", points: &run }];
     let options = SpeedCurveOptions {
         title: Some("Runs".to_owned()),
@@ -375,7 +375,7 @@ fn a_speed_curve_has_gaps_where_there_is_no_state() {
     let whole = run();
     let mut with_gap = whole.clone();
     with_gap[whole.len() / 2].velocity.v = f64::NAN;
-    let lines = |points: &[DrivenPoint]| {
+    let lines = |points: &[TrajectoryPoint]| {
         let svg = speed_curve(&[SpeedSeries { name: "", points }], &SpeedCurveOptions::default());
         let paths = svg.as_str().split("<path").skip(1);
         let starts = paths.map(|path| path.split("/>").next().unwrap().matches('M').count());

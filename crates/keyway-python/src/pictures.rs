@@ -4,12 +4,11 @@ use crate::errors::bad_value;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::OccupancyGrid;
 use keyway_draw::layers::{
-    CellTint, Driven, DrivenPoint, Footprints, Goal, HatchedDiscs, Movers, PathLine, Polygons,
-    Start,
+    CellTint, DrivenPath, Footprints, GoalMark, HatchedDiscs, Movers, PathLine, Polygons, StartMark,
 };
 use keyway_draw::{MapPicture, Svg};
 use keyway_sim::episode::RobotReport;
-use keyway_sim::sim::StandingPolygon;
+use keyway_sim::sim::{StandingPolygon, TrajectoryPoint};
 use pyo3::PyResult;
 
 /// Pixels per unit of a picture.
@@ -26,7 +25,7 @@ pub(crate) fn of_path(grid: &OccupancyGrid, path: &Polyline, smoothed: Option<&P
         picture = picture.with(PathLine::smoothed(smoothed));
     }
     if let (Some(&start), Some(&point)) = (path.points().first(), path.points().last()) {
-        picture = picture.with(Start(start)).with(Goal { point, tolerance_m: None });
+        picture = picture.with(StartMark(start)).with(GoalMark { point, tolerance_m: None });
     }
     picture.svg()
 }
@@ -40,20 +39,20 @@ pub(crate) fn of_run(grid: &OccupancyGrid, report: &RobotReport) -> Svg {
     let polygons: Vec<&[Point]> = inputs.polygons.iter().map(StandingPolygon::vertices).collect();
     let point = |&[t_s, x, y, theta, v, omega]: &[f64; 6]| {
         let (pose, velocity) = (Pose::new(x, y, theta), Velocity::new(v, omega));
-        DrivenPoint { t_s, pose, velocity }
+        TrajectoryPoint { t_s, pose, velocity }
     };
-    let driven: Vec<DrivenPoint> = report.trajectory.iter().flatten().map(point).collect();
+    let driven: Vec<TrajectoryPoint> = report.trajectory.iter().flatten().map(point).collect();
     let movers = report.run.as_ref().map(|run| run.movers(&inputs.moving)).unwrap_or_default();
     let mut picture = MapPicture::new(grid)
         .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(Polygons::unknown_obstacles(&polygons))
         .with(CellTint::unknown_obstacles(&inputs.hidden_cells))
         .with(Movers::new(&movers, &driven))
-        .with(Start(at(&inputs.start)))
-        .with(Goal { point: at(&inputs.goal), tolerance_m: None });
+        .with(StartMark(at(&inputs.start)))
+        .with(GoalMark { point: at(&inputs.goal), tolerance_m: None });
     if let Some(robot) = inputs.robot.as_ref().filter(|_| !driven.is_empty()) {
         picture = picture
-            .with(Driven::new(&driven).v_max_mps(robot.limits.v_max_mps))
+            .with(DrivenPath::new(&driven).v_max_mps(robot.limits.v_max_mps))
             .with(Footprints::new(&driven, &robot.footprint));
     }
     picture.svg()

@@ -7,9 +7,7 @@ use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Sep
 use keyway::navigate::{Controller, FittedStack, Stack};
 use keyway::plan::{AStar, Dijkstra, PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
-use keyway::route::{
-    EndRule, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path,
-};
+use keyway::route::{EndRule, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path};
 use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::{Taut, Unsmoothed};
 use std::sync::Arc;

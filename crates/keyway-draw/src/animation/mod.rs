@@ -22,13 +22,13 @@ use resvg::tiny_skia::Pixmap;
 /// ```
 /// use keyway::geometry::Point;
 /// use keyway::map::OccupancyGrid;
-/// use keyway_draw::layers::{Goal, Start};
+/// use keyway_draw::layers::{GoalMark, StartMark};
 /// use keyway_draw::{Animation, MapPicture};
 ///
 /// let map = OccupancyGrid::from_ascii(&["...", ".#.", "..."]);
 /// let (start, point) = (Point::new(0.5, 0.5), Point::new(2.5, 2.5));
-/// let begin = || MapPicture::new(&map).with(Start(start));
-/// let still = begin().with(Goal { point, tolerance_m: None });
+/// let begin = || MapPicture::new(&map).with(StartMark(start));
+/// let still = begin().with(GoalMark { point, tolerance_m: None });
 /// let mut animation = Animation::new(&still.svg(), 1.0)?;
 /// animation.push(&begin().svg_in(&still.layout()), 50)?;
 /// animation.push(&still.svg(), 150)?;

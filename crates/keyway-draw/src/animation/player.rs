@@ -22,11 +22,11 @@ const MAX_SIDE_CELLS: i32 = 1024;
 /// ```
 /// use keyway::geometry::Point;
 /// use keyway::map::OccupancyGrid;
-/// use keyway_draw::layers::{Caption, Start};
+/// use keyway_draw::layers::{Caption, StartMark};
 /// use keyway_draw::{MapPicture, animate_frames};
 ///
 /// let map = OccupancyGrid::from_ascii(&["....", ".##.", "...."]);
-/// let at = |i: usize| MapPicture::new(&map).with(Start(Point::new(0.5 + i as f64, 0.5)));
+/// let at = |i: usize| MapPicture::new(&map).with(StartMark(Point::new(0.5 + i as f64, 0.5)));
 /// let frame = |i: usize| at(i).with(Caption(format!("{i} s")));
 /// let animation = animate_frames(&at(3), 3, 100, frame, |_, _| ())?;
 /// assert_eq!((animation.frames(), animation.duration_s()), (4, 5.0));

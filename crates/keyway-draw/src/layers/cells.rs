@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{BLOCKED, OBSTACLE, Rgb, SENSED};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use keyway::map::{BitGrid, Cell, CellState};
 
 /// The set cells of a grid, in one colour. Cells outside the map are not drawn.
@@ -92,7 +92,7 @@ impl Layer for CellTint<'_> {
         let wanted =
             |cell| cells.has(cell) && (!self.free_only || map.state(cell) == Some(CellState::Free));
         if canvas.cells(self.color, wanted) {
-            canvas.explain(Entry::new(self.label.clone(), Sample::Area(self.color)));
+            canvas.explain(LegendEntry::new(self.label.clone(), LegendMark::Area(self.color)));
         }
     }
 }

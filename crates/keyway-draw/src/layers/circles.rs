@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{OBSTACLE, Rgb};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::marks::hatched_disc;
 use crate::view::Extent;
 use keyway::geometry::Disc;
@@ -56,7 +56,8 @@ impl Layer for HatchedDiscs<'_> {
             canvas.discs.push((centre, radius));
         }
         if self.drawable().next().is_some() {
-            canvas.explain(Entry::new(self.label.clone(), Sample::HatchedDisc(self.color)));
+            canvas
+                .explain(LegendEntry::new(self.label.clone(), LegendMark::HatchedDisc(self.color)));
         }
     }
 }

@@ -3,29 +3,17 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{INK, QUIET, viridis};
-use crate::legend::{ColorBar, Entry, Sample};
+use crate::legend::{ColorBar, LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::ticks::Ticks;
 use crate::view::Extent;
 use crate::writer::{PathData, SvgWriter};
-use keyway::geometry::{Point, Pose, Velocity};
+use keyway::geometry::{Point, Pose};
 use keyway::robot::Footprint;
+use keyway_sim::sim::TrajectoryPoint;
 
-/// A robot's state at a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DrivenPoint {
-    /// Time since the run began \[s\].
-    pub t_s: f64,
-    /// Where it is.
-    pub pose: Pose,
-    /// How fast it moves.
-    pub velocity: Velocity,
-}
-
-impl DrivenPoint {
-    fn is_drawable(&self) -> bool {
-        self.pose.point().is_finite() && self.velocity.v.is_finite()
-    }
+fn is_drawable(point: &TrajectoryPoint) -> bool {
+    point.pose.point().is_finite() && point.velocity.v.is_finite()
 }
 
 /// Wide enough for a path to be seen over it.
@@ -47,15 +35,15 @@ pub(crate) fn casing(out: &mut SvgWriter, path: &PathData) {
 
 /// A trajectory coloured by forward speed, with a colour bar.
 #[derive(Clone, Debug)]
-pub struct Driven<'a> {
-    points: &'a [DrivenPoint],
+pub struct DrivenPath<'a> {
+    points: &'a [TrajectoryPoint],
     v_max_mps: Option<f64>,
 }
 
-impl<'a> Driven<'a> {
+impl<'a> DrivenPath<'a> {
     /// The colours range from standstill (or the fastest reverse speed) to the highest speed
     /// driven.
-    pub const fn new(points: &'a [DrivenPoint]) -> Self {
+    pub const fn new(points: &'a [TrajectoryPoint]) -> Self {
         Self { points, v_max_mps: None }
     }
 
@@ -66,7 +54,7 @@ impl<'a> Driven<'a> {
     }
 
     fn speed_range(&self) -> (f64, f64) {
-        let speeds = || self.points.iter().filter(|p| p.is_drawable()).map(|p| p.velocity.v);
+        let speeds = || self.points.iter().filter(|p| is_drawable(p)).map(|p| p.velocity.v);
         let low = speeds().fold(0.0, f64::min);
         let given = self.v_max_mps.filter(|v| v.is_finite() && *v > low);
         let high = given.unwrap_or_else(|| speeds().fold(0.0, f64::max));
@@ -82,7 +70,8 @@ impl<'a> Driven<'a> {
     /// Pixels and speed of the points that can be told apart.
     fn steps(&self, canvas: &Canvas<'_>) -> Vec<((f64, f64), f64)> {
         let mut steps: Vec<((f64, f64), f64)> = Vec::new();
-        let drawable: Vec<&DrivenPoint> = self.points.iter().filter(|p| p.is_drawable()).collect();
+        let drawable: Vec<&TrajectoryPoint> =
+            self.points.iter().filter(|p| is_drawable(p)).collect();
         for (i, point) in drawable.iter().enumerate() {
             let px = canvas.view().px_from_world(point.pose.point());
             let moved = steps
@@ -96,7 +85,7 @@ impl<'a> Driven<'a> {
     }
 }
 
-impl Layer for Driven<'_> {
+impl Layer for DrivenPath<'_> {
     fn depth(&self) -> Depth {
         Depth::Driven
     }
@@ -124,7 +113,7 @@ impl Layer for Driven<'_> {
             let points = std::iter::once(run[0][0].0).chain(run.iter().map(|pair| pair[1].0));
             canvas.path(&PathData::line(points), LineStyle::solid(color, DRIVEN_WIDTH_PX));
         }
-        canvas.explain(Entry::new("driven", Sample::ColoredLine));
+        canvas.explain(LegendEntry::new("driven", LegendMark::ColoredLine));
         canvas.explain_colors(ColorBar { label: "speed [m/s]".to_owned(), low, high });
     }
 }
@@ -133,7 +122,7 @@ impl Layer for Driven<'_> {
 /// where the picture's scale makes the robot a dot.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
-    points: &'a [DrivenPoint],
+    points: &'a [TrajectoryPoint],
     footprint: &'a Footprint,
     every_m: Option<f64>,
     label: &'static str,
@@ -144,7 +133,7 @@ impl<'a> Footprints<'a> {
     const STYLE: LineStyle = LineStyle::solid(QUIET, 0.9);
 
     /// Outlines of a robot, at distances at which they can be told apart.
-    pub const fn new(points: &'a [DrivenPoint], footprint: &'a Footprint) -> Self {
+    pub const fn new(points: &'a [TrajectoryPoint], footprint: &'a Footprint) -> Self {
         Self { points, footprint, every_m: None, label: "robot", style: Self::STYLE }
     }
 
@@ -173,7 +162,7 @@ impl<'a> Footprints<'a> {
 
     /// Poses at equal distances, beginning with the first.
     fn poses(&self) -> Vec<Pose> {
-        let poses = || self.points.iter().filter(|p| p.is_drawable()).map(|p| p.pose);
+        let poses = || self.points.iter().filter(|p| is_drawable(p)).map(|p| p.pose);
         let step = |from: Option<Point>, to: Point| from.map_or(0.0, |from| from.distance(to));
         let mut last = None;
         let length: f64 = poses().map(|p| step(last.replace(p.point()), p.point())).sum();
@@ -229,10 +218,10 @@ impl Layer for Footprints<'_> {
         }
         if !poses.is_empty() && !self.label.is_empty() {
             let sample = match self.footprint {
-                Footprint::Circle(_) => Sample::Circle(style),
-                Footprint::Polygon(_) => Sample::Box(style),
+                Footprint::Circle(_) => LegendMark::Circle(style),
+                Footprint::Polygon(_) => LegendMark::Box(style),
             };
-            canvas.explain(Entry::new(self.label, sample));
+            canvas.explain(LegendEntry::new(self.label, sample));
         }
     }
 }

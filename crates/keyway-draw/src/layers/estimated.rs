@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::marks::time_mark;
 use keyway::sense::Mover;
@@ -51,7 +51,10 @@ impl Layer for EstimatedMovers<'_> {
             is_empty = false;
         }
         if !is_empty {
-            canvas.explain(Entry::new("mover as tracked, to 1 s on", Sample::Line(Self::STYLE)));
+            canvas.explain(LegendEntry::new(
+                "mover as tracked, to 1 s on",
+                LegendMark::Line(Self::STYLE),
+            ));
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{FREE, INK, OVER_DRIVEN, Rgb, viridis};
-use crate::legend::{ColorBar, Entry, Sample};
+use crate::legend::{ColorBar, LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::ticks::span;
 use crate::view::Extent;
@@ -90,7 +90,10 @@ impl<'a> Fan<'a> {
                     canvas.writer().tag("circle").round(x, y, CONTACT_PX).fill(color).leaf();
                 }
             }
-            canvas.explain(Entry::new(format!("refused: {count} {because}"), Sample::Line(style)));
+            canvas.explain(LegendEntry::new(
+                format!("refused: {count} {because}"),
+                LegendMark::Line(style),
+            ));
         }
     }
 
@@ -111,8 +114,9 @@ impl<'a> Fan<'a> {
             canvas.path(line, LineStyle::solid(color, 1.1));
         }
         let count = scores().count();
-        let sample = Sample::ShadedLine(std::array::from_fn(|i| viridis((i as f64 + 0.5) / 8.0)));
-        canvas.explain(Entry::new(format!("{count} admissible, by score"), sample));
+        let sample =
+            LegendMark::ShadedLine(std::array::from_fn(|i| viridis((i as f64 + 0.5) / 8.0)));
+        canvas.explain(LegendEntry::new(format!("{count} admissible, by score"), sample));
         canvas.explain_colors(ColorBar { label: "score".to_owned(), low, high: low + width });
     }
 
@@ -129,7 +133,7 @@ impl<'a> Fan<'a> {
                 canvas.line(&points, LineStyle { color: FREE, width_px, ..style });
             }
             if canvas.line(&points, style) {
-                canvas.explain(Entry::new(label, Sample::Line(style)));
+                canvas.explain(LegendEntry::new(label, LegendMark::Line(style)));
             }
         }
     }
@@ -144,13 +148,13 @@ impl<'a> Fan<'a> {
             fitting.for_each(|one| self.add(&mut line, one, canvas));
             let style = LineStyle::solid(color, 0.7);
             if canvas.path(&line, style) {
-                canvas.explain(Entry::new(label, Sample::Line(style)));
+                canvas.explain(LegendEntry::new(label, LegendMark::Line(style)));
             }
         }
         if let Some(candidate) = chosen.and_then(|place| candidates.get(place)) {
             let style = LineStyle { width_px: 1.6, ..Self::CHOSEN };
             canvas.line(&self.points(candidate), style);
-            canvas.explain(Entry::new("chosen", Sample::Line(style)));
+            canvas.explain(LegendEntry::new("chosen", LegendMark::Line(style)));
         }
     }
 }

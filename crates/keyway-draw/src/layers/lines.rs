@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{FREE, OVER_DRIVEN, PLANNED, SMOOTHED};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::view::Extent;
 use keyway::geometry::Polyline;
@@ -75,7 +75,7 @@ impl Layer for PathLine<'_> {
             canvas.line(self.path.points(), LineStyle::solid(FREE, width_px));
         }
         if canvas.line(self.path.points(), self.style) {
-            canvas.explain(Entry::new(self.label.clone(), Sample::Line(self.style)));
+            canvas.explain(LegendEntry::new(self.label.clone(), LegendMark::Line(self.style)));
         }
     }
 }

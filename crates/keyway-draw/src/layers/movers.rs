@@ -1,14 +1,14 @@
 //! What moves, and where everything is at the same moments.
 
-use super::{Depth, DrivenPoint, Layer};
+use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{INK, OBSTACLE, Rgb};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
-use keyway_sim::sim::{Motion, MovingObstacle};
+use keyway_sim::sim::{Motion, MovingObstacle, TrajectoryPoint};
 
 /// Moments that are marked in a run, at most.
 const MOST_MOMENTS: usize = 6;
@@ -30,7 +30,7 @@ const STEPS: u32 = 4000;
 pub struct Movers<'a> {
     all: &'a [MovingObstacle],
     /// Those of one robot or several, with the colour of the times along them.
-    runs: Vec<(&'a [DrivenPoint], Rgb)>,
+    runs: Vec<(&'a [TrajectoryPoint], Rgb)>,
 }
 
 /// Times at one place \[px\].
@@ -47,13 +47,16 @@ impl<'a> Movers<'a> {
     const OUTLINE: LineStyle = LineStyle::solid(OBSTACLE, 0.9);
 
     /// Movers while a robot drives a run; without a run, at its beginning.
-    pub fn new(movers: &'a [MovingObstacle], run: &'a [DrivenPoint]) -> Self {
+    pub fn new(movers: &'a [MovingObstacle], run: &'a [TrajectoryPoint]) -> Self {
         Self { all: movers, runs: vec![(run, INK)] }
     }
 
     /// Movers while several robots drive, each with a colour for the times along its way. The times
     /// are shown without movers, too: the robots move among each other.
-    pub const fn among(movers: &'a [MovingObstacle], runs: Vec<(&'a [DrivenPoint], Rgb)>) -> Self {
+    pub const fn among(
+        movers: &'a [MovingObstacle],
+        runs: Vec<(&'a [TrajectoryPoint], Rgb)>,
+    ) -> Self {
         Self { all: movers, runs }
     }
 
@@ -80,7 +83,7 @@ impl<'a> Movers<'a> {
 }
 
 /// Where a robot is at a moment of its run, or after it.
-fn robot_at(run: &[DrivenPoint], t_s: f64) -> Option<Point> {
+fn robot_at(run: &[TrajectoryPoint], t_s: f64) -> Option<Point> {
     let after = run.partition_point(|point| point.t_s <= t_s);
     let from = run.get(after.checked_sub(1)?)?;
     let Some(to) = run.get(after) else { return Some(from.pose.point()) };
@@ -99,14 +102,17 @@ impl Layer for Movers<'_> {
         }
         let moments = moments(self.end_s());
         if !self.all.is_empty() {
-            canvas.explain(Entry::new("moving obstacle", Sample::HatchedDisc(OBSTACLE)));
+            canvas.explain(LegendEntry::new("moving obstacle", LegendMark::HatchedDisc(OBSTACLE)));
             if self.end_s() > 0.0 {
-                canvas.explain(Entry::new("its way", Sample::Line(Self::WAY)));
-                canvas.explain(Entry::new("where it is at a time [s]", Sample::Time(OBSTACLE)));
+                canvas.explain(LegendEntry::new("its way", LegendMark::Line(Self::WAY)));
+                canvas.explain(LegendEntry::new(
+                    "where it is at a time [s]",
+                    LegendMark::Time(OBSTACLE),
+                ));
             }
         }
         if self.end_s() > 0.0 {
-            canvas.explain(Entry::new("robot at a time [s]", Sample::Time(INK)));
+            canvas.explain(LegendEntry::new("robot at a time [s]", LegendMark::Time(INK)));
         }
         for mover in self.all {
             self.draw_mover(canvas, mover, &moments);

@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{FREE, INK, Rgb, SMOOTHED};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use crate::marks::{KEY_RING_PX, LETTER_MARK_PX, letter_mark};
 use crate::view::Extent;
@@ -43,7 +43,7 @@ impl Layer for Points<'_> {
         let view = *canvas.view();
         let mut finite = self.all.iter().filter(|point| point.is_finite()).peekable();
         if finite.peek().is_some() {
-            canvas.explain(Entry::new(self.label.clone(), Sample::Ring(self.style)));
+            canvas.explain(LegendEntry::new(self.label.clone(), LegendMark::Ring(self.style)));
         }
         for &point in finite {
             let (x, y) = view.px_from_world(point);
@@ -78,19 +78,22 @@ impl Layer for Hits<'_> {
             dots.append([view.px_from_world(point); 2]);
         }
         if canvas.path(&dots, LineStyle::solid(Self::COLOR, 2.0 * Self::RADIUS_PX)) {
-            canvas.explain(Entry::new("scan", Sample::Dot(Self::COLOR, Self::RADIUS_PX + 0.6)));
+            canvas.explain(LegendEntry::new(
+                "scan",
+                LegendMark::Dot(Self::COLOR, Self::RADIUS_PX + 0.6),
+            ));
         }
     }
 }
 
 /// The start: S.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start(
+pub struct StartMark(
     /// Where \[m\].
     pub Point,
 );
 
-impl Layer for Start {
+impl Layer for StartMark {
     fn depth(&self) -> Depth {
         Depth::Markers
     }
@@ -106,14 +109,14 @@ impl Layer for Start {
 
 /// The goal: G, with the circle in which it counts as reached when that is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Goal {
+pub struct GoalMark {
     /// Where \[m\].
     pub point: Point,
     /// How near is near enough \[m\].
     pub tolerance_m: Option<f64>,
 }
 
-impl Goal {
+impl GoalMark {
     const TOLERANCE: LineStyle = LineStyle { color: INK, width_px: 0.9, dashes: "2.5 2" };
 
     /// The tolerance; 0 without one, or when it is not a length.
@@ -122,7 +125,7 @@ impl Goal {
     }
 }
 
-impl Layer for Goal {
+impl Layer for GoalMark {
     fn depth(&self) -> Depth {
         Depth::Markers
     }
@@ -140,7 +143,7 @@ impl Layer for Goal {
             let (x, y) = canvas.view().px_from_world(self.point);
             let circle = canvas.writer().tag("circle").round(x, y, radius).attr("fill", "none");
             circle.line_style(Self::TOLERANCE).leaf();
-            canvas.explain(Entry::new("goal tolerance", Sample::Circle(Self::TOLERANCE)));
+            canvas.explain(LegendEntry::new("goal tolerance", LegendMark::Circle(Self::TOLERANCE)));
         }
     }
 }
@@ -203,7 +206,7 @@ impl Layer for NumberedEnds<'_> {
 
     fn draw(&self, canvas: &mut Canvas<'_>) {
         for (label, dark) in [("start of a robot, and its number", false), ("its goal", true)] {
-            canvas.explain(Entry::new(label, Sample::Letter { letter: '0', dark }));
+            canvas.explain(LegendEntry::new(label, LegendMark::Letter { letter: '0', dark }));
         }
         let mut placed: Vec<(f64, f64)> = Vec::new();
         for (number, &(start, goal)) in self.0.iter().enumerate() {
@@ -258,6 +261,6 @@ fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (text, dark): Mark<'_>, label
     });
     letter_mark(canvas.writer(), px, text, dark);
     if let Some(letter) = text.chars().next().filter(|_| !label.is_empty()) {
-        canvas.explain(Entry::new(label, Sample::Letter { letter, dark }));
+        canvas.explain(LegendEntry::new(label, LegendMark::Letter { letter, dark }));
     }
 }

@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::{OBSTACLE, Rgb};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::marks::hatched_polygon;
 use crate::view::Extent;
 use keyway::geometry::Point;
@@ -49,7 +49,8 @@ impl Layer for Polygons<'_> {
             hatched_polygon(canvas.writer(), &vertices, self.color);
         }
         if self.drawable().next().is_some() {
-            canvas.explain(Entry::new(self.label.clone(), Sample::HatchedDisc(self.color)));
+            canvas
+                .explain(LegendEntry::new(self.label.clone(), LegendMark::HatchedDisc(self.color)));
         }
     }
 }

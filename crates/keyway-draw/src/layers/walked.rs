@@ -3,7 +3,7 @@
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use keyway::geometry::Disc;
 
 /// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines
@@ -39,6 +39,9 @@ impl Layer for WalkedGround<'_> {
             circle.fill(Self::COLOR).leaf();
         }
         canvas.writer().close();
-        canvas.explain(Entry::new("ground that is gone around", Sample::Area(Self::ON_FREE)));
+        canvas.explain(LegendEntry::new(
+            "ground that is gone around",
+            LegendMark::Area(Self::ON_FREE),
+        ));
     }
 }

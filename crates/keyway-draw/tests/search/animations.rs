@@ -4,7 +4,7 @@ use super::{ROWS, search};
 use keyway::geometry::{Point, Polyline};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::search::Recording;
-use keyway_draw::layers::{Goal, Meeting, PathLine, SearchTrace, Start};
+use keyway_draw::layers::{GoalMark, Meeting, PathLine, SearchTrace, StartMark};
 use keyway_draw::{Animation, MapPicture, animate_search};
 
 /// Width, height, and all frames as they are shown: red, green and blue of each pixel.
@@ -76,7 +76,7 @@ fn both_formats_play_the_same_frames_and_end_in_the_still_picture() {
         let (start, point) = (line.points()[0], *line.points().last().unwrap());
         let frame = |trace| {
             let picture = MapPicture::new(&grid).with(trace).with(Meeting(trace));
-            picture.with(Start(start)).with(Goal { point, tolerance_m: None })
+            picture.with(StartMark(start)).with(GoalMark { point, tolerance_m: None })
         };
         let still = frame(SearchTrace::new(&seen)).with(PathLine::planned(&line).rimmed());
         let play = || animate_search(&seen, &still, frame, |_, _| ()).unwrap();

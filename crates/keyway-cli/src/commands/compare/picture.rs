@@ -2,7 +2,7 @@
 
 use keyway::geometry::Polyline;
 use keyway::route::CHORD_CELLS;
-use keyway_draw::layers::{CellTint, Goal, Layer, PathLine, Start};
+use keyway_draw::layers::{CellTint, GoalMark, Layer, PathLine, StartMark};
 use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
 use keyway_lab::compare::{Compared, ContestEntry};
 
@@ -104,8 +104,8 @@ fn common(map: &Compared, query: usize) -> MapPicture<'_> {
     let ends = map.queries[query];
     let picture = MapPicture::new(&map.loaded.grid)
         .with(CellTint::blocked(map.map.blocked()).color(TOO_CLOSE))
-        .with(Start(ends.start))
-        .with(Goal { point: ends.goal, tolerance_m: None });
+        .with(StartMark(ends.start))
+        .with(GoalMark { point: ends.goal, tolerance_m: None });
     match map.contest.oracles.first().and_then(|oracle| oracle.lines[query].as_ref()) {
         Some(line) => {
             let label = format!("shortest line: {:.2} m", line.length_m());

@@ -10,10 +10,9 @@ use crate::out_dir::prepare;
 use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
 use crate::report_text::WithFiles;
-use keyway_draw::layers::DrivenPoint;
 use keyway_lab::results::OutDir;
 use keyway_sim::episode::Episode;
-use keyway_sim::sim::MovingObstacle;
+use keyway_sim::sim::{MovingObstacle, TrajectoryPoint};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -145,7 +144,7 @@ fn stage<'a>(episode: &'a Episode, movers: &'a [MovingObstacle]) -> Stage<'a> {
     }
 }
 
-fn points(driven: &Driven) -> Vec<DrivenPoint> {
+fn points(driven: &Driven) -> Vec<TrajectoryPoint> {
     driven.report.trajectory.iter().flatten().map(driven_point).collect()
 }
 

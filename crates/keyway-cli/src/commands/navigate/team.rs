@@ -12,7 +12,6 @@ use crate::pictures::{driven_point, png};
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use crate::team_pictures::TeamPicture;
-use keyway_draw::layers::DrivenPoint;
 use keyway_lab::measure::wall_clock;
 use keyway_lab::results::OutDir;
 pub(crate) use keyway_lab::run_tables::team_table as table;
@@ -21,7 +20,7 @@ use keyway_sim::episode::{
 };
 use keyway_sim::parallel::processors;
 use keyway_sim::scene_files::SceneFile;
-use keyway_sim::sim::MovingObstacle;
+use keyway_sim::sim::{MovingObstacle, TrajectoryPoint};
 use std::fmt::Write as _;
 
 /// Drives all robots of a scene.
@@ -50,7 +49,7 @@ pub(crate) fn write_all(
     report: &EpisodeReport,
     out: Option<OutDir>,
 ) -> Result<Vec<String>, CliError> {
-    let driven: Vec<Vec<DrivenPoint>> = report.robots.iter().map(points).collect();
+    let driven: Vec<Vec<TrajectoryPoint>> = report.robots.iter().map(points).collect();
     let movers = moved(team, report);
     let picture = TeamPicture { team, driven: &driven, movers: &movers };
     let mut files = Vec::new();
@@ -119,7 +118,7 @@ fn blame(error: &EpisodeError) -> CliError {
     CliError { kind, message, field: field.map(in_scene) }
 }
 
-fn points(report: &RobotReport) -> Vec<DrivenPoint> {
+fn points(report: &RobotReport) -> Vec<TrajectoryPoint> {
     report.trajectory.iter().flatten().map(driven_point).collect()
 }
 

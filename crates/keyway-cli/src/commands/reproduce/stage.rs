@@ -2,15 +2,14 @@
 
 use keyway::geometry::{Polyline, Velocity};
 use keyway_draw::layers::{
-    DrivenPoint, Goal, HatchedDiscs, Layer, Meeting, Movers, PathLine, SearchNodes, SearchTrace,
-    Start,
+    GoalMark, HatchedDiscs, Layer, Meeting, Movers, PathLine, SearchNodes, SearchTrace, StartMark,
 };
 use keyway_draw::{
     LineStyle, MapPanels, MapPicture, Rgb, SpeedCurveOptions, SpeedSeries, Svg, series_style,
     speed_curve,
 };
 use keyway_lab::claims::{Experiment, How, Place, Shown};
-use keyway_sim::sim::Outcome;
+use keyway_sim::sim::{Outcome, TrajectoryPoint};
 
 /// A run of which parts are compared, below these parts.
 const WAY: LineStyle = LineStyle { color: Rgb(0x88, 0x88, 0x88), width_px: 1.0, dashes: "" };
@@ -33,7 +32,7 @@ struct Actor<'a> {
     name: &'static str,
     shown: &'a Shown,
     /// The run; nothing of a path.
-    points: Vec<DrivenPoint>,
+    points: Vec<TrajectoryPoint>,
     /// The stretches of the part of the run that is compared; none where that is all of it.
     stretches: Vec<Polyline>,
 }
@@ -91,8 +90,8 @@ impl<'a> Stage<'a> {
         }
         let [start, goal] = self.place.ends;
         let common = MapPicture::new(&self.place.map)
-            .with(Start(start))
-            .with(Goal { point: goal, tolerance_m: None });
+            .with(StartMark(start))
+            .with(GoalMark { point: goal, tolerance_m: None });
         let all = MapPanels::new(common).caption(caption);
         let all = panels.into_iter().fold(all, |all, (title, layers)| all.panel(title, layers));
         Some(all.svg())
@@ -100,7 +99,7 @@ impl<'a> Stage<'a> {
 
     /// Nothing without a run.
     pub(super) fn speed_curves(&self) -> Option<Svg> {
-        let runs: Vec<(&str, Vec<DrivenPoint>)> = self
+        let runs: Vec<(&str, Vec<TrajectoryPoint>)> = self
             .actors
             .iter()
             .filter(|actor| !actor.points.is_empty())
@@ -134,18 +133,12 @@ impl<'a> Stage<'a> {
 
 impl<'a> Actor<'a> {
     fn new(name: &'static str, shown: &'a Shown) -> Self {
-        let samples = shown.run.iter().flat_map(|run| &run.samples);
-        let point = |sample: &keyway_sim::sim::TrajectoryPoint| DrivenPoint {
-            t_s: sample.t_s,
-            pose: sample.pose,
-            velocity: sample.velocity,
-        };
-        let points: Vec<DrivenPoint> = samples.map(point).collect();
+        let points = shown.run.iter().flat_map(|run| &run.samples).copied().collect();
         let mut actor = Self { name, shown, points, stretches: Vec::new() };
         if shown.part.is_some() {
             let compared = actor.compared();
             let stretches = compared.split(|point| !point.velocity.v.is_finite());
-            let line = |points: &[DrivenPoint]| {
+            let line = |points: &[TrajectoryPoint]| {
                 Polyline::new(points.iter().map(|point| point.pose.point()).collect())
             };
             actor.stretches = stretches.filter(|points| !points.is_empty()).map(line).collect();
@@ -154,7 +147,7 @@ impl<'a> Actor<'a> {
     }
 
     /// The run with gaps where it does not belong to the part that is compared.
-    fn compared(&self) -> Vec<DrivenPoint> {
+    fn compared(&self) -> Vec<TrajectoryPoint> {
         let gap = Velocity::new(f64::NAN, f64::NAN);
         let mut points = self.points.clone();
         let outside = points.iter_mut().zip(self.shown.part.iter().flatten());

@@ -3,7 +3,7 @@
 use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
 use crate::canvas::{Blocks, Canvas};
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use keyway::map::Cell;
 use keyway::search::{SearchEvent, Side};
 
@@ -64,12 +64,12 @@ pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
             for shade in 0..SHADES {
                 canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);
             }
-            let sample = Sample::Shades(shades::samples(side, shades::area));
-            canvas.explain(Entry::new(trace.label("expanded, early to late", side), sample));
+            let sample = LegendMark::Shades(shades::samples(side, shades::area));
+            canvas.explain(LegendEntry::new(trace.label("expanded, early to late", side), sample));
         }
         if canvas.paint(shades::open(side), |i| marks[i] == first + OPEN) {
-            let sample = Sample::Area(shades::open(side));
-            canvas.explain(Entry::new(trace.label("generated only", side), sample));
+            let sample = LegendMark::Area(shades::open(side));
+            canvas.explain(LegendEntry::new(trace.label("generated only", side), sample));
         }
     }
 }

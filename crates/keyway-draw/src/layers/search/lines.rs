@@ -4,7 +4,7 @@ use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
 use crate::canvas::Canvas;
 use crate::color::Rgb;
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::line_style::LineStyle;
 use keyway::map::Cell;
 use keyway::search::{SearchEvent, Side};
@@ -60,8 +60,8 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
             is_drawn |= canvas.segments(part.iter().copied(), style);
         }
         if is_drawn {
-            let sample = Sample::ShadedLine(shades::samples(side, shades::line));
-            canvas.explain(Entry::new(trace.label(text, side), sample));
+            let sample = LegendMark::ShadedLine(shades::samples(side, shades::line));
+            canvas.explain(LegendEntry::new(trace.label(text, side), sample));
         }
     }
 }
@@ -80,11 +80,11 @@ pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text:
             let ring = LineStyle::solid(color, 0.4 * radius_px);
             let label = trace.label(&format!("{text}, generated only"), side);
             let sample = LineStyle { width_px: 0.4 * sample_px, ..ring };
-            canvas.explain(Entry::new(label, Sample::SmallRing(sample, 0.8 * sample_px)));
+            canvas.explain(LegendEntry::new(label, LegendMark::SmallRing(sample, 0.8 * sample_px)));
         }
         if canvas.dots(expanded.iter().copied(), radius_px, color) {
             let label = trace.label(&format!("{text}, expanded"), side);
-            canvas.explain(Entry::new(label, Sample::Dot(color, sample_px)));
+            canvas.explain(LegendEntry::new(label, LegendMark::Dot(color, sample_px)));
         }
     }
 }

@@ -10,7 +10,7 @@ mod shades;
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
-use crate::legend::{Entry, Sample};
+use crate::legend::{LegendEntry, LegendMark};
 use crate::marks::letter_mark;
 use keyway::map::Cell;
 use keyway::search::{Recording, SearchEvent, Side};
@@ -154,7 +154,7 @@ impl Layer for Meeting<'_> {
         let at = canvas.map().frame().world_from_cell(cell);
         let px = canvas.view().px_from_world(at);
         letter_mark(canvas.writer(), px, "M", false);
-        let sample = Sample::Letter { letter: 'M', dark: false };
-        canvas.explain(Entry::new("the two sides met", sample));
+        let sample = LegendMark::Letter { letter: 'M', dark: false };
+        canvas.explain(LegendEntry::new("the two sides met", sample));
     }
 }
