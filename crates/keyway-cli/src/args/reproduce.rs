@@ -6,11 +6,12 @@ use clap::Args;
 use std::path::PathBuf;
 
 const REPRODUCE_TERMS: &str = "\
-A claim holds when each of its figures goes the published way, the 95 % interval of its mean change over the maps excludes
-zero, and the mean is at least half of the published change; it holds in part when one figure does so with such an
-interval. Where nothing comparable was published, the sign decides. What is to be so always has to be so on every map, and
-in part on more than half of them with a certainty of 95 %. Only maps count on which all methods of a comparison find a
-path. A claim that does not hold is an answer: the exit code is 0.";
+A figure holds when the 95 % interval of its mean change over the maps lies on the side that the paper says, and the mean
+is at least half of the published change, if there is one. It does not hold when the interval lies on the other side, or
+below that half. Otherwise it is undecided. What is to be so always has to be so on more than nine maps in ten, with
+certainty. Times are reported and not judged. A claim holds when all of its judged figures do, and does not hold when none
+does and some do not; otherwise it is mixed. Only maps count on which all methods of a comparison find a path. A claim that
+does not hold is an answer: the exit code is 0.";
 
 const REPRODUCE_EXAMPLES: &str = "\
 Examples:

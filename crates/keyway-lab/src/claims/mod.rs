@@ -4,7 +4,7 @@
 //! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on
 //! a family of maps, one for each seed, and on the paper's reconstructed scene. A [`Finding`]
 //! summarises a figure over the family: the change on each map, their mean and its 95 % interval.
-//! [`Verdict::of`] judges by a rule that was written before anything was measured. No results are
+//! [`FigureVerdict::of`] judges by a rule that was written before anything was measured. No results are
 //! stored here.
 //!
 //! ```
@@ -64,4 +64,4 @@ pub use report::{
     PublishedReport, ReconstructedReport, SceneFigure, SceneReport,
 };
 pub use shown::{Place, Shown};
-pub use verdict::{Evidence, Judgement, Verdict};
+pub use verdict::{Evidence, FigureCounts, FigureVerdict, Verdict};

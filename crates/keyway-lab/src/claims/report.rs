@@ -5,7 +5,7 @@ use super::experiment::{Experiment, MapRow};
 use super::family::Family;
 use super::findings::{Finding, change_on, mean, value};
 use super::measure::{Measure, Scale};
-use super::verdict::{Evidence, Judgement, Verdict};
+use super::verdict::{Evidence, FigureCounts, FigureVerdict, Verdict};
 use keyway_sim::metrics::statistics::Confidence;
 use serde::Serialize;
 
@@ -32,7 +32,9 @@ pub struct ClaimReport {
     pub not_reconstructed: Option<&'static str>,
     /// Results over the family of maps, which decide the verdict.
     pub family: FamilyReport,
-    /// Verdict by the rule of [`Verdict`].
+    /// How many of its figures have each verdict.
+    pub figures: FigureCounts,
+    /// Verdict that follows from them.
     pub verdict: Verdict,
 }
 
@@ -152,8 +154,8 @@ pub struct FamilyFigure {
     pub ci95_low: Option<f64>,
     /// Upper end of the interval.
     pub ci95_high: Option<f64>,
-    /// See [`Judgement`]; `None` if it could not be measured.
-    pub judgement: Option<Judgement>,
+    /// Verdict on it; `None` where nothing is expected.
+    pub verdict: Option<FigureVerdict>,
 }
 
 /// An experiment with its maps and the results of each method.
@@ -209,7 +211,7 @@ pub struct MethodReport {
 
 impl ClaimReport {
     /// Judges a claim by its measured figures. Without `times`, no figure that a clock measures is
-    /// reported, and a claim with such a figure has no verdict.
+    /// reported; none is judged anyway.
     pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
@@ -229,8 +231,12 @@ impl ClaimReport {
             figures: family_figures(&findings_of(&family.reconstructed)),
         });
         let findings = findings_of(&family.rows);
-        let evidence: Vec<_> =
-            findings.iter().map(|(figure, finding)| (*figure, finding.evidence)).collect();
+        let judged = claim.figures.iter().map(|figure| {
+            let found = findings.iter().find(|(one, _)| one == figure);
+            let evidence = found.map_or(Evidence::Missing, |(_, finding)| finding.evidence);
+            FigureVerdict::of(figure, evidence)
+        });
+        let counts = FigureCounts::of(judged);
         Self {
             id: claim.id,
             paper: claim.paper,
@@ -242,12 +248,8 @@ impl ClaimReport {
             reconstructed,
             not_reconstructed: experiment.reconstruction.err(),
             family: FamilyReport::new(experiment, family, &findings),
-            // Missing data supports neither side.
-            verdict: if evidence.len() < claim.figures.len() {
-                Verdict::NotMeasured
-            } else {
-                Verdict::of(&evidence)
-            },
+            figures: counts,
+            verdict: counts.verdict(),
         }
     }
 }
@@ -334,7 +336,7 @@ pub(super) fn family_figure(figure: &Figure, finding: &Finding) -> FamilyFigure 
         mean,
         ci95_low,
         ci95_high,
-        judgement: Judgement::of(figure, evidence),
+        verdict: Some(FigureVerdict::of(figure, evidence)),
     }
 }
 
@@ -403,16 +405,13 @@ mod tests {
         assert_eq!((first.expected, first.pairs, first.unit), ("lower", family.maps, ""));
         assert_eq!([family.mean, family.ci95_low], [first.mean, first.ci95_low]);
         assert!(first.old_mean > first.new_mean, "{first:?}");
-        assert_eq!(report.verdict, Verdict::NotMeasured, "its times are missing");
+        assert_ne!(report.verdict, Verdict::NotMeasured, "its times are not judged");
         let json = serde_json::to_value(first).unwrap();
         assert_eq!((&json["measure"], &json["scale"]), (&"expanded".into(), &"relative".into()));
     }
 
     #[test]
     fn a_claim_that_is_not_measured_has_no_verdict() {
-        let claim = Claim::named("S2-6")[0];
-        let report = ClaimReport::new(claim, &family(claim, 2), false);
-        assert_eq!((report.verdict, report.family.figures.len()), (Verdict::NotMeasured, 0));
         let claim = Claim::named("S0-1")[0];
         let report = ClaimReport::new(claim, &Family::default(), false);
         assert_eq!(report.verdict, Verdict::NotMeasured, "without a map");

@@ -1,42 +1,32 @@
-//! Rule for the verdict on a claim: it holds, holds in part, or does not hold.
+//! Rule for the verdicts on figures and on claims.
 //!
-//! The rule was written before anything was measured:
+//! A figure is a statement about one measure. It *holds*, *does not hold* or *cannot be decided*,
+//! by the 95 % interval of what was measured over the family of maps:
 //!
-//! - *Holds*: every figure changes in the published direction, the 95 % interval of its mean change
-//!   over the family of maps excludes zero, and the mean is at least half of the published change.
-//! - *Holds in part*: at least one figure changes in the published direction, with an interval that
-//!   excludes zero.
-//! - *Does not hold*: otherwise.
+//! - *Lower*, *higher*: it holds when the whole interval of the mean change lies on that side of
+//!   zero and the mean is at least half of the published change, if there is one. It does not hold
+//!   when the whole interval lies on the other side, or is less than half of the published change.
+//! - *The same*: it holds when the whole interval lies within the tolerance of the figure, and does
+//!   not when all of it lies outside. *Not higher*: the same, but less is as good.
+//! - *Always* (a bound that is kept, a path that is found): it holds when that is true on more than
+//!   nine maps in ten with certainty (\[Wilson1927\]), and does not when it is true on fewer with
+//!   certainty. So one odd map in a hundred does not refute a paper, and ten maps do not prove it.
+//! - Otherwise it cannot be decided.
 //!
-//! If nothing comparable was published, half of the change is not required: the sign decides. Other
-//! statements of the papers are read as follows:
+//! Times are reported and not judged: they hang on the clock, the machine and the care with which
+//! each method was written.
 //!
-//! - *The same*: the whole interval lies within the tolerance of the figure; *not higher*: its
-//!   upper end does. As there is no zero to exclude, such a figure alone makes no claim hold in
-//!   part.
-//! - *Always* (a bound that is kept, a path that is found): the figure agrees with the paper if it
-//!   is true on every map; if it is true on more than half of the maps with 95 % certainty
-//!   (\[Wilson1927\]), the claim holds in part.
-//! - A figure that could not be measured leaves the claim without a verdict: missing data supports
-//!   neither side.
+//! A claim holds when all of its judged figures hold, and does not hold when none of them does. Where
+//! some hold and others do not, or some cannot be decided, it is mixed, and the counts say how. A
+//! figure that could not be measured leaves the claim without a verdict: missing data supports
+//! neither side.
 
 use super::claim::{Direction, Expected, Figure};
 use keyway_sim::metrics::statistics::{Confidence, Rate};
 use serde::Serialize;
 
-/// Verdict on a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// All of the claim is confirmed.
-    Holds,
-    /// Part of the claim is confirmed.
-    HoldsInPart,
-    /// No part of the claim is confirmed.
-    DoesNotHold,
-    /// There is no evidence to judge the claim.
-    NotMeasured,
-}
+/// Share of maps on which something has to be so that is always so.
+const NEARLY_ALWAYS: f64 = 0.9;
 
 /// Evidence for a figure over a family of maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,86 +46,137 @@ pub enum Evidence {
     Kept(Rate),
 }
 
-/// Judgement of a figure by the rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Judgement {
-    /// True if the mean changes in the published direction; for a bound: if it is kept on every
-    /// map.
-    pub goes_that_way: bool,
-    /// True if it changes in that direction with an interval that excludes zero; for a bound: one
-    /// half.
-    pub is_certain: bool,
-    /// True if the mean change is at least half of the published one, if there is one.
-    pub is_half: bool,
+/// Verdict on a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FigureVerdict {
+    /// What was measured agrees with the paper.
+    Holds,
+    /// What was measured contradicts the paper.
+    DoesNotHold,
+    /// What was measured may agree or not.
+    Undecided,
+    /// It is a time.
+    NotJudged,
+    /// There is no evidence, or evidence of another kind.
+    NotMeasured,
 }
 
-impl Judgement {
-    /// Judges a figure; `None` if evidence is missing, or is of the wrong kind for the figure.
-    pub fn of(figure: &Figure, evidence: Evidence) -> Option<Self> {
+/// Verdict on a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// All figures hold.
+    Holds,
+    /// Figures that hold, and others.
+    Mixed,
+    /// No figure holds, and some do not.
+    DoesNotHold,
+    /// No figure can be decided.
+    Undecided,
+    /// All figures are times.
+    NotJudged,
+    /// There is no evidence for one of the figures.
+    NotMeasured,
+}
+
+/// How many figures of claims have each verdict.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct FigureCounts {
+    /// They hold.
+    pub holds: usize,
+    /// They do not.
+    pub does_not_hold: usize,
+    /// They cannot be decided.
+    pub undecided: usize,
+    /// They are times.
+    pub not_judged: usize,
+    /// They could not be measured.
+    pub not_measured: usize,
+}
+
+impl FigureVerdict {
+    /// Judges a figure.
+    pub fn of(figure: &Figure, evidence: Evidence) -> Self {
+        if figure.measure.is_timed() {
+            return Self::NotJudged;
+        }
         match (figure.expected, evidence) {
             (Expected::Change { direction, .. }, Evidence::Change { mean, low, high }) => {
-                Some(Self::of_change(figure, direction, [mean, low, high]))
+                let half = figure.published_effect().map_or(0.0, |effect| 0.5 * effect.abs());
+                Self::of_change(direction, half, [mean, low, high])
             }
-            (Expected::Always(_), Evidence::Kept(rate)) => {
-                let low = rate.interval(Confidence::USUAL)?.low;
-                Some(Self {
-                    goes_that_way: rate.failures == 0,
-                    is_certain: low > 0.5,
-                    is_half: true,
-                })
-            }
-            _ => None,
+            (Expected::Always(_), Evidence::Kept(rate)) => rate
+                .interval(Confidence::USUAL)
+                .map_or(Self::NotMeasured, |share| {
+                    Self::by(share.low > NEARLY_ALWAYS, share.high < NEARLY_ALWAYS)
+                }),
+            _ => Self::NotMeasured,
         }
     }
 
-    fn of_change(figure: &Figure, direction: Direction, [mean, low, high]: [f64; 3]) -> Self {
-        // For an increase the lower end decides, for a decrease the upper one.
-        let (upwards, nearest) = match direction {
-            Direction::Higher => (1.0, low),
-            Direction::Lower => (-1.0, high),
+    /// Judges a change; `half` is half of the published one, 0 if none was published.
+    fn of_change(direction: Direction, half: f64, [mean, low, high]: [f64; 3]) -> Self {
+        match direction {
+            Direction::Higher => Self::by(low > 0.0 && mean >= half, high <= 0.0 || high < half),
+            Direction::Lower => Self::of_change(Direction::Higher, half, [-mean, -high, -low]),
             Direction::Same { within } => {
-                let goes_that_way = low >= -within && high <= within;
-                return Self { goes_that_way, is_certain: false, is_half: true };
+                Self::by(low >= -within && high <= within, low > within || high < -within)
             }
-            Direction::NotHigher { beyond } => {
-                return Self { goes_that_way: high <= beyond, is_certain: false, is_half: true };
-            }
-        };
-        let half = figure.published_effect().map_or(0.0, |effect| 0.5 * effect.abs());
-        Self {
-            goes_that_way: upwards * mean > 0.0,
-            is_certain: upwards * mean > 0.0 && upwards * nearest > 0.0,
-            is_half: upwards * mean >= half,
+            Direction::NotHigher { beyond } => Self::by(high <= beyond, low > beyond),
         }
     }
 
-    /// True if the figure confirms the whole claim.
-    fn is_whole(self, figure: &Figure) -> bool {
-        let has_no_zero = matches!(
-            figure.expected,
-            Expected::Change {
-                direction: Direction::Same { .. } | Direction::NotHigher { .. },
-                ..
-            }
-        );
-        self.goes_that_way && (self.is_certain || has_no_zero) && self.is_half
+    const fn by(holds: bool, does_not_hold: bool) -> Self {
+        match (holds, does_not_hold) {
+            (true, _) => Self::Holds,
+            (false, true) => Self::DoesNotHold,
+            (false, false) => Self::Undecided,
+        }
     }
 }
 
-impl Verdict {
-    /// Returns the verdict on a claim from its figures and their evidence.
-    pub fn of(figures: &[(Figure, Evidence)]) -> Self {
-        let judged: Option<Vec<_>> = figures
-            .iter()
-            .map(|(figure, evidence)| Some((figure, Judgement::of(figure, *evidence)?)))
-            .collect();
-        match judged {
-            None => Self::NotMeasured,
-            Some(all) if all.is_empty() => Self::NotMeasured,
-            Some(all) if all.iter().all(|(figure, judged)| judged.is_whole(figure)) => Self::Holds,
-            Some(all) if all.iter().any(|(_, judged)| judged.is_certain) => Self::HoldsInPart,
-            Some(_) => Self::DoesNotHold,
+impl FigureCounts {
+    /// Counts the verdicts on figures.
+    pub fn of(verdicts: impl IntoIterator<Item = FigureVerdict>) -> Self {
+        let mut counts = Self::default();
+        for verdict in verdicts {
+            let count = match verdict {
+                FigureVerdict::Holds => &mut counts.holds,
+                FigureVerdict::DoesNotHold => &mut counts.does_not_hold,
+                FigureVerdict::Undecided => &mut counts.undecided,
+                FigureVerdict::NotJudged => &mut counts.not_judged,
+                FigureVerdict::NotMeasured => &mut counts.not_measured,
+            };
+            *count += 1;
         }
+        counts
+    }
+
+    /// The verdict on a claim with these figures.
+    pub const fn verdict(self) -> Verdict {
+        match self {
+            Self { not_measured: 1.., .. } => Verdict::NotMeasured,
+            Self { holds: 1.., does_not_hold: 0, undecided: 0, .. } => Verdict::Holds,
+            Self { holds: 1.., .. } => Verdict::Mixed,
+            Self { does_not_hold: 1.., .. } => Verdict::DoesNotHold,
+            Self { undecided: 1.., .. } => Verdict::Undecided,
+            Self { not_judged: 1.., .. } => Verdict::NotJudged,
+            _ => Verdict::NotMeasured,
+        }
+    }
+}
+
+impl std::fmt::Display for FigureVerdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Holds => "holds",
+            Self::DoesNotHold => "does not hold",
+            Self::Undecided => "undecided",
+            Self::NotJudged => "a time",
+            Self::NotMeasured => "not measured",
+        })
     }
 }
 
@@ -143,10 +184,28 @@ impl std::fmt::Display for Verdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Holds => "holds",
-            Self::HoldsInPart => "holds in part",
+            Self::Mixed => "mixed",
             Self::DoesNotHold => "does not hold",
+            Self::Undecided => "undecided",
+            Self::NotJudged => "only times",
             Self::NotMeasured => "not measured",
         })
+    }
+}
+
+/// As in `4 hold, 1 does not, 2 undecided`; empty without a judged figure.
+impl std::fmt::Display for FigureCounts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let numbers = [
+            (self.holds, "holds", "hold"),
+            (self.does_not_hold, "does not", "do not"),
+            (self.undecided, "undecided", "undecided"),
+        ];
+        let parts = numbers.into_iter().filter(|(count, ..)| *count > 0);
+        let words = parts.map(|(count, one, more)| {
+            format!("{count} {}", if count == 1 { one } else { more })
+        });
+        f.write_str(&words.collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -154,7 +213,7 @@ impl std::fmt::Display for Verdict {
 mod tests {
     use super::*;
     use crate::claims::{Bound, Measure};
-    use Verdict::{DoesNotHold, Holds, HoldsInPart, NotMeasured};
+    use FigureVerdict::{DoesNotHold, Holds, NotJudged, NotMeasured, Undecided};
 
     /// Half as many: a change of -0.5.
     const HALVED: Figure = Figure::lower(Measure::Expanded, "new", "old", Some([8.0, 4.0]));
@@ -162,95 +221,85 @@ mod tests {
     const SAME: Figure = Figure::same(Measure::Length, "new", "old", 0.25, Some([4.0, 4.0]));
     const KEPT: Figure = Figure::always(Measure::Clearance, "new", Bound::AtLeast(0.5));
 
-    fn change(mean: f64, low: f64, high: f64) -> Evidence {
-        Evidence::Change { mean, low, high }
-    }
-
-    fn kept(successes: u64, failures: u64) -> Evidence {
-        Evidence::Kept(Rate { successes, failures })
-    }
-
     #[track_caller]
-    fn expect(figures: &[(Figure, Evidence)], verdict: Verdict) {
-        assert_eq!(Verdict::of(figures), verdict, "{figures:?}");
+    fn change(figure: Figure, [mean, low, high]: [f64; 3], verdict: FigureVerdict) {
+        let evidence = Evidence::Change { mean, low, high };
+        assert_eq!(FigureVerdict::of(&figure, evidence), verdict, "{figure:?} {evidence:?}");
     }
 
     #[test]
-    fn a_single_figure() {
-        expect(&[(HALVED, change(-0.4, -0.5, -0.3))], Holds);
-        expect(&[(HALVED, change(-0.25, -0.5, -0.125))], Holds); // exactly half
-        expect(&[(HALVED, change(-0.249, -0.5, -0.125))], HoldsInPart);
-        expect(&[(HALVED, change(-0.4, -0.9, 0.0))], DoesNotHold); // touches zero
-        expect(&[(HALVED, change(-0.4, -0.9, 0.1))], DoesNotHold);
-        expect(&[(HALVED, change(0.4, 0.3, 0.5))], DoesNotHold); // the other way
-        expect(&[(HALVED, change(0.0, 0.0, 0.0))], DoesNotHold);
+    fn against_a_published_change() {
+        change(HALVED, [-0.4, -0.5, -0.3], Holds);
+        change(HALVED, [-0.25, -0.5, -0.125], Holds); // exactly half
+        change(HALVED, [-0.249, -0.5, -0.125], Undecided);
+        change(HALVED, [-0.2, -0.24, -0.125], DoesNotHold); // certainly less than half
+        change(HALVED, [-0.4, -0.9, 0.0], Undecided); // touches zero
+        change(HALVED, [0.4, 0.3, 0.5], DoesNotHold); // the other way
+        change(HALVED, [0.0, 0.0, 0.0], DoesNotHold);
     }
 
     #[test]
     fn by_sign_where_nothing_was_published() {
-        expect(&[(LONGER, change(1e-9, 1e-12, 1.0))], Holds);
-        expect(&[(LONGER, change(0.1, 0.0, 1.0))], DoesNotHold);
-        expect(&[(LONGER, change(-0.1, -0.2, -0.05))], DoesNotHold);
+        change(LONGER, [1e-9, 1e-12, 1.0], Holds);
+        change(LONGER, [0.1, 0.0, 1.0], Undecided);
+        change(LONGER, [-0.1, -0.2, -0.05], DoesNotHold);
+        change(LONGER, [-0.1, -0.2, 0.0], DoesNotHold); // nowhere longer
     }
 
     #[test]
-    fn several_figures() {
-        let (good, weak) = (change(-0.4, -0.5, -0.3), change(-0.1, -0.2, -0.05));
-        let up = change(0.1, 0.05, 0.2);
-        expect(&[(HALVED, good), (LONGER, up)], Holds);
-        expect(&[(HALVED, weak), (LONGER, up)], HoldsInPart);
-        expect(&[(HALVED, change(0.3, 0.2, 0.4)), (LONGER, up)], HoldsInPart);
-        expect(&[(HALVED, change(0.3, 0.2, 0.4)), (LONGER, weak)], DoesNotHold);
-    }
-
-    #[test]
-    fn the_same_is_no_effect() {
-        let good = (HALVED, change(-0.4, -0.5, -0.3));
-        let wrong = (HALVED, change(0.4, 0.3, 0.5));
-        expect(&[good, (SAME, change(0.1, -0.25, 0.25))], Holds); // both ends included
-        expect(&[good, (SAME, change(0.1, 0.05, 0.26))], HoldsInPart);
-        expect(&[wrong, (SAME, change(0.0, 0.0, 0.0))], DoesNotHold);
-        expect(&[(SAME, change(0.0, -0.1, 0.1))], Holds);
-        expect(&[(SAME, change(-0.1, -0.3, 0.1))], DoesNotHold);
-    }
-
-    #[test]
-    fn not_higher_is_the_same_or_less() {
+    fn the_same_and_not_higher() {
+        change(SAME, [0.1, -0.25, 0.25], Holds); // both ends included
+        change(SAME, [0.1, 0.05, 0.26], Undecided);
+        change(SAME, [0.4, 0.26, 0.5], DoesNotHold);
+        change(SAME, [-0.4, -0.5, -0.26], DoesNotHold);
         let figure = Figure::not_higher(Measure::RunTime, "new", "old", 0.25);
-        expect(&[(figure, change(0.1, -0.25, 0.25))], Holds);
-        expect(&[(figure, change(-0.6, -0.7, -0.5))], Holds);
-        expect(&[(figure, change(0.1, 0.05, 0.26))], DoesNotHold);
+        change(figure, [0.1, -0.25, 0.25], Holds);
+        change(figure, [-0.6, -0.7, -0.5], Holds);
+        change(figure, [0.1, 0.05, 0.26], Undecided);
+        change(figure, [0.4, 0.26, 0.5], DoesNotHold);
     }
 
     #[test]
-    fn bounds_hold_on_every_map() {
-        expect(&[(KEPT, kept(100, 0))], Holds);
-        expect(&[(KEPT, kept(99, 1))], HoldsInPart);
-        // Wilson's interval of 60 in 100 begins at 0.502, that of 59 at 0.492.
-        expect(&[(KEPT, kept(60, 40))], HoldsInPart);
-        expect(&[(KEPT, kept(59, 41))], DoesNotHold);
-        expect(&[(KEPT, kept(0, 100))], DoesNotHold);
-        // One map proves nothing: its interval begins at 0.21.
-        expect(&[(KEPT, kept(1, 0))], DoesNotHold);
+    fn nearly_always() {
+        let kept = |successes, failures| {
+            FigureVerdict::of(&KEPT, Evidence::Kept(Rate { successes, failures }))
+        };
+        // Wilson's intervals: 96.3 to 100, 90.2 to 98.4, 88.8 to 97.8, 76.7 to 90.7, 75.6 to 89.8 %.
+        assert_eq!([kept(100, 0), kept(96, 4)], [Holds, Holds]);
+        assert_eq!([kept(95, 5), kept(85, 15)], [Undecided, Undecided]);
+        assert_eq!([kept(84, 16), kept(0, 100)], [DoesNotHold, DoesNotHold]);
+        // Ten maps prove nothing, and none is none.
+        assert_eq!([kept(10, 0), kept(0, 0)], [Undecided, NotMeasured]);
     }
 
     #[test]
-    fn what_is_missing_speaks_for_nobody() {
-        let good = (HALVED, change(-0.4, -0.5, -0.3));
-        expect(&[], NotMeasured);
-        expect(&[(HALVED, Evidence::Missing)], NotMeasured);
-        expect(&[good, (LONGER, Evidence::Missing)], NotMeasured);
-        expect(&[(KEPT, kept(0, 0))], NotMeasured);
+    fn times_are_not_judged_and_missing_data_speaks_for_nobody() {
+        let time = Figure::lower(Measure::SearchTime, "new", "old", None);
+        let faster = Evidence::Change { mean: -0.5, low: -0.6, high: -0.4 };
+        assert_eq!(FigureVerdict::of(&time, faster), NotJudged);
+        assert_eq!(FigureVerdict::of(&time, Evidence::Missing), NotJudged);
+        assert_eq!(FigureVerdict::of(&HALVED, Evidence::Missing), NotMeasured);
         // Evidence of another kind counts as none.
-        expect(&[(HALVED, kept(100, 0))], NotMeasured);
-        expect(&[(KEPT, change(0.1, 0.1, 0.1))], NotMeasured);
+        let rate = Evidence::Kept(Rate { successes: 100, failures: 0 });
+        assert_eq!(FigureVerdict::of(&HALVED, rate), NotMeasured);
+        assert_eq!(FigureVerdict::of(&KEPT, faster), NotMeasured);
     }
 
     #[test]
-    fn words() {
-        let words =
-            [Holds, HoldsInPart, DoesNotHold, NotMeasured].map(|verdict| verdict.to_string());
-        assert_eq!(words, ["holds", "holds in part", "does not hold", "not measured"]);
-        assert_eq!(serde_json::to_value(HoldsInPart).unwrap(), "holds_in_part");
+    fn a_claim_from_its_figures() {
+        let of = |figures: &[FigureVerdict]| {
+            let counts = FigureCounts::of(figures.iter().copied());
+            (counts.verdict(), counts.to_string())
+        };
+        assert_eq!(of(&[Holds, NotJudged, Holds]), (Verdict::Holds, "2 hold".to_owned()));
+        let mixed = of(&[Holds, DoesNotHold, DoesNotHold, Undecided, NotJudged]);
+        assert_eq!(mixed, (Verdict::Mixed, "1 holds, 2 do not, 1 undecided".to_owned()));
+        assert_eq!(of(&[Holds, Undecided]).0, Verdict::Mixed);
+        let against = of(&[DoesNotHold, Undecided]);
+        assert_eq!(against, (Verdict::DoesNotHold, "1 does not, 1 undecided".to_owned()));
+        assert_eq!(of(&[Undecided]).0, Verdict::Undecided);
+        assert_eq!(of(&[NotJudged]), (Verdict::NotJudged, String::new()));
+        assert_eq!([of(&[]).0, of(&[Holds, NotMeasured]).0], [Verdict::NotMeasured; 2]);
+        assert_eq!(serde_json::to_value(Verdict::NotJudged).unwrap(), "not_judged");
     }
 }

@@ -140,6 +140,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
                     better",
         figures: &[
             Figure::lower(Measure::PlanningTime, ACCUMULATED, TRADITIONAL, None),
+            Figure::lower(Measure::Expanded, ACCUMULATED, TRADITIONAL, None),
             Figure::lower(Measure::Length, ACCUMULATED, TRADITIONAL, None),
             Figure::lower(Measure::Turns, ACCUMULATED, TRADITIONAL, None),
         ],
@@ -153,6 +154,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::RedundantPoints, RATIO, ACCUMULATED, None),
             Figure::lower(Measure::Turns, RATIO, ACCUMULATED, None),
             Figure::lower(Measure::PlanningTime, RATIO, ACCUMULATED, None),
+            Figure::lower(Measure::Expanded, RATIO, ACCUMULATED, None),
         ],
         experiment: &STEPS,
     },
@@ -190,6 +192,9 @@ pub(super) static CLAIMS: [Claim; 6] = [
             Figure::lower(Measure::TimeFromMap, COMPLETE, TRADITIONAL, None),
             Figure::lower(Measure::TimeFromMap, COMPLETE, BOTH_ENDS, None),
             Figure::lower(Measure::TimeFromMap, COMPLETE, BOTH_ENDS_24, None),
+            Figure::lower(Measure::Expanded, COMPLETE, TRADITIONAL, None),
+            Figure::lower(Measure::Expanded, COMPLETE, BOTH_ENDS, None),
+            Figure::lower(Measure::Expanded, COMPLETE, BOTH_ENDS_24, None),
         ],
         experiment: &OTHERS,
     },
@@ -197,7 +202,10 @@ pub(super) static CLAIMS: [Claim; 6] = [
         id: "S2-6",
         paper: PAPER,
         statement: "The complete method is still faster than traditional A*",
-        figures: &[Figure::lower(Measure::TimeFromMap, COMPLETE, TRADITIONAL, None)],
+        figures: &[
+            Figure::lower(Measure::TimeFromMap, COMPLETE, TRADITIONAL, None),
+            Figure::lower(Measure::Expanded, COMPLETE, TRADITIONAL, None),
+        ],
         experiment: &STEPS,
     },
 ];

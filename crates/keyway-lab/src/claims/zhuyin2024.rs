@@ -148,6 +148,8 @@ pub(super) static CLAIMS: [Claim; 7] = [
         figures: &[
             Figure::lower(Measure::PlanningTime, SMOOTHED, ASTAR, Some([31.57, 5.74])),
             Figure::lower(Measure::PlanningTime, SMOOTHED, BOTH_ENDS, Some([16.23, 5.74])),
+            Figure::lower(Measure::Expanded, SMOOTHED, ASTAR, None),
+            Figure::lower(Measure::Expanded, SMOOTHED, BOTH_ENDS, None),
             Figure::lower(Measure::Turns, SMOOTHED, ASTAR, Some([18.0, 4.0])),
             Figure::lower(Measure::Turns, SMOOTHED, BOTH_ENDS, Some([16.0, 4.0])),
             Figure::lower(Measure::NonSmoothTurns, SMOOTHED, ASTAR, Some([18.0, 0.0])),

@@ -1,7 +1,7 @@
 //! The figures of all claims as lines of a table.
 
 use super::words::{published_of, reconstructed_of};
-use crate::claims::{ClaimReport, FamilyFigure, Measure, SceneFigure, Verdict};
+use crate::claims::{ClaimReport, FamilyFigure, Measure, FigureVerdict, SceneFigure, Verdict};
 use serde::Serialize;
 
 /// A line of `claims.csv`.
@@ -32,10 +32,8 @@ pub(super) struct FigureRow {
     mean: Option<f64>,
     ci95_low: Option<f64>,
     ci95_high: Option<f64>,
-    goes_that_way: Option<bool>,
-    is_certain: Option<bool>,
-    is_half: Option<bool>,
-    verdict: Verdict,
+    verdict: Option<FigureVerdict>,
+    claim_verdict: Verdict,
 }
 
 /// Returns a line for each figure. A claim that was not measured has a single line.
@@ -59,7 +57,6 @@ fn row(claim: &ClaimReport, figure: Option<&FamilyFigure>) -> FigureRow {
     let published = figure.and_then(|figure| published_of(claim, figure));
     let scene = figure.and_then(|figure| scene_of(claim, figure));
     let found = figure.and_then(|figure| reconstructed_of(claim, figure));
-    let judgement = figure.and_then(|figure| figure.judgement);
     FigureRow {
         id: claim.id,
         paper: claim.paper,
@@ -86,9 +83,7 @@ fn row(claim: &ClaimReport, figure: Option<&FamilyFigure>) -> FigureRow {
         mean: figure.and_then(|figure| figure.mean),
         ci95_low: figure.and_then(|figure| figure.ci95_low),
         ci95_high: figure.and_then(|figure| figure.ci95_high),
-        goes_that_way: judgement.map(|judgement| judgement.goes_that_way),
-        is_certain: judgement.map(|judgement| judgement.is_certain),
-        is_half: judgement.map(|judgement| judgement.is_half),
-        verdict: claim.verdict,
+        verdict: figure.and_then(|figure| figure.verdict),
+        claim_verdict: claim.verdict,
     }
 }

@@ -9,7 +9,8 @@ use crate::table::{comment, latex_table};
 pub(super) fn latex(claims: &[ClaimReport]) -> String {
     let header = ["claim", "verdict", "figure", "published", "measured (95 % interval)"];
     let line = |claim: &ClaimReport, figure: &FamilyFigure| {
-        let (id, verdict) = (claim.id.to_owned(), claim.verdict.to_string());
+        let id = claim.id.to_owned();
+        let verdict = figure.verdict.map(|verdict| verdict.to_string()).unwrap_or_default();
         let published = published_text(claim, figure);
         vec![id, verdict, statement(figure), published, measured_text(figure)]
     };

@@ -1,8 +1,12 @@
 //! The tables of the documentation: `tables.md`.
 
 use super::report::ReproduceReport;
-use super::words::{COARSE, NONE, measure_name, reconstructed_of, statement_with};
-use crate::claims::{AblationReport, ClaimReport, ExperimentReport, FamilyFigure, Verdict};
+use super::words::{
+    COARSE, NONE, measure_name, reconstructed_of, statement_with, verdict_with_counts,
+};
+use crate::claims::{
+    AblationReport, ClaimReport, ExperimentReport, FamilyFigure, FigureCounts, FigureVerdict, Verdict,
+};
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -37,15 +41,27 @@ pub(super) fn markdown(report: &ReproduceReport) -> String {
     text
 }
 
-/// Such as `Of the 28 claims 5 hold, 18 hold in part, 5 do not hold.`
+/// Such as `Of 28 claims 5 hold, 5 do not, 17 are mixed, 1 has only times. Of their 60 figures 30
+/// hold, 20 do not, 10 undecided; 20 more are times.`
 fn counted(claims: &[ClaimReport]) -> String {
     let of = |verdict| claims.iter().filter(|claim| claim.verdict == verdict).count();
-    let [hold, in_part, not, missing] =
-        [Verdict::Holds, Verdict::HoldsInPart, Verdict::DoesNotHold, Verdict::NotMeasured].map(of);
-    let missing = if missing > 0 { format!(", {missing} are not measured") } else { String::new() };
-    let count = claims.len();
+    let kinds = [
+        (of(Verdict::Holds), "hold"),
+        (of(Verdict::DoesNotHold), "do not"),
+        (of(Verdict::Mixed), "are mixed"),
+        (of(Verdict::Undecided), "cannot be decided"),
+        (of(Verdict::NotJudged), "are about times only"),
+        (of(Verdict::NotMeasured), "are not measured"),
+    ];
+    let kinds = kinds.iter().filter(|(count, _)| *count > 0);
+    let kinds: Vec<String> = kinds.map(|(count, words)| format!("{count} {words}")).collect();
+    let figures = claims.iter().flat_map(|claim| &claim.family.figures);
+    let counts = FigureCounts::of(figures.filter_map(|figure| figure.verdict));
+    let judged = counts.holds + counts.does_not_hold + counts.undecided;
     format!(
-        "Of the {count} claims {hold} hold, {in_part} hold in part, {not} do not hold{missing}."
+        "Of {} claims {}. Of their {judged} figures that need no clock: {counts}.",
+        claims.len(),
+        kinds.join(", ")
     )
 }
 
@@ -69,24 +85,28 @@ fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
         });
         let published = figure.map_or(NONE.to_owned(), |figure| published(claim, figure));
         let id = format!("[{}](papers/{}.md)", claim.id, claim.paper.to_lowercase());
-        vec![id, claim.statement.to_owned(), published, measured, claim.verdict.to_string()]
+        vec![id, claim.statement.to_owned(), published, measured, verdict_with_counts(claim)]
     };
     claims.iter().map(row).collect()
 }
 
-/// The name and the verdict of a claim stand beside its first figure.
+/// The name of a claim stands beside its first figure.
 fn figures(claim: &ClaimReport) -> Vec<Vec<String>> {
     let row = |(i, figure): (usize, &FamilyFigure)| {
-        let [id, verdict] = match i {
-            0 => [claim.id.to_owned(), format!("**{}**", claim.verdict)],
-            _ => [String::new(), String::new()],
-        };
+        let id = if i == 0 { claim.id.to_owned() } else { String::new() };
         let fitting = reconstructed_of(claim, figure).map_or(NONE.to_owned(), measured);
         let of_method = |method: &str| format!("`{method}`");
         let words = statement_with(figure, &of_method);
+        let verdict = figure.verdict.map_or(NONE.to_owned(), bold_against);
         vec![id, words, published(claim, figure), measured(figure), fitting, verdict]
     };
     claim.family.figures.iter().enumerate().map(row).collect()
+}
+
+/// A verdict; one against the paper is bold.
+fn bold_against(verdict: FigureVerdict) -> String {
+    let words = verdict.to_string();
+    if verdict == FigureVerdict::DoesNotHold { format!("**{words}**") } else { words }
 }
 
 fn experiment(one: &ExperimentReport) -> Vec<String> {

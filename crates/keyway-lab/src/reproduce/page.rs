@@ -3,6 +3,7 @@
 use super::report::{ReproduceReport, VERDICT_RULE};
 use super::words::{
     NONE, change_text, measure_name, measured_text, published_text, reconstructed_of, statement,
+    verdict_with_counts,
 };
 use crate::claims::{
     AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
@@ -109,7 +110,7 @@ fn headline(claims: &[ClaimReport]) -> Markup {
                     }
                     None => { td {} td {} td {} }
                 }
-                td.verdict { (claim.verdict) }
+                td.verdict { (verdict_with_counts(claim)) }
             } } }
         }
     }
@@ -123,7 +124,7 @@ fn claim_section(
     let experiment = claim.family.experiment;
     html! {
         section {
-            h2 id=(claim.id) { (claim.id) ": " (claim.verdict) }
+            h2 id=(claim.id) { (claim.id) ": " (verdict_with_counts(claim)) }
             p { (claim.statement) "." }
             p {
                 "Judged " @match claim.published {
@@ -141,7 +142,7 @@ fn claim_section(
             @if !claim.family.figures.is_empty() { table {
                 thead { tr {
                     th { "figure" } th { "published" } th { "over the family" }
-                    th { "on the scene" } th { "on maps that fit" }
+                    th { "on the scene" } th { "on maps that fit" } th { "verdict" }
                 } }
                 tbody { @for figure in &claim.family.figures { tr {
                     td { (statement(figure)) }
@@ -149,6 +150,7 @@ fn claim_section(
                     td.number { (measured_text(figure)) }
                     td.number { (on_scene(claim, figure)) }
                     td.number { (reconstructed_of(claim, figure).map_or(NONE.to_owned(), measured_text)) }
+                    td.verdict { (figure.verdict.map(|it| it.to_string()).unwrap_or_default()) }
                 } } }
             } }
             (pictures(figures))

@@ -6,14 +6,14 @@ use crate::claims::{AblationReport, Claim, ClaimReport, ExperimentReport};
 use serde::Serialize;
 
 /// Rule of the verdicts, in words: it stands wherever there are verdicts.
-pub(super) const VERDICT_RULE: &str = "A claim holds when each of its figures goes the published way, the \
-    95 % interval of its mean change over the maps excludes zero, and the mean is at least half of \
-    the published change; it holds in part when one figure does so with such an interval; otherwise \
-    it does not hold. Where nothing comparable was published, the sign decides. What is to be so \
-    always has to be so on every map, and in part on more than half of them with a certainty of \
-    95 %.";
+pub(super) const VERDICT_RULE: &str = "A figure holds when the 95 % interval of its mean change over \
+    the maps lies on the side that the paper says, and the mean is at least half of the published \
+    change, if there is one; it does not hold when the interval lies on the other side, or below \
+    that half; otherwise it is undecided. What is to be so always has to be so on more than nine \
+    maps in ten, with certainty. Times are reported and not judged. A claim holds when all of its \
+    judged figures do, and does not hold when none does and some do not; otherwise it is mixed.";
 
-/// Report `keyway.reproduce/1`.
+/// Report `keyway.reproduce/2`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReproduceReport {
     /// Name of the format.
@@ -62,7 +62,7 @@ impl Reproduction {
         let experiment = |one: &Measured| ExperimentReport::new(one.experiment, &one.family);
         let both = self.ablations.iter().zip(&measurements.of_ablations);
         ReproduceReport {
-            schema: "keyway.reproduce/1",
+            schema: "keyway.reproduce/2",
             seed: self.request.seed,
             maps: self.request.maps,
             times,

@@ -18,7 +18,8 @@ fn lines(claim: &ClaimReport) -> Vec<Vec<String>> {
     let of_figure = |figure: &FamilyFigure| {
         let (words, published) =
             (format!("- {}", statement(figure)), published_text(claim, figure));
-        vec![String::new(), words, published, measured_text(figure), String::new()]
+        let verdict = figure.verdict.map(|verdict| verdict.to_string()).unwrap_or_default();
+        vec![String::new(), words, published, measured_text(figure), verdict]
     };
     let figures = claim.family.figures.iter().map(of_figure);
     std::iter::once(of_claim).chain(figures).collect()

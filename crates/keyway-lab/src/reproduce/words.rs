@@ -1,6 +1,6 @@
 //! Claims and figures in words, for tables, pages and papers.
 
-use crate::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale};
+use crate::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale, Verdict};
 
 /// Text where there is no value.
 pub(super) const NONE: &str = "-";
@@ -52,6 +52,14 @@ impl Decimals {
             Scale::Relative => format!("{:+.*}", self.relative, effect * 100.0),
             Scale::Absolute => format!("{effect:+.*}", self.absolute),
         }
+    }
+}
+
+/// Returns the verdict on a claim; on one whose figures differ, with how many have each verdict.
+pub fn verdict_with_counts(claim: &ClaimReport) -> String {
+    match claim.verdict {
+        Verdict::Mixed => format!("mixed: {}", claim.figures),
+        verdict => verdict.to_string(),
     }
 }
 

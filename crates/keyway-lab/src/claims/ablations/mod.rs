@@ -80,7 +80,7 @@ impl Ablation {
                 let finding = Finding::of(&figure, self.experiment, &family.rows);
                 // Neither direction is expected.
                 let figure = family_figure(&figure, &finding);
-                FamilyFigure { expected: "none", judgement: None, ..figure }
+                FamilyFigure { expected: "none", verdict: None, ..figure }
             })
         });
         AblationReport {
