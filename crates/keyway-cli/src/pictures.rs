@@ -141,7 +141,7 @@ pub(crate) fn speed_svg(name: &str, points: &[TrajectoryPoint], robot: &Robot) -
 }
 
 /// A point of a trajectory as it is reported.
-pub(crate) fn driven_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> TrajectoryPoint {
+pub(crate) fn trajectory_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> TrajectoryPoint {
     TrajectoryPoint { t_s, pose: Pose::new(x, y, yaw_rad), velocity: Velocity::new(v, omega) }
 }
 

@@ -14,7 +14,7 @@ pub struct LegendEntry {
     /// What it is.
     pub label: String,
     /// How it looks.
-    pub sample: LegendMark,
+    pub mark: LegendMark,
 }
 
 /// A small example of something drawn.
@@ -56,7 +56,7 @@ pub enum LegendMark {
 
 impl LegendEntry {
     /// An item of the legend.
-    pub fn new(label: impl Into<String>, sample: LegendMark) -> Self {
+    pub fn new(label: impl Into<String>, mark: LegendMark) -> Self {
         Self { label: label.into(), sample }
     }
 
@@ -110,7 +110,7 @@ impl<'a> Legend<'a> {
         for (column, width) in self.entries.chunks(self.rows.max(1)).zip(&self.column_widths) {
             for (row, entry) in column.iter().enumerate() {
                 let middle = y + (row as f64 + 0.5) * ROW_PX;
-                draw_sample(out, entry.sample, x, middle);
+                draw_mark(out, entry.sample, x, middle);
                 let (text_x, base) = (x + SAMPLE_PX + 6.0, middle + 0.36 * SMALL_TEXT_PX);
                 out.label(text_x, base, SMALL_TEXT_PX, Anchor::Start, &entry.label);
             }
@@ -120,7 +120,7 @@ impl<'a> Legend<'a> {
 }
 
 /// Draws a sample whose left edge is at `x`, centred at the height `y`.
-fn draw_sample(out: &mut SvgWriter, sample: LegendMark, x: f64, y: f64) {
+fn draw_mark(out: &mut SvgWriter, mark: LegendMark, x: f64, y: f64) {
     let middle = x + 0.5 * SAMPLE_PX;
     match sample {
         LegendMark::Area(color) => {
@@ -146,9 +146,7 @@ fn draw_sample(out: &mut SvgWriter, sample: LegendMark, x: f64, y: f64) {
                 tag.stroke(color, crate::layers::DRIVEN_WIDTH_PX).leaf();
             }
         }
-        LegendMark::Ring(style) => {
-            draw_sample(out, LegendMark::SmallRing(style, KEY_RING_PX), x, y)
-        }
+        LegendMark::Ring(style) => draw_mark(out, LegendMark::SmallRing(style, KEY_RING_PX), x, y),
         LegendMark::SmallRing(style, radius) => {
             let tag = out.tag("circle").round(middle, y, radius).attr("fill", "#fff");
             tag.stroke(style.color, style.width_px).leaf();

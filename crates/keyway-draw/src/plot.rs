@@ -125,6 +125,9 @@ impl Plot<'_> {
     /// A dot of the given radius \[px\].
     pub fn dot(&mut self, point: ChartPoint, color: Rgb, radius_px: f64) {
         let (x, y) = self.px(&point);
+        if !(x + y).is_finite() {
+            return;
+        }
         self.out.tag("circle").round(x, y, radius_px).fill(color).leaf();
     }
 
@@ -188,6 +191,9 @@ impl Plot<'_> {
     }
 
     fn rule(&mut self, [from, to]: [(f64, f64); 2], style: LineStyle) {
+        if !(from.0 + from.1 + to.0 + to.1).is_finite() {
+            return;
+        }
         self.out.tag("line").between(from, to).line_style(style).leaf();
     }
 
@@ -223,7 +229,7 @@ mod tests {
 
     const STYLE: LineStyle = LineStyle::solid(INK, 2.0);
 
-    /// What is drawn on a panel of 100 px x 100 px over an axis from 0 to 10.
+    /// The drawing on a panel of 100 px x 100 px over an axis from 0 to 10.
     fn drawn(y_axis: Axis, draw: impl Fn(&mut Plot<'_>)) -> String {
         let chart = Chart::new(Axis::linear(0.0, 10.0, 5), 100.0, 100.0).panel(y_axis, |plot| {
             plot.writer().tag("mark").leaf();
@@ -279,7 +285,11 @@ mod tests {
             plot.bar(ChartPoint::new(2.0, 0.0), ChartPoint::new(4.0, 5.0), INK);
             plot.bar(ChartPoint::new(4.0, 99.0), ChartPoint::new(-3.0, -1.0), INK);
             plot.bar(ChartPoint::new(4.0, f64::NAN), ChartPoint::new(2.0, 0.0), INK);
+            plot.dot(ChartPoint::new(f64::NAN, 1.0), INK, 2.0);
+            plot.rule_x(f64::NAN, LineStyle::LIMIT);
+            plot.rule_y(f64::INFINITY, LineStyle::LIMIT);
         });
+        assert!(!svg.contains("circle") && !svg.contains(LineStyle::LIMIT.dashes), "{svg}");
         assert_eq!(
             (numbers(&svg, "width"), numbers(&svg, "height")),
             (vec![20.0, 40.0], vec![50.0, 100.0])

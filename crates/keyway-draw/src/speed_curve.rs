@@ -28,7 +28,7 @@ pub struct SpeedCurveOptions {
     pub caption: String,
 }
 
-/// What one of the two charts shows of a state.
+/// The value that one of the two charts shows of a state.
 struct Quantity {
     label: &'static str,
     value: fn(&TrajectoryPoint) -> f64,

@@ -1,6 +1,6 @@
 //! Which Python exception an error of the library is.
 
-use keyway::file_system::ReadError;
+use keyway::file_error::ReadError;
 use keyway::files::{ConfigFileError, ParameterError, TextFileError};
 use keyway::map::formats::MapFileError;
 use keyway::map::{BlockedBy, Hindrance};

@@ -16,7 +16,7 @@ pub enum ReadError {
     System {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Message of the operating system.
         reason: io::Error,
     },
     /// A folder.
@@ -45,7 +45,7 @@ pub enum ReadError {
 pub struct WriteError {
     /// The file asked for.
     pub path: PathBuf,
-    /// What the operating system said.
+    /// Message of the operating system.
     pub reason: io::Error,
 }
 

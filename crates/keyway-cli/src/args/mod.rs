@@ -17,7 +17,7 @@ pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
 pub(crate) use values::{
-    AnimationFile, AnimationFormat, CircleArg, CurveFile, CurveFormat, MovingArg, PictureFile,
+    AnimationFile, AnimationFormat, CurveFile, CurveFormat, DiscArg, MovingArg, PictureFile,
     PoseArg, PositionArg,
 };
 
@@ -268,7 +268,7 @@ pub(crate) struct NavigateArgs {
     pub(crate) radius: Option<f64>,
     /// An obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
-    pub(crate) obstacle: Vec<CircleArg>,
+    pub(crate) obstacle: Vec<DiscArg>,
     /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight
     /// on; or its speed and the points that it goes to in turn, for ever around; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]

@@ -22,7 +22,7 @@ pub(crate) struct PoseArg {
 
 /// `X,Y,RADIUS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CircleArg(pub(crate) Disc);
+pub(crate) struct DiscArg(pub(crate) Disc);
 
 /// `X,Y,RADIUS,VX,VY`, or `X,Y,RADIUS,SPEED:X,Y` with as many further points as needed.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +98,7 @@ impl FromStr for PoseArg {
     }
 }
 
-impl FromStr for CircleArg {
+impl FromStr for DiscArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -278,7 +278,7 @@ mod tests {
         }
         let error = "1,abc".parse::<PositionArg>().unwrap_err();
         assert_eq!(error, "`abc` is not a number, expected X,Y");
-        assert!("1,2,-0.1".parse::<CircleArg>().is_err());
+        assert!("1,2,-0.1".parse::<DiscArg>().is_err());
     }
 
     #[test]

@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 const SHORT: &str = "navigate small_house.yaml --start -8.175,-2.825 --goal -6,-2.6 --format json";
 
-/// HatchedDiscs around the start: 2 cm away from the robot, and 28 cm of room between two of them are not
+/// Discs around the start: 2 cm away from the robot, and 28 cm of room between two of them are not
 /// enough.
 const BOXED_IN: &str = "navigate small_house.yaml --start -8.175,-2.825,0 --goal -6,-2.6 --format json \
     --time-limit 0.3 --explain why.jsonl --obstacle -7.875,-2.825,0.1 --obstacle -8.175,-2.525,0.1 \

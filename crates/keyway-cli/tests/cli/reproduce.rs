@@ -148,7 +148,10 @@ fn the_number_of_jobs_changes_no_byte() {
     // Times are not judged, so a claim has a verdict without them.
     let claims = report["claims"].as_array().unwrap();
     let times = claims.iter().find(|claim| claim["id"] == "S2-6").unwrap();
-    assert_eq!((&times["figures"]["not_judged"], &times["figures"]["not_measured"]), (&json!(1), &json!(0)));
+    assert_eq!(
+        (&times["figures"]["not_judged"], &times["figures"]["not_measured"]),
+        (&json!(1), &json!(0))
+    );
     assert_ne!(times["verdict"], "not_measured");
     // Maps that are left out do not depend on who was first, either.
     let left_out = report["experiments"][0]["left_out"].as_u64().unwrap();

@@ -3,7 +3,7 @@
 
 mod caption;
 mod cells;
-mod circles;
+mod discs;
 mod driven;
 mod estimated;
 mod fan;
@@ -16,7 +16,7 @@ mod walked;
 
 pub use caption::Caption;
 pub use cells::CellTint;
-pub use circles::HatchedDiscs;
+pub use discs::HatchedDiscs;
 pub(crate) use driven::{DRIVEN_WIDTH_PX, casing};
 pub use driven::{DrivenPath, Footprints};
 pub use estimated::EstimatedMovers;

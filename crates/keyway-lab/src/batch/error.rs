@@ -3,7 +3,7 @@
 use super::PartsError;
 use super::limits::SEEDS;
 use crate::results::ResultsError;
-use keyway::file_system::system_error_in_words;
+use keyway::file_error::system_error_in_words;
 use keyway::files::ConfigFileError;
 use keyway::map::formats::MapFileError;
 use keyway_sim::episode::EpisodeError;

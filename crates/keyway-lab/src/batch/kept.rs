@@ -6,7 +6,8 @@
 use super::{BatchError, Keep, PartsError, Record, RunId};
 use crate::replay::RunRecord;
 use crate::results::{ResultsError, digest, json_text};
-use keyway::file_system::{WriteError, write_atomically};
+use keyway::file_error::WriteError;
+use keyway::file_system::write_atomically;
 use keyway::files::read_text;
 use std::collections::HashMap;
 use std::ffi::OsString;

@@ -174,9 +174,8 @@ fn alternative(
 
 fn stack_entry(name: &'static str, stack: &Stack) -> CatalogueEntry {
     let schema = schema_for!(Stack).to_value();
-    let about = Stack::summary(name).unwrap_or_default();
-    let summary = Stack::source(name);
-    let summary = summary.map_or_else(|| about.to_owned(), |source| format!("{about} [{source}]"));
+    let (about, source) = (Stack::summary(name).unwrap_or_default(), Stack::source(name));
+    let summary = source.map_or_else(|| about.to_owned(), |source| format!("{about} [{source}]"));
     let paper = Stack::published_by_name(name).map_or(Value::Null, |stack| paper_stack(&stack));
     let parameters = parameters("", &schema, &value(stack), &paper);
     let file = Some(file(stack, &format!("{name}: {summary}"), &parameters));

@@ -32,7 +32,7 @@ pub struct ClaimReport {
     pub not_reconstructed: Option<&'static str>,
     /// Results over the family of maps, which decide the verdict.
     pub family: FamilyReport,
-    /// How many of its figures have each verdict.
+    /// Numbers of its figures with each verdict.
     pub figures: FigureCounts,
     /// Verdict that follows from them.
     pub verdict: Verdict,

@@ -16,10 +16,10 @@
 //! Times are reported and not judged: they hang on the clock, the machine and the care with which
 //! each method was written.
 //!
-//! A claim holds when all of its judged figures hold, and does not hold when none of them does. Where
-//! some hold and others do not, or some cannot be decided, it is mixed, and the counts say how. A
-//! figure that could not be measured leaves the claim without a verdict: missing data supports
-//! neither side.
+//! A claim holds when all of its judged figures hold, and does not hold when none of them does.
+//! Where some hold and others do not, or some cannot be decided, it is mixed, and the counts say
+//! how. A figure that could not be measured leaves the claim without a verdict: missing data
+//! supports neither side.
 
 use super::claim::{Direction, Expected, Figure};
 use keyway_sim::metrics::statistics::{Confidence, Rate};
@@ -50,11 +50,11 @@ pub enum Evidence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FigureVerdict {
-    /// What was measured agrees with the paper.
+    /// The measurement agrees with the paper.
     Holds,
-    /// What was measured contradicts the paper.
+    /// The measurement contradicts the paper.
     DoesNotHold,
-    /// What was measured may agree or not.
+    /// The measurement may agree or not.
     Undecided,
     /// It is a time.
     NotJudged,
@@ -80,7 +80,7 @@ pub enum Verdict {
     NotMeasured,
 }
 
-/// How many figures of claims have each verdict.
+/// Numbers of the figures with each verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FigureCounts {
@@ -107,11 +107,11 @@ impl FigureVerdict {
                 let half = figure.published_effect().map_or(0.0, |effect| 0.5 * effect.abs());
                 Self::of_change(direction, half, [mean, low, high])
             }
-            (Expected::Always(_), Evidence::Kept(rate)) => rate
-                .interval(Confidence::USUAL)
-                .map_or(Self::NotMeasured, |share| {
+            (Expected::Always(_), Evidence::Kept(rate)) => {
+                rate.interval(Confidence::USUAL).map_or(Self::NotMeasured, |share| {
                     Self::by(share.low > NEARLY_ALWAYS, share.high < NEARLY_ALWAYS)
-                }),
+                })
+            }
             _ => Self::NotMeasured,
         }
     }
@@ -202,9 +202,8 @@ impl std::fmt::Display for FigureCounts {
             (self.undecided, "undecided", "undecided"),
         ];
         let parts = numbers.into_iter().filter(|(count, ..)| *count > 0);
-        let words = parts.map(|(count, one, more)| {
-            format!("{count} {}", if count == 1 { one } else { more })
-        });
+        let words = parts
+            .map(|(count, one, more)| format!("{count} {}", if count == 1 { one } else { more }));
         f.write_str(&words.collect::<Vec<_>>().join(", "))
     }
 }
@@ -264,7 +263,8 @@ mod tests {
         let kept = |successes, failures| {
             FigureVerdict::of(&KEPT, Evidence::Kept(Rate { successes, failures }))
         };
-        // Wilson's intervals: 96.3 to 100, 90.2 to 98.4, 88.8 to 97.8, 76.7 to 90.7, 75.6 to 89.8 %.
+        // Wilson's intervals: 96.3 to 100, 90.2 to 98.4, 88.8 to 97.8, 76.7 to 90.7, 75.6 to 89.8
+        // %.
         assert_eq!([kept(100, 0), kept(96, 4)], [Holds, Holds]);
         assert_eq!([kept(95, 5), kept(85, 15)], [Undecided, Undecided]);
         assert_eq!([kept(84, 16), kept(0, 100)], [DoesNotHold, DoesNotHold]);

@@ -29,7 +29,7 @@ struct Column {
 #[derive(Debug)]
 enum Cell {
     Text(fn(&CompareRow) -> String),
-    /// A mean, with the range of the values of most queries. Each is written with as many decimals.
+    /// A mean, with the range of the values of most queries. The numbers are their decimals.
     Mean(&'static Figure, Written, [usize; 2]),
 }
 
@@ -224,4 +224,21 @@ const fn corners(row: &CompareRow) -> &'static str {
 fn shortfalls(row: &CompareRow) -> String {
     let of = |all: usize| format!("{}/{all}", row.shortfalls);
     Some(row.compared).filter(|&all| all > 0).map_or_else(|| "-".to_owned(), of)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A figure that nothing summarises would be an empty column.
+    #[test]
+    fn the_figure_of_every_column_is_summarised() {
+        let means = COLUMNS.iter().filter_map(|column| match column.cell {
+            Cell::Mean(figure, ..) => Some(figure),
+            Cell::Text(_) => None,
+        });
+        let all: Vec<&Figure> = means.chain([&CLEARANCE_M, &EXCESS]).collect();
+        assert_eq!(all.len(), 7);
+        assert!(all.iter().all(|figure| figure.place().is_some()), "{all:?}");
+    }
 }

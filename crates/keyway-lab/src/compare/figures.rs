@@ -63,6 +63,11 @@ pub(super) struct Summary {
 pub(super) struct Summaries([Summary; FIGURES.len()]);
 
 impl Figure {
+    /// Its place in [`FIGURES`]; `None` for one that is missing there.
+    pub(super) fn place(&self) -> Option<usize> {
+        FIGURES.iter().position(|one| one.name == self.name)
+    }
+
     fn summary(&self, found: &[&Found]) -> Summary {
         let values: Vec<f64> = found.iter().filter_map(|found| (self.of)(found)).collect();
         let worst = self.worst.and_then(|(_, order)| values.iter().copied().max_by(order));
@@ -80,10 +85,9 @@ impl Summaries {
         Self(FIGURES.map(|figure| figure.summary(found)))
     }
 
-    /// The summary of one figure.
+    /// The summary of one figure of [`FIGURES`].
     pub(super) fn get(&self, figure: &Figure) -> Summary {
-        let place = FIGURES.iter().position(|one| one.name == figure.name);
-        place.map_or_else(Summary::default, |place| self.0[place])
+        figure.place().map_or_else(Summary::default, |place| self.0[place])
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Difference, SCHEMA};
 use keyway::ConfigError;
-use keyway::file_system::ReadError;
+use keyway::file_error::ReadError;
 use keyway::map::formats::MapFileError;
 use keyway_sim::report::Inputs;
 use keyway_sim::scene_files::SceneError;

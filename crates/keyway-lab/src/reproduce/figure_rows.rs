@@ -1,7 +1,7 @@
 //! The figures of all claims as lines of a table.
 
 use super::words::{published_of, reconstructed_of};
-use crate::claims::{ClaimReport, FamilyFigure, Measure, FigureVerdict, SceneFigure, Verdict};
+use crate::claims::{ClaimReport, FamilyFigure, FigureVerdict, Measure, SceneFigure, Verdict};
 use serde::Serialize;
 
 /// A line of `claims.csv`.

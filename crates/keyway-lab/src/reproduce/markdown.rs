@@ -5,7 +5,8 @@ use super::words::{
     COARSE, NONE, measure_name, reconstructed_of, statement_with, verdict_with_counts,
 };
 use crate::claims::{
-    AblationReport, ClaimReport, ExperimentReport, FamilyFigure, FigureCounts, FigureVerdict, Verdict,
+    AblationReport, ClaimReport, ExperimentReport, FamilyFigure, FigureCounts, FigureVerdict,
+    Verdict,
 };
 use std::fmt::Write as _;
 use std::ops::Range;

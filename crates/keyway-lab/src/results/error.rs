@@ -1,7 +1,7 @@
 //! Errors of result files.
 
 use super::{LinesError, ManifestError};
-use keyway::file_system::{WriteError, system_error_in_words};
+use keyway::file_error::{WriteError, system_error_in_words};
 use std::path::PathBuf;
 use thiserror::Error;
 

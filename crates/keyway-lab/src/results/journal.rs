@@ -9,7 +9,7 @@
 use super::json_lines::{self, LinesError, read_lines};
 use super::lock::OutputLock;
 use super::{OutDir, ResultsError};
-use keyway::file_system::WriteError;
+use keyway::file_error::WriteError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File, OpenOptions};

@@ -1,6 +1,7 @@
 //! Files of JSON with a line for each entry, and other results of earlier runs, read within limits.
 
-use keyway::file_system::{ReadError, read_file};
+use keyway::file_error::ReadError;
+use keyway::file_system::read_file;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use thiserror::Error;

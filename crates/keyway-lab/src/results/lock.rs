@@ -5,7 +5,7 @@
 //! leaves is open to the next.
 
 use super::ResultsError;
-use keyway::file_system::WriteError;
+use keyway::file_error::WriteError;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};

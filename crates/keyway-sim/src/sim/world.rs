@@ -8,7 +8,7 @@ use keyway::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The true obstacles: squares of a grid, stationary circles and polygons that no map has, and
+/// The true obstacles: squares of a grid, stationary discs and polygons that no map has, and
 /// moving obstacles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
@@ -17,7 +17,7 @@ pub struct World {
     /// Squares that no map has, if any.
     hidden: Option<BitGrid>,
     free: FreeSquares,
-    circles: Vec<Disc>,
+    discs: Vec<Disc>,
     polygons: Vec<StandingPolygon>,
     movers: Vec<MovingObstacle>,
 }
@@ -31,7 +31,7 @@ pub enum Obstacle {
     Square,
     /// The square of a cell that no map has ([`World::with_hidden`]).
     HiddenSquare,
-    /// The circle of this index in [`World::circles`].
+    /// The circle of this index in [`World::discs`].
     Circle(usize),
     /// The polygon of this index in [`World::polygons`].
     Polygon(usize),
@@ -95,29 +95,29 @@ pub enum WorldError {
 
 impl World {
     /// A world with the squares of the set cells of `squares` (a grid of `frame`'s size) and
-    /// circles. Costs a few operations per cell, and keeps a byte for each, which lets a sensor's
+    /// discs. Costs a few operations per cell, and keeps a byte for each, which lets a sensor's
     /// beams skip free cells.
     ///
     /// # Errors
     /// When the grid has a different size, or a circle is not valid.
-    pub fn new(frame: GridFrame, squares: BitGrid, circles: Vec<Disc>) -> Result<Self, WorldError> {
+    pub fn new(frame: GridFrame, squares: BitGrid, discs: Vec<Disc>) -> Result<Self, WorldError> {
         check_size(&frame, &squares)?;
-        if let Some(index) = circles.iter().position(|circle| !circle.is_valid()) {
-            let Disc { centre, radius_m } = circles[index];
+        if let Some(index) = discs.iter().position(|circle| !circle.is_valid()) {
+            let Disc { centre, radius_m } = discs[index];
             return Err(WorldError::Circle { index, centre, radius_m });
         }
         let free = FreeSquares::around(&squares);
         let (polygons, movers) = (Vec::new(), Vec::new());
-        Ok(Self { frame, squares, hidden: None, free, circles, polygons, movers })
+        Ok(Self { frame, squares, hidden: None, free, discs, polygons, movers })
     }
 
     /// A world in which a known map is right: its occupied cells (unknown cells are free), and
-    /// circles that the map does not have.
+    /// discs that the map does not have.
     ///
     /// # Errors
     /// When a circle is not valid.
-    pub fn from_known(known: &OccupancyGrid, circles: Vec<Disc>) -> Result<Self, WorldError> {
-        Self::new(*known.frame(), known.occupied().clone(), circles)
+    pub fn from_known(known: &OccupancyGrid, discs: Vec<Disc>) -> Result<Self, WorldError> {
+        Self::new(*known.frame(), known.occupied().clone(), discs)
     }
 
     /// Adds the set cells of `hidden` as further obstacles.
@@ -171,8 +171,8 @@ impl World {
     }
 
     /// Round stationary obstacles.
-    pub fn circles(&self) -> &[Disc] {
-        &self.circles
+    pub fn discs(&self) -> &[Disc] {
+        &self.discs
     }
 
     /// Stationary polygons.
@@ -199,7 +199,7 @@ impl World {
         reach_m: f64,
     ) -> f64 {
         let nearer = |known_m, circle| to_circle(footprint, pose, circle, known_m);
-        let nearest_m = self.circles.iter().fold(reach_m, nearer);
+        let nearest_m = self.discs.iter().fold(reach_m, nearer);
         let nearer = |known_m, polygon| to_polygon(footprint, pose, polygon, known_m);
         let nearest_m = self.polygons.iter().fold(nearest_m, nearer);
         let (core, radius_m) = footprint.core();
@@ -238,7 +238,7 @@ impl World {
             let square = if is_hidden { Obstacle::HiddenSquare } else { Obstacle::Square };
             nearest = (squares_m, square);
         }
-        for (index, circle) in self.circles.iter().enumerate() {
+        for (index, circle) in self.discs.iter().enumerate() {
             let distance_m = to_circle(footprint, pose, circle, nearest.0);
             if distance_m < nearest.0 {
                 nearest = (distance_m, Obstacle::Circle(index));
@@ -265,10 +265,10 @@ impl<'a> WorldAt<'a> {
     }
 
     /// Round obstacles at this time: first the stationary ones, then the moving ones.
-    pub fn circles(&self) -> impl Iterator<Item = Disc> + 'a {
-        let World { circles, movers, .. } = self.world;
+    pub fn discs(&self) -> impl Iterator<Item = Disc> + 'a {
+        let World { discs, movers, .. } = self.world;
         let t_s = self.t_s;
-        circles.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
+        discs.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
     }
 
     /// Exact distance from a footprint at a pose to the nearest obstacle \[m\]: 0 if it touches
@@ -436,7 +436,7 @@ mod tests {
         let to_movers =
             |reach_m| world.at(4.0).distance_to_movers(&point(), Pose::new(3.0, 1.7, 0.0), reach_m);
         assert_eq!((to_movers(0.1), to_movers(1.0).1), ((0.1, None), Some(0)));
-        let places: Vec<Point> = world.at(2.0).circles().map(|circle| circle.centre).collect();
+        let places: Vec<Point> = world.at(2.0).discs().map(|circle| circle.centre).collect();
         assert_eq!(places, [Point::new(4.5, 0.5), Point::new(2.0, 1.5)]);
     }
 
@@ -449,8 +449,8 @@ mod tests {
         let world = World::new(frame, BitGrid::new(5, 1, false), vec![]).unwrap();
         assert_eq!(world.with_hidden(&other), Err(size));
         for bad in [circle(f64::NAN, 0.0, 1.0), circle(0.0, 0.0, -1.0)] {
-            let circles = vec![circle(0.0, 0.0, 0.0), bad];
-            let error = World::new(frame, BitGrid::new(5, 1, false), circles).unwrap_err();
+            let discs = vec![circle(0.0, 0.0, 0.0), bad];
+            let error = World::new(frame, BitGrid::new(5, 1, false), discs).unwrap_err();
             assert!(matches!(error, WorldError::Circle { index: 1, .. }), "{error}");
         }
     }

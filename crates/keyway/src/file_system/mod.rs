@@ -5,7 +5,6 @@ mod read;
 #[cfg(test)]
 pub(crate) mod test_folder;
 
-pub use crate::file_error::{ReadError, WriteError, system_error_in_words};
 pub(crate) use atomic::Staged;
 pub use atomic::{check_writable, remove_leftovers, write_atomically};
 pub use read::read_file;

@@ -20,7 +20,7 @@ pub enum ConfigFileError {
     Toml {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: TomlError,
     },
     /// A robot without some of its fields.
@@ -54,7 +54,7 @@ pub enum ConfigFileError {
     Value {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: ConfigError,
     },
 }

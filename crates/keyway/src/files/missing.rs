@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-/// What a robot file need not have.
+/// Values that a robot file need not have.
 const OPTIONAL: &str = "actuation_delay_s";
 
 /// The fields of a whole table that another one does not give, as paths.

@@ -1,5 +1,5 @@
-//! Points, poses, angles, segments, arcs, discs, cubic curves, and the paths they make in the plane.
-//! Depends on nothing else here.
+//! Points, poses, angles, segments, arcs, discs, cubic curves, and the paths they make in the
+//! plane. Depends on nothing else here.
 
 mod angle;
 mod arc;

@@ -64,7 +64,7 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
 }
 
 /// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at
-/// least a cycle; no scene where it would touch something before, by the [stop rule](StopRule).
+/// least a cycle; no scene where braking does not keep the margin of the [stop rule](StopRule).
 fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
     let braking = robot.limits.braked(scene.velocity, robot.cycle_s);
     let (mut standing, mut duration_s) = (*scene, 0.0);

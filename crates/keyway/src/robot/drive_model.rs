@@ -1,8 +1,8 @@
 //! The drive model: how a robot moves, brakes and stops. A differential drive, the only one so far.
 //!
 //! Here is what velocity a robot reaches in a cycle, how it brakes, when it stands, and its motion
-//! until it does. Another drive is another answer to the same questions. Planners that look at many
-//! motions at once compute places by formulas of their own.
+//! until it does. Dynamic windows, the search through space and time, the stop rule and the motions
+//! of recoveries compute places of (v, omega) by formulas of their own.
 
 use super::{Limits, Robot};
 use crate::ConfigError;
@@ -38,6 +38,11 @@ impl Robot {
             let braked = || self.limits.braked(last.to, self.cycle_s);
             (!stands).then(|| self.ramp(last.end, last.to, braked()))
         })
+    }
+
+    /// Pose at which a robot stands that is given a command and brakes from the next cycle on.
+    pub(crate) fn stop_pose(&self, pose: Pose, velocity: Velocity, command: Velocity) -> Pose {
+        self.motion_to_stop(pose, velocity, command).fold(pose, |_, motion| motion.end)
     }
 
     /// The motion of the next cycle when a command is given.
@@ -163,9 +168,9 @@ impl Limits {
     /// g(t) = max(0, 1 - t / T) and the time to stop T; in between it changes linearly. Speed and
     /// turn rate fall in proportion, so the robot stays on its arc and covers of it what u covers
     /// in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ...
-    /// = c / 2 + c (g(c) + g(2 c) + ...). As g falls, c g(k c) is at most the integral of g over the
-    /// k-th cycle, so S <= c / 2 + T / 2. Both terms are needed: a robot that could stop at once
-    /// still needs a cycle, in which it drives half as far as at u.
+    /// = c / 2 + c (g(c) + g(2 c) + ...). As g falls, c g(k c) is at most the integral of g over
+    /// the k-th cycle, so S <= c / 2 + T / 2. Both terms are needed: a robot that could stop at
+    /// once still needs a cycle, in which it drives half as far as at u.
     pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
         0.5 * (self.stop_s() + cycle_s)
     }
@@ -196,11 +201,12 @@ impl Limits {
     }
 }
 
-/// The largest velocity at the end of a cycle from which a stop is possible in whole cycles.
+/// The largest velocity at the end of a cycle from which a stop is possible in whole cycles. A
+/// velocity the other way at its beginning counts as one ahead.
 ///
-/// In a cycle c a deceleration of b sheds b c. From the velocity v = (n + f) b c, n whole and 0 <= f
-/// < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from` + v) c / 2. Solved
-/// for n and f.
+/// In a cycle c a deceleration of b sheds b c. From the velocity v = (n + f) b c, n whole and 0 <=
+/// f < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from` + v) c / 2.
+/// Solved for n and f.
 fn stoppable(from: f64, within: f64, deceleration: f64, cycle_s: f64) -> f64 {
     let shed = deceleration * cycle_s;
     // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
@@ -224,6 +230,22 @@ fn approach(from: f64, to: f64, acceleration: f64, deceleration: f64, duration_s
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_robot_stands_where_it_has_braked() {
+        let robot = Robot::small();
+        let start = Pose::new(1.0, 2.0, 0.0);
+        let stop = |from, command| robot.stop_pose(start, from, command);
+        // 0.05 m in a cycle at 0.5 m/s, and 0.25 m in ten cycles of braking.
+        let ahead = Velocity::new(0.5, 0.0);
+        assert!((stop(ahead, ahead).x - 1.3).abs() < 1e-12);
+        assert_eq!(stop(Velocity::ZERO, Velocity::ZERO), start);
+        // It stays on its arc of 0.5 m: 0.6 rad.
+        let arc = Velocity::new(0.5, 1.0);
+        let end = stop(arc, arc);
+        assert!((end.theta - 0.6).abs() < 1e-12, "{end:?}");
+        assert!((end.x - 1.0 - 0.5 * libm::sin(0.6)).abs() < 1e-3, "{end:?}");
+    }
 
     #[test]
     fn noise_is_no_motion() {

@@ -1,6 +1,6 @@
 //! The episode that arguments or a scene file describe.
 
-use crate::args::{CircleArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
+use crate::args::{DiscArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
 use crate::config::resolve;
 use crate::error::{CliError, Kind};
 use crate::inputs::{
@@ -106,7 +106,7 @@ fn sources(args: &NavigateArgs, map_files: Vec<PathBuf>) -> Vec<PathBuf> {
 }
 
 fn added_obstacles(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<Disc>, CliError> {
-    let added = |CircleArg(circle): &CircleArg| {
+    let added = |DiscArg(circle): &DiscArg| {
         let centre = position(frame, circle.centre, args.cells, "--obstacle")?;
         Ok(Disc { centre, ..*circle })
     };

@@ -8,7 +8,7 @@ use crate::error::CliError;
 use crate::inputs::{refuse_to_replace_a_source, refuse_unwritable};
 use crate::out_dir::prepare;
 use crate::out_file::{write_animation, write_file};
-use crate::pictures::{DrivenPicture, RunPicture, driven_point, png, speed_svg};
+use crate::pictures::{DrivenPicture, RunPicture, png, speed_svg, trajectory_point};
 use crate::report_text::WithFiles;
 use keyway_lab::results::OutDir;
 use keyway_sim::episode::Episode;
@@ -145,7 +145,7 @@ fn stage<'a>(episode: &'a Episode, movers: &'a [MovingObstacle]) -> Stage<'a> {
 }
 
 fn points(driven: &Driven) -> Vec<TrajectoryPoint> {
-    driven.report.trajectory.iter().flatten().map(driven_point).collect()
+    driven.report.trajectory.iter().flatten().map(trajectory_point).collect()
 }
 
 /// Without a run: the report, and the map with start and goal. `files` are the paths of all of

@@ -8,7 +8,7 @@ use crate::args::{DriveFileArgs, Format, NavigateArgs};
 use crate::commands::Done;
 use crate::error::{CliError, Kind};
 use crate::out_file::write_animation;
-use crate::pictures::{driven_point, png};
+use crate::pictures::{png, trajectory_point};
 use crate::report_text::WithFiles;
 use crate::stdout::print_files;
 use crate::team_pictures::TeamPicture;
@@ -119,7 +119,7 @@ fn blame(error: &EpisodeError) -> CliError {
 }
 
 fn points(report: &RobotReport) -> Vec<TrajectoryPoint> {
-    report.trajectory.iter().flatten().map(driven_point).collect()
+    report.trajectory.iter().flatten().map(trajectory_point).collect()
 }
 
 fn has_run(report: &EpisodeReport) -> bool {

@@ -64,11 +64,11 @@ pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
             for shade in 0..SHADES {
                 canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);
             }
-            let sample = LegendMark::Shades(shades::samples(side, shades::area));
+            let mark = LegendMark::Shades(shades::samples(side, shades::area));
             canvas.explain(LegendEntry::new(trace.label("expanded, early to late", side), sample));
         }
         if canvas.paint(shades::open(side), |i| marks[i] == first + OPEN) {
-            let sample = LegendMark::Area(shades::open(side));
+            let mark = LegendMark::Area(shades::open(side));
             canvas.explain(LegendEntry::new(trace.label("generated only", side), sample));
         }
     }

@@ -60,7 +60,7 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
             is_drawn |= canvas.segments(part.iter().copied(), style);
         }
         if is_drawn {
-            let sample = LegendMark::ShadedLine(shades::samples(side, shades::line));
+            let mark = LegendMark::ShadedLine(shades::samples(side, shades::line));
             canvas.explain(LegendEntry::new(trace.label(text, side), sample));
         }
     }

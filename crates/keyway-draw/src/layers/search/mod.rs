@@ -154,7 +154,7 @@ impl Layer for Meeting<'_> {
         let at = canvas.map().frame().world_from_cell(cell);
         let px = canvas.view().px_from_world(at);
         letter_mark(canvas.writer(), px, "M", false);
-        let sample = LegendMark::Letter { letter: 'M', dark: false };
+        let mark = LegendMark::Letter { letter: 'M', dark: false };
         canvas.explain(LegendEntry::new("the two sides met", sample));
     }
 }

@@ -46,7 +46,7 @@ impl WorldAt<'_> {
         let ranges_m = &mut scan.ranges_m;
         self.cast_at_squares(pose, beams, range_max_m, ranges_m);
         let mut shapes = Shapes { beams, from: point, theta: pose.theta, range_max_m, ranges_m };
-        self.circles().for_each(|circle| shapes.add_circle(&circle));
+        self.discs().for_each(|circle| shapes.add_disc(&circle));
         for (footprint, at) in self.world().polygons().iter().map(StandingPolygon::placed) {
             shapes.add_footprint(footprint, at);
         }

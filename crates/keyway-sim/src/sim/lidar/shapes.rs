@@ -15,7 +15,7 @@ pub(super) struct Shapes<'a> {
 }
 
 impl Shapes<'_> {
-    pub(super) fn add_circle(&mut self, circle: &Disc) {
+    pub(super) fn add_disc(&mut self, circle: &Disc) {
         if circle.distance(self.from) > self.range_max_m {
             return;
         }
@@ -24,14 +24,14 @@ impl Shapes<'_> {
         }
         let from = self.from;
         self.lower_near(circle.centre, circle.radius_m, |direction| {
-            range_to_circle(from, direction, circle)
+            range_to_disc(from, direction, circle)
         });
     }
 
     pub(super) fn add_footprint(&mut self, footprint: &Footprint, pose: Pose) {
         let polygon = match footprint {
             Footprint::Circle(disc) => {
-                return self.add_circle(&Disc::new(pose.point(), disc.radius_m()));
+                return self.add_disc(&Disc::new(pose.point(), disc.radius_m()));
             }
             Footprint::Polygon(polygon) => polygon,
         };
@@ -73,7 +73,7 @@ pub(super) fn outside(from: Point, circle: &Disc) -> f64 {
 }
 
 /// Distance along a beam to a circle \[m\]; infinity if the beam misses it.
-pub(super) fn range_to_circle(from: Point, direction: Point, circle: &Disc) -> f64 {
+pub(super) fn range_to_disc(from: Point, direction: Point, circle: &Disc) -> f64 {
     let to_centre = circle.centre - from;
     let outside = outside(from, circle);
     if outside <= 0.0 {

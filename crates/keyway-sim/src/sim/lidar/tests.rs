@@ -1,4 +1,4 @@
-use super::shapes::{outside, range_to_circle, range_to_edge};
+use super::shapes::{outside, range_to_disc, range_to_edge};
 use super::*;
 use crate::sim::mover::{moving_obstacle, place_of};
 use crate::sim::test_shapes::grid_of;
@@ -39,7 +39,7 @@ fn beam_by_beam(
             square.map_or(f64::INFINITY, |passed| passed.enter * frame.resolution_m());
         let mover_at =
             |mover: &MovingObstacle| Disc::new(mover.motion().position(t_s), mover.radius_m());
-        let mut circles = world.circles().to_vec();
+        let mut circles = world.discs().to_vec();
         circles.extend(world.movers().iter().map(mover_at));
         for (footprint, at) in robots {
             match footprint {
@@ -59,7 +59,7 @@ fn beam_by_beam(
         }
         for circle in &circles {
             let is_inside = outside(from, circle) <= 0.0;
-            let range_m = if is_inside { 0.0 } else { range_to_circle(from, in_world, circle) };
+            let range_m = if is_inside { 0.0 } else { range_to_disc(from, in_world, circle) };
             nearest_m = nearest_m.min(range_m);
         }
         if nearest_m <= sensor.range_m { nearest_m } else { f64::INFINITY }

@@ -29,8 +29,9 @@ impl KeyFrames {
     ///
     /// # Errors
     /// When there is no key frame, a number is not finite, times do not increase, or the speed
-    /// between two key frames is higher than [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS).
-    /// Paths begin with `key_frames`.
+    /// between two key frames is higher than
+    /// [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS). Paths begin with
+    /// `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
         unless_in_order("key_frames", &frames, 1)?;
         for (i, pair) in frames.windows(2).enumerate() {

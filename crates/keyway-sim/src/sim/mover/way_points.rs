@@ -29,7 +29,8 @@ impl WayPoints {
     ///
     /// # Errors
     /// When there are fewer than two different points, a number is not finite, or the speed is not
-    /// positive or higher than [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS). Paths begin with
+    /// positive or higher than [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS).
+    /// Paths begin with
     /// `way_points` or `speed_mps`.
     pub fn around(points: Vec<Point>, speed_mps: f64) -> Result<Self, ConfigError> {
         Self::new(points, speed_mps, false)

@@ -324,3 +324,24 @@ fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
         assert_eq!(candidates, if is_asked { decision.evaluation.candidates } else { 0 });
     }
 }
+
+/// A known wall across the route, which the follower would drive into: the follower is asked as
+/// long as the robot can still stop after its command, and then the dynamic window.
+#[test]
+fn a_command_after_which_it_cannot_stop_is_not_followed() {
+    let wall: Vec<(usize, usize)> = (0..8).map(|y| (12, y)).collect();
+    let (world, path) = (hall(&[], &wall), straight());
+    let robot = Robot::small();
+    let planner = GuidedDwa::new(GuidedDwaConfig::for_robot(&robot), robot.clone()).unwrap();
+    let velocity = Velocity::new(0.5, 0.0);
+    let candidates = |x: f64| {
+        let scene = Scene { velocity, ..world.scene(Pose::new(x, 2.5, 0.0), &path) };
+        let mut memory = DriveMemory { covered_m: x - 0.5, ..DriveMemory::default() };
+        let decided = planner.decide(&scene, &mut memory, &mut Scratch::default());
+        decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation).candidates
+    };
+    // The wall begins at 12 m: 0.18 m of footprint, 5 mm of margin, 0.05 m of the next cycle and
+    // 0.25 m to stop.
+    assert_eq!(candidates(12.0 - 0.5), 0, "the follower");
+    assert!(candidates(12.0 - 0.47) > 0, "the dynamic window");
+}

@@ -260,14 +260,6 @@ impl SpaceTime {
         limits.reached(scene.velocity, asked, *cycle_s)
     }
 
-    /// What the stop rule makes of a command.
-    fn gated(&self, scene: &Scene<'_>, command: Velocity, scratch: &mut Scratch) -> Velocity {
-        // What its rear may be on is asked of every course.
-        let seen = SeenCells { behind: None, ..scene.seen };
-        let around = Surroundings { seen, ..Surroundings::standing(scene) };
-        self.gate.gate(&around, command, scratch).command
-    }
-
     /// How far and how wide it searches.
     fn extent(&self, scene: &Scene<'_>, judge: &Judge<'_>) -> Extent {
         let SpaceTimeConfig { width, stretches, backwards, .. } = self.config;
@@ -282,7 +274,7 @@ impl SpaceTime {
         }
     }
 
-    /// Whether the stop rule lets the first cycle of a course pass.
+    /// True if the stop rule lets the first cycle of a course pass.
     fn passes(
         &self,
         scene: &Scene<'_>,
@@ -291,7 +283,10 @@ impl SpaceTime {
         scratch: &mut Scratch,
     ) -> bool {
         let command = self.command(scene, first, stretch_s);
-        self.gated(scene, command, scratch) == command
+        // What its rear may be on is asked of every course.
+        let seen = SeenCells { behind: None, ..scene.seen };
+        let around = Surroundings { seen, ..Surroundings::standing(scene) };
+        self.gate.lets_pass(&around, command, scratch)
     }
 
     /// The best course whose first cycle the stop rule lets pass; empty when there is none. What is

@@ -4,7 +4,7 @@ mod counting;
 
 use super::*;
 use crate::geometry::{Polyline, Pose};
-use crate::local::{Change, Fate};
+use crate::local::{Change, Fate, ScoredCandidate};
 use crate::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, OccupancyGrid};
 use crate::robot::Footprint;
 use proptest::prelude::*;
@@ -324,7 +324,7 @@ fn the_chosen_course_is_that_of_the_decision() {
         for _ in 0..3 {
             let explanation = drive.explain();
             let decision = drive.decide().unwrap();
-            let crate::local::ScoredCandidate { velocity, shares } = explanation.chosen().unwrap();
+            let ScoredCandidate { velocity, shares } = explanation.chosen().unwrap();
             assert_eq!((velocity, shares), (decision.command, &decision.evaluation.chosen));
             let second = explanation.runner_up().unwrap().velocity;
             assert!(explanation.remedies.is_empty() && second != velocity);

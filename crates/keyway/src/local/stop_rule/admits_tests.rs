@@ -2,13 +2,15 @@ use super::*;
 use crate::map::{BitGrid, FieldConfig, GridFrame};
 use proptest::prelude::*;
 
+/// Room to what stands and to the border \[m\].
+fn room_m(robot: &Robot, around: &Surroundings<'_>, pose: Pose) -> f64 {
+    let (footprint, clearance) = (&robot.footprint, around.obstacles.clearance());
+    footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
+}
+
 /// The least room on the way of a command until the robot stands \[m\], looked at in small steps.
 fn least_room_m(robot: &Robot, around: &Surroundings<'_>, command: Velocity) -> f64 {
-    let clearance = around.obstacles.clearance();
-    let room_m = |pose: Pose| {
-        let footprint = &robot.footprint;
-        footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
-    };
+    let room_m = |pose: Pose| room_m(robot, around, pose);
     let ramps = robot.motion_to_stop(around.pose, around.velocity, command);
     let least_m = ramps.map(|ramp| {
         let at = |part: f64| {
@@ -49,13 +51,14 @@ proptest! {
         }
         let (seen, velocity) = (SeenCells::ANYWHERE, Velocity::new(v, omega));
         let around = Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity };
-        let begins_m = robot.footprint.distance_m(pose, &field.clearance(), 1.0);
-        prop_assume!(begins_m > 1e-3 && robot.footprint.to_border_m(pose, &field.clearance()) > 0.0);
+        let begins_m = room_m(&robot, &around, pose);
+        prop_assume!(begins_m > 1e-4);
         let asked = Velocity::new((v + faster).max(0.0), omega + turns);
         let command = if brakes { robot.limits.braked(velocity, robot.cycle_s) } else { asked };
         let least_m = least_room_m(&robot, &around, command);
         match rule.admits(&around, command, &mut Scratch::default()) {
-            Ok(()) => prop_assert!(least_m > 0.0, "{least_m}"),
+            // Steps may use up half of what is kept.
+            Ok(()) => prop_assert!(least_m >= 0.5 * margin_m.min(begins_m) - 1e-9, "{least_m}"),
             Err(why) => {
                 prop_assert!(matches!(why, Refusal::Standing { .. }), "{why:?}");
                 prop_assert!(least_m < margin_m + 1e-3, "{least_m}: {why:?}");

@@ -90,13 +90,13 @@
 //! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may
 //! touch nothing else until the next one is, but for the squares beside those that it touches in
 //! which the latest scan met something ([`SeenCells::scan`]). There it keeps away from the very
-//! places that the scan met, as it does from obstacles, so that it may go along a wall whose squares
-//! it touches. What such squares hold is met by no more than two beams are apart there. From what it
-//! touches, a disc may be as far as it is, while a polygon is shrunk around its centre of rotation
-//! until it touches nothing, and that part of it may touch nothing. A robot whose centre of rotation
-//! is inside an obstacle or outside the map is stopped: no way out can be told from a way in. When
-//! not even braking is admissible (something came into view too late, or a mover broke the bounds),
-//! the robot brakes.
+//! places that the scan met, as it does from obstacles, so that it may go along a wall whose
+//! squares it touches. What such squares hold is met by no more than two beams are apart there.
+//! From what it touches, a disc may be as far as it is, while a polygon is shrunk around its centre
+//! of rotation until it touches nothing, and that part of it may touch nothing. A robot whose
+//! centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told
+//! from a way in. When not even braking is admissible (something came into view too late, or a
+//! mover broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper
 //! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to
@@ -196,9 +196,9 @@ pub struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// What stands, as a local planner sees it. Nothing is asked about what has been seen, and
-    /// nothing moves.
-    pub(super) const fn standing(scene: &Scene<'a>) -> Self {
+    /// Everything that stands, as a local planner sees it. Nothing is asked about what has been
+    /// seen, and nothing moves.
+    pub const fn standing(scene: &Scene<'a>) -> Self {
         let Scene { obstacles, pose, velocity, .. } = *scene;
         Self { obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity }
     }
@@ -334,7 +334,8 @@ impl RefusalCounts {
 ///     };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };
-/// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit before it.
+/// // The wall begins at 5 m: 0.18 m of footprint, 0.05 m of the next cycle and 0.25 m to stop fit
+/// // before it.
 /// assert!(!at(4.4).changed());
 /// assert!(at(4.55).command.v < 0.5);
 /// # Ok::<(), keyway::ConfigError>(())
@@ -386,8 +387,9 @@ impl StopRule {
         Ok(Self { config, robot, front, rear })
     }
 
-    /// Tells whether a command is admissible: the robot keeps the margin until it stands when it
-    /// brakes from the next cycle on. Asked for braking, it tells whether that keeps the margin.
+    /// Tells whether a command is admissible: the robot keeps the margin (or what it has, where
+    /// that is less) until it stands when it brakes from the next cycle on. Asked for braking, it
+    /// tells whether that does.
     ///
     /// # Errors
     /// The first reason for which it is not.
@@ -400,8 +402,28 @@ impl StopRule {
         if !around.is_finite() || !is_finite(command) {
             return Err(Refusal::NotANumber);
         }
-        let asked = self.robot.limits.reached(around.velocity, command, self.robot.cycle_s);
+        let asked = self.reached(around, command);
         Manoeuvres::new(self, around, asked, scratch.part()).check(asked)
+    }
+
+    /// Tells whether [`Self::gate`] leaves a command as it is: it is braking, or admissible.
+    pub(super) fn lets_pass(
+        &self,
+        around: &Surroundings<'_>,
+        command: Velocity,
+        scratch: &mut Scratch,
+    ) -> bool {
+        self.is_braking(around, command) || self.admits(around, command, scratch).is_ok()
+    }
+
+    fn reached(&self, around: &Surroundings<'_>, command: Velocity) -> Velocity {
+        self.robot.limits.reached(around.velocity, command, self.robot.cycle_s)
+    }
+
+    /// True if a command leads to what braking along the present arc leads to.
+    fn is_braking(&self, around: &Surroundings<'_>, command: Velocity) -> bool {
+        let braking = self.robot.limits.braked(around.velocity, self.robot.cycle_s);
+        self.reached(around, command) == self.reached(around, braking)
     }
 
     /// The command to issue when `command` is asked for. See the module's documentation.
@@ -414,16 +436,14 @@ impl StopRule {
         if !around.is_finite() {
             return Gated { command: Velocity::ZERO, why: Some(Refusal::NotANumber) };
         }
-        let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
-        let velocity = around.velocity;
-        let braking = limits.braked(velocity, cycle_s);
+        let braking = self.robot.limits.braked(around.velocity, self.robot.cycle_s);
         if !is_finite(command) {
             return Gated { command: braking, why: Some(Refusal::NotANumber) };
         }
-        let asked = limits.reached(velocity, command, cycle_s);
-        if asked == limits.reached(velocity, braking, cycle_s) {
+        if self.is_braking(around, command) {
             return Gated { command, why: None };
         }
+        let asked = self.reached(around, command);
         let work: &mut Work = scratch.part();
         let mut manoeuvres = Manoeuvres::new(self, around, asked, work);
         match manoeuvres.check(asked) {

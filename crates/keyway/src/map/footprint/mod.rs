@@ -9,14 +9,14 @@ mod core;
 mod drive;
 mod line;
 mod near_box;
-mod surroundings;
+mod near_obstacles;
 mod turn;
 mod turned;
 
 pub use core::Core;
 pub(crate) use line::Line;
 pub(crate) use near_box::{Apart, Sweep};
-pub(crate) use surroundings::{NearBoxes, NearObstacles, Reach};
+pub(crate) use near_obstacles::{NearBoxes, NearObstacles, Reach};
 pub(crate) use turned::{Placement, Turned, on_grid};
 
 impl Footprint {

@@ -452,7 +452,7 @@ impl NearBox {
         )
     }
 
-    /// Whether an edge that moves keeps a distance; see [`NearObstacles::is_kept`].
+    /// True if an edge that moves keeps a distance; see [`NearObstacles::is_kept`].
     pub(super) fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
         let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
         let shortest = self.way_to_edge(half_way);

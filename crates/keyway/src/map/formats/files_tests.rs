@@ -3,7 +3,7 @@ use super::super::{
     digest, grid_from_image, map_from_bytes,
 };
 use super::*;
-use crate::file_system::ReadError;
+use crate::file_error::ReadError;
 use crate::file_system::test_folder::TestFolder;
 use crate::geometry::Pose;
 use crate::map::{Cell, CellState, FrameError, OccupancyThresholds};

@@ -28,8 +28,7 @@ impl Controller {
         let clearance = self.obstacles.clearance();
         let can_turn = |at: Pose| clearance.is_clear_point(at.point(), turning_m);
         // Where the robot would stand if it braked after this command.
-        let stop = || robot.motion_to_stop(pose, velocity, command).last();
-        if !can_turn(pose) || stop().is_none_or(|motion| can_turn(motion.end)) {
+        if !can_turn(pose) || can_turn(robot.stop_pose(pose, velocity, command)) {
             return;
         }
         let spot = OnTheSpot { robot, obstacles: &self.obstacles };

@@ -2,7 +2,8 @@
 
 use super::Prepared;
 use super::format::PreparedFormatError;
-use crate::file_system::{ReadError, WriteError, read_file, write_atomically};
+use crate::file_error::{ReadError, WriteError};
+use crate::file_system::{read_file, write_atomically};
 use crate::map::SearchMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;

@@ -9,8 +9,8 @@
 //! r and c with r + e c = d in the sense of least squares. So errors with the variance v give the
 //! centre the covariance v S⁻¹, where S is the sum of (e - mean e) (e - mean e)ᵀ over all hits.
 //! That holds to first order: for errors that are small beside the depth of the arc, which is
-//! r (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller than
-//! it is.
+//! r (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller
+//! than it is.
 
 use crate::geometry::{Disc, Point};
 

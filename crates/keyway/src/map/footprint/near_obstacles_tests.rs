@@ -68,7 +68,7 @@ proptest! {
         let footprint = footprint(&radii, offset, is_round);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
-        let mut surroundings = NearObstacles::new(&core, &field, Reach { distance: reach, way: 0.0, spread: 0.0 }, &mut memory);
+        let mut near = NearObstacles::new(&core, &field, Reach { distance: reach, way: 0.0, spread: 0.0 }, &mut memory);
         for (x, y, theta) in poses {
             let at = field.frame().world_from_grid(Point::new(x / CELL_M, y / CELL_M));
             let pose = Pose::new(at.x, at.y, theta);
@@ -81,16 +81,16 @@ proptest! {
                 // What lies wholly inside is not seen.
                 continue;
             }
-            let measured = surroundings.distance(&placement, most);
+            let measured = near.distance(&placement, most);
             prop_assert!((measured - expected.min(reach).min(most)).abs() < 1e-9, "{measured} {expected}");
             let border = core.to_border_m(pose, &field.clearance()) / CELL_M;
-            prop_assert!((surroundings.to_border(&placement) - border).abs() < 1e-9);
+            prop_assert!((near.to_border(&placement) - border).abs() < 1e-9);
             if !(0.0..=70.0).contains(&origin.x) || !(0.0..=20.0).contains(&origin.y) {
                 continue;
             }
-            prop_assert!(!surroundings.is_beyond(placement.origin, expected + 1e-9), "{expected}");
-            let is_far = expected > 3.0 * surroundings.swing.max(2.0) && field_reach_m.is_infinite();
-            prop_assert!(!is_far || surroundings.is_beyond(placement.origin, 0.2 * expected), "{expected}");
+            prop_assert!(!near.is_beyond(placement.origin, expected + 1e-9), "{expected}");
+            let is_far = expected > 3.0 * near.swing.max(2.0) && field_reach_m.is_infinite();
+            prop_assert!(!is_far || near.is_beyond(placement.origin, 0.2 * expected), "{expected}");
         }
     }
 
@@ -109,19 +109,19 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance, way: 0.0, spread };
-        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
+        let mut near = NearObstacles::new(&core, &field, reach, &mut memory);
         let mut turned = Turned::default();
         turned.turn(&core, Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M));
         let middle = Placement { origin: Point::new(x / CELL_M, y / CELL_M), turned: &turned };
         let half = Point::new(libm::cos(heading), libm::sin(heading)) * length;
         let sweep = Sweep { middle, half, half_length: length };
-        let around = surroundings.around(middle.origin);
-        let near: Vec<_> = around.boxes().map(|index| surroundings.memory.boxes[index as usize]).collect();
-        let bounds: Vec<_> = around.boxes().map(|index| surroundings.apart(index, &sweep, limit)).collect();
-        let met: Vec<_> = around.boxes().map(|index| surroundings.meets(index, &sweep, limit)).collect();
-        let to_others = surroundings.to_others(&around) - length;
-        let border = surroundings.border_apart(&sweep);
-        let (is_convex, is_point) = (surroundings.winding != Winding::Both, core.vertices().is_empty());
+        let around = near.around(middle.origin);
+        let near: Vec<_> = around.boxes().map(|index| near.memory.boxes[index as usize]).collect();
+        let bounds: Vec<_> = around.boxes().map(|index| near.apart(index, &sweep, limit)).collect();
+        let met: Vec<_> = around.boxes().map(|index| near.meets(index, &sweep, limit)).collect();
+        let to_others = near.to_others(&around) - length;
+        let border = near.border_apart(&sweep);
+        let (is_convex, is_point) = (near.winding != Winding::Both, core.vertices().is_empty());
         for i in 0..=20 {
             let fraction = f64::from(i) / 20.0;
             let at = Placement { origin: middle.origin + half * (2.0 * fraction - 1.0), ..middle };
@@ -158,7 +158,7 @@ proptest! {
                 });
                 prop_assert!(is_around || to_box(&square) >= to_others - 1e-9);
             }
-            prop_assert!(holds(&border, surroundings.to_border(&at)));
+            prop_assert!(holds(&border, near.to_border(&at)));
         }
     }
 
@@ -174,7 +174,7 @@ proptest! {
         let footprint = shaped(shape, &radii, offset);
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
-        let mut surroundings =
+        let mut near =
             NearObstacles::new(&core, &field, Reach { distance: 30.0, way: 10.0, spread: 0.0 }, &mut memory);
         let ahead = Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
         let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
@@ -195,9 +195,9 @@ proptest! {
             let moved: Vec<Point> = ends(&from).iter().zip(ends(&to)).map(|(a, b)| a.lerp(b, part)).collect();
             outline(moved.into_iter())
         }).flat_map(|edge| squares.iter().map(move |square| square.way_to_edge(edge).norm())).fold(f64::INFINITY, f64::min);
-        let is_kept = surroundings.is_kept(&from, &to, distance);
+        let is_kept = near.is_kept(&from, &to, distance);
         prop_assert!(!is_kept || nearest >= distance - 1e-9, "{nearest} {distance}");
-        let way = driven.abs() + 2.0 * surroundings.swing * turned.abs();
+        let way = driven.abs() + 2.0 * near.swing * turned.abs();
         prop_assert!(is_kept || nearest <= distance + way + 1e-9, "{nearest} {distance} {way}");
     }
 }
@@ -227,10 +227,10 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 30.0, way: 30.0, spread: 0.0 };
-        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
+        let mut near = NearObstacles::new(&core, &field, reach, &mut memory);
         let turned = Turned::default();
         let [from, to] = [from, to].map(|(x, y)| Placement { origin: Point::new(x, y), turned: &turned });
-        let is_kept = surroundings.is_kept(&from, &to, distance);
+        let is_kept = near.is_kept(&from, &to, distance);
         let in_world = |at: &Placement<'_>| frame.world_from_grid(at.origin);
         let is_in = |square: &Cell| {
             let off = from.origin - Point::new(f64::from(square.x) + 0.5, f64::from(square.y) + 0.5);
@@ -260,14 +260,14 @@ proptest! {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 30.0, way: 10.0, spread: 0.0 };
-        let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
+        let mut near = NearObstacles::new(&core, &field, reach, &mut memory);
         let ahead = |theta: f64| Point::new(libm::cos(theta), libm::sin(theta)) * (1.0 / CELL_M);
         let [mut at_first, mut at_last] = [Turned::default(), Turned::default()];
         at_first.turn(&core, ahead(theta));
         at_last.turn(&core, ahead(theta + turned));
         let from = Placement { origin: Point::new(x, y), turned: &at_first };
         let to = Placement { origin: from.origin + ahead(theta) * (driven * CELL_M), turned: &at_last };
-        if !surroundings.is_kept(&from, &to, distance) {
+        if !near.is_kept(&from, &to, distance) {
             return Ok(());
         }
         let vertices = |at: &Placement<'_>| -> Vec<Point> { at.edges().map(|edge| edge.a).collect() };
@@ -296,18 +296,18 @@ fn many_cells_are_remembered_until_the_next_round() {
     let (core, _) = footprint.core();
     let mut memory = NearBoxes::default();
     for round in 0..3 {
-        let mut surroundings = NearObstacles::new(
+        let mut near = NearObstacles::new(
             &core,
             &field,
             Reach { distance: 1.0, way: 0.0, spread: 0.0 },
             &mut memory,
         );
         for cell in field.frame().cells() {
-            surroundings.gather(cell);
+            near.gather(cell);
         }
-        let used = surroundings.memory.used;
+        let used = near.memory.used;
         assert_eq!(used, 70 * 20, "round {round}");
-        assert!(field.frame().cells().all(|cell| surroundings.memory.find(cell).is_some()));
+        assert!(field.frame().cells().all(|cell| near.memory.find(cell).is_some()));
     }
     memory.begin();
     assert!(memory.find(Cell::new(3, 3)).is_none());
@@ -322,13 +322,13 @@ fn tiles_hold_their_points() {
         let (core, _) = footprint.core();
         let mut memory = NearBoxes::default();
         let reach = Reach { distance: 1.0, way: 0.0, spread: 0.0 };
-        let surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
-        let size = f64::from(1 << surroundings.tile_bits);
+        let near = NearObstacles::new(&core, &field, reach, &mut memory);
+        let size = f64::from(1 << near.tile_bits);
         for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
             let point = Point::new(0.37 * f64::from(x), 0.37 * f64::from(y));
-            let tile = surroundings.tile(point);
+            let tile = near.tile(point);
             let middle = Point::new(f64::from(tile.x) + 0.5, f64::from(tile.y) + 0.5) * size;
-            assert!(point.distance(middle) <= surroundings.half_diagonal, "{point:?} {tile:?}");
+            assert!(point.distance(middle) <= near.half_diagonal, "{point:?} {tile:?}");
         }
     }
 }
@@ -344,17 +344,16 @@ fn beside_a_wall_the_bounds_meet() {
     let (core, _) = footprint.core();
     let mut memory = NearBoxes::default();
     let reach = Reach { distance: 20.0, way: 0.0, spread: 4.0 };
-    let mut surroundings = NearObstacles::new(&core, &field, reach, &mut memory);
+    let mut near = NearObstacles::new(&core, &field, reach, &mut memory);
     for heading in [0.0, 0.1, -0.7, 2.0] {
         let mut turned = Turned::default();
         turned.turn(&core, Point::new(libm::cos(heading), libm::sin(heading)) * (1.0 / CELL_M));
         let middle = Placement { origin: Point::new(35.0, 9.0), turned: &turned };
         let half = Point::new(libm::cos(heading), libm::sin(heading)) * 3.0;
-        let around = surroundings.around(middle.origin);
+        let around = near.around(middle.origin);
         assert_eq!(around.boxes().len(), 1);
         let sweep = Sweep { middle, half, half_length: 3.0 };
-        let Apart { at_least, at_most } =
-            surroundings.apart(around.boxes().start, &sweep, 20.0).unwrap();
+        let Apart { at_least, at_most } = near.apart(around.boxes().start, &sweep, 20.0).unwrap();
         let top = 5.0 * libm::sin(heading).abs() + 4.0 * libm::cos(heading).abs();
         for (bound, by) in
             [(at_least.begin, -1.0), (at_most.begin, -1.0), (at_least.end, 1.0), (at_most.end, 1.0)]

@@ -32,7 +32,7 @@ impl<'a> HatchedDiscs<'a> {
         Self::new(discs, "moving obstacle", OBSTACLE)
     }
 
-    /// HatchedDiscs that can be drawn: finite, and not of negative size.
+    /// Discs that can be drawn: finite, and not of negative size.
     fn drawable(&self) -> impl Iterator<Item = &Disc> {
         self.all.iter().filter(|disc| disc.is_valid())
     }

@@ -480,5 +480,5 @@ impl NearBoxes {
 }
 
 #[cfg(test)]
-#[path = "surroundings_tests.rs"]
+#[path = "near_obstacles_tests.rs"]
 mod tests;
