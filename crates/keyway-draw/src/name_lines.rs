@@ -66,8 +66,9 @@ impl NameLines {
 
     /// Draws it with its lowest line on a base line.
     pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, base: f64, anchor: Anchor) {
-        for (line, above) in self.lines.iter().rev().zip(0..) {
-            let y = base - f64::from(above) * Self::LINE_PX;
+        // The first line comes first in the file, too: so it is read aloud.
+        for (line, above) in self.lines.iter().zip((0..self.lines.len()).rev()) {
+            let y = base - above as f64 * Self::LINE_PX;
             out.label(x, y, SMALL_TEXT_PX, anchor, line.trim_end());
         }
     }
