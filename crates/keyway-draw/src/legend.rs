@@ -57,7 +57,7 @@ pub enum LegendMark {
 impl LegendEntry {
     /// An item of the legend.
     pub fn new(label: impl Into<String>, mark: LegendMark) -> Self {
-        Self { label: label.into(), sample }
+        Self { label: label.into(), mark }
     }
 
     fn width_px(&self) -> f64 {
@@ -110,7 +110,7 @@ impl<'a> Legend<'a> {
         for (column, width) in self.entries.chunks(self.rows.max(1)).zip(&self.column_widths) {
             for (row, entry) in column.iter().enumerate() {
                 let middle = y + (row as f64 + 0.5) * ROW_PX;
-                draw_mark(out, entry.sample, x, middle);
+                draw_mark(out, entry.mark, x, middle);
                 let (text_x, base) = (x + SAMPLE_PX + 6.0, middle + 0.36 * SMALL_TEXT_PX);
                 out.label(text_x, base, SMALL_TEXT_PX, Anchor::Start, &entry.label);
             }
@@ -119,10 +119,10 @@ impl<'a> Legend<'a> {
     }
 }
 
-/// Draws a sample whose left edge is at `x`, centred at the height `y`.
+/// Draws a mark whose left edge is at `x`, centred at the height `y`.
 fn draw_mark(out: &mut SvgWriter, mark: LegendMark, x: f64, y: f64) {
     let middle = x + 0.5 * SAMPLE_PX;
-    match sample {
+    match mark {
         LegendMark::Area(color) => {
             let tag = out.tag("rect").at(x + 2.0, y - 5.5).size(SAMPLE_PX - 4.0, 11.0);
             tag.fill(color).stroke(QUIET, 0.6).leaf();

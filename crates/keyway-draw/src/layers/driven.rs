@@ -217,11 +217,11 @@ impl Layer for Footprints<'_> {
             canvas.path(&PathData::line([(x, y), rim]), style);
         }
         if !poses.is_empty() && !self.label.is_empty() {
-            let sample = match self.footprint {
+            let mark = match self.footprint {
                 Footprint::Circle(_) => LegendMark::Circle(style),
                 Footprint::Polygon(_) => LegendMark::Box(style),
             };
-            canvas.explain(LegendEntry::new(self.label, sample));
+            canvas.explain(LegendEntry::new(self.label, mark));
         }
     }
 }

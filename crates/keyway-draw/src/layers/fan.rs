@@ -114,9 +114,8 @@ impl<'a> Fan<'a> {
             canvas.path(line, LineStyle::solid(color, 1.1));
         }
         let count = scores().count();
-        let sample =
-            LegendMark::ShadedLine(std::array::from_fn(|i| viridis((i as f64 + 0.5) / 8.0)));
-        canvas.explain(LegendEntry::new(format!("{count} admissible, by score"), sample));
+        let mark = LegendMark::ShadedLine(std::array::from_fn(|i| viridis((i as f64 + 0.5) / 8.0)));
+        canvas.explain(LegendEntry::new(format!("{count} admissible, by score"), mark));
         canvas.explain_colors(ColorBar { label: "score".to_owned(), low, high: low + width });
     }
 

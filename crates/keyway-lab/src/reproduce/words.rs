@@ -56,7 +56,7 @@ impl Decimals {
 }
 
 /// Returns the verdict on a claim; on one whose figures differ, with how many have each verdict.
-pub fn verdict_with_counts(claim: &ClaimReport) -> String {
+pub(super) fn verdict_with_counts(claim: &ClaimReport) -> String {
     match claim.verdict {
         Verdict::Mixed => format!("mixed: {}", claim.figures),
         verdict => verdict.to_string(),

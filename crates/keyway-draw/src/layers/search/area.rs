@@ -65,11 +65,11 @@ pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
                 canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);
             }
             let mark = LegendMark::Shades(shades::samples(side, shades::area));
-            canvas.explain(LegendEntry::new(trace.label("expanded, early to late", side), sample));
+            canvas.explain(LegendEntry::new(trace.label("expanded, early to late", side), mark));
         }
         if canvas.paint(shades::open(side), |i| marks[i] == first + OPEN) {
             let mark = LegendMark::Area(shades::open(side));
-            canvas.explain(LegendEntry::new(trace.label("generated only", side), sample));
+            canvas.explain(LegendEntry::new(trace.label("generated only", side), mark));
         }
     }
 }

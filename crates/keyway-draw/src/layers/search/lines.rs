@@ -61,7 +61,7 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
         }
         if is_drawn {
             let mark = LegendMark::ShadedLine(shades::samples(side, shades::line));
-            canvas.explain(LegendEntry::new(trace.label(text, side), sample));
+            canvas.explain(LegendEntry::new(trace.label(text, side), mark));
         }
     }
 }

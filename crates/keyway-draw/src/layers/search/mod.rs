@@ -155,6 +155,6 @@ impl Layer for Meeting<'_> {
         let px = canvas.view().px_from_world(at);
         letter_mark(canvas.writer(), px, "M", false);
         let mark = LegendMark::Letter { letter: 'M', dark: false };
-        canvas.explain(LegendEntry::new("the two sides met", sample));
+        canvas.explain(LegendEntry::new("the two sides met", mark));
     }
 }

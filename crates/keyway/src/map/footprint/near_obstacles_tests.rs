@@ -116,7 +116,7 @@ proptest! {
         let half = Point::new(libm::cos(heading), libm::sin(heading)) * length;
         let sweep = Sweep { middle, half, half_length: length };
         let around = near.around(middle.origin);
-        let near: Vec<_> = around.boxes().map(|index| near.memory.boxes[index as usize]).collect();
+        let boxes: Vec<_> = around.boxes().map(|index| near.memory.boxes[index as usize]).collect();
         let bounds: Vec<_> = around.boxes().map(|index| near.apart(index, &sweep, limit)).collect();
         let met: Vec<_> = around.boxes().map(|index| near.meets(index, &sweep, limit)).collect();
         let to_others = near.to_others(&around) - length;
@@ -136,12 +136,12 @@ proptest! {
                 let from_edges = at.edges().map(|edge| near.way_to_edge(edge).norm());
                 if covers { 0.0 } else { from_edges.fold(f64::INFINITY, f64::min) }
             };
-            for (near, bounds) in near.iter().zip(&bounds) {
+            for (near, bounds) in boxes.iter().zip(&bounds) {
                 let distance = to_box(near);
                 prop_assert!(bounds.map_or(distance >= limit - 1e-9, |bounds| holds(&bounds, distance)),
                     "{bounds:?} {fraction} {distance} {limit}");
             }
-            for (near, part) in near.iter().zip(&met) {
+            for (near, part) in boxes.iter().zip(&met) {
                 let (at, distance) = (2.0 * fraction - 1.0, to_box(near));
                 let is_on = |by: f64| part.is_some_and(|[begin, end]| at >= begin - by && at <= end + by);
                 prop_assert!(!is_on(0.0) || distance < limit + 1e-9, "{part:?} {at} {distance} {limit}");
@@ -153,7 +153,7 @@ proptest! {
             for cell in field.frame().cells().filter(|&cell| field.obstacles().get(cell)) {
                 let low = Point::new(f64::from(cell.x), f64::from(cell.y));
                 let square = NearBox { low, high: low + Point::new(1.0, 1.0), from_middle: 0.0 };
-                let is_around = near.iter().any(|near| {
+                let is_around = boxes.iter().any(|near| {
                     near.low.x <= low.x && near.low.y <= low.y && near.high.x > low.x && near.high.y > low.y
                 });
                 prop_assert!(is_around || to_box(&square) >= to_others - 1e-9);
