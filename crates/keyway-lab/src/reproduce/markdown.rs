@@ -2,7 +2,7 @@
 
 use super::report::ReproduceReport;
 use super::words::{
-    COARSE, NONE, measure_name, reconstructed_of, statement_with, verdict_with_counts,
+    COARSE, NONE, measure_name, published_of, reconstructed_of, statement_with, verdict_with_counts,
 };
 use crate::claims::{
     AblationReport, ClaimReport, ExperimentReport, FamilyFigure, FigureCounts, FigureVerdict,
@@ -75,11 +75,14 @@ fn table(header: &[&str], numbers: Range<usize>, rows: Vec<Vec<String>>) -> Stri
     format!("| {} |\n|{rule}\n{rows}", header.join(" | "))
 }
 
-/// Returns each claim with its first figure that no clock measures.
+/// Returns each claim with its first figure that no clock measures, one with a published change if
+/// there is one.
 fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
     let row = |claim: &ClaimReport| {
         let figures = &claim.family.figures;
-        let figure = figures.iter().find(|it| !it.measure.is_timed()).or(figures.first());
+        let judged = || figures.iter().filter(|it| !it.measure.is_timed());
+        let is_published = |it: &&FamilyFigure| published_of(claim, it).is_some();
+        let figure = judged().find(is_published).or(judged().next()).or(figures.first());
         let measured = figure.map_or(NONE.to_owned(), |figure| {
             let kept = if figure.than.is_none() { "as claimed on " } else { "" };
             format!("{}: {kept}{}", measure_name(figure.measure), measured(figure))
