@@ -4,8 +4,7 @@
 //! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on
 //! a family of maps, one for each seed, and on the paper's reconstructed scene. A [`Finding`]
 //! summarises a figure over the family: the change on each map, their mean and its 95 % interval.
-//! [`FigureVerdict::of`] judges by a rule that was written before anything was measured. No results
-//! are stored here.
+//! [`FigureVerdict::of`] judges by a rule in words. No results are stored here.
 //!
 //! ```
 //! use keyway_lab::claims::{Claim, ClaimReport, Family, Verdict};

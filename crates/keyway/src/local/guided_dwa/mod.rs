@@ -23,9 +23,9 @@
 //!   its points at every whole cell of arc length, and its end. The obstacle is all sensed cells
 //!   connected with that cell, as far as they are within the same distance of the robot.
 //! - The follower looks at no obstacle, so a command of it is driven only when the [stop
-//! rule](StopRule) for what stands admits it, with the margin of the window, or 0.1 mm; otherwise
-//! the dynamic window approach drives to   the follower's point of the route in that cycle. On
-//! routes as smooth and as far from obstacles   as the paper's, that does not happen.
+//!   rule](StopRule) for what stands admits it, with the margin of the window, or 0.1 mm; otherwise
+//!   the dynamic window approach drives to the follower's point of the route in that cycle. On
+//!   routes as smooth and as far from obstacles as the paper's, that does not happen.
 //! - The paper goes on with the dynamic window approach while obstacles move. Here everything is
 //!   judged anew in each cycle, whether it moves or not.
 //!
