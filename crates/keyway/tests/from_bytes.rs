@@ -24,7 +24,7 @@ use std::path::Path;
 const OFFICE: &str = "maps/office.yaml";
 const YAML: &str = "image: office.pgm\nresolution: 0.05\norigin: [1.5, -2, 0.25]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
-/// What all images here show.
+/// The drawing that all images here show.
 const DRAWN: [&str; 2] = ["#.?", "..#"];
 const PGM: &[u8] = b"P5\n3 2\n255\n\x00\xfe\xcd\xfe\xfe\x00";
 /// The same pixels as another program packs them, without compression.

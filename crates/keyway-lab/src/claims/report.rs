@@ -230,13 +230,12 @@ impl ClaimReport {
             maps: family.reconstructed.len(),
             figures: family_figures(&findings_of(&family.reconstructed)),
         });
-        let findings = findings_of(&family.rows);
-        let judged = claim.figures.iter().map(|figure| {
-            let found = findings.iter().find(|(one, _)| one == figure);
-            let evidence = found.map_or(Evidence::Missing, |(_, finding)| finding.evidence);
-            FigureVerdict::of(figure, evidence)
-        });
-        let counts = FigureCounts::of(judged);
+        let family = FamilyReport::new(experiment, family, &findings_of(&family.rows));
+        // Times count also where they are not reported.
+        let unreported =
+            std::iter::repeat_n(FigureVerdict::NotJudged, claim.figures.len() - figures().count());
+        let judged = family.figures.iter().filter_map(|figure| figure.verdict);
+        let counts = FigureCounts::of(judged.chain(unreported));
         Self {
             id: claim.id,
             paper: claim.paper,
@@ -247,7 +246,7 @@ impl ClaimReport {
             scene,
             reconstructed,
             not_reconstructed: experiment.reconstruction.err(),
-            family: FamilyReport::new(experiment, family, &findings),
+            family,
             figures: counts,
             verdict: counts.verdict(),
         }

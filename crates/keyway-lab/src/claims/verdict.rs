@@ -16,9 +16,9 @@
 //! Times are reported and not judged: they hang on the clock, the machine and the care with which
 //! each method was written.
 //!
-//! A claim holds when all of its judged figures hold, and does not hold when none of them does.
-//! Where some hold and others do not, or some cannot be decided, it is mixed, and the counts say
-//! how. A figure that could not be measured leaves the claim without a verdict: missing data
+//! A claim holds when all of its judged figures hold. When none of them does, the claim does not
+//! hold, or is undecided if no figure contradicts the paper. Otherwise it is mixed, and the counts
+//! say how. A figure that could not be measured leaves the claim without a verdict: missing data
 //! supports neither side.
 
 use super::claim::{Direction, Expected, Figure};

@@ -45,7 +45,7 @@ impl SceneFileError {
 /// Reads and checks a scene from memory; errors call the file `name`.
 ///
 /// # Errors
-/// When the content holds more than [`MAX_TOML_BYTES`], or is not a scene.
+/// If the content holds more than [`MAX_TOML_BYTES`], or is not a scene.
 pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
     SceneFile::from_toml(file_text(name, bytes, MAX_TOML_BYTES)?)
         .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
@@ -56,7 +56,7 @@ pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFil
 /// seed.
 ///
 /// # Errors
-/// When the content holds more than [`MAX_TOML_BYTES`], does not contain disturbances, or names a
+/// If the content holds more than [`MAX_TOML_BYTES`], does not contain disturbances, or names a
 /// seed.
 pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
     let path = || name.to_owned();

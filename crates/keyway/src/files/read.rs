@@ -25,7 +25,7 @@ pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, ConfigFileError> {
 /// like one), relative to `folder`, with the parameters that it has there.
 ///
 /// # Errors
-/// When there is no such stack; as for [`read_stack`].
+/// If there is no such stack; as for [`read_stack`].
 pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     if let Some(stack) = Stack::by_name(name, robot) {
         return Ok(stack);
@@ -54,7 +54,7 @@ pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
 /// Reads a stack file, all of a [`Stack`] as TOML, and checks it for a robot.
 ///
 /// # Errors
-/// When the file cannot be read, or does not hold a stack that the robot can be driven with.
+/// If the file cannot be read, or does not hold a stack that the robot can be driven with.
 pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     stack_from_bytes(path, &read_toml(path)?, robot)
 }
@@ -76,7 +76,7 @@ fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
 /// Reads the text of a file of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
-/// When the file cannot be read, holds more, or is not UTF-8.
+/// If the file cannot be read, holds more, or is not UTF-8.
 pub fn read_text(path: &Path, limit_bytes: u64) -> Result<String, TextFileError> {
     file_text(path, &read_file(path, limit_bytes)?, limit_bytes).map(str::to_owned)
 }

@@ -16,7 +16,7 @@ use toml::Table;
 /// ```
 ///
 /// # Errors
-/// When the content holds more than [`MAX_TOML_BYTES`], or does not describe a robot that can be.
+/// If the content holds more than [`MAX_TOML_BYTES`], or does not describe a robot that can be.
 pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileError> {
     let text = file_text(name, bytes, MAX_TOML_BYTES)?;
     let path = || name.to_owned();

@@ -13,7 +13,7 @@ use toml::Table;
 /// the file `name`.
 ///
 /// # Errors
-/// When the content holds more than [`MAX_TOML_BYTES`], or is not a stack that the robot can be
+/// If the content holds more than [`MAX_TOML_BYTES`], or is not a stack that the robot can be
 /// driven with.
 pub fn stack_from_bytes(
     name: &Path,

@@ -28,7 +28,7 @@ pub enum TextFileError {
 /// Text of a file of this name and of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
-/// When it holds more, or is not UTF-8.
+/// If it holds more, or is not UTF-8.
 pub fn file_text<'a>(
     name: &Path,
     bytes: &'a [u8],

@@ -191,7 +191,7 @@ impl MapReader {
 /// Reads MovingAI scenarios from memory, see [`parse_scenarios`]; errors call the file `name`.
 ///
 /// # Errors
-/// When the content is malformed, or longer than a `.scen` file may be.
+/// If the content is malformed, or longer than a `.scen` file may be.
 pub fn scenarios_from_bytes(name: &Path, bytes: &[u8]) -> Result<Vec<Scenario>, MapFileError> {
     check_length(name, bytes, SCENARIOS_BYTES)?;
     parse_scenarios(bytes)

@@ -17,7 +17,7 @@
 //! | 4 m | hops: place of the next entry << 3, octant |
 //! | 8 | checksum of all before |
 //!
-//! What follows from the map is not stored: the bytes are read together with their map.
+//! Values that follow from the map are not stored: the bytes are read together with their map.
 
 use super::corners::Corners;
 use super::diagonals::Diagonals;
@@ -100,7 +100,7 @@ impl Prepared {
     /// The preparation of `map` that was written as `bytes`.
     ///
     /// # Errors
-    /// When the bytes are not complete or not those of a preparation of this map's blocked cells.
+    /// If the bytes are not complete or not those of a preparation of this map's blocked cells.
     /// No bytes make it panic or take more memory than the file's size allows. Against accidents
     /// there is a checksum; forged bytes with a correct one may pass, and then give wrong paths.
     pub fn from_bytes(bytes: &[u8], map: &SearchMap) -> Result<Self, PreparedFormatError> {
