@@ -7,13 +7,13 @@ use keyway::local::{Explanation, ScoredCandidate, Shares};
 use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_draw::layers::{
-    Caption, CellTint, DrivenPath, EstimatedMovers, Fan, Footprints, GoalMark, HatchedDiscs, Hits,
-    PathLine, Points, Polygons, StartMark, WalkedGround,
+    Caption, CellTint, DrivenPath, ElusiveObstacles, EstimatedMovers, Fan, Footprints, GoalMark,
+    HatchedDiscs, Hits, PathLine, Points, Polygons, Sensors, StartMark, WalkedGround,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, Region, Rgb, Svg, TextTable, animate_frames,
 };
-use keyway_sim::sim::{MovingObstacle, StandingPolygon, TrajectoryPoint};
+use keyway_sim::sim::{ElusiveObstacle, MovingObstacle, StandingPolygon, TrajectoryPoint};
 use std::borrow::Cow;
 
 const INK: Rgb = Rgb(0x22, 0x22, 0x22);
@@ -34,6 +34,8 @@ pub(crate) struct Stage<'a> {
     pub(crate) obstacles: &'a [Disc],
     pub(crate) polygons: &'a [StandingPolygon],
     pub(crate) hidden_cells: &'a [Cell],
+    pub(crate) absent_cells: &'a [Cell],
+    pub(crate) elusive: &'a [ElusiveObstacle],
     pub(crate) movers: &'a [MovingObstacle],
     pub(crate) start: Point,
     pub(crate) goal: Point,
@@ -81,6 +83,8 @@ impl<'a> Stage<'a> {
             .with(HatchedDiscs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
             .with(CellTint::unknown_obstacles(self.hidden_cells))
+            .with(CellTint::absent(self.absent_cells))
+            .with(ElusiveObstacles::at(self.elusive, shown.moment.t_s))
             .with(CellTint::sensed_list(&shown.moment.sensed))
             .with(WalkedGround(&shown.moment.walked))
             .with(PathLine::smoothed(&shown.moment.route).label("route"))
@@ -89,6 +93,7 @@ impl<'a> Stage<'a> {
             .with(PathLine::new(&shown.towards, "to the guide point", TOWARDS))
             .with(Points::new(&shown.guide, "guide point", GUIDE))
             .with(Footprints::new(&shown.robot, footprint).looking("robot", ROBOT))
+            .with(Sensors::new(shown.robot[0].pose, &self.robot.sensors))
     }
 
     fn goal_layer(&self) -> GoalMark {

@@ -4,8 +4,8 @@ use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
 use keyway::file_system::check_writable;
 use keyway::files::{
-    ConfigFileError, RadiusBeyondMap, RobotLayersError, RobotSize, did_you_mean, find_robot,
-    find_stack,
+    Assignment, ConfigFileError, RadiusBeyondMap, RobotLayersError, RobotSize, did_you_mean,
+    find_robot, find_stack, robot_with,
 };
 use keyway::geometry::Point;
 use keyway::map::formats::{ImagePlacement, LoadedMap, MapFileError, MapReader, MapWarning};
@@ -162,6 +162,17 @@ pub(crate) fn bad_layers(error: &RobotLayersError) -> CliError {
         _ => "map.clearance_m",
     };
     CliError::new(Kind::Config, error).field(field)
+}
+
+/// The same robot with the values that `--set` gives it.
+pub(crate) fn with_values(robot: Robot, changes: &[Assignment]) -> Result<Robot, CliError> {
+    if changes.is_empty() {
+        return Ok(robot);
+    }
+    robot_with(&robot, changes).map_err(|error| {
+        let error = CliError::new(Kind::Config, format!("--set: of the robot: {error}"));
+        error.field("--set")
+    })
 }
 
 /// The same robot as a disc of another radius.

@@ -7,8 +7,8 @@ use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
 use keyway_draw::layers::{
-    CellTint, DrivenPath, Footprints, GoalMark, HatchedDiscs, Meeting, Movers, OtherGoals,
-    PathLine, Points, Polygons, SearchNodes, SearchTrace, StartMark, WalkedGround,
+    CellTint, DrivenPath, ElusiveObstacles, Footprints, GoalMark, HatchedDiscs, Meeting, Movers,
+    OtherGoals, PathLine, Points, Polygons, SearchNodes, SearchTrace, StartMark, WalkedGround,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -105,7 +105,7 @@ pub(crate) struct DrivenPicture<'a> {
 impl RunPicture<'_> {
     pub(crate) fn svg(&self) -> Svg {
         let Stage { map, robot, obstacles, polygons, hidden_cells, .. } = self.stage;
-        let Stage { movers, start, goal, tolerance_m, .. } = self.stage;
+        let Stage { absent_cells, elusive, movers, start, goal, tolerance_m, .. } = self.stage;
         let polygons: Vec<&[Point]> = polygons.iter().map(StandingPolygon::vertices).collect();
         let goal = GoalMark { point: goal, tolerance_m: Some(tolerance_m) };
         let points = self.driven.as_ref().map_or(&[][..], |driven| driven.points);
@@ -113,6 +113,8 @@ impl RunPicture<'_> {
             .with(HatchedDiscs::unknown_obstacles(obstacles))
             .with(Polygons::unknown_obstacles(&polygons))
             .with(CellTint::unknown_obstacles(hidden_cells))
+            .with(CellTint::absent(absent_cells))
+            .with(ElusiveObstacles::new(elusive))
             .with(Movers::new(movers, points))
             .with(StartMark(start))
             .with(goal);

@@ -3,7 +3,8 @@
 use crate::drive_pictures::{SIDE_PX, centiseconds};
 use keyway::geometry::{Disc, Point, Polyline};
 use keyway_draw::layers::{
-    Caption, CellTint, Footprints, HatchedDiscs, Movers, NumberedEnds, PathLine, Polygons,
+    Caption, CellTint, ElusiveObstacles, Footprints, HatchedDiscs, Movers, NumberedEnds, PathLine,
+    Polygons,
 };
 use keyway_draw::{
     Animation, DrawError, LineStyle, MapPicture, SpeedCurveOptions, SpeedSeries, Svg,
@@ -60,12 +61,15 @@ impl<'a> TeamPicture<'a> {
     where
         'a: 'b,
     {
-        let Episode { known, robots, obstacles, hidden_cells, .. } = self.team;
+        let Episode { known, robots, obstacles, hidden_cells, absent_cells, elusive, .. } =
+            self.team;
         let mut picture = MapPicture::new(known)
             .with(HatchedDiscs::unknown_obstacles(obstacles))
             .with(HatchedDiscs::moving_obstacles(&shown.moving))
             .with(Polygons::unknown_obstacles(&shown.polygons))
-            .with(CellTint::unknown_obstacles(hidden_cells));
+            .with(CellTint::unknown_obstacles(hidden_cells))
+            .with(CellTint::absent(absent_cells))
+            .with(ElusiveObstacles::at(elusive, shown.t_s));
         for (index, way) in shown.ways.iter().enumerate() {
             let label = format!("robot {index}, {}", robots[index].stack_name);
             picture = picture.with(PathLine::new(way, label, style(index)).rimmed());

@@ -38,6 +38,8 @@ pub(crate) const OCCUPIED: Rgb = Rgb(0x2b, 0x2b, 0x2b);
 pub(crate) const UNKNOWN: Rgb = Rgb(0xd4, 0xd4, 0xd4);
 /// Free cells that are too close to an obstacle.
 pub(crate) const BLOCKED: Rgb = Rgb(0xdc, 0xe9, 0xf5);
+/// Cells that the map shows as occupied although nothing is there.
+pub(crate) const ABSENT: Rgb = Rgb(0xa6, 0xdb, 0xd6);
 /// Cells marked by the sensor.
 pub(crate) const SENSED: Rgb = Rgb(0xe6, 0x9f, 0x00);
 /// Obstacles that the map does not show.

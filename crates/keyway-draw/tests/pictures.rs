@@ -399,6 +399,7 @@ fn explanation() -> Explanation {
         poses: poses(2.2),
     };
     Explanation {
+        target: None,
         candidates: vec![
             good(0.2, 2.0),
             bad("contact", Some(1.0)),

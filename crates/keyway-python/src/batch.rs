@@ -2,10 +2,13 @@
 
 use crate::arrays::{Json, json};
 use crate::errors::bad_value;
+use crate::parameters::Parameters;
 use crate::values::Listed;
 use crate::watched::{Progress, Watch, watched_to_its_end};
+use keyway::files::Assignment;
 use keyway_cli::BatchPlots;
 use keyway_lab::batch::{BatchError, BatchReport, BatchRequest, Keep, MergeRequest, Shard};
+use keyway_sim::sim::ReachedBy;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -16,9 +19,11 @@ use std::path::PathBuf;
 /// `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
 /// i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
 /// chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
-/// `disturbances` are names or files. With `safe` the stop rule stands behind every stack. Runs
-/// that the folder holds are not made again, so a batch that was stopped goes on where it was.
-/// `progress(done, expected)` is called meanwhile.
+/// `disturbances` are names or files. `reached_by` is the pose by which a goal is reached,
+/// `"truth"` or `"belief"`. With `safe` the stop rule stands behind every stack. `parameters` are
+/// laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are
+/// not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
+/// called meanwhile.
 ///
 /// Gives the report `keyway.batch/1` of `docs/JSON.md`.
 ///
@@ -27,7 +32,7 @@ use std::path::PathBuf;
 /// Traceback (most recent call last):
 /// ValueError: cannot read nowhere.toml: there is no such file or folder
 #[pyfunction]
-#[pyo3(signature = (scenes, out, stacks=None, seeds=1, jobs=None, shard=None, keep=None, robot=None, disturbances=None, safe=false, progress=None))]
+#[pyo3(signature = (scenes, out, stacks=None, seeds=1, jobs=None, shard=None, keep=None, robot=None, disturbances=None, reached_by=None, safe=false, parameters=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn batch(
     py: Python<'_>,
@@ -40,7 +45,9 @@ pub(crate) fn batch(
     keep: Option<String>,
     robot: Option<String>,
     disturbances: Option<PathBuf>,
+    reached_by: Option<String>,
     safe: bool,
+    parameters: Option<Parameters>,
     progress: Option<Progress>,
 ) -> PyResult<Json> {
     if stacks.as_ref().is_some_and(|Listed(stacks)| stacks.is_empty()) {
@@ -55,10 +62,19 @@ pub(crate) fn batch(
         keep: keep.map_or(Ok(Keep::None), |keep| choice(&keep))?,
         robot,
         disturbances,
+        reached_by: reached_by.map(|pose| reached(&pose)).transpose()?,
         safe,
+        set: parameters.map_or_else(Vec::new, |Parameters(table)| Assignment::all_of(&table)),
         ..BatchRequest::new(scenes.0, out)
     };
     run(py, progress, move |watch| request.drive(&BatchPlots, watch))
+}
+
+fn reached(pose: &str) -> PyResult<ReachedBy> {
+    ReachedBy::by_name(pose).ok_or_else(|| {
+        let names = ReachedBy::NAMES.join(", ");
+        bad_value(format!("reached_by: expected one of {names}, got `{pose}`"))
+    })
 }
 
 fn choice(keep: &str) -> PyResult<Keep> {

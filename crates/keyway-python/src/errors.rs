@@ -10,6 +10,7 @@ use keyway_sim::scene_files::{SceneError, SceneFileError};
 use pyo3::exceptions::{
     PyFileNotFoundError, PyMemoryError, PyOSError, PyUserWarning, PyValueError,
 };
+use pyo3::types::PyAnyMethods;
 use pyo3::{PyErr, PyResult, Python};
 use std::ffi::CString;
 use std::fmt::Display;
@@ -26,7 +27,8 @@ pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
 }
 
-/// A `MemoryError` where there is no room for so many bytes: memory that is missing later ends the process.
+/// A `MemoryError` where there is no room for so many bytes: memory that is missing later ends the
+/// process.
 pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
     let missing = || {
         let gib = bytes as f64 / (1_u64 << 30) as f64;
@@ -83,8 +85,16 @@ fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
     }
 }
 
-/// Why a robot cannot be sent to a goal.
+/// The exception of a robot that cannot be sent to a goal; its attribute `kind` is a number that
+/// never changes.
 pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
+    let raised = navigate_error_of(error);
+    // Without the attribute it is the same error.
+    let _ = Python::attach(|py| raised.value(py).setattr("kind", error.kind()));
+    raised
+}
+
+fn navigate_error_of(error: &NavigateError) -> PyErr {
     let text = error.to_string();
     let mut cause = error;
     while let NavigateError::WayPoint { why, .. } = cause {
@@ -93,7 +103,8 @@ pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
     match cause {
         NavigateError::NoRoom { .. }
         | NavigateError::StartTouches { .. }
-        | NavigateError::GoalHeading { .. } => NoRoom::new_err(text),
+        | NavigateError::GoalHeading { .. }
+        | NavigateError::Misfit(_) => NoRoom::new_err(text),
         NavigateError::NoWay { .. } => NoPath::new_err(text),
         NavigateError::Plan(error) => plan_error_saying(error, text),
         _ => bad_value(text),

@@ -9,9 +9,9 @@
 mod arrays;
 mod batch;
 mod comparison;
-mod controller;
 mod errors;
 mod map;
+mod navigator;
 mod parameters;
 mod pictures;
 mod plan;
@@ -22,6 +22,7 @@ mod run;
 mod scan;
 mod scene;
 mod simulation;
+mod step;
 mod values;
 mod watched;
 
@@ -35,9 +36,9 @@ mod _keyway {
     #[pymodule_export]
     use crate::comparison::{Comparison, compare};
     #[pymodule_export]
-    use crate::controller::{Controller, Step};
-    #[pymodule_export]
     use crate::map::Map;
+    #[pymodule_export]
+    use crate::navigator::Navigator;
     #[pymodule_export]
     use crate::plan::Plan;
     #[pymodule_export]
@@ -52,4 +53,6 @@ mod _keyway {
     use crate::scene::Scene;
     #[pymodule_export]
     use crate::simulation::Simulation;
+    #[pymodule_export]
+    use crate::step::Step;
 }

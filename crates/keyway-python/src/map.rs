@@ -97,7 +97,7 @@ fn read_grid(
     grid.map_err(bad_value)
 }
 
-fn map_of_array(grid: OccupancyGrid) -> Map {
+pub(crate) fn map_of_array(grid: OccupancyGrid) -> Map {
     let source = MapSource { name: "array".to_owned(), digest: digest(&grid), placement: None };
     Map::new(grid, source)
 }

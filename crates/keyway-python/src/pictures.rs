@@ -4,7 +4,8 @@ use crate::errors::bad_value;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::OccupancyGrid;
 use keyway_draw::layers::{
-    CellTint, DrivenPath, Footprints, GoalMark, HatchedDiscs, Movers, PathLine, Polygons, StartMark,
+    CellTint, DrivenPath, ElusiveObstacles, Footprints, GoalMark, HatchedDiscs, Movers, PathLine,
+    Polygons, StartMark,
 };
 use keyway_draw::{MapPicture, Svg};
 use keyway_sim::episode::RobotReport;
@@ -47,6 +48,8 @@ pub(crate) fn of_run(grid: &OccupancyGrid, report: &RobotReport) -> Svg {
         .with(HatchedDiscs::unknown_obstacles(&discs))
         .with(Polygons::unknown_obstacles(&polygons))
         .with(CellTint::unknown_obstacles(&inputs.hidden_cells))
+        .with(CellTint::absent(&inputs.absent_cells))
+        .with(ElusiveObstacles::new(&inputs.elusive))
         .with(Movers::new(&movers, &driven))
         .with(StartMark(at(&inputs.start)))
         .with(GoalMark { point: at(&inputs.goal), tolerance_m: None });

@@ -15,7 +15,7 @@ use std::ffi::OsString;
 ///
 /// >>> import keyway
 /// >>> keyway.names("robots")
-/// ['small', 'jackal', 'paper']
+/// ['small', 'jackal', 'paper', 'burger', 'waffle']
 #[pyfunction]
 pub(crate) fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     Ok(match kind {

@@ -6,66 +6,83 @@ use crate::values::{Ranges, described};
 use keyway::sense::Scan as Beams;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 /// One turn of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
 ///
-/// `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the beam says nothing. Beam i looks
-/// at the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to the left: where the beams go
-/// clockwise, `angle_increment` is negative. Sensors begin at the back, ahead or at a side; so neither angle has a default.
+/// `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the
+/// beam says nothing. Beam i looks at the bearing `angle_min + i * angle_increment` [rad], 0
+/// straight ahead and positive to the left: where the beams go clockwise, `angle_increment` is
+/// negative. Sensors begin at the back, ahead or at a side; so neither angle has a default. `stamp`
+/// is the time at which it was made [s]; without one it belongs to the pose with which it is given.
 ///
 /// >>> import keyway, numpy as np
 /// >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
 /// >>> scan, round(float(scan.bearings[90]), 3)
 /// (<keyway.Scan 360 beams from 0.000 to 6.266 rad>, 1.571)
 #[pyclass(frozen, module = "keyway")]
-pub(crate) struct Scan(Beams);
+pub(crate) struct Scan {
+    beams: Beams,
+    stamp_s: Option<f64>,
+}
 
 impl Scan {
-    pub(crate) const fn new(beams: Beams) -> Self {
-        Self(beams)
+    pub(crate) const fn new(beams: Beams, stamp_s: Option<f64>) -> Self {
+        Self { beams, stamp_s }
     }
 }
 
 #[pymethods]
 impl Scan {
     #[new]
-    #[pyo3(signature = (ranges, angle_min, angle_increment))]
-    fn of(ranges: Ranges<'_>, angle_min: f64, angle_increment: f64) -> PyResult<Self> {
-        beams(&ranges, angle_min, angle_increment).map(Self)
+    #[pyo3(signature = (ranges, angle_min, angle_increment, stamp=None))]
+    fn of(
+        ranges: Ranges<'_>,
+        angle_min: f64,
+        angle_increment: f64,
+        stamp: Option<f64>,
+    ) -> PyResult<Self> {
+        Ok(Self { beams: beams(&ranges, angle_min, angle_increment)?, stamp_s: stamp })
     }
 
     /// Ranges of all beams: a new array of float64 [m].
     #[getter]
     fn ranges(&self, py: Python<'_>) -> Floats1 {
-        copied(py, &self.0.ranges_m)
+        copied(py, &self.beams.ranges_m)
     }
 
     /// Bearing of beam 0 [rad], 0 straight ahead, positive to the left.
     #[getter]
     const fn angle_min(&self) -> f64 {
-        self.0.angle_min_rad
+        self.beams.angle_min_rad
     }
 
     /// Bearing from one beam to the next [rad], negative where they go clockwise.
     #[getter]
     const fn angle_increment(&self) -> f64 {
-        self.0.angle_increment_rad
+        self.beams.angle_increment_rad
     }
 
     /// Bearings of all beams: a new array of float64 [rad].
     #[getter]
     fn bearings(&self, py: Python<'_>) -> Floats1 {
-        let bearings = (0..self.0.ranges_m.len()).map(|beam| self.0.bearing_rad(beam));
+        let bearings = (0..self.beams.ranges_m.len()).map(|beam| self.beams.bearing_rad(beam));
         copied(py, &bearings.collect::<Vec<_>>())
     }
 
+    /// Time at which it was made [s]; `None` where it was not said.
+    #[getter]
+    const fn stamp(&self) -> Option<f64> {
+        self.stamp_s
+    }
+
     fn __len__(&self) -> usize {
-        self.0.ranges_m.len()
+        self.beams.ranges_m.len()
     }
 
     fn __repr__(&self) -> String {
-        let count = self.0.ranges_m.len();
-        let [first, last] = [0, count - 1].map(|beam| self.0.bearing_rad(beam));
+        let count = self.beams.ranges_m.len();
+        let [first, last] = [0, count - 1].map(|beam| self.beams.bearing_rad(beam));
         format!("<keyway.Scan {count} beams from {first:.3} to {last:.3} rad>")
     }
 }
@@ -78,15 +95,38 @@ fn beams(ranges: &Ranges<'_>, angle_min_rad: f64, angle_increment_rad: f64) -> P
     Ok(beams)
 }
 
-/// A scan that comes in: one of this package, or anything else with the same three attributes, such as a message of ROS.
-pub(crate) struct LaserScan(Beams);
+/// A scan that comes in: one of this package, or anything else with the same three attributes, such
+/// as a message of ROS, whose header has its stamp.
+pub(crate) struct LaserScan {
+    beams: Beams,
+    stamp_s: Option<f64>,
+}
 
 impl LaserScan {
-    /// Overwrites the beams of a scan.
-    pub(crate) fn move_to(self, scan: &mut Beams) {
-        let Beams { angle_min_rad, angle_increment_rad, ranges_m, .. } = self.0;
+    /// Overwrites the beams of a scan; the time at which this one was made \[s\], if it says so.
+    pub(crate) fn move_to(self, scan: &mut Beams) -> Option<f64> {
+        let Beams { angle_min_rad, angle_increment_rad, ranges_m, .. } = self.beams;
         (scan.angle_min_rad, scan.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
         scan.ranges_m = ranges_m;
+        self.stamp_s
+    }
+}
+
+/// The scans of a cycle: that of the robot's only sensor, or a list with one of each, `None` where
+/// a sensor has made none.
+pub(crate) struct LaserScans(pub(crate) Vec<Option<LaserScan>>);
+
+impl<'py> FromPyObject<'_, 'py> for LaserScans {
+    type Error = PyErr;
+    #[cfg(feature = "stubs")]
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr =
+        pyo3::type_hint_identifier!("keyway.typing", "LaserScans");
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>() {
+            return object.extract().map(Self);
+        }
+        object.extract().map(|scan| Self(vec![Some(scan)]))
     }
 }
 
@@ -98,7 +138,8 @@ impl<'py> FromPyObject<'_, 'py> for LaserScan {
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         if let Ok(scan) = object.cast::<Scan>() {
-            return Ok(Self(scan.get().0.clone()));
+            let Scan { beams, stamp_s } = scan.get();
+            return Ok(Self { beams: beams.clone(), stamp_s: *stamp_s });
         }
         let expected = |_: PyErr| {
             let got = described(&object);
@@ -109,6 +150,15 @@ impl<'py> FromPyObject<'_, 'py> for LaserScan {
         };
         let ranges: Ranges<'_> = object.getattr("ranges").map_err(expected)?.extract()?;
         let angle = |name| object.getattr(name).and_then(|angle| angle.extract()).map_err(expected);
-        beams(&ranges, angle("angle_min")?, angle("angle_increment")?).map(Self)
+        let beams = beams(&ranges, angle("angle_min")?, angle("angle_increment")?)?;
+        Ok(Self { beams, stamp_s: header_stamp_s(&object) })
     }
+}
+
+/// Stamp of a message of ROS \[s\]; one that nobody has set is none.
+fn header_stamp_s(message: &Bound<'_, PyAny>) -> Option<f64> {
+    let stamp = message.getattr("header").and_then(|header| header.getattr("stamp")).ok()?;
+    let part = |name| stamp.getattr(name).and_then(|part| part.extract::<f64>()).ok();
+    let stamp_s = part("sec")? + 1e-9 * part("nanosec")?;
+    (stamp_s != 0.0).then_some(stamp_s)
 }

@@ -12,11 +12,13 @@ use keyway_sim::sim::{Action, Arrival, Control, Outcome, Stepper};
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
+/// The world of a scene, in which somebody else drives: one control cycle per call, as learning
+/// agents want it.
 ///
-/// The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
-/// route, by which the robot's heading at the start and the time limit are chosen, and drives nothing. `progress(done, expected)`
-/// is called meanwhile, which is not counted: (0, None).
+/// The goal is reached when the robot comes within its tolerance; it need not stand. The stack of
+/// the scene plans the first route, by which the robot's heading at the start and the time limit
+/// are chosen, and drives nothing. `progress(done, expected)` is called meanwhile, which is not
+/// counted: (0, None).
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -31,6 +33,7 @@ pub(crate) struct Simulation {
     goal: Point,
     cycle_s: f64,
     limits: Limits,
+    sensors: usize,
     range_m: f64,
 }
 
@@ -68,14 +71,17 @@ impl Simulation {
             goal: goal.position,
             cycle_s: robot.cycle_s,
             limits: robot.limits,
-            range_m: robot.sensor.range_m,
+            sensors: robot.sensors.len(),
+            range_m: robot.sensors.iter().map(|sensor| sensor.range_m).fold(0.0, f64::max),
         })
     }
 
-    /// One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as its limits allow. Gives the
-    /// outcome once the run has ended, and `None` before; a run that has ended stays as it is.
+    /// One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as
+    /// its limits allow. Gives the outcome once the run has ended, and `None` before; a run that
+    /// has ended stays as it is.
     ///
-    /// `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the straight line to the goal.
+    /// `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the
+    /// straight line to the goal.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -120,10 +126,31 @@ impl Simulation {
         (v, omega)
     }
 
-    /// The present scan: ranges, and where their beams look. `Controller.step` takes it as it is.
+    /// Time at which `pose` and `velocity` were measured [s].
+    #[getter]
+    fn stamp(&self) -> f64 {
+        self.lock().told().stamp_s
+    }
+
+    /// The present scan of the first sensor: ranges, and where their beams look.
+    /// `Navigator.observe` takes it as it is for a robot with a single sensor.
     #[getter]
     fn scan(&self) -> Scan {
-        Scan::new(self.lock().scan().clone())
+        let stepper = self.lock();
+        let first = stepper.scans().first().filter(|one| one.sensor == 0).map(|one| one.stamp_s);
+        Scan::new(stepper.scan().clone(), first)
+    }
+
+    /// The present scans of all sensors, in their order; `None` where a sensor has made none in
+    /// this cycle. `Navigator.observe` takes them as they are.
+    #[getter]
+    fn scans(&self) -> Vec<Option<Scan>> {
+        let stepper = self.lock();
+        let mut scans: Vec<Option<Scan>> = (0..self.sensors).map(|_| None).collect();
+        for one in stepper.scans() {
+            scans[one.sensor] = Some(Scan::new(one.scan.clone(), Some(one.stamp_s)));
+        }
+        scans
     }
 
     /// Where the robot is to go (x, y) [m].
@@ -138,14 +165,15 @@ impl Simulation {
         self.cycle_s
     }
 
-    /// The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s, rad/s].
+    /// The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s,
+    /// rad/s].
     #[getter]
     fn limits(&self) -> ((f64, f64), (f64, f64)) {
         let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
         ((v_min_mps, -omega_max_radps), (v_max_mps, omega_max_radps))
     }
 
-    /// Range of the sensor [m].
+    /// Range of the sensor [m]; of several the longest.
     #[getter]
     fn range(&self) -> f64 {
         self.range_m

@@ -86,7 +86,7 @@ impl Numbers {
         }
     }
 
-    /// Exactly this many numbers, of which `names` are the names. Whether they can be true is the controller's to say.
+    /// Exactly this many numbers, of which `names` are the names. Whether they can be true is the navigator's to say.
     pub(crate) fn exactly<const N: usize>(&self, name: &str, names: &str) -> PyResult<[f64; N]> {
         <[f64; N]>::try_from(&self.0[..]).map_err(|_| self.wrong(name, names))
     }

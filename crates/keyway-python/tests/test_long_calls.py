@@ -53,7 +53,8 @@ def calls_of_one_piece() -> dict[str, Callable[..., object]]:
     maze = np.zeros((1024, 1024), dtype=bool)
     maze[2:-2:8, 1:] = maze[6:-2:8, :-1] = True
     walls = keyway.Map.from_array(maze, resolution=1.0)
-    slow = {"planner": {"name": "lazy-theta-star"}}
+    slow = keyway.Navigator(grid, parameters={"planner": {"name": "lazy-theta-star"}}, radius=0.1)
+    slow.relocate((*free[0], 0.0))
     return {
         "plan": lambda **to: keyway.plan(grid, free[0], free[-1], planner="lazy-theta-star", **to),
         "plan with a random tree": lambda **to: keyway.plan(walls, (0.5, 0.5), (1023.5, 1023.5), planner="rrt", **to),
@@ -61,13 +62,13 @@ def calls_of_one_piece() -> dict[str, Callable[..., object]]:
         "Planner": lambda **to: keyway.Planner(small, planner="prepared", **to),
         "plan, prepared": lambda **to: keyway.plan(small, near[0], near[-1], planner="prepared", radius=0.01, **to),
         "compare, prepared": lambda **to: keyway.compare(small, planners=["prepared"], queries=3, **to),
-        "Controller": lambda **to: keyway.Controller(grid, free[0], free[-1], parameters=slow, radius=0.1, **to),
+        "set_goal": lambda **to: slow.set_goal(free[-1], **to),
         "Simulation": lambda **to: keyway.Simulation(keyway.Scene(grid, free[0], free[-1]), **to),
     }
 
 
 OF_ONE_PIECE = [
-    "plan", "plan with a random tree", "plan_nearest", "Planner", "plan, prepared", "compare, prepared", "Controller", "Simulation",
+    "plan", "plan with a random tree", "plan_nearest", "Planner", "plan, prepared", "compare, prepared", "set_goal", "Simulation",
 ]
 
 

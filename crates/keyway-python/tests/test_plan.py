@@ -153,7 +153,7 @@ def test_parameters_are_those_of_the_files() -> None:
         ({"smoother": "silk"}, "`smoother.name` must be one of .*, got `silk`"),
         ({"radius": -0.5}, "map.clearance_m must be a length of at least 0.*, got -0.5"),
         ({"radius": math.nan}, "map.clearance_m must be .* got NaN"),
-        ({"robot": "hal"}, "there is no robot `hal`, expected one of small, jackal, paper, or a file"),
+        ({"robot": "hal"}, "there is no robot `hal`, expected one of small, jackal, paper, burger, waffle, or a file"),
         ({"parameters": {"map": {"clearance": 1.0}}}, "there is no field `map.clearance`; `map` has: "),
         ({"parameters": {"map": {"unknown": 3}}}, "`map.unknown`: invalid type, expected a string"),
         ({"parameters": {"map": {"unknown": "maybe"}}}, "`map.unknown`: "),

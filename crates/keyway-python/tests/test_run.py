@@ -1,4 +1,4 @@
-"""Controllers, scenes, runs, and a simulation that Python drives."""
+"""Navigators, scenes, runs, and a simulation that Python drives."""
 
 import array
 import json
@@ -16,6 +16,20 @@ from conftest import SCENES
 import keyway
 
 KEYWAY = [sys.executable, "-m", "keyway"]
+
+
+def bound_for(grid: keyway.Map, start: Any, goal: Any, via: Any = (), **options: Any) -> keyway.Navigator:
+    """A navigator on its way from a start to a goal."""
+    navigator = keyway.Navigator(grid, **options)
+    navigator.relocate((*start, 0.0))
+    navigator.set_goals(list(via), goal)
+    return navigator
+
+
+def next_step(navigator: keyway.Navigator, pose: Any, velocity: Any, scan: Any, cycle: int) -> keyway.Step:
+    """The cycle of this number, with a scan that has just been made."""
+    navigator.observe(cycle * navigator.cycle, pose, velocity, scan)
+    return navigator.step()
 
 
 def test_a_run_is_that_of_the_program(tmp_path: pathlib.Path) -> None:
@@ -36,20 +50,21 @@ def test_a_run_is_that_of_the_program(tmp_path: pathlib.Path) -> None:
     assert keyway.simulate(keyway.Scene.read(scene), times=True).metrics["mean_cycle_us"] > 0
 
 
-def test_driving_by_hand_with_a_controller_is_the_same_run(scene: keyway.Scene) -> None:
+def test_driving_by_hand_with_a_navigator_is_the_same_run(scene: keyway.Scene) -> None:
     grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
-    controller = keyway.Controller(grid, start=(1, 2), goal=(7, 2), robot="small", stack="keyway")
+    navigator = bound_for(grid, (1, 2), (7, 2), robot="small", stack="keyway")
     simulation = keyway.Simulation(scene)
     rows, t = [(0.0, *simulation.pose, *simulation.velocity)], 0
     seen_post = False
     while simulation.outcome is None:
         scan = simulation.scan
         seen_post |= bool(np.isfinite(scan.ranges).any())
-        step = controller.step(simulation.pose, simulation.velocity, scan)
+        navigator.observe(simulation.stamp, simulation.pose, simulation.velocity, scan)
+        step = navigator.step()
         assert step.status in ("drive", "blocked")
-        simulation.step(step.v, step.omega, remaining=controller.remaining)
+        simulation.step(step.v, step.omega, remaining=navigator.remaining)
         t += 1
-        rows.append((t * controller.cycle, *simulation.pose, *simulation.velocity))
+        rows.append((t * navigator.cycle, *simulation.pose, *simulation.velocity))
     assert simulation.outcome == "reached" and seen_post
     expected = keyway.simulate(scene).trajectory.view(np.float64).reshape(-1, 6)
     # By hand it ends when the goal is passed, and not when the robot stands.
@@ -64,9 +79,10 @@ def test_headings_are_radians_and_those_of_files_degrees() -> None:
     trajectory = keyway.simulate(scene).trajectory
     assert trajectory["yaw_rad"][0] == math.pi / 2
     assert trajectory["yaw_rad"][-1] == pytest.approx(math.radians(30), abs=0.2)
-    controller = keyway.Controller(grid, start=(1, 1), goal=(1, 1, -math.pi / 2))
-    assert controller.step((1, 1, 0), (0, 0), controller.clear_scan).omega < 0
-    assert controller.step((1, 1, -math.pi / 2), (0, 0), controller.clear_scan).status == "arrived"
+    navigator = bound_for(grid, (1, 1), (1, 1, -math.pi / 2))
+    assert navigator.goal == [1, 1, -math.pi / 2]
+    assert next_step(navigator, (1, 1, 0), (0, 0), navigator.clear_scan, 0).omega < 0
+    assert next_step(navigator, (1, 1, -math.pi / 2), (0, 0), navigator.clear_scan, 1).status == "arrived"
 
 
 def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
@@ -76,8 +92,7 @@ def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
         return keyway.Scan(ranges, angle_min=-math.pi, angle_increment=math.tau / 360)
 
     def step(ranges: object) -> tuple[float, float, str]:
-        controller = keyway.Controller(grid, (1, 2), (7, 2))
-        step = controller.step((1, 2, 0), (0.2, 0.0), scan(ranges))
+        step = next_step(bound_for(grid, (1, 2), (7, 2)), (1, 2, 0), (0.2, 0.0), scan(ranges), 0)
         return step.v, step.omega, step.status
 
     ranges = np.full(360, np.inf)
@@ -88,15 +103,15 @@ def test_ranges_of_any_kind_are_the_same(scene: keyway.Scene) -> None:
     wide[::2] = ranges
     for same in (ranges.tolist(), tuple(ranges), wide[::2], ranges.astype(np.float32), ranges[::-1].copy()[::-1]):
         assert step(same) == expected
-    controller = keyway.Controller(grid, (1, 2), (7, 2))
-    assert len(controller.clear_scan) == 360 and controller.clear_scan.bearings[180] == pytest.approx(0.0)
+    navigator = bound_for(grid, (1, 2), (7, 2))
+    assert len(navigator.clear_scan) == 360 and navigator.clear_scan.bearings[180] == pytest.approx(0.0)
     with pytest.raises(ValueError, match=r"ranges: expected a row of numbers, got an array of float64 of shape \(2, 180\)"):
         scan(np.zeros((2, 180)))
     with pytest.raises(TypeError, match="ranges: expected a row of numbers"):
         scan(["far"] * 360)
     with pytest.raises(ValueError, match=r"pose: expected \(x, y, theta\), got 2 numbers"):
-        controller.step((1, 2), (0, 0), scan(ranges))
-    nan = controller.step((math.nan, 2, 0), (0, 0), scan(ranges))
+        navigator.observe(0.0, (1, 2), (0, 0), scan(ranges))
+    nan = next_step(navigator, (math.nan, 2, 0), (0, 0), scan(ranges), 0)
     assert (nan.status, nan.v) == ("blocked", 0.0) and nan.why and "pose.x cannot be true" in nan.why
 
 
@@ -108,8 +123,8 @@ def test_a_scan_says_where_its_beams_look(scene: keyway.Scene) -> None:
     ranges = np.where(ahead, 0.45 / np.cos(bearings), np.inf)
 
     def drive(scan: Any) -> list[tuple[float, float]]:
-        controller = keyway.Controller(grid, (1, 2), (7, 2))
-        steps = [controller.step((1, 2, 0), (0.2, 0.0), scan) for _ in range(3)]
+        navigator = bound_for(grid, (1, 2), (7, 2))
+        steps = [next_step(navigator, (1, 2, 0), (0.2, 0.0), scan, cycle) for cycle in range(3)]
         return [(round(step.v, 9), round(step.omega, 9)) for step in steps]
 
     back = keyway.Scan(ranges, -math.pi, math.tau / 360)
@@ -121,7 +136,7 @@ def test_a_scan_says_where_its_beams_look(scene: keyway.Scene) -> None:
     for same in (front, clockwise, message):
         assert drive(same) == expected
     assert drive(keyway.Scan(np.roll(ranges, 180), -math.pi, math.tau / 360)) != expected
-    for wrong in (ranges, ranges.tolist(), None):
+    for wrong in (ranges, ranges.tolist(), 3.0):
         with pytest.raises(TypeError, match="ranges alone do not say where their beams look"):
             drive(wrong)
     with pytest.raises(TypeError, match="angle_min"):
@@ -134,55 +149,55 @@ def test_a_scan_says_where_its_beams_look(scene: keyway.Scene) -> None:
     assert (len(again), again.angle_min, again.bearings.tolist()) == (360, -math.pi, scan.bearings.tolist())
 
 
-def test_a_controller_says_what_is_wrong() -> None:
+def test_a_navigator_says_what_is_wrong() -> None:
     occupied = np.zeros((40, 80), dtype=bool)
     occupied[:, 40] = True
     grid = keyway.Map.from_array(occupied, resolution=0.1)
     with pytest.raises(keyway.NoPath):
-        keyway.Controller(grid, (1, 2), (7, 2))
+        bound_for(grid, (1, 2), (7, 2))
     with pytest.raises(keyway.NoRoom, match="goal .* leaves no room"):
-        keyway.Controller(grid, (1, 2), (3.95, 2))
+        bound_for(grid, (1, 2), (3.95, 2))
     with pytest.raises(keyway.NoPath, match="way-point 1"):
-        keyway.Controller(grid, (1, 2), (3, 2), via=[(7, 2)])
+        bound_for(grid, (1, 2), (3, 2), via=[(7, 2)])
     with pytest.raises(ValueError, match="there is no stack `dwa`"):
-        keyway.Controller(grid, (1, 2), (3, 2), stack="dwa")
+        bound_for(grid, (1, 2), (3, 2), stack="dwa")
     with pytest.raises(ValueError, match="nobody has published the stack `keyway`"):
-        keyway.Controller(grid, (1, 2), (3, 2), stack="keyway", as_published=True)
+        bound_for(grid, (1, 2), (3, 2), stack="keyway", as_published=True)
     with pytest.raises(ValueError, match="`local.horizon_s`: .*, expected a number"):
-        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": "far"}})
+        bound_for(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": "far"}})
     with pytest.raises(ValueError, match="local.horizon_s must be a positive number, got -1"):
-        keyway.Controller(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": -1}})
+        bound_for(grid, (1, 2), (3, 2), parameters={"local": {"horizon_s": -1}})
     for stack in keyway.names("stacks"):
-        controller = keyway.Controller(grid, (1, 2), (3, 2), stack=stack)
+        navigator = bound_for(grid, (1, 2), (3, 2), stack=stack)
         # A random tree goes astray.
-        assert 1.99 < controller.remaining < (6 if stack == "rrt-follow" else 2.2)
-    assert controller.route.shape[1] == controller.guide_points.shape[1] == 2
-    assert controller.routes_planned == 1 and set(controller.recoveries().values()) == {0}
+        assert navigator.remaining and 1.99 < navigator.remaining < (6 if stack == "rrt-follow" else 2.2)
+    assert navigator.route.shape[1] == navigator.guide_points.shape[1] == 2
+    assert navigator.routes_planned == 1 and set(navigator.recoveries().values()) == {0}
 
 
 def test_a_start_too_near_to_a_wall_is_left_and_said() -> None:
     occupied = np.zeros((80, 160), dtype=bool)
     occupied[0] = True
     grid = keyway.Map.from_array(occupied, resolution=0.05)
-    controller = keyway.Controller(grid, start=(2, 0.20), goal=(6, 2))
-    assert controller.notice and "(an obstacle is 0.150 m away), and leaves it first" in controller.notice
-    step = controller.step((2, 0.20, 0), (0, 0), controller.clear_scan)
-    assert step.notice == controller.notice
-    step = controller.step((2, 0.26, 0), (0, 0), controller.clear_scan)
-    assert step.notice is None and controller.notice is None
+    navigator = bound_for(grid, (2, 0.20), (6, 2))
+    assert navigator.notice and "(an obstacle is 0.150 m away), and leaves it first" in navigator.notice
+    step = next_step(navigator, (2, 0.20, 0), (0, 0), navigator.clear_scan, 0)
+    assert step.notice == navigator.notice
+    step = next_step(navigator, (2, 0.26, 0), (0, 0), navigator.clear_scan, 1)
+    assert step.notice is None and navigator.notice is None
     with pytest.raises(keyway.NoRoom, match="start .* leaves no room"):
-        keyway.Controller(grid, start=(2, 0.15), goal=(6, 2))
+        bound_for(grid, (2, 0.15), (6, 2))
     with pytest.raises(keyway.NoRoom, match="start .* leaves no room"):
-        keyway.Controller(grid, start=(2, 0.20), goal=(6, 2), parameters={"controller": {"start_error_m": 0}})
+        bound_for(grid, (2, 0.20), (6, 2), parameters={"controller": {"start_error_m": 0}})
 
 
 def test_a_goal_at_whose_heading_the_robot_does_not_fit_is_refused() -> None:
     occupied = np.zeros((40, 80), dtype=bool)
     occupied[:10] = occupied[15:] = True
     grid = keyway.Map.from_array(occupied, resolution=0.1)
-    keyway.Controller(grid, (1, 1.25), (5, 1.25, 0), robot="jackal")
+    bound_for(grid, (1, 1.25), (5, 1.25, 0), robot="jackal")
     with pytest.raises(keyway.NoRoom, match=r"does not fit with a yaw of 90 deg; there it fits with one of -180 to "):
-        keyway.Controller(grid, (1, 1.25), (5, 1.25, math.pi / 2), robot="jackal")
+        bound_for(grid, (1, 1.25), (5, 1.25, math.pi / 2), robot="jackal")
 
 
 def test_scenes_are_files_and_values(tmp_path: pathlib.Path, scene: keyway.Scene) -> None:
@@ -245,34 +260,34 @@ def test_safe_is_one_word_everywhere() -> None:
     wall = np.full(360, np.inf)
     wall[150:211] = 0.4
     scan = keyway.Scan(wall, angle_min=-np.pi, angle_increment=np.pi / 180)
-    careless = keyway.Controller(grid, (1, 2), (7, 2), stack="astar-follow")
-    careful = keyway.Controller(grid, (1, 2), (7, 2), stack="astar-follow", safe=True)
-    steps = [controller.step((1, 2, 0), (0.5, 0), scan) for controller in (careless, careful)]
+    careless = bound_for(grid, (1, 2), (7, 2), stack="astar-follow")
+    careful = bound_for(grid, (1, 2), (7, 2), stack="astar-follow", safe=True)
+    steps = [next_step(navigator, (1, 2, 0), (0.5, 0), scan, 0) for navigator in (careless, careful)]
     assert steps[1].v < 0.5 and steps[1].v <= steps[0].v
 
 
 def test_a_robot_that_sees_nothing_stands_and_says_so() -> None:
     grid = keyway.Map.from_array(np.zeros((80, 160), dtype=bool), resolution=0.05)
-    controller = keyway.Controller(grid, (1, 2), (7, 2))
-    for ranges in (np.full(360, np.nan), np.zeros(360)):
+    navigator = bound_for(grid, (1, 2), (7, 2))
+    for first, ranges in ((0, np.full(360, np.nan)), (20, np.zeros(360))):
         scan = keyway.Scan(ranges, angle_min=-np.pi, angle_increment=np.pi / 180)
-        for _ in range(20):
-            step = controller.step((1, 2, 0), (0, 0), scan)
+        for cycle in range(first, first + 20):
+            step = next_step(navigator, (1, 2, 0), (0, 0), scan, cycle)
             assert (step.v, step.status) == (0, "blocked") and "sees nothing" in str(step.why)
-    assert controller.step((1, 2, 0), (0, 0), controller.clear_scan).v > 0
+    assert next_step(navigator, (1, 2, 0), (0, 0), navigator.clear_scan, 40).v > 0
 
 
 def test_a_robot_does_not_stop_for_its_own_housing() -> None:
     grid = keyway.Map.from_array(np.zeros((80, 160), dtype=bool), resolution=0.05)
     simulation = keyway.Simulation(keyway.Scene(grid, (1, 2, 0), (7, 2)))
-    controller = keyway.Controller(grid, (1, 2), (7, 2))
+    navigator = bound_for(grid, (1, 2), (7, 2))
     for cycle in range(300):
         scan = simulation.scan
         ranges = scan.ranges.copy()
         for beam in (45, 135, 225, 315):
             ranges[beam - 3 : beam + 4] = 0.12
         seen = keyway.Scan(ranges, scan.angle_min, scan.angle_increment)
-        step = controller.step(simulation.pose, simulation.velocity, seen)
+        step = next_step(navigator, simulation.pose, simulation.velocity, seen, cycle)
         if simulation.step(step.v, step.omega, 1e3 - cycle):
             break
     assert simulation.outcome == "reached"

@@ -64,7 +64,9 @@ TABLES += [_deep, _in_itself]
 
 #: All threads share these.
 GOOD = keyway.Map.from_array(np.zeros((12, 16), dtype=bool), resolution=0.5)
-CONTROLLER = keyway.Controller(GOOD, (1, 1), (6, 4))
+NAVIGATOR = keyway.Navigator(GOOD)
+NAVIGATOR.relocate((1, 1, 0))
+NAVIGATOR.set_goal((6, 4))
 SIMULATION = keyway.Simulation(keyway.Scene(GOOD, (1, 1), (6, 4)))
 
 
@@ -85,12 +87,19 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
     def some(**choices: list[Any]) -> dict[str, Any]:
         return {name: pick(values) for name, values in choices.items() if random.random() < 0.4}
 
-    def controller() -> object:
-        made = pick([CONTROLLER, keyway.Controller(good, (1, 1), (6, 4))])
-        scans: list[Any] = [keyway.Scan(np.full(360, value), -math.pi, math.tau / 360) for value in (0, -1, math.nan, math.inf, 1e308)]
+    def navigator() -> object:
+        made = pick([NAVIGATOR, keyway.Navigator(good)])
+        scans: list[Any] = [keyway.Scan(np.full(360, value), -math.pi, math.tau / 360, **some(stamp=NUMBERS)) for value in (0, -1, math.nan, math.inf, 1e308)]
+        steps = []
         # Mostly right ones, so that threads meet.
-        steps = [made.step(pose(), pick([(0.1, 0.0), (0.2, -0.3)]), pick(scans)) for _ in range(5)]
-        return repr(steps), made.step(place(), place(), pick([*PLACES, *scans, np.zeros(360)]))
+        for cycle in range(5):
+            made.observe(cycle * 0.1, pose(), pick([(0.1, 0.0), (0.2, -0.3)]), pick(scans))
+            steps.append(made.step())
+        answer = repr(steps)
+        changes: list[Callable[[], object]] = [made.cancel, lambda: made.relocate(pose()), lambda: made.set_goal(place()), lambda: made.set_goals(pick(PLACES), place())]
+        pick(changes)()
+        made.observe(pick(NUMBERS), place(), place(), pick([*PLACES, *scans, np.zeros(360)]))
+        return answer, made.step(), made.goal, made.remaining, made.route
 
     def simulation() -> object:
         made = pick([SIMULATION, keyway.Simulation(keyway.Scene(good, (1, 1), (6, 4), **some(seed=NUMBERS, via=PLACES)))])
@@ -109,8 +118,8 @@ def calls(random: random.Random) -> list[Callable[[], object]]:
         lambda: keyway.Planner(good).plan_nearest(place(), pick(PLACES), **some(budget=NUMBERS)),
         lambda: keyway.plan_many(grid(), pick(PLACES), pick(PLACES), **some(**options, jobs=NUMBERS, progress=NUMBERS)),
         lambda: plan.curve(**some(spacing=NUMBERS, robot=TEXTS)),
-        controller,
-        lambda: keyway.Controller(grid(), place(), place(), **some(robot=TEXTS, stack=TEXTS, via=PLACES, parameters=TABLES, radius=NUMBERS)),
+        navigator,
+        lambda: keyway.Navigator(grid(), **some(robot=TEXTS, stack=TEXTS, parameters=TABLES, radius=NUMBERS)),
         simulation,
         lambda: keyway.Scene(grid(), place(), place(), **some(robot=TEXTS, stack=TEXTS, seed=NUMBERS, rules=TABLES, moving=TABLES, unknown=TABLES)),
         lambda: keyway.Scene.from_toml(pick(TEXTS)),

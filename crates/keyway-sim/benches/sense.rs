@@ -8,7 +8,7 @@ use keyway::geometry::{Point, Pose, Velocity};
 use keyway::local::{Scratch, StopRule, StopRuleConfig, Surroundings};
 use keyway::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sense::{Mover, ProjectedScan, Scan, SensedLayer, Tracker, TrackerConfig};
+use keyway::sense::{Mover, ProjectedScan, Scan, SensedLayer, SensorScan, Tracker, TrackerConfig};
 use keyway_sim::sim::{self, World};
 use std::hint::black_box;
 
@@ -42,7 +42,7 @@ fn scans(robot: &Robot, known: &OccupancyGrid, posts: &BitGrid) -> Vec<(Pose, Sc
         .map(|cycle| {
             let t_s = robot.cycle_s * f64::from(cycle);
             let pose = Pose::new(9.0 + 0.3 * t_s, 9.5, 0.3 * t_s);
-            (pose, world.at(t_s).cast(pose, &robot.sensor))
+            (pose, world.at(t_s).cast(pose, &robot.sensors[0]))
         })
         .collect()
 }
@@ -55,12 +55,17 @@ fn of_a_scan(criterion: &mut Criterion) {
         let config = TrackerConfig::default();
         let mut tracker = Tracker::new(config).unwrap();
         let mut projected = ProjectedScan::default();
-        let beams = robot.sensor.beams;
+        let beams = robot.sensors[0].beams;
         let mut group = criterion.benchmark_group("sense/40 scans");
         group.bench_function(BenchmarkId::new("tracker", beams), |bencher| {
             bencher.iter(|| {
                 for (pose, scan) in &scans {
-                    projected.project(known.frame(), &robot.footprint, *pose, black_box(scan));
+                    projected.project(
+                        known.frame(),
+                        &robot.footprint,
+                        *pose,
+                        &SensorScan::centred(0.0, black_box(scan)),
+                    );
                     tracker.update(&known, &projected, robot.cycle_s);
                 }
                 tracker.movers().len()
@@ -71,7 +76,12 @@ fn of_a_scan(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("layer beside it", beams), |bencher| {
             bencher.iter(|| {
                 for (pose, scan) in &scans {
-                    projected.project(known.frame(), &robot.footprint, *pose, black_box(scan));
+                    projected.project(
+                        known.frame(),
+                        &robot.footprint,
+                        *pose,
+                        &SensorScan::centred(0.0, black_box(scan)),
+                    );
                     layer.update(&known, &projected, Some(&tracker), &mut edits);
                 }
                 layer.count()

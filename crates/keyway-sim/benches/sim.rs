@@ -7,7 +7,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::Observation;
 use keyway_sim::sim::{
     Action, Control, Disturbances, Motion, MovingObstacle, Participant, Run, RunRules, WayPoints,
     World, simulate,
@@ -75,7 +75,7 @@ fn scans(criterion: &mut Criterion) {
                 bencher.iter(|| {
                     turned += 0.1;
                     let pose = Pose::new(15.0 + turned.cos(), 15.0, turned);
-                    black_box(world.at(0.0).cast(pose, &robot.sensor))
+                    black_box(world.at(0.0).cast(pose, &robot.sensors[0]))
                 });
             });
         }
@@ -85,7 +85,8 @@ fn scans(criterion: &mut Criterion) {
 /// A minute in a circle of 1.5 m at most, with one slow turn of the wheel after the other.
 fn minute(world: &World, robot: &Robot) -> Run {
     let mut left_m = 1e6;
-    let mut circling = |_: Pose, _: Velocity, scan: &Scan| {
+    let mut circling = |&Observation { scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
         black_box(scan);
         left_m -= 1.0;
         let action = Action::Drive(Velocity::new(0.5, 0.4));

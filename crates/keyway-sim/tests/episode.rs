@@ -3,15 +3,17 @@
 
 use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{GridFrame, OccupancyGrid, UnknownPolicy};
-use keyway::navigate::{Controller, NavigateError, RecoveryCounts, Stack};
+use keyway::navigate::{NavigateError, Navigator, RecoveryCounts, Stack};
 use keyway::robot::Robot;
+use keyway::sense::Observation;
 use keyway_sim::episode::{
     Cycle, Episode, EpisodeObserver, EpisodeOutcome, RunError, RunOptions, run_episode,
     watch_episode,
 };
 use keyway_sim::report::PlanOutcome;
 use keyway_sim::sim::{
-    Disturbances, KeyFrame, KeyFrames, LocalisationNoise, Motion, MovingObstacle, Run,
+    Disturbances, ElusiveObstacle, ElusiveShape, KeyFrame, KeyFrames, LocalisationFaults, Motion,
+    MovingObstacle, Presence, Run,
 };
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -45,18 +47,19 @@ impl EpisodeObserver for Counts {
         self.no_route = Some(why.clone());
     }
 
-    fn started(&mut self, controller: &Controller) {
-        assert_eq!((self.decided, controller.routes_planned()), (0, 1));
+    fn started(&mut self, navigator: &Navigator) {
+        assert_eq!((self.decided, navigator.routes_planned()), (0, 1));
         self.started += 1;
     }
 
     fn decided(&mut self, cycle: &Cycle<'_>) {
         assert_eq!((cycle.index, self.ended), (self.decided, 0));
-        assert!(cycle.pose.x >= 0.6 && cycle.scan.range_max_m > 0.0);
+        let Observation { pose, scans, .. } = *cycle.observation;
+        assert!(pose.x >= 0.6 && scans[0].scan.range_max_m > 0.0);
         self.decided += 1;
     }
 
-    fn ended(&mut self, run: &Run, _controller: &Controller) {
+    fn ended(&mut self, run: &Run, _navigator: &Navigator) {
         self.ended += 1;
         self.run = Some(run.clone());
     }
@@ -151,12 +154,13 @@ fn disturbed(seed: u64) -> Disturbances {
     (sensor.range_m, sensor.dropped_beams, sensor.dropped_scans) = (0.01, 0.05, 0.05);
     let actuation = &mut disturbances.actuation;
     (actuation.delay_s, actuation.v_relative, actuation.omega_relative) = (0.1, 0.05, 0.05);
-    disturbances.localisation = LocalisationNoise {
+    disturbances.localisation = LocalisationFaults {
         position_m: 0.02,
         heading_rad: 0.01,
         correlation_s: 5.0,
         v_relative: 0.05,
         omega_relative: 0.05,
+        ..LocalisationFaults::default()
     };
     disturbances
 }
@@ -171,11 +175,11 @@ struct Errors {
 
 impl EpisodeObserver for Errors {
     fn decided(&mut self, cycle: &Cycle<'_>) {
-        self.told.push(cycle.pose);
-        self.lost_scans += usize::from(cycle.scan.ranges_m.iter().all(|range_m| range_m.is_nan()));
+        self.told.push(cycle.observation.pose);
+        self.lost_scans += usize::from(cycle.observation.scans.is_empty());
     }
 
-    fn ended(&mut self, run: &Run, _controller: &Controller) {
+    fn ended(&mut self, run: &Run, _navigator: &Navigator) {
         for (told, sample) in self.told.iter().zip(&run.samples) {
             self.largest_m = self.largest_m.max(told.point().distance(sample.pose.point()));
         }
@@ -200,13 +204,26 @@ fn a_disturbed_robot_gets_through_a_hall() {
     assert_eq!((rows[1][4], rows[1][1]), (0.0, 0.6));
     assert!(rows[2][4] > 0.0);
     // Its inputs reproduce it.
-    assert_eq!(report.inputs.disturbances, Some(noisy.robots[0].disturbances));
+    assert_eq!(report.inputs.disturbances.as_ref(), Some(&noisy.robots[0].disturbances));
     let text = serde_json::to_string(&report.inputs.disturbances).unwrap();
-    let disturbances = serde_json::from_str(&text).unwrap();
-    let again = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbances);
+    let disturbances: Disturbances = serde_json::from_str(&text).unwrap();
+    let again = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbances.clone());
     assert_eq!(run_episode(&again).unwrap().first(), report);
     let other = episode(OPEN).with_each_robot(|robot| robot.disturbances = disturbed(2));
     assert_ne!(run_episode(&other).unwrap().first().trajectory, report.trajectory);
+}
+
+/// The beams that see something are drawn from the seed.
+#[test]
+fn a_report_has_the_seed_by_which_things_are_seen() {
+    let seed = |seen| {
+        let disc = ElusiveShape::Disc(Disc::new(Point::new(3.5, 2.6), 0.1));
+        let elusive = ElusiveObstacle::new(disc, Presence { seen, ..Presence::ALWAYS }).unwrap();
+        let mut episode = episode(OPEN).with_each_robot(|robot| robot.disturbances.seed = 7);
+        episode.elusive = vec![elusive];
+        run_episode(&episode).unwrap().first().inputs.disturbances.map(|it| it.seed)
+    };
+    assert_eq!([0.0, 0.5, 1.0].map(seed), [None, Some(7), None]);
 }
 
 /// The map alone is not enough: something that is not on it may stand there.
@@ -304,7 +321,7 @@ fn reports_have_the_documented_members_in_their_order() {
         ",\"trajectory\":[[0.0,0.6,1.5,",
         ",\"inputs\":{\"version\":",
         "\"config\":{\"map\":{\"unknown\":\"blocked\",\"unknown_penalty\":",
-        "\"obstacles\":[],\"polygons\":[],\"hidden_cells\":[],\"moving\":[],\"random\":null,\"disturbances\":null,\"goal_tolerance_m\":null,\"arrival\":\"standing\",\"time_limit_s\":",
+        "\"obstacles\":[],\"polygons\":[],\"hidden_cells\":[],\"absent_cells\":[],\"elusive\":[],\"moving\":[],\"random\":null,\"disturbances\":null,\"goal_tolerance_m\":null,\"arrival\":\"standing\",\"reached_by\":\"truth\",\"time_limit_s\":",
         ",\"stuck_window_s\":20.0,\"budget\":null",
     ];
     let mut rest = text.as_str();

@@ -45,7 +45,7 @@ struct Believed<'a> {
 
 impl EpisodeObserver for Believed<'_> {
     fn decided(&mut self, cycle: &Cycle<'_>) {
-        let believed = cycle.controller.movers();
+        let believed = cycle.navigator.movers();
         self.cycles += u32::from(!believed.is_empty());
         for mover in believed.iter().filter(|mover| mover.unseen_s == 0.0) {
             let off_m = |truth: &MovingObstacle| truth.at(cycle.t_s).centre.distance(mover.centre);
@@ -56,9 +56,9 @@ impl EpisodeObserver for Believed<'_> {
         let is_in_hall =
             |mover: &MovingObstacle| (0.4..5.6).contains(&mover.at(cycle.t_s).centre.y);
         if self.movers.iter().all(is_in_hall) {
-            self.sensed = cycle.controller.sensed().count_ones();
+            self.sensed = cycle.navigator.sensed().count_ones();
         }
-        self.waited += u32::from(cycle.controller.evaluation().waits_for_mover());
+        self.waited += u32::from(cycle.navigator.evaluation().waits_for_mover());
     }
 }
 

@@ -2,9 +2,13 @@
 //! way-points: whole runs.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
+#[path = "../../keyway/tests/support/driving.rs"]
+mod driving;
+
+use driving::bound_for;
 use keyway::geometry::{Disc, Point, wrap_angle};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::{Controller, Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
+use keyway::navigate::{Goal, NavigateError, RecoveryCounts, RecoveryKind, Stack};
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
 use proptest::prelude::*;
@@ -265,7 +269,7 @@ fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
     let stack = Stack::keyway(&robot);
     let ask = |yaw_deg: f64| {
         let goal = Goal::try_from(vec![0.35, 0.5, yaw_deg]).unwrap();
-        Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(0.45, 1.3), goal).map(drop)
+        bound_for(&map, &stack.fit(&robot).unwrap(), Point::new(0.45, 1.3), goal).map(drop)
     };
     let refused = ask(0.0).unwrap_err();
     let NavigateError::GoalHeading { heading_rad, fits, .. } = &refused else {

@@ -30,7 +30,7 @@ fn room(blocks: &[(u32, u32)]) -> OccupancyGrid {
 /// Sees everything in the room.
 fn robot(is_long: bool, reverses: bool, actuation_delay_s: f64) -> Robot {
     let mut robot = Robot { actuation_delay_s, ..Robot::small() };
-    robot.sensor.range_m = 10.0;
+    robot.sensors[0].range_m = 10.0;
     robot.limits = Limits { v_min_mps: if reverses { -0.3 } else { 0.0 }, ..robot.limits };
     if is_long {
         robot.footprint = Footprint::rectangle(0.45, 0.25).unwrap();

@@ -1,11 +1,15 @@
 //! A robot drives where it has seen that nothing stands, and no faster than it can stop there.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
+#[path = "../../keyway/tests/support/driving.rs"]
+mod driving;
+
+use driving::{bound_for, next_step};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::{Blocked, Controller, Stack, Step};
+use keyway::navigate::{Blocked, Stack, Step};
 use keyway::robot::{Footprint, Robot};
-use keyway::sense::Scan;
+use keyway::sense::{Observation, Scan};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::{
     Action, Control, Disturbances, Outcome, Participant, RunRules, StandingPolygon, World, simulate,
@@ -47,7 +51,7 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
         robot.limits.v_max_mps = v_max_mps;
         robot.limits.acceleration_mps2 = brakes_mps2;
         robot.limits.deceleration_mps2 = brakes_mps2;
-        robot.sensor.period_s = period_s;
+        robot.sensors[0].period_s = period_s;
         for (name, stack) in stacks(&robot) {
             let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
             let mut episode = Episode::new(hall(), robot.clone(), start, goal);
@@ -66,10 +70,39 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
     }
 }
 
+/// Known walls beside and behind the ground that was not seen are no ground that was: in a corridor
+/// as wide as one or two large cells, a robot sees no farther either.
+#[test]
+fn nothing_is_touched_that_stands_beyond_the_range_of_a_narrow_corridor() {
+    let mut robot = Robot::small();
+    robot.limits.v_max_mps = 2.0;
+    robot.limits.acceleration_mps2 = 0.5;
+    robot.limits.deceleration_mps2 = 0.5;
+    for (cell_m, rows) in [(1.0, 1), (0.5, 2)] {
+        let (columns, y) = ((30.0 / cell_m) as u64, 0.5 * f64::from(rows + 2) * cell_m);
+        let frame = GridFrame::new(columns, rows as u64 + 2, cell_m, Pose::default()).unwrap();
+        let corridor = OccupancyGrid::from_fn(frame, |cell| {
+            let is_inside =
+                (1..=rows).contains(&cell.y) && (1..columns as i32 - 1).contains(&cell.x);
+            if is_inside { CellState::Free } else { CellState::Occupied }
+        });
+        for (name, stack) in stacks(&robot) {
+            let (start, goal) = (Point::new(1.5, y), Point::new(28.5, y));
+            let mut episode = Episode::new(corridor.clone(), robot.clone(), start, goal);
+            episode.obstacles = vec![Disc::new(Point::new(20.0, y), 0.4)];
+            episode.robots[0].stack = stack;
+            let RobotReport { outcome, run, .. } = run_episode(&episode).unwrap().first();
+            assert_ne!(outcome, EpisodeOutcome::Collided, "{name}, cells of {cell_m} m");
+            let driven_m = run.unwrap().length_m;
+            assert!(driven_m > 12.0 || name != "keyway", "cells of {cell_m} m: {driven_m}");
+        }
+    }
+}
+
 /// The command of a step and, when it is the sensor's silence, since when.
 fn command(step: &Step) -> (Velocity, Option<f64>) {
     match step {
-        Step::Blocked { command, why: Blocked::SensorSilent { silent_s } } => {
+        Step::Blocked { command, why: Blocked::SensorSilent { silent_s, .. } } => {
             (*command, Some(*silent_s))
         }
         step => (step.command(), None),
@@ -78,7 +111,7 @@ fn command(step: &Step) -> (Velocity, Option<f64>) {
 
 /// Scans that say nothing.
 fn silent_scans(robot: &Robot) -> [Scan; 4] {
-    let nothing = Scan::of_nothing(&robot.sensor);
+    let nothing = Scan::of_nothing(&robot.sensors[0]);
     let all =
         |range_m: f64| Scan { ranges_m: vec![range_m; nothing.ranges_m.len()], ..nothing.clone() };
     [Scan::default(), all(f64::NAN), all(0.0), Scan { ranges_m: vec![], ..nothing.clone() }]
@@ -90,14 +123,19 @@ fn a_robot_that_has_never_seen_anything_stands() {
         for (name, stack) in stacks(&robot) {
             for scan in silent_scans(&robot) {
                 let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
-                let mut controller =
-                    Controller::new(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
+                let mut navigator =
+                    bound_for(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
                 let pose = Pose::new(1.0, 2.0, 0.0);
                 for _ in 0..30 {
-                    let step = controller.step(pose, Velocity::ZERO, &scan);
+                    let step = next_step(&mut navigator, pose, Velocity::ZERO, &scan);
                     assert_eq!(command(&step), (Velocity::ZERO, Some(f64::INFINITY)), "{name}");
                 }
-                let step = controller.step(pose, Velocity::ZERO, &Scan::of_nothing(&robot.sensor));
+                let step = next_step(
+                    &mut navigator,
+                    pose,
+                    Velocity::ZERO,
+                    &Scan::of_nothing(&robot.sensors[0]),
+                );
                 assert!(matches!(step, Step::Drive(command) if command.v > 0.0), "{name} {step:?}");
             }
         }
@@ -111,16 +149,17 @@ fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
         for (name, stack) in stacks(&robot) {
             for silent in silent_scans(&robot) {
                 let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
-                let mut controller =
-                    Controller::new(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
+                let mut navigator =
+                    bound_for(&hall(), &stack.fit(&robot).unwrap(), start, goal).unwrap();
                 let world = World::from_known(&hall(), vec![]).unwrap();
                 let (mut pose, mut velocity) = (Pose::new(1.0, 2.0, 0.0), Velocity::ZERO);
                 let mut cycle = 0.0;
                 let mut drive = |for_s: f64, is_silent: bool| {
                     let mut last = (Velocity::ZERO, None);
                     for _ in 0..(for_s / robot.cycle_s).round() as u32 {
-                        let seen = world.at(cycle * robot.cycle_s).cast(pose, &robot.sensor);
-                        let step = controller.step(
+                        let seen = world.at(cycle * robot.cycle_s).cast(pose, &robot.sensors[0]);
+                        let step = next_step(
+                            &mut navigator,
                             pose,
                             velocity,
                             if is_silent { &silent } else { &seen },
@@ -153,8 +192,9 @@ fn a_published_stack_does_not_ask_for_scans() {
     let stack = Stack::published_by_name("s0-key-point").unwrap();
     let known = OccupancyGrid::from_ascii(&["...................."; 9]);
     let (start, goal) = (Point::new(1.5, 4.5), Point::new(18.5, 4.5));
-    let mut controller = Controller::new(&known, &stack.fit(&robot).unwrap(), start, goal).unwrap();
-    let step = controller.step(Pose::new(1.5, 4.5, 0.0), Velocity::ZERO, &Scan::default());
+    let mut navigator = bound_for(&known, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let step =
+        next_step(&mut navigator, Pose::new(1.5, 4.5, 0.0), Velocity::ZERO, &Scan::default());
     assert!(matches!(step, Step::Drive(command) if command.v > 0.0), "{step:?}");
 }
 
@@ -170,7 +210,7 @@ fn slow_and_lossy_sensors_drive() {
         (Some(0.2), 0.3),
     ] {
         let mut robot = Robot::small();
-        robot.sensor.period_s = period_s;
+        robot.sensors[0].period_s = period_s;
         let (start, goal) = (Point::new(1.0, 2.0), Point::new(15.0, 2.0));
         let mut episode = Episode::new(hall(), robot, start, goal);
         episode.obstacles = vec![Disc::new(Point::new(8.0, 2.1), 0.3)];
@@ -188,18 +228,19 @@ fn slow_and_lossy_sensors_drive() {
 fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) + Sync) -> Outcome {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let stack = Stack::keyway(robot);
-    let mut controller = Controller::new(&hall(), &stack.fit(robot).unwrap(), start, goal).unwrap();
+    let mut navigator = bound_for(&hall(), &stack.fit(robot).unwrap(), start, goal).unwrap();
     let world = World::from_known(&hall(), unknown).unwrap();
-    let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
+    let mut decide = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
         let mut scan = scan.clone();
         change(&mut scan);
-        let step = controller.step(pose, velocity, &scan);
+        let step = next_step(&mut navigator, pose, velocity, &scan);
         let action = match step {
-            Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
             Step::Arrived => Action::Arrived,
+            step => Action::Drive(step.command()),
         };
-        let remaining_m = controller.guidance().remaining_m;
-        Control { action, remaining_m, route: controller.ways_taken() }
+        let remaining_m = navigator.guidance().unwrap().remaining_m;
+        Control { action, remaining_m, route: navigator.ways_taken() }
     };
     let goal_tolerance_m = stack.controller.goal_tolerance_m;
     let participant = Participant {
@@ -228,7 +269,7 @@ fn a_robot_does_not_stop_for_its_own_housing() {
     }
     // The same by the least range of the sensor, which may be larger than the robot.
     let mut robot = Robot::small();
-    robot.sensor.range_min_m = 0.25;
+    robot.sensors[0].range_min_m = 0.25;
     let housing = |scan: &mut Scan| scan.ranges_m[170..190].fill(0.24);
     assert_eq!(drive_changed(&robot, vec![], housing), Outcome::Reached);
 }

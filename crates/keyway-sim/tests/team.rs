@@ -55,7 +55,7 @@ struct Watched {
 impl EpisodeObserver for Watched {
     fn decided(&mut self, cycle: &Cycle<'_>) {
         self.cycles += 1;
-        self.first_x_m.get_or_insert(cycle.pose.x);
+        self.first_x_m.get_or_insert(cycle.observation.pose.x);
     }
 }
 

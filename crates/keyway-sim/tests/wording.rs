@@ -284,7 +284,7 @@ fn messages_that_help() {
             "robot",
             "beams = 360",
             "beams = -1",
-            "line 17, column 9: `sensor.beams`: invalid value: integer `-1`, expected a whole number from \
+            "line 17, column 9: `sensors[0].beams`: invalid value: integer `-1`, expected a whole number from \
              0 to 4294967295",
         ),
         (

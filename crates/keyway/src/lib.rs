@@ -3,7 +3,7 @@
 //! A global search finds a route, a smoother makes it short and safe, and a local planner, which
 //! searches courses through space and time, drives it among obstacles nobody has mapped: the stack
 //! `keyway`, the default. Others, such as dynamic window approaches, are there by name. For now a
-//! robot is a differential drive with one lidar at its centre.
+//! robot is a differential drive with up to eight lidars.
 //!
 //! Data flows one way, each stage a module that knows only the earlier ones:
 //!
@@ -16,21 +16,23 @@
 //! | sense | [`sense`] | scans -> what no map shows |
 //! | guide | [`guide`] | a path -> the point to drive towards |
 //! | decide | [`local`] | a scene -> a velocity |
-//! | navigate | [`navigate`] | all of the above, as a value with a `step` |
+//! | navigate | [`navigate`] | all of the above, as a value that observes and steps |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs
 //! give equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the
 //! few functions that panic, such as on grids of different sizes, say so.
 //!
 //! ```
-//! use keyway::{Controller, OccupancyGrid, Point, Robot, Stack};
+//! use keyway::{Navigator, OccupancyGrid, Point, Pose, Robot, Stack};
 //!
 //! let map = OccupancyGrid::from_ascii(&["........", "...##...", "...##...", "........"]);
 //! let robot = Robot::small();
 //! let stack = Stack::keyway(&robot).fit(&robot)?;
-//! let (start, goal) = (Point::new(0.5, 0.5), Point::new(7.5, 3.5));
-//! let controller = Controller::new(&map, &stack, start, goal)?;
-//! assert!(controller.route().smoothed.length_m() < 8.7);
+//! let mut navigator = Navigator::new(&map, &stack)?;
+//! navigator.relocate(Pose::new(0.5, 0.5, 0.0));
+//! navigator.set_goal(Point::new(7.5, 3.5))?;
+//! let route = navigator.route().expect("it has a goal");
+//! assert!(route.smoothed.length_m() < 8.7);
 //! # Ok::<(), keyway::navigate::NavigateError>(())
 //! ```
 //!
@@ -41,8 +43,8 @@
 //! | `images` | BMP, GIF, JPEG and TIFF images as maps; turns `formats` on |
 //! | `schema` | JSON schemas of all parameters |
 //!
-//! In a robot, call [`navigate::Controller::step`] once per cycle with pose, velocity and scan; the
-//! example `own_robot` is such a loop.
+//! In a robot, give [`Navigator::observe`] what it measures, and call [`Navigator::step`] once per
+//! cycle; the example `own_robot` is such a loop.
 
 mod config_error;
 #[cfg(feature = "formats")]
@@ -70,6 +72,6 @@ pub use config_error::ConfigError;
 // The nouns of a control loop.
 pub use geometry::{Point, Pose, Velocity};
 pub use map::OccupancyGrid;
-pub use navigate::{Controller, Goal, Stack, Step};
+pub use navigate::{Goal, Navigator, Stack, Step};
 pub use robot::Robot;
 pub use sense::Scan;

@@ -2,11 +2,15 @@
 //! harmless.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/driving.rs"]
+mod driving;
+
+use driving::{bound_for, next_step};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::guide::GuideConfig;
 use keyway::local::{Explanation, LocalConfig};
 use keyway::map::OccupancyGrid;
-use keyway::navigate::{Controller, NavigateError, Stack, Step};
+use keyway::navigate::{NavigateError, Stack};
 use keyway::robot::{Footprint, Limits, RangeSensor, Robot};
 use keyway::sense::Scan;
 use keyway::smooth::SmootherConfig;
@@ -49,19 +53,16 @@ fn has_a_number_that_is_none(explanation: &Explanation) -> bool {
 
 /// Drives a few cycles, towards the obstacle and around it.
 fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> {
-    let mut controller = Controller::new(&hall(), &stack.fit(robot)?, START, Point::new(8.5, 1.5))?;
+    let mut navigator = bound_for(&hall(), &stack.fit(robot)?, START, Point::new(8.5, 1.5))?;
     let mut pose = Pose::new(START.x, START.y, 0.3);
     let mut velocity = Velocity::ZERO;
     for _ in 0..3 {
-        velocity = match controller.step(pose, velocity, &scan()) {
-            Step::Drive(command) | Step::Blocked { command, .. } => command,
-            Step::Arrived => Velocity::ZERO,
-        };
+        velocity = next_step(&mut navigator, pose, velocity, &scan()).command();
         assert!(velocity.v.is_finite() && velocity.omega.is_finite(), "{what}");
         velocity = robot.limits.reached(Velocity::ZERO, velocity, robot.cycle_s);
         pose = pose.after_arc(velocity, robot.cycle_s);
     }
-    assert!(!has_a_number_that_is_none(&controller.explain()), "{what}");
+    assert!(!has_a_number_that_is_none(&navigator.explain()), "{what}");
     Ok(())
 }
 
@@ -146,8 +147,8 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 angular_acceleration_radps2: rates.2,
                 angular_deceleration_radps2: rates.3,
             };
-            let sensor = RangeSensor::new(90, 360.0, 5.0);
-            Robot { footprint, cycle_s, actuation_delay_s, safety_margin_m, limits, sensor }
+            let sensors = vec![RangeSensor::new(90, 360.0, 5.0)];
+            Robot { footprint, cycle_s, actuation_delay_s, safety_margin_m, limits, sensors }
         },
     )
 }

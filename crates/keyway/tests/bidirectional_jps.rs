@@ -35,6 +35,11 @@ fn any_map() -> impl Strategy<Value = Raw> {
     })
 }
 
+/// Rules that miss no path.
+fn any_meeting() -> impl Strategy<Value = JumpMeeting> {
+    prop_oneof![Just(JumpMeeting::Generated), Just(JumpMeeting::Expanded), Just(JumpMeeting::Best)]
+}
+
 fn any_heuristic() -> impl Strategy<Value = Heuristic> {
     prop_oneof![
         Just(Heuristic::Octile),
@@ -45,10 +50,13 @@ fn any_heuristic() -> impl Strategy<Value = Heuristic> {
 }
 
 /// Both planners, with parameters far from the paper's as well.
-fn any_planners(meeting: JumpMeeting) -> impl Strategy<Value = [PlannerConfig; 2]> {
+fn any_planners(
+    meeting: impl Strategy<Value = JumpMeeting>,
+) -> impl Strategy<Value = [PlannerConfig; 2]> {
     let keys = prop_oneof![Just(OpenKeys::Kept), Just(OpenKeys::Renewed)];
     let weight = || prop_oneof![Just(0.0), Just(1.0), Just(3.0), 0.0..1e30f64];
-    (keys, any_heuristic(), weight(), weight()).prop_map(move |(keys, heuristic, a, b)| {
+    let any = (meeting, keys, any_heuristic(), weight(), weight());
+    any.prop_map(|(meeting, keys, heuristic, a, b)| {
         let moving = BidirectionalJpsConfig { meeting, keys, heuristic, a, b };
         let fixed = BidirectionalJpsFixedConfig { meeting, heuristic, a };
         [PlannerConfig::BidirectionalJps(moving), PlannerConfig::BidirectionalJpsFixed(fixed)]
@@ -113,7 +121,7 @@ proptest! {
 
     #[test]
     fn a_path_that_exists_is_found(raw in any_map(), ends: (u32, u32, u32, u32),
-                                   planners in any_planners(JumpMeeting::Generated)) {
+                                   planners in any_planners(any_meeting())) {
         let query = query_on(&raw, ends);
         for planner in planners {
             match checked_plan(&planner, &raw, &query) {
@@ -129,10 +137,35 @@ proptest! {
         }
     }
 
+    /// Going on after the sides have met never makes the path longer, and what is left of it then
+    /// was expanded, too.
+    #[test]
+    fn going_on_is_no_worse(raw in any_map(), ends: (u32, u32, u32, u32),
+                            of_first in any_planners(Just(JumpMeeting::Generated))) {
+        let query = query_on(&raw, ends);
+        let of_best = of_first.clone().map(|planner| match planner {
+            PlannerConfig::BidirectionalJps(config) => {
+                let meeting = JumpMeeting::Best;
+                PlannerConfig::BidirectionalJps(BidirectionalJpsConfig { meeting, ..config })
+            }
+            PlannerConfig::BidirectionalJpsFixed(config) => {
+                let meeting = JumpMeeting::Best;
+                PlannerConfig::BidirectionalJpsFixed(BidirectionalJpsFixedConfig { meeting, ..config })
+            }
+            other => other,
+        });
+        for (first, best) in of_first.iter().zip(&of_best) {
+            let Ok(first) = checked_plan(first, &raw, &query) else { continue };
+            let best = checked_plan(best, &raw, &query).unwrap();
+            prop_assert!(best.cost.steps() <= first.cost.steps(), "{}", raw.drawing());
+            prop_assert!(best.statistics.expanded() >= first.statistics.expanded());
+        }
+    }
+
     /// With the literal rule only moving targets are missed.
     #[test]
     fn the_literal_rule_gives_legal_paths(raw in any_map(), ends: (u32, u32, u32, u32),
-                                          planners in any_planners(JumpMeeting::Literal)) {
+                                          planners in any_planners(Just(JumpMeeting::Literal))) {
         let query = query_on(&raw, ends);
         let exists = raw.optimum(&query, &Rules::default()).is_some();
         let fixed = checked_plan(&planners[1], &raw, &query);

@@ -1,13 +1,16 @@
-//! What a controller refuses to drive, and what it says then.
+//! Tasks that a navigator refuses, and what it says then.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/building.rs"]
 mod building;
+#[path = "support/driving.rs"]
+mod driving;
 
 use building::{GOAL, START, blocks, building};
+use driving::bound_for;
 use keyway::geometry::Point;
 use keyway::map::{Hindrance, Separation};
-use keyway::navigate::{Blocked, Controller, NavigateError, Stack};
+use keyway::navigate::{Blocked, NavigateError, Stack};
 use keyway::plan::{PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
 use serde_json::{Value, json};
@@ -17,9 +20,8 @@ fn starts_and_goals_that_are_no_places() {
     let (map, robot) = (building(), Robot::small());
     let mut stack = Stack::key_point_fusion(&robot);
     stack.controller.start_error_m = 0.0;
-    let ask = |start, goal| {
-        Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap()
-    };
+    let ask =
+        |start, goal| bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap();
     let nowhere = Point::new(f64::NAN, 1.0);
     let start = ask(nowhere, GOAL);
     assert!(matches!(start, NavigateError::NotFinite { end: PathEnd::Start, .. }), "{start}");
@@ -37,9 +39,7 @@ fn starts_and_goals_that_are_no_places() {
         "at the start (1.25, 0.68) the robot (radius 0.18 m) touches something (an obstacle is 0.180 m away); \
          move the start away from it"
     );
-    assert!(
-        Controller::new(&map, &stack.fit(&robot).unwrap(), Point::new(1.25, 0.681), GOAL).is_ok()
-    );
+    assert!(bound_for(&map, &stack.fit(&robot).unwrap(), Point::new(1.25, 0.681), GOAL).is_ok());
 }
 
 #[test]
@@ -65,9 +65,8 @@ fn refuses_what_cannot_be_driven() {
     let map = building();
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
-    let ask = |start, goal| {
-        Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap()
-    };
+    let ask =
+        |start, goal| bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).err().unwrap();
     let in_wall = ask(Point::new(0.1, 1.0), GOAL);
     let NavigateError::NoRoom { end, nearest, .. } = &in_wall else { panic!("{in_wall}") };
     assert_eq!(*end, PathEnd::Start);
@@ -76,7 +75,7 @@ fn refuses_what_cannot_be_driven() {
     let text = in_wall.to_string();
     assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
     let solid = blocks(&["###", "###"]);
-    let nowhere = Controller::new(&solid, &stack.fit(&robot).unwrap(), Point::new(0.5, 0.5), GOAL);
+    let nowhere = bound_for(&solid, &stack.fit(&robot).unwrap(), Point::new(0.5, 0.5), GOAL);
     let text = nowhere.err().unwrap().to_string();
     assert!(text.ends_with("; no other place on this map has room either"), "{text}");
     // Beside a wall, nearer than the radius.
@@ -91,7 +90,7 @@ fn refuses_what_cannot_be_driven() {
     let wide = Robot { footprint: Footprint::circle(0.6).unwrap(), ..Robot::small() };
     let its_stack = Stack::key_point_fusion(&wide);
     let (start, goal) = (Point::new(1.5, 2.0), Point::new(6.5, 2.0));
-    let narrow = Controller::new(&map, &its_stack.fit(&wide).unwrap(), start, goal).err().unwrap();
+    let narrow = bound_for(&map, &its_stack.fit(&wide).unwrap(), start, goal).err().unwrap();
     let NavigateError::NoWay { why: Separation::TooNarrow { widest_m, .. } } = narrow else {
         panic!("{narrow}")
     };
@@ -116,8 +115,8 @@ fn errors_name_the_whole_path_of_a_field() {
             *at.unwrap() = part;
         }
         let stack: Stack = serde_json::from_value(json).unwrap();
-        let controller = |fitted| Controller::new(&map, &fitted, START, GOAL);
-        match stack.fit(robot).map_err(NavigateError::from).and_then(controller).err().unwrap() {
+        let navigator = |fitted| bound_for(&map, &fitted, START, GOAL);
+        match stack.fit(robot).map_err(NavigateError::from).and_then(navigator).err().unwrap() {
             NavigateError::Config(error) => (error.path, error.reason),
             other => panic!("{other}"),
         }

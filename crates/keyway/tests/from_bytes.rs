@@ -37,7 +37,7 @@ const SCENARIOS: &str = "version 1\n0\tcave.map\t3\t2\t1\t0\t0\t1\t2\n";
 
 const ROBOT: &str = "cycle_s = 0.1\n[footprint]\nradius_m = 0.18\n[limits]\nv_min_mps = 0.0\n\
     v_max_mps = 0.5\nomega_max_radps = 1.5\nacceleration_mps2 = 0.5\ndeceleration_mps2 = 0.5\n\
-    angular_acceleration_radps2 = 3.0\nangular_deceleration_radps2 = 3.0\n[sensor]\n\
+    angular_acceleration_radps2 = 3.0\nangular_deceleration_radps2 = 3.0\n[[sensors]]\n\
     beams = 360\nfield_of_view_deg = 360.0\nrange_m = 3.5\n";
 
 /// The files that the caller has in memory.

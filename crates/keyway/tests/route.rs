@@ -1,10 +1,14 @@
 //! The pipeline from two positions to a smoothed route.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/driving.rs"]
+mod driving;
+
+use driving::bound_for;
 use keyway::geometry::Point;
 use keyway::guide::{Carrot, CarrotConfig};
 use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation};
-use keyway::navigate::{Controller, FittedStack, Stack};
+use keyway::navigate::{FittedStack, Stack};
 use keyway::plan::{AStar, Dijkstra, PathEnd, PlanError};
 use keyway::robot::{Footprint, Robot};
 use keyway::route::{EndRule, Route, RouteQuery, Stage, StageObserver, plan_route, why_no_path};
@@ -114,12 +118,12 @@ fn unknown_cells_may_be_what_separates() {
 }
 
 #[test]
-fn a_controller_follows_the_route_of_the_pipeline() {
+fn a_navigator_follows_the_route_of_the_pipeline() {
     let rows = ["..........", "....##....", "....##....", ".........."];
     let (grid, robot) = (OccupancyGrid::from_ascii(&rows), Robot::small());
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(0.5, 0.5), Point::new(9.4, 3.6));
-    let controller = Controller::new(&grid, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let navigator = bound_for(&grid, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let map = SearchMap::new(&grid, stack.map.clone()).unwrap();
     let planner = stack.planner.build(&map).unwrap();
     let smoother = stack.smoother.build().unwrap();
@@ -127,19 +131,19 @@ fn a_controller_follows_the_route_of_the_pipeline() {
     let query = RouteQuery { ends, ..RouteQuery::new(start, goal) };
     let mut workspace = Workspace::default();
     let route = plan_route(&map, &*planner, &*smoother, &query, &mut workspace, &mut ()).unwrap();
-    assert_eq!(controller.route(), &route);
+    assert_eq!(navigator.route(), Some(&route));
 }
 
 /// Each part of a fitted stack can be exchanged.
 #[test]
-fn a_controller_takes_parts_of_ones_own() {
+fn a_navigator_takes_parts_of_ones_own() {
     let grid = OccupancyGrid::from_ascii(&["..........", "....##....", ".........."]);
     let robot = Robot { footprint: Footprint::circle(0.1).unwrap(), ..Robot::small() };
     let fitted = Stack::keyway(&robot).fit(&robot).unwrap();
     let (start, goal) = (Point::new(0.5, 1.5), Point::new(9.5, 1.5));
     let route = |stack: &FittedStack| {
-        let controller = Controller::new(&grid, stack, start, goal).unwrap();
-        (controller.route().smoothed.points().len(), controller.guide_points().len())
+        let navigator = bound_for(&grid, stack, start, goal).unwrap();
+        (navigator.route().unwrap().smoothed.points().len(), navigator.guide_points().len())
     };
     let (smoothed, _) = route(&fitted);
     let own = fitted

@@ -1,9 +1,13 @@
-//! The commands of a controller, whatever velocity it is told.
+//! The commands of a navigator, whatever velocity it is told.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/driving.rs"]
+mod driving;
+
+use driving::{bound_for, next_step};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::OccupancyGrid;
-use keyway::navigate::{Controller, Stack};
+use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 use proptest::prelude::*;
@@ -21,7 +25,7 @@ fn stacks(robot: &Robot) -> Vec<Stack> {
     stacks
 }
 
-/// Mostly what a controller may believe: up to twice its limits.
+/// Mostly what a navigator may believe: up to twice its limits.
 fn told(most: f64) -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -2.0 * most..=2.0 * most,
@@ -40,17 +44,17 @@ proptest! {
         let map = OccupancyGrid::from_ascii(&["..........", "......#...", "..........", ".........."]);
         let mut robot = Robot::by_name(name).unwrap();
         robot.actuation_delay_s = delay_cycles * robot.cycle_s;
-        let mut scan = Scan::of_nothing(&robot.sensor);
-        scan.ranges_m[robot.sensor.beams as usize / 2] = range_m;
+        let mut scan = Scan::of_nothing(&robot.sensors[0]);
+        scan.ranges_m[robot.sensors[0].beams as usize / 2] = range_m;
         let limits = &robot.limits;
         let mut driven = 0;
         for stack in stacks(&robot) {
             let ends = (Point::new(1.5, 2.0), Point::new(8.5, 1.5));
             let Ok(fitted) = stack.fit(&robot) else { continue };
-            let Ok(mut controller) = Controller::new(&map, &fitted, ends.0, ends.1) else { continue };
+            let Ok(mut navigator) = bound_for(&map, &fitted, ends.0, ends.1) else { continue };
             driven += 1;
             for &(v, omega) in &velocities {
-                let step = controller.step(Pose::new(x, 2.0, theta), Velocity::new(v, omega), &scan);
+                let step = next_step(&mut navigator, Pose::new(x, 2.0, theta), Velocity::new(v, omega), &scan);
                 let command = step.command();
                 prop_assert!((limits.v_min_mps..=limits.v_max_mps).contains(&command.v), "{step:?} {v} {omega}");
                 prop_assert!(command.omega.abs() <= limits.omega_max_radps, "{step:?} {v} {omega}");

@@ -1,9 +1,13 @@
 //! Starts that are told nearer to something than the robot can stand.
 #![allow(clippy::unwrap_used)]
 
+#[path = "support/driving.rs"]
+mod driving;
+
+use driving::{bound_for, next_step};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::navigate::{Controller, NavigateError, Stack, Step};
+use keyway::navigate::{NavigateError, Stack, Step};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 
@@ -35,11 +39,11 @@ fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
 
 /// The robot's scan of the wall, which is told to be nearer than it is.
 fn scan_of_the_wall(robot: &Robot, told: Pose) -> Scan {
-    let mut scan = Scan::of_nothing(&robot.sensor);
+    let mut scan = Scan::of_nothing(&robot.sensors[0]);
     let to_wall_m = told.y - WALL_M + TOLD_NEARER_M;
     for beam in 0..scan.ranges_m.len() {
         let range_m = -to_wall_m / libm::sin(told.theta + scan.bearing_rad(beam));
-        if (0.0..=robot.sensor.range_m).contains(&range_m) {
+        if (0.0..=robot.sensors[0].range_m).contains(&range_m) {
             scan.ranges_m[beam] = range_m;
         }
     }
@@ -48,8 +52,8 @@ fn scan_of_the_wall(robot: &Robot, told: Pose) -> Scan {
 
 /// The robot's pose after 60 s, and true if it has arrived there.
 fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) {
-    let mut controller =
-        Controller::new(&hall(), &stack.fit(robot).unwrap(), start.point(), GOAL).unwrap();
+    let mut navigator =
+        bound_for(&hall(), &stack.fit(robot).unwrap(), start.point(), GOAL).unwrap();
     let lowest_m = |pose: Pose| match &robot.footprint {
         Footprint::Circle(circle) => pose.y - circle.radius_m(),
         Footprint::Polygon(polygon) => {
@@ -58,9 +62,10 @@ fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) 
         }
     };
     let (mut pose, mut velocity) = (start, Velocity::ZERO);
-    assert!(controller.too_near().is_some(), "{what}");
+    assert!(navigator.too_near().is_some(), "{what}");
     for _ in 0..600 {
-        let command = match controller.step(pose, velocity, &scan_of_the_wall(robot, pose)) {
+        let scan = scan_of_the_wall(robot, pose);
+        let command = match next_step(&mut navigator, pose, velocity, &scan) {
             Step::Arrived => return (pose, true),
             step => step.command(),
         };
@@ -120,8 +125,8 @@ fn a_start_that_is_too_near_by_more_is_refused() {
     let (map, robot) = (hall(), Robot::small());
     let mut stack = Stack::keyway(&robot);
     let ask = |stack: &Stack, y: f64| -> Result<_, NavigateError> {
-        let controller = Controller::new(&map, &stack.fit(&robot)?, Point::new(2.0, y), GOAL)?;
-        Ok(controller.too_near().cloned())
+        let navigator = bound_for(&map, &stack.fit(&robot)?, Point::new(2.0, y), GOAL)?;
+        Ok(navigator.too_near().cloned())
     };
     assert_eq!(stack.controller.start_error_m, 0.05);
     assert_eq!(ask(&stack, 0.24), Ok(None));
@@ -149,11 +154,11 @@ fn a_start_that_is_too_near_by_more_is_refused() {
 fn what_has_been_left_is_not_told_again() {
     let (map, robot) = (hall(), Robot::small());
     let start = Point::new(2.0, 0.2);
-    let mut controller =
-        Controller::new(&map, &Stack::keyway(&robot).fit(&robot).unwrap(), start, GOAL).unwrap();
-    let scan = Scan::of_nothing(&robot.sensor);
+    let mut navigator =
+        bound_for(&map, &Stack::keyway(&robot).fit(&robot).unwrap(), start, GOAL).unwrap();
+    let scan = Scan::of_nothing(&robot.sensors[0]);
     for (y, is_told) in [(0.2, true), (0.229, true), (0.24, false), (0.2, false)] {
-        controller.step(Pose::new(2.0, y, 0.0), Velocity::ZERO, &scan);
-        assert_eq!(controller.too_near().is_some(), is_told, "{y}");
+        next_step(&mut navigator, Pose::new(2.0, y, 0.0), Velocity::ZERO, &scan);
+        assert_eq!(navigator.too_near().is_some(), is_told, "{y}");
     }
 }

@@ -11,7 +11,7 @@ use keyway::map::{
 };
 use keyway::plan::{
     Bidirectional24, Bidirectional24Config, GlobalPlanner, Heuristic, Hsta, HstaConfig, IfNoPath,
-    Miss, Plan, PlanError, PlannerConfig,
+    Miss, OpenKeys, Plan, PlanError, PlannerConfig, WeightAt,
 };
 use keyway::search::{CornerRule, Query, Workspace};
 use proptest::prelude::*;
@@ -90,6 +90,11 @@ fn plan(planner: &impl GlobalPlanner, map: &SearchMap, query: &Query) -> Result<
     planner.plan_into(map, query, &mut workspace, None, &mut plan).map(|()| plan)
 }
 
+fn any_reading() -> impl Strategy<Value = (WeightAt, OpenKeys)> {
+    let weight_at = prop_oneof![Just(WeightAt::Node), Just(WeightAt::Current)];
+    (weight_at, prop_oneof![Just(OpenKeys::Kept), Just(OpenKeys::Renewed)])
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 1000, ..ProptestConfig::default() })]
 
@@ -127,7 +132,8 @@ proptest! {
 
     #[test]
     fn every_node_keeps_the_constraint(raw in any_raw(), rules in any_rules(), ends: (u32, u32, u32, u32),
-                                       constraint in 0u32..6, free_ends in 0i32..4) {
+                                       constraint in 0u32..6, free_ends in 0i32..4,
+                                       (weight_at, keys) in any_reading()) {
         let (query, map) = (query_on(&raw, ends), raw.search_map(&rules));
         if !is_connected(&raw, &query, &rules, |cell| raw.is_free(cell.x, cell.y, rules.unknown)) {
             return Ok(());
@@ -141,6 +147,8 @@ proptest! {
             l1_constraint: f64::from(constraint),
             free_ends_m: f64::from(free_ends),
             corners: rules.corners,
+            weight_at,
+            keys,
             ..HstaConfig::PAPER
         };
         let check = |plan: &Plan, l: u32| {

@@ -1,8 +1,9 @@
 //! Arguments of `keyway batch` and `keyway scene`.
 
-use super::groups::Format;
+use super::groups::{Format, ReachedByArg};
 use super::values::{shard, whole};
 use clap::{Args, Subcommand, ValueEnum};
+use keyway::files::Assignment;
 use keyway::map::MAX_CELLS;
 use keyway::map::formats::DEFAULT_MAX_CELLS;
 use keyway_lab::batch::{BatchRequest, Shard};
@@ -70,7 +71,7 @@ pub(crate) struct MergeArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct BatchArgs {
-    /// Scene files, and folders of them
+    /// Scene files, and folders with scene files in them or in their subfolders
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
     /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one;
@@ -81,6 +82,10 @@ pub(crate) struct BatchArgs {
     /// file with one [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
+    /// Change one value of all robots, such as `robot.cycle_s=0.2`, or one parameter of all stacks,
+    /// such as `controller.blocked_s=5`; may be repeated
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<Assignment>,
     /// Issue only commands after which a robot can still stop before it touches anything, whatever
     /// its stack wants: in all scenes, also where they do not say `safe = true`
     #[arg(long)]
@@ -89,6 +94,10 @@ pub(crate) struct BatchArgs {
     /// scene [default: that of the scene]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
+    /// Reach the goal by the true pose or by the one that the robot believes [default: as the scene
+    /// says, or truth]
+    #[arg(long, value_enum, value_name = "POSE")]
+    pub(crate) reached_by: Option<ReachedByArg>,
     /// How many seeds each scene is driven with: its own, and the numbers that follow
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]

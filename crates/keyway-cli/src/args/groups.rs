@@ -6,17 +6,19 @@ use keyway::files::Assignment;
 use keyway::geometry::Pose;
 use keyway::map::MAX_CELLS;
 use keyway::map::formats::{DEFAULT_MAX_CELLS, ImagePlacement, MapReader};
+use keyway_sim::sim::ReachedBy;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Parameters of planner, smoother and everything else.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct ConfigArgs {
     /// Parameters from a file: any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
     /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its
-    /// name: `hsta.if_no_path=fail`; may be repeated
+    /// name: `hsta.if_no_path=fail`; `navigate` takes those of the robot, too:
+    /// `robot.limits.v_max_mps=0.3`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// What unknown cells count as [default: blocked]
@@ -25,6 +27,14 @@ pub(crate) struct ConfigArgs {
 }
 
 impl ConfigArgs {
+    /// The assignments to values of the robot (`robot.limits.v_max_mps=0.3`), by their paths in a
+    /// robot file, and all other parameters.
+    pub(crate) fn split_robot(&self) -> (Vec<Assignment>, Self) {
+        let robot = self.set.iter().filter_map(Assignment::of_robot).collect();
+        let of_others = self.set.iter().filter(|one| one.of_robot().is_none());
+        (robot, Self { set: of_others.cloned().collect(), ..self.clone() })
+    }
+
     /// The same as words of a command line.
     pub(crate) fn words(&self) -> Vec<OsString> {
         let config = self.config.iter().flat_map(|file| ["--config".into(), file.into()]);
@@ -154,6 +164,24 @@ impl MapLimitArgs {
     /// Reads maps that say themselves where they lie, or lie at the origin.
     pub(crate) fn reader(self) -> MapReader {
         MapReader { max_cells: self.max_cells, ..MapReader::default() }
+    }
+}
+
+/// Pose by which a goal is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReachedByArg {
+    /// The true one
+    Truth,
+    /// The one that the robot believes, as where its localisation is disturbed
+    Belief,
+}
+
+impl From<ReachedByArg> for ReachedBy {
+    fn from(pose: ReachedByArg) -> Self {
+        match pose {
+            ReachedByArg::Truth => Self::Truth,
+            ReachedByArg::Belief => Self::Belief,
+        }
     }
 }
 

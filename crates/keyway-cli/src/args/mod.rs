@@ -12,7 +12,9 @@ use batch::SCENE_EXAMPLES;
 pub(crate) use batch::{BatchArgs, BatchCli, BatchCommand, Keep, MergeArgs, SceneCommand};
 use bench::BENCH_EXAMPLES;
 pub(crate) use bench::{BenchCommand, BenchGridArgs, BenchScaleArgs};
-pub(crate) use groups::{ConfigArgs, Format, PlaceArgs, SizeArgs, StackArgs, Unknown};
+pub(crate) use groups::{
+    ConfigArgs, Format, PlaceArgs, ReachedByArg, SizeArgs, StackArgs, Unknown,
+};
 pub(crate) use replay::{DriveFileArgs, ReplayArgs};
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use terms::{COMPARE_TERMS, GRID_TERMS, PLAN_TERMS, SCALE_TERMS};
@@ -249,6 +251,9 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) goal: Option<PoseArg>,
+    /// If the goal cannot be reached on the map, drive to the nearest place that can
+    #[arg(long)]
+    pub(crate) nearest_reachable: bool,
     /// A way-point on the way to the goal [m]; may be repeated, in the order of the way
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) via: Vec<PositionArg>,
@@ -282,6 +287,10 @@ pub(crate) struct NavigateArgs {
     /// scene, in place of those of the scene
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
+    /// Reach the goal by the true pose or by the one that the robot believes [default: as the scene
+    /// says, or truth]
+    #[arg(long, value_enum, value_name = "POSE")]
+    pub(crate) reached_by: Option<ReachedByArg>,
     /// Of all that is random, in place of the seed of the scene [default: 0]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]

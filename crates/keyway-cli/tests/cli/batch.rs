@@ -14,13 +14,15 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
 /// All that must not depend on how often, where and on how many threads it was made.
-const SAME: [&str; 9] = [
+const SAME: [&str; 11] = [
     "runs.jsonl",
     "runs.csv",
     "summary.csv",
     "summary.md",
     "summary.tex",
     "against_first.tex",
+    "wins.csv",
+    "wins.md",
     "plots/time.svg",
     "plots/success.svg",
     "plots/length_time.svg",
@@ -47,6 +49,10 @@ fn the_results_are_the_same_on_any_number_of_threads_and_in_parts() {
     assert_eq!((&report["schema"], &report["runs"]), (&json!("keyway.batch/1"), &json!(8)));
     assert_eq!(report["stacks"][0]["stack"], "key-point-fusion");
     assert_eq!(report["stacks"][0]["runs"], 4);
+    // Both stacks reach the goal in all four runs.
+    let reached = &report["wins"][0];
+    assert_eq!((&reached["measure"], &reached["equal"]), (&json!("reached"), &json!(4)));
+    assert!(report["cycles"][1]["mean_cycle_us"].is_f64(), "{}", report["cycles"]);
     batch("--out three --jobs 3");
     assert_eq!(results(&folder, "one"), results(&folder, "three"));
     batch("--out a --shard 1/2");

@@ -93,7 +93,7 @@ struct Reasons(Vec<CycleReport>);
 
 impl EpisodeObserver for Reasons {
     fn decided(&mut self, cycle: &Cycle<'_>) {
-        self.0.push(CycleReport::of(cycle, &cycle.controller.explain()));
+        self.0.push(CycleReport::of(cycle, &cycle.navigator.explain()));
     }
 }
 

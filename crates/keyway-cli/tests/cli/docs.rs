@@ -105,10 +105,13 @@ fn the_files_of_the_scene_guide_can_be_used() {
     write(&folder, "scene.toml", scene);
     write(&folder, "movers.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "shapes.toml", &format!("{scene}{}", blocks.next().unwrap()));
+    write(&folder, "door.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "robots.toml", blocks.next().unwrap());
     write(&folder, "rooms.toml", blocks.next().unwrap());
     write(&folder, "random.toml", &format!("{scene}{}", blocks.next().unwrap()));
     write(&folder, "disturbances.toml", blocks.next().unwrap());
+    write(&folder, "few.toml", blocks.next().unwrap());
+    write(&folder, "like.toml", blocks.next().unwrap());
     write(&folder, "robot.toml", blocks.next().unwrap());
     write(&folder, "safe.toml", blocks.next().unwrap());
     write(&folder, "config.toml", blocks.next().unwrap());
@@ -116,9 +119,19 @@ fn the_files_of_the_scene_guide_can_be_used() {
     let line = "navigate --scene scene.toml --robot robot.toml --config config.toml";
     keyway(folder.path(), line).expect_code(0);
     keyway(folder.path(), "navigate --scene scene.toml --config safe.toml").expect_code(0);
-    let disturbed = format!("{line} --disturbances disturbances.toml --format json");
-    let report = keyway(folder.path(), &disturbed).expect_code(0).json();
+    keyway(folder.path(), "navigate --scene scene.toml --robot few.toml").expect_code(0);
+    keyway(folder.path(), "navigate --scene scene.toml --robot like.toml").expect_code(0);
+    // Nobody drives with all of them at once.
+    let disturbed =
+        format!("{line} --disturbances disturbances.toml --time-limit 0.1 --format json");
+    let report = keyway(folder.path(), &disturbed).expect_code(1).json();
     assert_eq!(report["inputs"]["disturbances"]["sensor"]["range_m"], 0.02);
+    assert_eq!(report["inputs"]["disturbances"]["localisation"]["velocity_is_zero"], true);
+    let short = "navigate --scene door.toml --time-limit 0.1 --format json";
+    let report = keyway(folder.path(), short).expect_code(1).json();
+    assert_eq!(report["inputs"]["elusive"][0]["until_s"], 20.0);
+    assert_eq!(report["inputs"]["elusive"][2]["seen"], 0.1);
+    assert!(report["inputs"]["absent_cells"].as_array().unwrap().len() > 10);
     keyway(folder.path(), "navigate --scene robots.toml").expect_code(0);
     keyway(folder.path(), "navigate --scene rooms.toml").expect_code(0);
     let short = "navigate --scene movers.toml --time-limit 0.1 --format json";

@@ -37,6 +37,7 @@ fn a_line_for_every_cycle() {
             ("pose", |v| v.as_array().is_some_and(|pose| pose.len() == 3)),
             ("velocity", |v| v["v_mps"].is_f64() && v["omega_radps"].is_f64()),
             ("guide_m", |v| v.as_array().is_some_and(|point| point.len() == 2)),
+            ("target_m", Value::is_null),
             ("remaining_m", Value::is_f64),
             ("movers", |v| v.as_array().is_some_and(Vec::is_empty)),
             ("walked", |v| v.as_array().is_some_and(Vec::is_empty)),
@@ -155,4 +156,35 @@ fn what_cannot_be_drawn_or_written_is_refused() {
         let error = keyway(folder.path(), &line).expect_code(2).json();
         assert_eq!(error["field"], field, "{error}");
     }
+}
+
+/// Around a disc that no map shows `s4-guided` drives to a point behind it, equation (19) of
+/// [ZhuYin2024], and not to the guide's point; with nothing unknown, to its follower's carrot.
+#[test]
+fn the_target_is_where_the_local_planner_drives() {
+    let folder = folder();
+    let hall = "version = 2\nstack = \"s4-guided\"\nstart = [1, 2, 0]\ngoal = [9, 2]\n\
+        [world]\nwidth_m = 10\nheight_m = 4\nresolution_m = 0.1\n[rules]\ntime_limit_s = 10\n";
+    write(&folder, "free.toml", hall);
+    let disc = "[[unknown]]\nposition = [4.5, 2.05]\nradius_m = 0.3\n";
+    write(&folder, "disc.toml", &format!("{hall}{disc}"));
+    let targets = |scene: &str| -> Vec<[f64; 3]> {
+        // Nobody plans a route around the disc.
+        let line = format!("navigate --scene {scene} --set controller.watch_route=false");
+        keyway(folder.path(), &format!("{line} --explain why.jsonl")).expect_code(1);
+        let lines = lines(&folder, "why.jsonl").into_iter();
+        let asked = lines.filter(|line| !line["target_m"].is_null());
+        let x = |point: &Value| point[0].as_f64().unwrap();
+        asked.map(|line| [&line["pose"], &line["guide_m"], &line["target_m"]].map(x)).collect()
+    };
+    let free = targets("free.toml");
+    assert!(free.len() > 50);
+    for [robot, _, target] in free {
+        assert!((0.0..0.7).contains(&(target - robot)), "{target} from {robot}");
+    }
+    // From where the disc is seen until it is passed.
+    let around = targets("disc.toml");
+    let is_behind =
+        |[robot, guide, target]: &&[f64; 3]| *robot < 4.1 && *target > 4.8 && target - guide > 0.3;
+    assert!(around.iter().filter(is_behind).count() > 5, "{around:?}");
 }

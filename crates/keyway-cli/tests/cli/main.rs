@@ -4,6 +4,7 @@
 mod arguments;
 mod batch;
 mod batch_fleet;
+mod batch_folders;
 mod bench;
 mod compare;
 mod compare_pictures;

@@ -12,7 +12,8 @@ const DOCUMENTS: [&str; 6] = [
 ];
 
 /// What a table comes from: a command, a test, or something that is not here.
-const ORIGINS: [&str; 7] = [
+const ORIGINS: [&str; 8] = [
+    "keyway batch",
     "keyway bench",
     "keyway compare",
     "cargo ",

@@ -226,17 +226,70 @@ fn no_path_leaves_a_report_and_removes_what_it_does_not_belong_to() {
     assert!(!folder.path().join("run/trajectory.csv").exists(), "of the earlier run");
 }
 
+/// A goal in a closed room, and one outside the map.
+#[test]
+fn the_nearest_place_is_driven_to_where_the_goal_cannot_be_reached() {
+    let folder = folder();
+    let rows = ["..........", ".......###", ".......#.#", ".......###", ".........."];
+    let map = format!("type octile\nheight 5\nwidth 10\nmap\n{}\n", rows.join("\n"));
+    write(&folder, "room.map", &map.replace('#', "@"));
+    let drive = |goal: &str| {
+        let line = format!("navigate room.map --start 1.5,2.5 --goal {goal} --format json");
+        keyway(folder.path(), &format!("{line} --nearest-reachable"))
+    };
+    let closed = drive("8.5,2.5").expect_code(0);
+    assert!(closed.err.contains("the goal (8.500, 2.500) cannot be reached"), "{}", closed.err);
+    let report = closed.json();
+    assert_eq!(report["outcome"], "reached");
+    assert_eq!(report["inputs"]["goal"], json!([8.5, 0.5]));
+    let outside = drive("12,0.5").expect_code(0).json();
+    assert_eq!(outside["inputs"]["goal"], json!([9.5, 0.5]));
+    let open = drive("4.2,0.7").expect_code(0);
+    assert_eq!((open.err.as_str(), &open.json()["inputs"]["goal"]), ("", &json!([4.2, 0.7])));
+}
+
+/// A robot of which little is said, and one value of it.
+#[test]
+fn a_robot_is_a_few_lines_and_values_are_set() {
+    let folder = folder();
+    write(&folder, "mine.toml", "radius_m = 0.12\nv_max_mps = 0.4\n");
+    write(&folder, "like.toml", "like = \"small\"\nlimits = { v_max_mps = 0.4 }\n");
+    let robot = |options: &str| {
+        let line = format!("{SHORT} {options}");
+        keyway(folder.path(), &line).expect_code(0).json()["inputs"]["robot"].clone()
+    };
+    let derived = robot("--robot mine.toml");
+    assert_eq!((&derived["limits"]["v_max_mps"], &derived["cycle_s"]), (&json!(0.4), &json!(0.1)));
+    let like = robot("--robot like.toml");
+    assert_eq!(
+        (&like["limits"]["v_max_mps"], &like["footprint"]["radius_m"]),
+        (&json!(0.4), &json!(0.18))
+    );
+    let set =
+        robot("--robot mine.toml --set robot.limits.omega_max_radps=1 --set local.discomfort=1");
+    assert_eq!(set["limits"]["omega_max_radps"], 1.0);
+    let refused = |options: &str| keyway(folder.path(), &format!("{SHORT} {options}")).out;
+    assert!(refused("--set robot.limits.v_max=1").contains("there is no field `limits.v_max`"));
+    assert!(
+        refused("--set robot.cycle_s=0").contains("--set: of the robot: cycle_s must be a time")
+    );
+    assert!(
+        refused("--as-published --set robot.cycle_s=0.2")
+            .contains("--as-published is for the robot `paper`")
+    );
+}
+
 #[test]
 fn robots_by_name_and_from_files() {
     let folder = folder();
     let robot = "footprint = { radius_m = 0.1 }\ncycle_s = 0.2\n[limits]\nv_min_mps = 0.0\nv_max_mps = 0.4\n\
                  omega_max_radps = 1.0\nacceleration_mps2 = 0.5\ndeceleration_mps2 = 0.5\n\
                  angular_acceleration_radps2 = 3.0\nangular_deceleration_radps2 = 3.0\n\
-                 [sensor]\nbeams = 90\nfield_of_view_deg = 360.0\nrange_m = 3.0\n";
+                 [[sensors]]\nbeams = 90\nfield_of_view_deg = 360.0\nrange_m = 3.0\n";
     write(&folder, "my.toml", robot);
     let report = keyway(folder.path(), &format!("{SHORT} --robot my.toml --radius 0.15"));
     let inputs = report.expect_code(0).json()["inputs"].clone();
-    assert_eq!(inputs["robot"]["sensor"]["beams"], 90);
+    assert_eq!(inputs["robot"]["sensors"][0]["beams"], 90);
     assert_eq!(inputs["robot"]["footprint"]["radius_m"], 0.15);
     // The stack follows from the robot: radius and a cycle at full speed.
     let clearance = inputs["config"]["map"]["clearance_m"].as_f64().unwrap();

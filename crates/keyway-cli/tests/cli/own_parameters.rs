@@ -1,7 +1,8 @@
 //! Parameters that name their planner or smoother, on the command line and in files: what an error
 //! advises can be pasted into the command that gave it.
 
-use crate::support::{folder, keyway, write};
+use crate::batch::scenes;
+use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
 
 /// A gap of one cell, which the distance of `hsta` closes.
@@ -92,4 +93,33 @@ fn in_files() {
     write(&folder, "own.toml", "[hsta]\nname = \"jps\"\n");
     let wrong = keyway(folder.path(), &format!("{alone} --planner hsta")).expect_code(2).err;
     assert!(wrong.contains("the name of hsta cannot be set"), "{wrong}");
+}
+
+/// Values of the robot and of the stack, for all runs; and those that there are not.
+#[test]
+fn values_are_set_for_all_runs() {
+    let folder = scenes();
+    let batch = |rest: &str| keyway(folder.path(), &format!("batch scenes {rest}"));
+    let speeds = |out: &str| -> Vec<f64> {
+        let rows = read(&folder, &format!("{out}/runs.jsonl"));
+        let row = |line: &str| serde_json::from_str::<Value>(line).unwrap();
+        rows.lines().map(|line| row(line)["mean_speed_mps"].as_f64().unwrap()).collect()
+    };
+    batch("--out as-they-are").expect_code(0);
+    batch("--out slow --set robot.limits.v_max_mps=0.2 --set controller.blocked_s=5")
+        .expect_code(0);
+    let (usual, slow) = (speeds("as-they-are"), speeds("slow"));
+    assert!(usual.iter().all(|&mps| mps > 0.25) && slow.iter().all(|&mps| mps <= 0.2), "{slow:?}");
+    for (value, text) in [
+        ("robot.limits.v_max=1", "there is no field `limits.v_max`"),
+        ("robot.limits.v_max_mps=-1", "v_max_mps"),
+        ("controller.blocked_s=-1", "controller.blocked_s must be a positive number, got -1"),
+        ("controller.block=1", "controller.block"),
+    ] {
+        let refused = batch(&format!("--out never --set {value} --format json")).expect_code(2);
+        let error = refused.json();
+        assert_eq!(error["field"], "--set", "{error}");
+        let message = error["message"].as_str().unwrap();
+        assert!(message.contains(text), "{value}: {message}");
+    }
 }

@@ -186,16 +186,26 @@ fn every_kind_of_file_is_named_with_its_line() {
     }
 }
 
-/// All at once, not one after the other.
+/// Its size and its speed are enough, or another robot; both are named at once.
 #[test]
-fn every_missing_field_of_a_robot_is_named() {
+fn what_a_robot_file_needs_is_named() {
     let folder = folder();
-    write(&folder, "a.toml", "footprint = { radius_m = 0.2 }\n[sensor]\nbeams = 9\n");
-    let parts = [
-        "a.toml: missing fields `cycle_s`, `limits.v_min_mps`, `limits.v_max_mps`, ",
-        "`limits.angular_deceleration_radps2`, `sensor.field_of_view_deg`, `sensor.range_m`",
-    ];
+    write(&folder, "a.toml", "cycle_s = 0.1\n");
+    let parts =
+        ["a.toml: the robot needs `footprint`, or the `radius_m`", "and `v_max_mps`", "`like = "];
     refused(&folder, "list dwa --robot a.toml", &parts);
+    write(&folder, "b.toml", "like = \"small\"\n[[sensors]]\nbeams = 9\n");
+    refused(
+        &folder,
+        "list dwa --robot b.toml",
+        &["b.toml: line 2", "missing field `field_of_view_deg`"],
+    );
+    write(&folder, "c.toml", "like = \"smal\"\n");
+    refused(
+        &folder,
+        "list dwa --robot c.toml",
+        &["c.toml: like must be a bundled robot (small, ", "got `smal`"],
+    );
 }
 
 /// A device that never ends, and pipes, which say nothing about their size.

@@ -2,7 +2,7 @@
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
-use crate::color::{BLOCKED, OBSTACLE, Rgb, SENSED};
+use crate::color::{ABSENT, BLOCKED, OBSTACLE, Rgb, SENSED};
 use crate::legend::{LegendEntry, LegendMark};
 use keyway::map::{BitGrid, Cell, CellState};
 
@@ -67,6 +67,11 @@ impl<'a> CellTint<'a> {
     pub fn unknown_obstacles(cells: &'a [Cell]) -> Self {
         let tint = Self::of(Cells::List(cells), "unknown obstacle (cells)", OBSTACLE);
         Self { depth: Depth::Obstacles, ..tint }
+    }
+
+    /// Cells that the map shows as occupied although nothing is there, in ascending order.
+    pub fn absent(cells: &'a [Cell]) -> Self {
+        Self::of(Cells::List(cells), "on the map, but not there", ABSENT)
     }
 
     /// In another colour.

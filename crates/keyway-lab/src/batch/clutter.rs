@@ -2,6 +2,7 @@
 
 use keyway::geometry::Point;
 use keyway_sim::episode::Episode;
+use keyway_sim::sim::ElusiveShape;
 use std::f64::consts::PI;
 
 /// Share of the known map area that obstacles cover at the beginning: occupied cells, and the
@@ -16,9 +17,21 @@ pub(super) fn occupied_share(episode: &Episode) -> Option<f64> {
     let circles = episode.obstacles.iter().copied().chain(movers);
     let hidden_m2: f64 = circles.map(|circle| PI * circle.radius_m.powi(2)).sum();
     let polygons_m2: f64 = episode.polygons.iter().map(|polygon| area_m2(polygon.vertices())).sum();
-    let occupied = map.occupied().count_ones() + episode.hidden_cells.len() as u64;
-    let occupied_m2 = occupied as f64 * cell_m2 + hidden_m2 + polygons_m2;
+    let standing = episode.elusive.iter().filter(|it| it.stands_at(0.0));
+    let elusive_m2: f64 = standing.map(|it| shape_m2(it.shape())).sum();
+    let absent = episode.absent_cells.iter().filter(|&&cell| map.occupied().get(cell)).count();
+    let occupied = map.occupied().count_ones() + episode.hidden_cells.len() as u64 - absent as u64;
+    let occupied_m2 = occupied as f64 * cell_m2 + hidden_m2 + polygons_m2 + elusive_m2;
     (cells > 0).then(|| (occupied_m2 / (cells as f64 * cell_m2)).min(1.0))
+}
+
+/// Area of an obstacle that stands for a time only \[m²\].
+fn shape_m2(shape: &ElusiveShape) -> f64 {
+    match shape {
+        ElusiveShape::Disc(disc) => PI * disc.radius_m.powi(2),
+        ElusiveShape::Polygon(polygon) => area_m2(polygon.vertices()),
+        _ => 0.0,
+    }
 }
 
 /// Area of a polygon, as a sum over its sides \[m²\].
@@ -33,7 +46,7 @@ mod tests {
     use super::*;
     use keyway::geometry::Disc;
     use keyway::map::{Cell, OccupancyGrid};
-    use keyway_sim::sim::{MovingObstacle, StandingPolygon};
+    use keyway_sim::sim::{ElusiveObstacle, MovingObstacle, Presence, StandingPolygon};
 
     #[test]
     fn a_share_by_hand() {
@@ -52,6 +65,15 @@ mod tests {
         episode.hidden_cells = vec![Cell::new(0, 2)];
         let share = occupied_share(&episode).unwrap();
         assert!((share - (4.5 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
+        // A disc that stands from the beginning, another that does not yet, and a cell less.
+        let disc = |from_s| {
+            let presence = Presence { from_s, ..Presence::ALWAYS };
+            ElusiveObstacle::new(ElusiveShape::Disc(Disc::new(goal, 0.5)), presence).unwrap()
+        };
+        episode.elusive = vec![disc(0.0), disc(1.0)];
+        episode.absent_cells = vec![Cell::new(2, 1)];
+        let share = occupied_share(&episode).unwrap();
+        assert!((share - (3.5 + 1.5 * PI) / 10.0).abs() < 1e-12, "{share}");
         episode.known = OccupancyGrid::from_ascii(&["??"]);
         assert_eq!(occupied_share(&episode), None);
     }

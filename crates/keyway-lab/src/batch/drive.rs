@@ -4,7 +4,7 @@ use super::earlier::known;
 use super::kept::Kept;
 use super::output::Output;
 use super::planned::{Planned, PlannedBatch};
-use super::{BatchError, BatchReport, BatchRequest, Pictures, Record};
+use super::{BatchError, BatchReport, BatchRequest, Pictures, Record, RunId};
 use crate::progress::Progress;
 use crate::results::Journal;
 use keyway_sim::parallel::processors;
@@ -49,13 +49,12 @@ impl BatchRequest {
 
 /// Puts records to the runs that they are of.
 fn fill(runs: &[Planned], records: &mut [Option<Record>], held: impl IntoIterator<Item = Record>) {
-    let held: HashMap<String, Record> =
-        held.into_iter().map(|record| (record.run.digest.clone(), record)).collect();
+    let held: Vec<Record> = held.into_iter().collect();
+    let held: HashMap<RunId<'_>, &Record> =
+        held.iter().map(|record| (record.run.id(), record)).collect();
     for (planned, record) in runs.iter().zip(records) {
-        let Some(found) = held.get(planned.id().digest) else { continue };
-        let is_same = found.run.id() == planned.id();
-        if record.is_none() && is_same {
-            *record = Some(found.clone());
+        if record.is_none() {
+            *record = held.get(&planned.id()).map(|&found| found.clone());
         }
     }
 }

@@ -4,7 +4,7 @@ use super::PartsError;
 use super::limits::SEEDS;
 use crate::results::ResultsError;
 use keyway::file_error::system_error_in_words;
-use keyway::files::ConfigFileError;
+use keyway::files::{ConfigFileError, LayerError, RobotChangeError};
 use keyway::map::formats::MapFileError;
 use keyway_sim::episode::EpisodeError;
 use keyway_sim::scene_files::{SceneError, SceneFileError};
@@ -42,10 +42,16 @@ pub enum BatchError {
         stack: String,
     },
     /// Two of the `scenes` have the same name.
-    #[error("two scenes are named `{scene}`; give their files other names")]
+    #[error(
+        "two scenes are named `{scene}`, {} and {}; name each file or folder once, and files of one name by a folder that holds both",
+        paths[0].display(),
+        paths[1].display()
+    )]
     SceneTwice {
         /// The name.
         scene: String,
+        /// Their files.
+        paths: [PathBuf; 2],
     },
     /// A folder of `scenes` cannot be read.
     #[error("{}: {}", path.display(), system_error_in_words(reason))]
@@ -55,8 +61,8 @@ pub enum BatchError {
         /// Error of the operating system.
         reason: io::Error,
     },
-    /// A folder of `scenes` holds none.
-    #[error("{}: there is no scene (*.toml) in this folder", path.display())]
+    /// A folder of `scenes` and its subfolders hold none.
+    #[error("{}: there is no scene (*.toml) in this folder and its subfolders; name a scene file, or a folder that holds some", path.display())]
     EmptyFolder {
         /// The folder.
         path: PathBuf,
@@ -64,7 +70,7 @@ pub enum BatchError {
     /// A file of `scenes` cannot be used.
     #[error(transparent)]
     Scene(SceneFileError),
-    /// A folder of `scenes` holds another file, such as a stack.
+    /// A folder of `scenes` holds another file, such as a stack, to which no scene refers.
     #[error("{0}; move it to another folder, or name the scenes one by one")]
     OtherFile(#[source] SceneFileError),
     /// `disturbances` cannot be used.
@@ -73,6 +79,12 @@ pub enum BatchError {
     /// `robot`, or the robot of a scene, cannot be used.
     #[error(transparent)]
     Robot(ConfigFileError),
+    /// A value of a robot in `set` cannot be used.
+    #[error("of the robot: {0}")]
+    RobotValue(RobotChangeError),
+    /// A parameter in `set` cannot be used.
+    #[error(transparent)]
+    Set(Box<LayerError>),
     /// One of the `stacks`, or the stack of a scene, cannot be used.
     #[error(transparent)]
     Stack(ConfigFileError),
@@ -146,6 +158,7 @@ impl BatchError {
             Self::StackTwice { .. } | Self::Stack(_) => Some("stacks"),
             Self::Disturbances(_) => Some("disturbances"),
             Self::Robot(_) => Some("robot"),
+            Self::RobotValue(_) | Self::Set(_) => Some("set"),
             Self::Map(_) | Self::Run { .. } | Self::Picture(_) | Self::Stopped => None,
         }
     }

@@ -1,6 +1,8 @@
 //! The files that a batch leaves.
 
 use super::part::Part;
+use super::wins::Contest;
+use super::wins_text::wins_markdown;
 use super::{
     AgainstFirst, Record, Row, RunTimes, StackSummary, against_first_latex, against_first_markdown,
     summary_latex, summary_markdown,
@@ -20,11 +22,13 @@ const SUMMARY_MD: &str = "summary.md";
 const SUMMARY_TEX: &str = "summary.tex";
 const AGAINST_CSV: &str = "against_first.csv";
 const AGAINST_TEX: &str = "against_first.tex";
+const WINS_CSV: &str = "wins.csv";
+const WINS_MD: &str = "wins.md";
 
 /// All files but the pictures. The runs are there twice, and so are their robots where there are
-/// several. Then come the times, the part of a batch, the summary, and the stacks against the first
-/// one, for programs, for people and for papers.
-pub(super) const TABLES: [&str; 11] = [
+/// several. Then come the times, the part of a batch, the summary, the stacks against the first,
+/// and the wins of the first one, for programs, for people and for papers.
+pub(super) const TABLES: [&str; 13] = [
     RUNS,
     RUNS_CSV,
     ROBOTS,
@@ -36,6 +40,8 @@ pub(super) const TABLES: [&str; 11] = [
     SUMMARY_TEX,
     AGAINST_CSV,
     AGAINST_TEX,
+    WINS_CSV,
+    WINS_MD,
 ];
 
 /// A line of `times.jsonl`.
@@ -88,6 +94,19 @@ pub(super) fn write_summaries(
         Some(text) => out.write(AGAINST_TEX, text.as_bytes()),
         None => Ok(()),
     }
+}
+
+/// Writes the wins and losses of the first stack, where there are several.
+pub(super) fn write_wins(
+    records: &[Record],
+    contest: &Contest<'_>,
+    out: &mut OutDir,
+) -> Result<(), ResultsError> {
+    if contest.wins.is_empty() {
+        return Ok(());
+    }
+    out.write(WINS_CSV, csv(&contest.lines).as_bytes())?;
+    out.write(WINS_MD, wins_markdown(records, contest).as_bytes())
 }
 
 /// JSON, a line for each row.

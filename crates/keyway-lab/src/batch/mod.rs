@@ -31,10 +31,13 @@ mod report;
 mod request;
 mod row;
 mod scene;
+mod scene_list;
 mod shared_world;
 mod summary;
 mod team_row;
 mod warning;
+mod wins;
+mod wins_text;
 
 pub use against_first::{
     AgainstFirst, against_first, against_first_latex, against_first_markdown, against_first_table,
@@ -45,8 +48,10 @@ pub use part::{Shard, ShardError};
 pub use parts_error::PartsError;
 pub use pictures::{PictureFile, Pictures};
 pub use record::{Record, RunTimes};
-pub use report::BatchReport;
+pub use report::{BatchReport, StackCycles, cycles_line};
 pub use request::{BatchRequest, MergeRequest};
 pub use row::{ContactWhile, Row, RunId};
 pub use summary::{StackSummary, summaries, summary_latex, summary_markdown, summary_table};
 pub use warning::BatchWarning;
+pub use wins::{ComparedRun, RunMeasure, Wins};
+pub use wins_text::wins_table;

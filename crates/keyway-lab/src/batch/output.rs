@@ -1,10 +1,12 @@
 //! The folder of the results of a batch.
 
-use super::files::{TABLES, write_runs, write_summaries};
+use super::files::{TABLES, write_runs, write_summaries, write_wins};
 use super::kept::Kept;
 use super::part::Part;
+use super::wins::Contest;
 use super::{
-    BatchError, BatchReport, BatchWarning, PictureFile, Pictures, Record, against_first, summaries,
+    BatchError, BatchReport, BatchWarning, PictureFile, Pictures, Record, StackCycles,
+    against_first, summaries,
 };
 use crate::progress::Progress;
 use crate::results::{OutDir, OutputLock};
@@ -49,6 +51,10 @@ impl<'a> Output<'a> {
         let against_first = against_first(records, &names);
         write_runs(records, part, &mut self.folder)?;
         write_summaries(&stacks, &against_first, &mut self.folder)?;
+        let contest = Contest::of(records, &names);
+        write_wins(records, &contest, &mut self.folder)?;
+        let wins = contest.wins;
+        let cycles = names.iter().map(|stack| StackCycles::of(stack, records)).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let pictures = self.pictures.draw(records, &names).map_err(BatchError::Picture)?;
         for PictureFile { name, bytes } in pictures {
@@ -62,6 +68,8 @@ impl<'a> Output<'a> {
             runs: records.len(),
             stacks,
             against_first,
+            wins,
+            cycles,
             files: written.iter().map(|path| path.display().to_string()).collect(),
             records: kept.count(runs()),
             records_folder: kept.folder().to_owned(),

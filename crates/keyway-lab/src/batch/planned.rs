@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use super::scene::{BatchScene, NamedStack, SceneReader};
+use super::scene_list::listed_scenes;
 use super::shared_world::SharedWorld;
 use super::{BatchError, BatchRequest, BatchWarning, Record, RunId};
 use crate::measure::wall_clock;
@@ -10,8 +11,6 @@ use crate::replay::{RecordedInputs, RunRecord};
 use crate::results::digest;
 use keyway_sim::episode::{Episode, EpisodeReport, RunOptions, watch_episode};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneMap};
-use std::collections::HashSet;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// All runs of a request, or those of a part of it.
@@ -49,15 +48,10 @@ impl PlannedBatch {
     /// Reads all scenes, and what they name.
     pub(super) fn new(request: &BatchRequest, progress: &dyn Progress) -> Result<Self, BatchError> {
         let mut runs = Vec::new();
-        let mut names = HashSet::new();
         let mut reader = SceneReader::new(request, progress);
         let mut world_numbers = 0..;
-        for path in scene_paths(&request.scenes)? {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if !names.insert(name.clone()) {
-                return Err(BatchError::SceneTwice { scene: name });
-            }
-            let scene = Arc::new(reader.read(&path, name)?);
+        for listed in listed_scenes(request)? {
+            let scene = Arc::new(reader.read(listed)?);
             if request.seeds > 1 && !scene.file.is_random() {
                 progress.warned(&BatchWarning::NotRandom { scene: scene.name.clone() });
             }
@@ -95,28 +89,6 @@ fn runs_of<'a>(
             world: Arc::clone(world),
         }
     }))
-}
-
-/// Returns the files, and those of the folders in the order of their names.
-fn scene_paths(given: &[PathBuf]) -> Result<Vec<PathBuf>, BatchError> {
-    let mut paths = Vec::new();
-    for path in given {
-        if !path.is_dir() {
-            paths.push(path.clone());
-            continue;
-        }
-        let entries = std::fs::read_dir(path)
-            .map_err(|reason| BatchError::Folder { path: path.clone(), reason })?;
-        let is_scene = |path: &PathBuf| path.extension().is_some_and(|end| end == "toml");
-        let mut inside: Vec<PathBuf> =
-            entries.flatten().map(|entry| entry.path()).filter(is_scene).collect();
-        if inside.is_empty() {
-            return Err(BatchError::EmptyFolder { path: path.clone() });
-        }
-        inside.sort();
-        paths.extend(inside);
-    }
-    Ok(paths)
 }
 
 /// Returns the name of the stacks of all robots together: each different one once.

@@ -1,6 +1,8 @@
 //! Report of a batch.
 
-use super::{AgainstFirst, StackSummary};
+use super::{AgainstFirst, Record, StackSummary, Wins};
+use crate::measure::mean;
+use crate::table::{number, paragraph};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -15,6 +17,10 @@ pub struct BatchReport {
     pub stacks: Vec<StackSummary>,
     /// The stacks but the first, each compared with the first.
     pub against_first: Vec<AgainstFirst>,
+    /// Wins and losses of the first stack, against each other one by each measure.
+    pub wins: Vec<Wins>,
+    /// Clock time of a decision, by stack.
+    pub cycles: Vec<StackCycles>,
     /// Paths of the files that were written, in their order.
     pub files: Vec<String>,
     /// Number of full records in the folder of records.
@@ -22,6 +28,31 @@ pub struct BatchReport {
     /// The folder of records.
     #[serde(skip)]
     pub records_folder: PathBuf,
+}
+
+/// Clock time of a decision, which differs from batch to batch; nothing is judged by it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StackCycles {
+    /// Name of the stack.
+    pub stack: String,
+    /// Mean of the runs' means \[us\]; `None` where no run decided anything.
+    pub mean_cycle_us: Option<f64>,
+}
+
+impl StackCycles {
+    pub(super) fn of(stack: &str, records: &[Record]) -> Self {
+        let own = records.iter().filter(|record| record.run.stack == stack);
+        let means: Vec<f64> = own.filter_map(|record| record.measured.mean_cycle_us).collect();
+        Self { stack: stack.to_owned(), mean_cycle_us: mean(&means) }
+    }
+}
+
+/// Clock times for the terminal; `None` for a single stack.
+pub fn cycles_line(cycles: &[StackCycles]) -> Option<String> {
+    let of = |one: &StackCycles| format!("{} {}", one.stack, number(one.mean_cycle_us, 0));
+    let all: Vec<String> = cycles.iter().map(of).collect();
+    let text = format!("by the clock, a decision took [us]: {}", all.join(", "));
+    (cycles.len() > 1).then(|| paragraph(&text))
 }
 
 impl BatchReport {

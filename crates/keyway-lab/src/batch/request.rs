@@ -2,7 +2,9 @@
 
 use super::limits::SEEDS;
 use super::{BatchError, Keep, Shard};
+use keyway::files::Assignment;
 use keyway::map::formats::DEFAULT_MAX_CELLS;
+use keyway_sim::sim::ReachedBy;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -18,9 +20,9 @@ use std::path::PathBuf;
 /// assert_eq!(report.stacks.len(), 2);
 /// # Ok::<(), keyway_lab::batch::BatchError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BatchRequest {
-    /// Scene files, and folders of them.
+    /// Scene files, and folders with scene files in them or in their subfolders.
     pub scenes: Vec<PathBuf>,
     /// Folder for the results. Runs that it holds are not made again.
     pub out: PathBuf,
@@ -30,10 +32,14 @@ pub struct BatchRequest {
     /// The robot in the place of all robots: a name, or a file relative to the current folder;
     /// `None`: those of the scenes.
     pub robot: Option<String>,
+    /// Values of all robots (`robot.cycle_s=0.2`) and parameters of all stacks, changed one by one.
+    pub set: Vec<Assignment>,
     /// True if the stop rule stands behind every stack, also where a scene does not ask for it.
     pub safe: bool,
     /// File of the disturbances; `None`: those of the scenes.
     pub disturbances: Option<PathBuf>,
+    /// Pose by which a goal is reached; `None`: as the scenes say.
+    pub reached_by: Option<ReachedBy>,
     /// Number of seeds for each scene: its own seed, and the numbers that follow.
     pub seeds: u64,
     /// Number of runs at the same time; `None`: as many as there are processors.
@@ -66,8 +72,10 @@ impl BatchRequest {
             out,
             stacks: Vec::new(),
             robot: None,
+            set: Vec::new(),
             safe: false,
             disturbances: None,
+            reached_by: None,
             seeds: 1,
             jobs: None,
             shard: None,

@@ -5,7 +5,7 @@ use keyway_sim::report::RunPart;
 use serde::{Deserialize, Serialize};
 
 /// Identifier of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RunId<'a> {
     /// Name of the scene.
     pub scene: &'a str,

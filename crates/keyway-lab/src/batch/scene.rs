@@ -1,16 +1,15 @@
 //! Scenes of a batch, with everything that their runs depend on.
 
+use super::scene_list::ListedScene;
 use super::{BatchError, BatchRequest};
 use crate::progress::Progress;
 use crate::results::{digest, json_text};
-use keyway::files::{find_robot, find_stack};
+use keyway::files::{Assignment, ParameterLayers, StackBase, find_robot, find_stack, robot_with};
 use keyway::map::formats::MapReader;
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_sim::report::Inputs;
-use keyway_sim::scene_files::{
-    SceneError, SceneFile, SceneFileError, SceneMap, SceneRobot, read_disturbances, read_scene,
-};
+use keyway_sim::scene_files::{SceneFile, SceneMap, SceneRobot, read_disturbances};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,12 +22,14 @@ pub(super) struct NamedStack {
 
 /// A scene with its robots and its map.
 pub(super) struct BatchScene {
-    /// Name of its file.
+    /// Name among the scenes of the request.
     pub(super) name: String,
     pub(super) file: SceneFile,
     /// Folder of its file.
     pub(super) folder: PathBuf,
     pub(super) robots: Vec<Robot>,
+    /// Parameters of all stacks that are changed.
+    set: Vec<Assignment>,
     /// The map; `None` where it is made from the seed.
     pub(super) map: Option<Arc<SceneMap>>,
     /// Folder of the files of stacks: that of the scene that names them, otherwise the current one.
@@ -49,21 +50,26 @@ impl<'a> SceneReader<'a> {
         Self { request, progress, maps: HashMap::new() }
     }
 
-    /// Reads a scene with everything that it or the request names.
-    pub(super) fn read(&mut self, path: &Path, name: String) -> Result<BatchScene, BatchError> {
+    /// Reads everything that a scene or the request names.
+    pub(super) fn read(&mut self, listed: ListedScene) -> Result<BatchScene, BatchError> {
         let request = self.request;
-        let mut file = read_scene(path).map_err(|error| self.no_scene(path, error))?;
+        let ListedScene { name, path, mut file } = listed;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         if let Some(path) = &request.disturbances {
             file.disturbances = read_disturbances(path).map_err(BatchError::Disturbances)?;
         }
         file.safe |= request.safe;
+        file.rules.reached_by = request.reached_by.or(file.rules.reached_by);
         let robot_of = |(in_scene, _): (&str, &str)| match &request.robot {
             Some(name) => find_robot(name, Path::new("")),
             None => find_robot(in_scene, &folder),
         };
         let robots = file.robots_and_stacks().into_iter().map(robot_of);
         let robots = robots.collect::<Result<Vec<_>, _>>().map_err(BatchError::Robot)?;
+        let changes: Vec<_> = request.set.iter().filter_map(Assignment::of_robot).collect();
+        let robots = robots.iter().map(|robot| robot_with(robot, &changes));
+        let robots = robots.collect::<Result<Vec<_>, _>>().map_err(BatchError::RobotValue)?;
+        let set = request.set.iter().filter(|one| one.of_robot().is_none()).cloned().collect();
         let map = match &file.map {
             Some(map) => Some(self.map(folder.join(map))?),
             None => None,
@@ -71,15 +77,7 @@ impl<'a> SceneReader<'a> {
         let names_stacks = !request.stacks.is_empty();
         let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };
         let digest = digest_of(&file, &robots, map.as_deref());
-        Ok(BatchScene { name, file, folder, robots, map, stack_folder, digest })
-    }
-
-    /// Returns the error of a file that is no scene. A caller who names a folder has not named the
-    /// file.
-    fn no_scene(&self, path: &Path, error: SceneFileError) -> BatchError {
-        let is_other = matches!(error, SceneFileError::Scene { reason: SceneError::NoScene, .. });
-        let is_named = self.request.scenes.iter().any(|named| named == path);
-        if is_other && !is_named { BatchError::OtherFile(error) } else { BatchError::Scene(error) }
+        Ok(BatchScene { name, file, folder, robots, set, map, stack_folder, digest })
     }
 
     fn map(&mut self, path: PathBuf) -> Result<Arc<SceneMap>, BatchError> {
@@ -124,9 +122,21 @@ impl BatchScene {
         let named = |(name, robot): (&String, &Robot)| {
             let config = find_stack(name, &self.stack_folder, robot).map_err(BatchError::Stack)?;
             let config = config.safe_if(self.file.safe, robot);
+            let config = self.changed(config, robot)?;
             Ok(NamedStack { name: name.clone(), config })
         };
         names.iter().zip(&self.robots).map(named).collect()
+    }
+
+    /// Returns a stack with the parameters that the request changes.
+    fn changed(&self, stack: Stack, robot: &Robot) -> Result<Stack, BatchError> {
+        if self.set.is_empty() {
+            return Ok(stack);
+        }
+        let assignments = self.set.clone();
+        let layers = ParameterLayers { assignments, ..ParameterLayers::default() };
+        let changed = layers.over(StackBase::for_robot(&stack, robot), &[]);
+        changed.map_err(|error| BatchError::Set(Box::new(error)))
     }
 
     /// Returns the digest of all that the runs with these stacks depend on but the seed.

@@ -11,7 +11,8 @@ pub(super) fn file(value: &impl Serialize, head: &str, parameters: &[Parameter])
     let (mut text, mut table) = (comment(head), String::new());
     for line in toml.lines() {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            name.clone_into(&mut table);
+            // One of several tables of a name stands in a pair of brackets more.
+            name.trim_matches(['[', ']']).clone_into(&mut table);
         }
         let key = line.split(" = ").next().unwrap_or_default();
         let path = if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") };

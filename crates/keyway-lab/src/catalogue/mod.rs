@@ -197,9 +197,11 @@ fn paper_stack(stack: &Stack) -> Value {
 
 fn robot_entry(name: &'static str, robot: &Robot) -> CatalogueEntry {
     let schema = schema_for!(Robot).to_value();
+    let ranges_m = robot.sensors.iter().map(|sensor| sensor.range_m);
+    let range_m = ranges_m.fold(0.0, f64::max);
     let summary = plain(&format!(
-        "{}, up to {} m/s, sensor range {} m",
-        robot.footprint, robot.limits.v_max_mps, robot.sensor.range_m
+        "{}, up to {} m/s, sensor range {range_m} m",
+        robot.footprint, robot.limits.v_max_mps
     ));
     let parameters = parameters("", &schema, &value(robot), &Value::Null);
     let file = Some(file(robot, &format!("{name}: {summary}"), &parameters));

@@ -110,6 +110,11 @@ impl Node<'_> {
         Self { schema: &self.schema["properties"][key], ..self }
     }
 
+    /// Returns the place of an item of a list.
+    fn item(self) -> Self {
+        Self { schema: &self.resolved().schema["items"], ..self }
+    }
+
     fn choices(self) -> Option<Vec<String>> {
         let schema = self.resolved().schema;
         let listed = schema["enum"].as_array().into_iter().flatten();
@@ -130,6 +135,11 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
         let property = node.property(key);
         if value.is_object() {
             walk(&property, &path, value, &paper[key], found);
+            continue;
+        }
+        // Of several tables of a kind, the fields of the first.
+        if let Some(first) = value.get(0).filter(|first| first.is_object()) {
+            walk(&property.item(), &path, first, &paper[key], found);
             continue;
         }
         // The name of an alternative is a parameter of the whole, not of the alternative.
@@ -186,5 +196,7 @@ mod tests {
         assert_eq!(corners.choices.as_deref().unwrap(), ["forbid", "allow"]);
         let speed = robot.iter().find(|p| p.path == "limits.v_max_mps").unwrap();
         assert_eq!((speed.unit, &speed.default), (Some("m/s"), &Value::from(0.5)));
+        let range = robot.iter().find(|p| p.path == "sensors.range_m").unwrap();
+        assert_eq!((range.unit, &range.default), (Some("m"), &Value::from(3.5)));
     }
 }

@@ -115,15 +115,18 @@ pub(super) fn of_local(name: &str) -> Vec<PublishedUse> {
     stacks.chain((name == Dwa::NAME).then_some(SAMPLE)).collect()
 }
 
+const SAMPLE_SET: &[&str] = &[
+    "local.window.stopping_distance_at=end",
+    "local.window.distance_at=end",
+    "local.distance_term_cap_m=1.0",
+];
+
 /// The program behind much of this literature: it turns `DwaConfig::PAPER` into
 /// `DwaConfig::SAMPLE`.
 const SAMPLE: PublishedUse = PublishedUse {
     source: "You2021",
     method: "the same as in the MATLAB sample: distance at the end, at most 2 R1",
-    setup: PublishedSetup::Drive {
-        stack: "dwa-to-goal",
-        set: &["local.window.distance_at=end", "local.distance_term_cap_m=1.0"],
-    },
+    setup: PublishedSetup::Drive { stack: "dwa-to-goal", set: SAMPLE_SET },
 };
 
 #[cfg(test)]
@@ -154,11 +157,11 @@ mod tests {
     #[test]
     fn the_sample_has_all_its_values() {
         let mut tree = toml::Table::try_from(DwaConfig::PAPER).unwrap();
+        tree["window"]["stopping_distance_at"] = "end".into();
         tree["window"]["distance_at"] = "end".into();
         tree["distance_term_cap_m"] = 1.0.into();
         assert_eq!(tree.try_into::<DwaConfig>().unwrap(), DwaConfig::SAMPLE);
-        let set = &["local.window.distance_at=end", "local.distance_term_cap_m=1.0"];
-        let expected = PublishedSetup::Drive { stack: "dwa-to-goal", set };
+        let expected = PublishedSetup::Drive { stack: "dwa-to-goal", set: SAMPLE_SET };
         assert_eq!(of_local("dwa").pop().unwrap().setup, expected);
     }
 

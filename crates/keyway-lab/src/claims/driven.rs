@@ -4,8 +4,9 @@ use super::clutter_speeds::Part;
 use keyway::ConfigError;
 use keyway::local::LocalConfig;
 use keyway::map::{Cell, OccupancyGrid};
-use keyway::navigate::{Controller, NavigateError, Stack};
-use keyway::robot::Robot;
+use keyway::navigate::{NavigateError, Navigator, Stack};
+use keyway::plan::PlannerConfig;
+use keyway::robot::{Limits, Robot};
 use keyway_sim::episode::{
     Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, RandomObstacles, RobotReport, RunError,
     RunOptions, watch_episode,
@@ -15,6 +16,7 @@ use keyway_sim::metrics::statistics::Sample;
 use keyway_sim::report::{Clock, RunPart};
 use keyway_sim::sim::Run;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Setup of a run.
 #[derive(Debug)]
@@ -23,20 +25,26 @@ pub struct Driving {
     pub stack: &'static str,
     /// The robot, which also determines the parameters of the stack.
     pub vehicle: Vehicle,
+    /// A planner in place of the stack's own.
+    pub planner: Option<PlannerConfig>,
     /// A local planner in place of the stack's own.
     pub local: Option<LocalConfig>,
     /// Real obstacles that are not on the map.
     pub unknown: Option<RandomObstacles>,
+    /// False for a robot that drives along its first route to the end, whatever is sensed.
+    pub is_watching: bool,
     /// Part of a run over which its mean speed is taken.
     pub part: Part,
 }
 
 /// A robot and the parameters of its stack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Vehicle {
     /// The point robot of \[You2021\], table 2, with the stack as published, for maps with cells of
     /// 1 m.
     Paper,
+    /// The same with another acceleration and deceleration \[m/s²\].
+    PaperWith([f64; 2]),
     /// The bundled robot `small`, with parameters for it; for maps of real rooms.
     Small,
 }
@@ -55,6 +63,9 @@ pub struct RunFigures {
     pub mean_speed_mps: Option<f64>,
     /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single cycle.
     pub speed_deviation_mps: Option<f64>,
+    /// Sum of the absolute changes of the speed from cycle to cycle, per metre \[1/s\]; `None`
+    /// where nothing was driven.
+    pub speed_variation_per_s: Option<f64>,
     /// Changes of the turning direction per metre \[1/m\]; `None` where nothing was driven.
     pub oscillation_per_m: Option<f64>,
     /// Smallest distance to any real obstacle \[m\]; `None` without obstacles.
@@ -72,7 +83,7 @@ pub struct RunFigures {
 pub(super) struct Keeper(pub(super) Option<Run>);
 
 impl EpisodeObserver for Keeper {
-    fn ended(&mut self, run: &Run, _controller: &Controller) {
+    fn ended(&mut self, run: &Run, _navigator: &Navigator) {
         self.0 = Some(run.clone());
     }
 }
@@ -81,13 +92,18 @@ impl Vehicle {
     fn robot(self) -> Robot {
         match self {
             Self::Paper => Robot::paper(),
+            Self::PaperWith([acceleration_mps2, deceleration_mps2]) => {
+                let paper = Robot::paper();
+                let limits = Limits { acceleration_mps2, deceleration_mps2, ..paper.limits };
+                Robot { limits, ..paper }
+            }
             Self::Small => Robot::small(),
         }
     }
 
     fn stack(self, name: &str) -> Option<Stack> {
         match self {
-            Self::Paper => Stack::published_by_name(name),
+            Self::Paper | Self::PaperWith(_) => Stack::published_by_name(name),
             Self::Small => Stack::by_name(name, &Robot::small()),
         }
     }
@@ -124,8 +140,15 @@ impl Driving {
     ) -> Result<Option<(Episode, RobotReport)>, EpisodeError> {
         let stack = self.vehicle.stack(self.stack);
         let mut stack = stack.ok_or_else(|| ConfigError::new("stack", "is not a known one"))?;
+        if let Some(planner) = &self.planner {
+            stack.planner = planner.clone();
+        }
         if let Some(local) = &self.local {
             stack.local = local.clone();
+        }
+        if !self.is_watching {
+            stack.controller.watch_route = false;
+            stack.controller.recoveries = Cow::Borrowed(&[]);
         }
         let [start, goal] = ends.map(|cell| grid.frame().world_from_cell(cell));
         let mut episode = Episode::new(grid.clone(), self.vehicle.robot(), start, goal);
@@ -165,6 +188,8 @@ impl RunFigures {
             speed_deviation_mps: Sample::new(speeds)
                 .ok()
                 .and_then(|speeds| speeds.standard_deviation()),
+            speed_variation_per_s: (part.length_m > 0.0)
+                .then(|| part.v_variation_mps / part.length_m),
             oscillation_per_m: part.omega_sign_changes_per_m,
             min_clearance_m: part.min_clearance_m,
             non_smooth_turns: count_run_heading_jumps(run),
@@ -183,6 +208,11 @@ impl RunFigures {
         Self { mean_speed_mps, ..self }
     }
 
+    /// True if the robot touched something, or something touched it.
+    pub fn touched(&self) -> bool {
+        self.outcome == EpisodeOutcome::Collided
+    }
+
     /// True if the robot reached its goal.
     pub fn reached(&self) -> bool {
         self.outcome == EpisodeOutcome::Reached
@@ -192,13 +222,16 @@ impl RunFigures {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use keyway_sim::episode::RandomUnknown;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     const FOLLOW: Driving = Driving {
         stack: "astar-follow",
         vehicle: Vehicle::Paper,
+        planner: None,
         local: None,
         unknown: None,
+        is_watching: true,
         part: Part::Whole,
     };
 
@@ -216,6 +249,10 @@ mod tests {
         let mean_mps = driven.length_m / driven.time_s;
         assert!((driven.mean_speed_mps.unwrap() - mean_mps).abs() < 1e-12, "{driven:?}");
         assert!(driven.speed_deviation_mps > Some(0.1), "it begins and ends at rest: {driven:?}");
+        // Up to 1 m/s or less, and down again.
+        let variation_per_s = driven.speed_variation_per_s.unwrap();
+        let top_mps = 0.5 * variation_per_s * driven.length_m;
+        assert!((0.5..1.01).contains(&top_mps), "{top_mps} {driven:?}");
         assert_eq!((driven.min_clearance_m, driven.oscillation_per_m), (None, Some(0.0)));
         // Every decision takes one tick; so do the search and the smoothing.
         assert!(driven.cycle_s.is_some_and(|s| (s - 1.0).abs() < 1e-9), "{driven:?}");
@@ -223,6 +260,26 @@ mod tests {
         assert!((driven.total_search_s.unwrap() - cycles - 2.0).abs() < 1.5, "{driven:?}");
         let driven = drive(&FOLLOW, &["......", "......"], None).unwrap();
         assert_eq!((driven.cycle_s, driven.total_search_s), (None, None));
+    }
+
+    /// An unknown disc stands on the only way.
+    #[test]
+    fn an_unwatched_robot_touches_what_it_does_not_know() {
+        let unknown = RandomObstacles {
+            unknown: Some(RandomUnknown { count: 1, radius_m: [0.2; 2] }),
+            moving: None,
+            near_way_m: 0.0,
+            free_ends_m: 0.5,
+        };
+        let grid = OccupancyGrid::from_ascii(&["...................."; 9]);
+        let outcome = |is_watching| {
+            let vehicle = Vehicle::Small;
+            let driving =
+                Driving { vehicle, unknown: Some(unknown.clone()), is_watching, ..FOLLOW };
+            driving.run(&grid, ([Cell::new(1, 4), Cell::new(18, 4)], 1), None).unwrap().unwrap()
+        };
+        assert!(outcome(false).touched() && !outcome(false).reached());
+        assert!(!outcome(true).touched() && outcome(true).reached());
     }
 
     #[test]

@@ -192,6 +192,7 @@ mod tests {
                 length_m: 7.0,
                 mean_speed_mps: Some(0.5),
                 speed_deviation_mps: None,
+                speed_variation_per_s: None,
                 oscillation_per_m: None,
                 min_clearance_m: None,
                 non_smooth_turns: 0,

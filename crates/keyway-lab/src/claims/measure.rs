@@ -19,6 +19,9 @@ pub enum Measure {
     /// Relative excess of the path's length over a shortest path of straight and diagonal steps
     /// that cuts no corner.
     Excess,
+    /// 1 if the path is as short as a shortest one of straight and diagonal steps that cuts no
+    /// corner, otherwise 0.
+    Shortest,
     /// Points of the path.
     Points,
     /// Redundant points of the path.
@@ -55,6 +58,8 @@ pub enum Measure {
     MeanSpeed,
     /// Standard deviation of the speed \[m/s\].
     SpeedDeviation,
+    /// Total variation of the speed per metre \[1/s\].
+    SpeedVariation,
     /// Sign changes of the turn rate per metre \[1/m\].
     Oscillation,
     /// Smallest distance of the robot to any obstacle in a run \[m\].
@@ -65,6 +70,8 @@ pub enum Measure {
     TotalSearchTime,
     /// 1 if the robot reached its goal, otherwise 0.
     Reached,
+    /// 1 if the robot touched an obstacle, otherwise 0.
+    Touched,
 }
 
 /// Scale on which two methods are compared on one map.
@@ -78,6 +85,9 @@ pub enum Scale {
 }
 
 impl Measure {
+    /// Relative difference up to which lengths are equal.
+    pub(super) const ROUNDING: f64 = 1e-9;
+
     /// Returns the scale on which values are compared.
     pub const fn scale(self) -> Scale {
         match self {
@@ -86,9 +96,11 @@ impl Measure {
             | Self::RunClearance
             | Self::WayClearance
             | Self::Excess
+            | Self::Shortest
             | Self::Revisited
             | Self::Missed
-            | Self::Reached => Scale::Absolute,
+            | Self::Reached
+            | Self::Touched => Scale::Absolute,
             _ => Scale::Relative,
         }
     }
@@ -111,6 +123,7 @@ impl Measure {
             | Self::CycleTime
             | Self::TotalSearchTime => "s",
             Self::MeanSpeed | Self::SpeedDeviation => "m/s",
+            Self::SpeedVariation => "1/s",
             Self::Oscillation => "1/m",
             _ => "",
         }
@@ -135,6 +148,9 @@ impl Measure {
         match (self, outcome) {
             (Self::Missed, outcome) => share(outcome.is_none()),
             (Self::Reached, outcome) => share(outcome.is_some_and(MethodResult::succeeded)),
+            (Self::Touched, outcome) => {
+                share(outcome.and_then(MethodResult::driven).is_some_and(RunFigures::touched))
+            }
             (_, Some(MethodResult::Planned(planned))) => self.of_plan(planned),
             (_, Some(MethodResult::Driven(driven))) if driven.reached() => self.of_run(driven),
             (_, None | Some(MethodResult::Driven(_))) => None,
@@ -147,12 +163,17 @@ impl Measure {
             Self::Expanded => planned.expanded as f64,
             Self::Length | Self::WayLength => path.length_m,
             Self::Excess => planned.excess?,
+            Self::Shortest => f64::from(planned.excess? <= Self::ROUNDING),
             Self::Points => path.points as f64,
             Self::RedundantPoints => path.redundant_points as f64,
             Self::Turns => path.turns as f64,
             Self::NonSmoothTurns => path.non_smooth_turns as f64,
             Self::TurningAngle => path.turning_angle_deg,
-            Self::Clearance | Self::WayClearance => path.min_clearance_m?,
+            Self::Clearance => path.min_clearance_m?,
+            Self::WayClearance => {
+                let both = [path.min_clearance_m, planned.unknown_clearance_m];
+                both.into_iter().flatten().reduce(f64::min)?
+            }
             Self::Revisited => planned.revisited as f64,
             Self::UnknownClearance => planned.unknown_clearance_m?,
             Self::SearchTime => planned.times?.search_s,
@@ -168,6 +189,7 @@ impl Measure {
             Self::DrivenLength | Self::WayLength => Some(driven.length_m),
             Self::MeanSpeed => driven.mean_speed_mps,
             Self::SpeedDeviation => driven.speed_deviation_mps,
+            Self::SpeedVariation => driven.speed_variation_per_s,
             Self::Oscillation => driven.oscillation_per_m,
             Self::RunClearance | Self::WayClearance => driven.min_clearance_m,
             Self::NonSmoothTurns => Some(driven.non_smooth_turns as f64),

@@ -62,14 +62,32 @@ impl Method {
     /// Creates a driving method with a stack as published, without unknown obstacles.
     pub(super) const fn driving(name: &'static str, stack: &'static str) -> Self {
         let (vehicle, part) = (Vehicle::Paper, Part::Whole);
-        let how = How::Drive(Driving { stack, vehicle, local: None, unknown: None, part });
+        let (planner, local, unknown, is_watching) = (None, None, None, true);
+        let how = Driving { stack, vehicle, planner, local, unknown, is_watching, part };
+        let how = How::Drive(how);
         Self { name, how, must_succeed: true }
     }
 
-    /// Drives the robot of a laboratory instead.
-    pub(super) const fn on_small(mut self) -> Self {
+    /// Drives another robot.
+    pub(super) const fn on(mut self, vehicle: Vehicle) -> Self {
         if let How::Drive(driving) = &mut self.how {
-            driving.vehicle = Vehicle::Small;
+            driving.vehicle = vehicle;
+        }
+        self
+    }
+
+    /// Uses another planner.
+    pub(super) const fn with_planner(mut self, planner: PlannerConfig) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.planner = Some(planner);
+        }
+        self
+    }
+
+    /// Drives along its first route to the end, whatever is sensed.
+    pub(super) const fn unwatched(mut self) -> Self {
+        if let How::Drive(driving) = &mut self.how {
+            driving.is_watching = false;
         }
         self
     }
@@ -100,6 +118,18 @@ impl Method {
         match &mut self.how {
             How::Plan(planning) => planning.unknown = Some(unknown),
             How::Drive(driving) => driving.unknown = Some(unknown),
+        }
+        self
+    }
+
+    /// Gives the static unknown obstacles another radius \[m\].
+    pub(super) const fn with_radius(mut self, radius_m: f64) -> Self {
+        let unknown = match &mut self.how {
+            How::Plan(planning) => &mut planning.unknown,
+            How::Drive(driving) => &mut driving.unknown,
+        };
+        if let Some(RandomObstacles { unknown: Some(unknown), .. }) = unknown {
+            unknown.radius_m = [radius_m; 2];
         }
         self
     }

@@ -212,6 +212,7 @@ fn chord_m(grid: &OccupancyGrid) -> f64 {
 mod tests {
     use super::*;
     use crate::claims::planners::JPS;
+    use crate::claims::{Measure, MethodResult};
     use keyway::plan::BidirectionalJpsConfig;
     use keyway_sim::episode::RandomUnknown;
 
@@ -246,9 +247,11 @@ mod tests {
             let planning = Planning { unknown, ..Planning::new(JPS, None) };
             let ends = [Cell::new(0, 4), Cell::new(19, 4)];
             let found = planning.run(&grid, (ends, 1), &mut Workspace::default(), None).unwrap();
-            found.unwrap().unknown_clearance_m
+            let found = found.unwrap();
+            let way_clearance = Measure::WayClearance;
+            [found.unknown_clearance_m, way_clearance.of(Some(&MethodResult::Planned(found)))]
         };
-        assert_eq!((run(Some(unknown)), run(None)), (Some(0.0), None));
+        assert_eq!((run(Some(unknown)), run(None)), ([Some(0.0); 2], [None; 2]));
     }
 
     #[test]

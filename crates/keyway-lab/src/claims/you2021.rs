@@ -40,7 +40,7 @@ const SCENE: ExperimentScene = ExperimentScene {
 };
 
 /// Table 4.
-static FITTED: Reconstruction = Reconstruction {
+pub(super) static FITTED: Reconstruction = Reconstruction {
     name: "you2021",
     family: FAMILY,
     ends: ENDS,
@@ -122,12 +122,10 @@ static SPEEDS: Experiment = Experiment {
 
 /// Distance D of the key-point optimisation \[m\], with the tolerance of the smoother.
 const SAFE_M: f64 = 0.5 - 1e-9;
-/// Relative difference up to which lengths are equal.
-const ROUNDING: f64 = 1e-9;
 
 pub(super) const PAPER: &str = "You2021";
 pub(super) const FUSED: &str = "s0-key-point";
-const TO_GOAL: &str = "dwa-to-goal";
+pub(super) const TO_GOAL: &str = "dwa-to-goal";
 /// A run has both parts; sparse and dense are relative to the run ([`Part`]).
 const SPARSE: &str = "s0-key-point where obstacles are sparse";
 const DENSE: &str = "s0-key-point where obstacles are dense";
@@ -191,7 +189,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
         id: "S0-6",
         paper: PAPER,
         statement: "The global path is optimal",
-        figures: &[Figure::always(Measure::Excess, MOVING, Bound::AtMost(ROUNDING))],
+        figures: &[Figure::always(Measure::Excess, MOVING, Bound::AtMost(Measure::ROUNDING))],
         experiment: &SEARCH,
     },
     Claim {

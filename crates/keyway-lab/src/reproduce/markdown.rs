@@ -36,7 +36,11 @@ pub(super) fn markdown(report: &ReproduceReport) -> String {
     }
     for one in ablations {
         let _ = writeln!(text, "## Ablation {}\n\n{}\n", one.experiment, about(one));
-        text.push_str(&ablation(one));
+        text.push_str(&ablation(one, &one.figures));
+        if !one.reconstructed.is_empty() {
+            let _ = writeln!(text, "\nOn {} maps that fit:\n", one.reconstructed_maps);
+            text.push_str(&ablation(one, &one.reconstructed));
+        }
         text.push('\n');
     }
     text
@@ -130,7 +134,7 @@ fn about(one: &AblationReport) -> String {
 }
 
 /// Returns a line for each variant, a column for each quantity.
-fn ablation(one: &AblationReport) -> String {
+fn ablation(one: &AblationReport, figures: &[FamilyFigure]) -> String {
     let measures = one.measures();
     let names: Vec<String> = measures.iter().map(|&measure| measure_name(measure)).collect();
     let header: Vec<&str> =
@@ -140,7 +144,7 @@ fn ablation(one: &AblationReport) -> String {
         let variant = own.first().map_or("", |figure| figure.of).to_owned();
         std::iter::once(variant).chain(own.iter().map(measured)).collect()
     };
-    let rows = one.figures.chunks(measures.len().max(1)).map(row).collect();
+    let rows = figures.chunks(measures.len().max(1)).map(row).collect();
     table(&header, 1..header.len(), rows)
 }
 

@@ -215,16 +215,26 @@ fn ablation_section(ablation: &AblationReport, figures: &[PageFigure]) -> Markup
                 (about) ". Changes from \"" (base) "\" on each of " (maps) " maps, means with 95 % intervals; "
                 (left_out) " maps were left out."
             }
-            table {
-                thead { tr { th { "variant" } th { "quantity" } th { "change" } th { "maps" } } }
-                tbody { @for figure in &ablation.figures { tr {
-                    td { (figure.of) }
-                    td { (measure_name(figure.measure)) }
-                    td.number { (measured_text(figure)) }
-                    td.number { (figure.pairs) }
-                } } }
+            (change_table(&ablation.figures))
+            @if !ablation.reconstructed.is_empty() {
+                p { "On " (ablation.reconstructed_maps) " maps that fit:" }
+                (change_table(&ablation.reconstructed))
             }
             (pictures(figures))
+        }
+    }
+}
+
+fn change_table(figures: &[FamilyFigure]) -> Markup {
+    html! {
+        table {
+            thead { tr { th { "variant" } th { "quantity" } th { "change" } th { "maps" } } }
+            tbody { @for figure in figures { tr {
+                td { (figure.of) }
+                td { (measure_name(figure.measure)) }
+                td.number { (measured_text(figure)) }
+                td.number { (figure.pairs) }
+            } } }
         }
     }
 }

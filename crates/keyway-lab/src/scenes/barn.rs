@@ -32,6 +32,7 @@ const CELL_M: f64 = 0.05;
 const RULES: SceneRules = SceneRules {
     goal_tolerance_m: Some(1.0),
     arrival: Some(Arrival::Passing),
+    reached_by: None,
     time_limit_s: Some(100.0),
     stuck_window_s: None,
     reference_time_s: None,

@@ -12,7 +12,7 @@ use super::{NamedScene, ScenesError};
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway_sim::episode::Start;
-use keyway_sim::scene_files::{SceneFile, SceneRules, UnknownObstacle};
+use keyway_sim::scene_files::{GroundShape, SceneFile, SceneRules, UnknownObstacle};
 use keyway_sim::sim::{Arrival, KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
 use keyway_sim::worlds::GeneratedMap;
 use serde::Deserialize;
@@ -33,6 +33,7 @@ const CELL_M: f64 = 0.05;
 const RULES: SceneRules = SceneRules {
     goal_tolerance_m: Some(1.0),
     arrival: Some(Arrival::Passing),
+    reached_by: None,
     time_limit_s: Some(100.0),
     stuck_window_s: None,
     // 20 m at 2 m/s.
@@ -123,7 +124,7 @@ fn walls() -> Result<Vec<UnknownObstacle>, ScenesError> {
         let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
         let corners = corners.map(|(right, up)| corner(right, up)).to_vec();
         let polygon = StandingPolygon::new(corners).map_err(ScenesError::Wall)?;
-        Ok(UnknownObstacle::Polygon(polygon))
+        Ok(UnknownObstacle::new(GroundShape::Polygon(polygon)))
     };
     let sides =
         [((-10.0, 0.0), (0.5, 20.0)), ((0.0, 10.0), (20.0, 0.5)), ((0.0, -10.0), (20.0, 0.5))];

@@ -16,8 +16,8 @@ from importlib.metadata import version as _version
 
 from keyway._keyway import (
     Comparison,
-    Controller,
     Map,
+    Navigator,
     Plan,
     Planner,
     Run,
@@ -41,10 +41,10 @@ from keyway.plotting import plot
 __all__ = [
     "BudgetExhausted",
     "Comparison",
-    "Controller",
     "KeywayError",
     "Map",
     "Missed",
+    "Navigator",
     "NoPath",
     "NoRoom",
     "Plan",

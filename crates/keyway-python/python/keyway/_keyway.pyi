@@ -3,14 +3,14 @@ The compiled part of Keyway. Import `keyway` instead.
 """
 
 from collections.abc import Sequence
-from keyway.typing import LaserScan, Plans, Progress
+from keyway.typing import LaserScans, Plans, Progress
 from numpy import bool_, float64, int32, int8, void
 from numpy.typing import NDArray
 from os import PathLike
 from pathlib import Path
 from typing import Any, final
 
-__all__ = ["Comparison", "Controller", "Map", "Plan", "Planner", "Run", "Scan", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
+__all__ = ["Comparison", "Map", "Navigator", "Plan", "Planner", "Run", "Scan", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
 
 @final
 class Comparison:
@@ -50,83 +50,6 @@ class Comparison:
     def to_pandas(self, /) -> Any:
         """
         The rows as a `pandas.DataFrame`; pandas has to be installed.
-        """
-
-@final
-class Controller:
-    """
-    Drives a robot to a goal: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
-
-    `robot` and `stack` are names of `keyway.names`, or files. `goal` is a position [m], or with a heading [m, m, rad]; `via` are
-    positions on the way. `parameters` are laid over the stack, as a dictionary with the names of the TOML files.
-    With `as_published` the stack has the values of its paper. With `safe` only commands are issued after which the robot can still
-    stop before it touches anything, whatever the stack wants. `progress(done, expected)` is called while the first route is
-    planned, which is not counted: (0, None).
-
-    Raises `NoRoom` where the robot does not fit at the start or goal, `NoPath` where no way leads there, and `ValueError` for a
-    value that cannot be used.
-
-    >>> import keyway, numpy as np
-    >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
-    >>> keyway.Controller(grid, robot="small", stack="keyway", start=(1, 1), goal=(3, 1))
-    <keyway.Controller keyway: 2.000 m to go, 360 beams>
-    """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], robot: str = "small", stack: str = "keyway", via: Sequence[Sequence[float]] | NDArray[Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Controller: ...
-    def __repr__(self, /) -> str: ...
-    @property
-    def clear_scan(self, /) -> Scan:
-        """
-        A scan of the robot's sensor in which nothing was met.
-        """
-    @property
-    def cycle(self, /) -> float:
-        """
-        Time between two commands [s].
-        """
-    @property
-    def guide_points(self, /) -> NDArray[float64]:
-        """
-        The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
-        """
-    @property
-    def notice(self, /) -> str | None:
-        """
-        That the robot begins nearer to something than it can stand, until it has left it, for people; otherwise `None`.
-        """
-    def recoveries(self, /) -> dict[str, Any]:
-        """
-        What was tried because the robot got no farther, by kind.
-        """
-    @property
-    def remaining(self, /) -> float:
-        """
-        What is left of the way [m].
-        """
-    @property
-    def route(self, /) -> NDArray[float64]:
-        """
-        The route being followed: a read-only array of float64 of shape (n, 2) [m].
-        """
-    @property
-    def routes_planned(self, /) -> int:
-        """
-        Number of searches for a route: at first, when a scan showed something on it, at way-points, after waits, and in recoveries.
-        """
-    def step(self, /, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScan) -> Step:
-        """
-        One control cycle: where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega) [m/s, rad/s], and what its
-        sensor sees.
-
-        `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
-        `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS, `sensor_msgs/LaserScan`, is taken as it is.
-
-        >>> import keyway, numpy as np
-        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
-        >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-        >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=-np.pi, angle_increment=np.pi / 180)
-        >>> step = controller.step((1, 1, 0), (0.2, 0), scan)
-        >>> step.v > 0.2, step.status
-        (True, 'drive')
         """
 
 @final
@@ -244,6 +167,276 @@ class Map:
         >>> grid.write(folder / "eye.map")
         >>> keyway.Map.read(folder / "eye.map").digest == grid.digest
         True
+        """
+
+@final
+class Navigator:
+    """
+    Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
+
+    `robot` and `stack` are names of `keyway.names`, or files. `parameters` are laid over the stack, as a dictionary with the names
+    of the TOML files. With `as_published` the stack has the values of its paper. With `safe` only commands are issued after which
+    the robot can still stop before it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
+    layers of the map are made, which are not counted: (0, None).
+
+    It has no goal at first. Goals come and go while the robot drives; what was sensed stays.
+
+    Raises `ValueError` for a value that cannot be used.
+
+    >>> import keyway, numpy as np
+    >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    >>> navigator = keyway.Navigator(grid, robot="small", stack="keyway")
+    >>> navigator.relocate((1, 1, 0))
+    >>> navigator.set_goal((3, 1))
+    >>> navigator
+    <keyway.Navigator keyway: 2.000 m to go, 360 beams>
+    """
+    def __new__(cls, /, grid: Map, robot: str = "small", stack: str = "keyway", parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Navigator: ...
+    def __repr__(self, /) -> str: ...
+    def back_up(self, /, distance: float, allowance: float) -> None:
+        """
+        Drives straight back by a distance [m] in the same way.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.back_up(0.5, allowance=20)
+        Traceback (most recent call last):
+        ValueError: distance_m cannot be driven: the robot does not drive backwards (`v_min_mps`)
+        """
+    def cancel(self, /) -> None:
+        """
+        Gives up what it was asked to do: the robot brakes, and stands.
+        """
+    @property
+    def clear_scan(self, /) -> Scan:
+        """
+        A scan of the robot's first sensor in which nothing was met.
+        """
+    @property
+    def cycle(self, /) -> float:
+        """
+        Time between two commands [s].
+        """
+    @property
+    def doubts(self, /) -> list[str]:
+        """
+        Contradictions in what was observed lately, for people, such as a velocity that is always 0 although the pose moves.
+        """
+    def drive_on_heading(self, /, distance: float, allowance: float) -> None:
+        """
+        Drives straight ahead by a distance [m] in the same way.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.drive_on_heading(0.5, allowance=20)
+        """
+    def edit_map(self, /, window: Map) -> None:
+        """
+        Changes a part of the map to that of another one, cell by cell at the centres of the cells of `window`.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.edit_map(keyway.Map.from_array(np.ones((2, 5), dtype=bool), resolution=0.1, origin=(2, 1)))
+        >>> navigator.map
+        <keyway.Map 40 x 40 cells of 0.1 m from (0, 0), 10 occupied, 0 unknown>
+        """
+    def follow(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> None:
+        """
+        Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot, to its end, as closely as along a
+        route of its own. Where something is in the way, such a route to the end takes its place.
+
+        Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError` for what is no path. Then it goes on
+        as before.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.follow([(1, 1), (1, 3), (3, 3)])
+        >>> round(navigator.remaining, 3)
+        4.0
+        """
+    @property
+    def goal(self, /) -> list[float] | None:
+        """
+        The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` where there is none.
+        """
+    @property
+    def guide_points(self, /) -> NDArray[float64]:
+        """
+        The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
+        """
+    def is_path_valid(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> bool:
+        """
+        True if the robot fits along all of a path among what is known and sensed, turning on the spot at its corners.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.is_path_valid([(1, 1), (3, 1)]), navigator.is_path_valid([(1, 1), (9, 1)])
+        (True, False)
+        """
+    @property
+    def map(self, /) -> Map:
+        """
+        The map, as it was given and edited.
+        """
+    @property
+    def notice(self, /) -> str | None:
+        """
+        That the robot was nearer to something than it can stand when it got its goal, until it has left it, for people; otherwise
+        `None`.
+        """
+    def observe(self, /, stamp: float, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScans | None = None) -> None:
+        """
+        Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega)
+        [m/s, rad/s], and what its sensors see. Stamps are by any clock, the same for all. They say when something was measured, not
+        when it arrived.
+
+        `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
+        `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS,
+        `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a stamp was made when the pose was
+        measured. A robot with several sensors gives a list with one scan of each, in their order, `None` where a sensor has made
+        none. Without `scan` none has arrived.
+
+        An observation that cannot be true, or is older than the last one, is not taken in; the next `step` then stops the robot and
+        says why.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=-np.pi, angle_increment=np.pi / 180)
+        >>> navigator.observe(12.5, (1, 1, 0), (0.2, 0), scan)
+        >>> navigator.set_goal((3, 1))
+        >>> step = navigator.step()
+        >>> step.v > 0.2, step.status
+        (True, 'drive')
+        """
+    def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any]) -> NDArray[float64]:
+        """
+        A route between two positions on what is known and sensed: a read-only array of float64 of shape (n, 2) [m]. Nothing changes
+        by it.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.plan((1, 1), (3, 1)).tolist()
+        [[1.0, 1.0], [3.0, 1.0]]
+        """
+    def recoveries(self, /) -> dict[str, Any]:
+        """
+        Counts of what was tried because the robot got no farther, by kind.
+        """
+    def relocate(self, /, pose: Sequence[float] | NDArray[Any]) -> None:
+        """
+        Tells it where the robot is (x, y, theta) [m, m, rad]: before the first observation, or when the localisation has been
+        corrected.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        """
+    @property
+    def remaining(self, /) -> float | None:
+        """
+        Remaining length of the way [m]; `None` without a goal.
+        """
+    def restart_clock(self, /) -> None:
+        """
+        The clock of all stamps begins anew: the next observation may have any stamp.
+        """
+    @property
+    def route(self, /) -> NDArray[float64]:
+        """
+        The route being followed: a read-only array of float64 of shape (n, 2) [m]; empty without a goal.
+        """
+    @property
+    def routes_planned(self, /) -> int:
+        """
+        Number of searches for a route: at first for each goal, when a scan showed something on it, at way-points, after waits, and in recoveries.
+        """
+    def set_goal(self, /, goal: Sequence[float] | NDArray[Any], progress: Progress | None = None) -> None:
+        """
+        Drives to a goal from now on, in the place of the last one: a position [m], or with a heading [m, m, rad].
+
+        The robot may drive on in another thread while the route is searched. `progress(done, expected)` is called meanwhile;
+        nothing is counted: (0, None).
+
+        Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no way leads there, and `ValueError`
+        where nobody has said where the robot is. Then it goes on as before.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.set_goal((3, 1))
+        >>> navigator.goal
+        [3.0, 1.0]
+        """
+    def set_goals(self, /, via: Sequence[Sequence[float]] | NDArray[Any], goal: Sequence[float] | NDArray[Any], progress: Progress | None = None) -> None:
+        """
+        The same by way of some positions, in their order [m].
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.set_goals([(3, 1)], (3, 3))
+        >>> round(navigator.remaining, 3)
+        4.0
+        """
+    def set_map(self, /, grid: Map) -> None:
+        """
+        Drives on another map from now on: one that has grown, or whose origin has moved. What was sensed keeps its place in the world.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.set_map(keyway.Map.from_array(np.zeros((80, 80), dtype=bool), resolution=0.1, origin=(-2, -2)))
+        >>> navigator.set_goal((-1, -1))
+        """
+    def set_masks(self, /, keep_out: Map | None = None, slow: tuple[Map, float] | None = None) -> None:
+        """
+        Keeps out of the occupied cells of one map, and drives no faster than a speed [m/s] on those of another one, in the place of
+        what was given before. Their frames need not be that of the navigator's map.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> zone = keyway.Map.from_array(np.ones((1, 1), dtype=bool), resolution=1.0, origin=(2, 2))
+        >>> navigator.set_masks(keep_out=zone)
+        """
+    def set_speed_limit(self, /, speed: float | None = None) -> None:
+        """
+        Drives no faster than this from now on [m/s]; `None`: as fast as the robot can.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.set_speed_limit(0.2)
+        """
+    def spin(self, /, angle: float, allowance: float) -> None:
+        """
+        Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot brakes first, and has arrived when it
+        stands again. Nothing is touched: where there is no room it waits, until its time is over.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.spin(1.5, allowance=20)
+        """
+    def step(self, /) -> Step:
+        """
+        One control cycle: what the robot is to do, from what was observed. It counts for the time that has passed by the stamps
+        since the last step; the first one for a cycle of the robot.
         """
 
 @final
@@ -437,6 +630,7 @@ class Scan:
     `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the beam says nothing. Beam i looks
     at the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to the left: where the beams go
     clockwise, `angle_increment` is negative. Sensors begin at the back, ahead or at a side; so neither angle has a default.
+    `stamp` is the time at which it was made [s]; without one it belongs to the pose with which it is given.
 
     >>> import keyway, numpy as np
     >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
@@ -444,7 +638,7 @@ class Scan:
     (<keyway.Scan 360 beams from 0.000 to 6.266 rad>, 1.571)
     """
     def __len__(self, /) -> int: ...
-    def __new__(cls, /, ranges: Sequence[float] | NDArray[Any], angle_min: float, angle_increment: float) -> Scan: ...
+    def __new__(cls, /, ranges: Sequence[float] | NDArray[Any], angle_min: float, angle_increment: float, stamp: float | None = None) -> Scan: ...
     def __repr__(self, /) -> str: ...
     @property
     def angle_increment(self, /) -> float:
@@ -465,6 +659,11 @@ class Scan:
     def ranges(self, /) -> NDArray[float64]:
         """
         Ranges of all beams: a new array of float64 [m].
+        """
+    @property
+    def stamp(self, /) -> float | None:
+        """
+        Time at which it was made [s]; `None` where it was not said.
         """
 
 @final
@@ -595,12 +794,24 @@ class Simulation:
     @property
     def range(self, /) -> float:
         """
-        Range of the sensor [m].
+        Range of the sensor [m]; of several the longest.
         """
     @property
     def scan(self, /) -> Scan:
         """
-        The present scan: ranges, and where their beams look. `Controller.step` takes it as it is.
+        The present scan of the first sensor: ranges, and where their beams look. `Navigator.observe`
+        takes it as it is for a robot with a single sensor.
+        """
+    @property
+    def scans(self, /) -> list[Scan | None]:
+        """
+        The present scans of all sensors, in their order; `None` where a sensor has made none in
+        this cycle. `Navigator.observe` takes them as they are.
+        """
+    @property
+    def stamp(self, /) -> float:
+        """
+        Time at which `pose` and `velocity` were measured [s].
         """
     def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
         """
@@ -624,15 +835,22 @@ class Simulation:
 @final
 class Step:
     """
-    What a robot is to do until the next cycle.
+    Command until the next cycle, and its reason.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
-    >>> controller = keyway.Controller(grid, start=(1, 1), goal=(3, 1))
-    >>> controller.step(pose=(1, 1, 0), velocity=(0, 0), scan=controller.clear_scan)
+    >>> navigator = keyway.Navigator(grid)
+    >>> navigator.observe(0.0, pose=(1, 1, 0), velocity=(0, 0), scan=navigator.clear_scan)
+    >>> navigator.set_goal((3, 1))
+    >>> navigator.step()
     <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
     """
     def __repr__(self, /) -> str: ...
+    @property
+    def kind(self, /) -> int | None:
+        """
+        The kind of that as a number, which never changes, for programs; otherwise `None`.
+        """
     @property
     def notice(self, /) -> str | None:
         """
@@ -646,7 +864,7 @@ class Step:
     @property
     def status(self, /) -> str:
         """
-        `drive`, `blocked` (there is no good way on at the moment; the command is safe) or `arrived`.
+        `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`, or `idle` (there is no goal).
         """
     @property
     def v(self, /) -> float:
@@ -659,7 +877,7 @@ class Step:
         Why the robot is blocked, for people; otherwise `None`.
         """
 
-def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, safe: bool = False, progress: Progress | None = None) -> dict[str, Any]:
+def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
     """
     Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
     for byte, into the folder `out`.
@@ -668,8 +886,9 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
     i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
     chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
-    `disturbances` are names or files. With `safe` the stop rule stands behind every stack. Runs
-    that the folder holds are not made again, so a batch that was stopped goes on where it was.
+    `disturbances` are names or files. `reached_by` is the pose by which a goal is reached,
+    `"truth"` or `"belief"`. With `safe` the stop rule stands behind every stack. `parameters` are
+    laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are not made again, so a batch that was stopped goes on where it was.
     `progress(done, expected)` is called meanwhile.
 
     Gives the report `keyway.batch/1` of `docs/JSON.md`.
@@ -717,7 +936,7 @@ def names(kind: str) -> list[str]:
 
     >>> import keyway
     >>> keyway.names("robots")
-    ['small', 'jackal', 'paper']
+    ['small', 'jackal', 'paper', 'burger', 'waffle']
     """
 
 def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from keyway._keyway import Plan
 from keyway.errors import KeywayError
 
-__all__ = ["LaserScan", "Plans", "Progress"]
+__all__ = ["LaserScan", "LaserScans", "Plans", "Progress"]
 
 #: Is called with what is done and what is expected, which may be unknown. What it raises stops the work.
 Progress: TypeAlias = Callable[[int, int | None], object]
@@ -31,3 +31,7 @@ class LaserScan(Protocol):
     @property
     def angle_increment(self) -> float:
         """Bearing from one beam to the next [rad]."""
+
+
+#: The scan of a robot's only sensor, or a list with one of each, ``None`` where a sensor has made none.
+LaserScans: TypeAlias = LaserScan | Sequence[LaserScan | None]

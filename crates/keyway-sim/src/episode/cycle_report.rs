@@ -2,9 +2,10 @@
 
 use super::Cycle;
 use keyway::geometry::{Point, Velocity};
+use keyway::guide::Guidance;
 use keyway::local::{Explanation, Refusal, Rejections, Remedy, ScoredCandidate, Shares};
 use keyway::navigate::Step;
-use keyway::sense::Mover;
+use keyway::sense::{Mover, Observation};
 use serde::Serialize;
 
 /// `keyway.cycle/1`: the robot's pose, its decision, and the reasons.
@@ -20,8 +21,11 @@ pub struct CycleReport {
     pub pose: [f64; 3],
     /// Velocity of the robot.
     pub velocity: Speeds,
-    /// Point towards which the robot drives \[m\].
+    /// Point to which the guide leads \[m\].
     pub guide_m: Point,
+    /// Point towards which the local planner drives \[m\]: that of the guide, or one of its own;
+    /// `None` when it drives to no point, or was not asked.
+    pub target_m: Option<Point>,
     /// Remaining path length \[m\].
     pub remaining_m: f64,
     /// Moving obstacles, as the robot estimates them.
@@ -71,6 +75,8 @@ pub enum StepName {
     Arrived,
     /// The robot has no good way on.
     Blocked,
+    /// The robot has no goal.
+    Idle,
 }
 
 /// A candidate and its score.
@@ -90,34 +96,38 @@ impl CycleReport {
     pub const SCHEMA: &'static str = "keyway.cycle/1";
 
     /// Returns the report of a cycle, given the explanation of its decision
-    /// ([`keyway::navigate::Controller::explain`]).
+    /// ([`keyway::navigate::Navigator::explain`]).
     pub fn of(cycle: &Cycle<'_>, explanation: &Explanation) -> Self {
         let (step, command, reason) = match cycle.step {
             Step::Drive(command) => (StepName::Drive, Some(*command), None),
             Step::Arrived => (StepName::Arrived, None, None),
+            Step::Idle => (StepName::Idle, None, None),
             Step::Blocked { command, why } => {
                 (StepName::Blocked, Some(*command), Some(why.to_string()))
             }
         };
         let is_asked = !explanation.candidates.is_empty();
-        let evaluation = is_asked.then(|| cycle.controller.evaluation().clone());
+        let evaluation = is_asked.then(|| cycle.navigator.evaluation().clone());
         let evaluation = evaluation.unwrap_or_default();
-        let guidance = cycle.controller.guidance();
-        let walked = cycle.controller.gone_around().iter();
+        let here = Guidance { point: cycle.observation.pose.point(), remaining_m: 0.0 };
+        let guidance = cycle.navigator.guidance().unwrap_or(here);
+        let walked = cycle.navigator.gone_around().iter();
+        let Observation { pose, velocity, .. } = *cycle.observation;
         Self {
             schema: Self::SCHEMA,
             cycle: cycle.index,
             t_s: cycle.t_s,
-            pose: [cycle.pose.x, cycle.pose.y, cycle.pose.theta],
-            velocity: cycle.velocity.into(),
+            pose: [pose.x, pose.y, pose.theta],
+            velocity: velocity.into(),
             guide_m: guidance.point,
+            target_m: explanation.target,
             remaining_m: guidance.remaining_m,
-            movers: cycle.controller.movers().to_vec(),
+            movers: cycle.navigator.movers().to_vec(),
             walked: walked.map(|disc| [disc.centre.x, disc.centre.y, disc.radius_m]).collect(),
             step,
             reason,
             command: command.map(Speeds::from),
-            refusal: cycle.controller.refusal().copied(),
+            refusal: cycle.navigator.refusal().copied(),
             candidates: evaluation.candidates,
             driving: evaluation.driving,
             rejected: evaluation.rejected,

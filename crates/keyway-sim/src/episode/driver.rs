@@ -13,11 +13,11 @@ use crate::sim::{
     WorldError, simulate_on,
 };
 use keyway::ConfigError;
-use keyway::geometry::{Point, Pose, Velocity};
-use keyway::map::{BitGrid, UnknownPolicy};
-use keyway::navigate::{Blocked, Controller, FittedStack, Misfit, Step};
+use keyway::geometry::{Point, Pose};
+use keyway::map::{BitGrid, OccupancyGrid, UnknownPolicy};
+use keyway::navigate::{Blocked, FittedStack, Goal, Misfit, NavigateError, Navigator, Step};
 use keyway::route::Route;
-use keyway::sense::Scan;
+use keyway::sense::Observation;
 
 /// A robot about to drive.
 pub(super) struct Entry<'a> {
@@ -56,11 +56,15 @@ pub(super) fn run_all<'a>(
 /// Returns the real obstacles: those of the map, those that no map has, and the moving ones.
 /// Unknown cells are obstacles if all robots plan around them.
 pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
-    let Episode { known, obstacles, polygons, hidden_cells, movers, .. } = tasks[0].episode;
+    let Episode { known, obstacles, polygons, hidden_cells, elusive, movers, .. } =
+        tasks[0].episode;
     let frame = *known.frame();
     let through_unknown =
         tasks.iter().find(|task| task.robot.stack.map.unknown != UnknownPolicy::Blocked);
-    let squares = through_unknown.unwrap_or(&tasks[0]).known_squares();
+    let mut squares = through_unknown.unwrap_or(&tasks[0]).known_squares();
+    for &cell in tasks[0].episode.absent_cells.iter().filter(|&&cell| frame.contains(cell)) {
+        squares.set(cell, false);
+    }
     let mut world = World::new(frame, squares, obstacles.clone())?;
     if !hidden_cells.is_empty() {
         let mut hidden = BitGrid::new(frame.width(), frame.height(), false);
@@ -73,7 +77,8 @@ pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
         }
         world = world.with_hidden(&hidden)?;
     }
-    Ok(world.with_polygons(polygons.clone()).with_movers(movers.clone()))
+    let world = world.with_polygons(polygons.clone()).with_elusive(elusive.clone());
+    Ok(world.with_movers(movers.clone()))
 }
 
 /// Simulates the runs of all robots; returns none if no robot has a route.
@@ -100,7 +105,7 @@ fn simulated(
             robot: &task.robot.robot,
             start,
             goal: task.robot.goal.position,
-            disturbances: task.robot.disturbances,
+            disturbances: task.robot.disturbances.clone(),
             rules,
             controller,
         })
@@ -108,8 +113,26 @@ fn simulated(
     simulate_on(threads, world, &mut participants).map_err(EpisodeError::of_all)
 }
 
+/// A navigator with a goal, and its first route.
+pub(super) fn bound_for(
+    known: &OccupancyGrid,
+    stack: &FittedStack,
+    (start, via, goal): (Point, &[Point], Goal),
+) -> Result<(Navigator, Route), NavigateError> {
+    let mut navigator = Navigator::new(known, stack)?;
+    navigator.relocate(Pose { x: start.x, y: start.y, theta: 0.0 });
+    navigator.set_goals(via, goal)?;
+    let route = navigator.route().cloned().unwrap_or_default();
+    Ok((navigator, route))
+}
+
+/// Remaining length of the way to the goal \[m\].
+pub(super) fn remaining_m(navigator: &Navigator) -> f64 {
+    navigator.guidance().map_or(f64::INFINITY, |guidance| guidance.remaining_m)
+}
+
 /// Controller of a robot.
-type Decide<'a> = dyn FnMut(Pose, Velocity, &Scan) -> Control + Send + 'a;
+type Decide<'a> = dyn FnMut(&Observation<'_>) -> Control + Send + 'a;
 
 /// A robot at its start.
 enum Ready<'a> {
@@ -124,8 +147,8 @@ impl<'a> Ready<'a> {
         let Entry { task, stack, observer } = entry;
         let EpisodeRobot { start, via, goal, .. } = task.robot;
         let known = &task.episode.known;
-        let controller = match Controller::by_way_of(known, &stack, start.position, via, *goal) {
-            Ok(controller) => controller,
+        let (navigator, route) = match bound_for(known, &stack, (start.position, via, *goal)) {
+            Ok(bound) => bound,
             Err(error) => {
                 let Some(report) = task.without_route(&error) else {
                     return Err(task.blame(error));
@@ -136,20 +159,19 @@ impl<'a> Ready<'a> {
                 return Ok(Self::Stands { at, report: Box::new(report) });
             }
         };
-        let start =
-            task.start_pose(world, controller.route()).map_err(|error| task.blame(error))?;
-        observer.started(&controller);
-        let rules = task.run_rules(controller.guidance().remaining_m);
+        let start = task.start_pose(world, &route).map_err(|error| task.blame(error))?;
+        observer.started(&navigator);
+        let rules = task.run_rules(remaining_m(&navigator));
         Ok(Self::Drives(Box::new(Driver {
             task,
             observer,
             clock,
             start,
             rules,
-            route: controller.route().clone(),
-            key_points: controller.guide_points(),
-            misfit: controller.misfit(),
-            controller,
+            route,
+            key_points: navigator.guide_points(),
+            misfit: navigator.misfit(),
+            navigator,
             cycles: 0,
             decisions_s: 0.0,
             passed_s: Vec::new(),
@@ -175,14 +197,10 @@ impl<'a> Ready<'a> {
 
     fn controller(&mut self) -> Box<Decide<'_>> {
         match self {
-            Self::Drives(driver) => {
-                Box::new(|pose, velocity, scan| driver.decide(pose, velocity, scan))
+            Self::Drives(driver) => Box::new(|observation| driver.decide(observation)),
+            Self::Stands { .. } => {
+                Box::new(|_| Control { action: Action::Stop, remaining_m: f64::INFINITY, route: 0 })
             }
-            Self::Stands { .. } => Box::new(|_, _, _| Control {
-                action: Action::Stop,
-                remaining_m: f64::INFINITY,
-                route: 0,
-            }),
         }
     }
 
@@ -207,7 +225,7 @@ struct Driver<'a> {
     route: Route,
     key_points: Vec<Point>,
     misfit: Option<Misfit>,
-    controller: Controller,
+    navigator: Navigator,
     /// Decisions so far, and their total wall clock time \[s\].
     cycles: u64,
     decisions_s: f64,
@@ -219,21 +237,25 @@ struct Driver<'a> {
 
 impl Driver<'_> {
     /// Decides on one cycle.
-    fn decide(&mut self, pose: Pose, velocity: Velocity, scan: &Scan) -> Control {
-        let controller = &mut self.controller;
-        let (step, step_s) = timed(self.clock, || controller.step(pose, velocity, scan));
+    fn decide(&mut self, observation: &Observation<'_>) -> Control {
+        let navigator = &mut self.navigator;
+        let (step, step_s) = timed(self.clock, || {
+            navigator.observe(observation);
+            navigator.step()
+        });
         self.decisions_s += step_s.unwrap_or_default();
-        let controller = &self.controller;
+        let navigator = &self.navigator;
         let index = self.cycles;
         let t_s = index as f64 * self.task.robot.robot.cycle_s;
-        let cycle = Cycle { index, t_s, pose, velocity, scan, step: &step, controller };
+        let cycle = Cycle { index, t_s, observation, step: &step, navigator };
         self.observer.decided(&cycle);
-        self.passed_s.resize(controller.way_points_passed(), t_s);
+        self.passed_s.resize(navigator.way_points_passed(), t_s);
         self.cycles += 1;
-        let remaining_m = controller.guidance().remaining_m;
+        let remaining_m = remaining_m(navigator);
         let action = match step {
             _ if self.observer.gives_up() => Action::GiveUp,
             Step::Arrived => Action::Arrived,
+            Step::Idle => Action::Stop,
             // A recovery attempt is not the reason why the robot is blocked.
             Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
                 Action::Drive(command)
@@ -243,19 +265,19 @@ impl Driver<'_> {
                 Action::Drive(command)
             }
         };
-        Control { action, remaining_m, route: controller.ways_taken() }
+        Control { action, remaining_m, route: navigator.ways_taken() }
     }
 
     /// Returns the report of the run.
     fn report(self, run: &Run, world: &World) -> Result<RobotReport, ConfigError> {
-        let Self { task, clock, ref rules, ref route, ref controller, .. } = self;
-        self.observer.ended(run, &self.controller);
+        let Self { task, clock, ref rules, ref route, ref navigator, .. } = self;
+        self.observer.ended(run, &self.navigator);
         let map = task.layer_of(route)?;
         let is_measured = clock.is_some() && self.cycles > 0;
         let controlled = Controlled {
-            routes_planned: controller.routes_planned(),
-            recoveries: controller.recoveries(),
-            unsafe_commands: controller.refusals(),
+            routes_planned: navigator.routes_planned(),
+            recoveries: navigator.recoveries(),
+            unsafe_commands: navigator.refusals(),
             way_points: self.way_points(),
             mean_cycle_us: is_measured.then(|| self.decisions_s * 1e6 / self.cycles as f64),
         };
@@ -275,9 +297,10 @@ impl Driver<'_> {
     }
 
     fn way_points(&self) -> Vec<WayPointPart> {
+        let skipped = self.navigator.way_points_skipped();
         let part = |(index, &position): (usize, &Point)| WayPointPart {
             position,
-            passed_s: self.passed_s.get(index).copied(),
+            passed_s: self.passed_s.get(index).copied().filter(|_| !skipped.contains(&index)),
         };
         self.task.robot.via.iter().enumerate().map(part).collect()
     }
@@ -288,13 +311,14 @@ impl Driver<'_> {
         let what = match run.outcome {
             Outcome::Reached => return None,
             Outcome::Collided { pose, with, robot_stood, jumped_onto, mover_speed_mps } => {
-                let with = match with {
+                let name = match with {
                     Obstacle::Circle(index) => format!("unknown obstacle {index}"),
                     Obstacle::Mover(index) => format!("moving obstacle {index}"),
                     Obstacle::Border => "the border of the map".to_owned(),
                     Obstacle::Square => "an obstacle of the map".to_owned(),
                     Obstacle::HiddenSquare => "an unknown cell".to_owned(),
                     Obstacle::Polygon(index) => format!("unknown polygon {index}"),
+                    Obstacle::Elusive(index) => format!("elusive obstacle {index}"),
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
                 let turned = run.samples.last().is_some_and(|last| last.velocity.omega != 0.0);
@@ -303,13 +327,17 @@ impl Driver<'_> {
                     (true, false) => ", while the robot stood",
                     (true, true) => ", while the robot turned on the spot",
                 };
-                let jumped = if jumped_onto { ", just after it had jumped" } else { "" };
+                let jumped = match with {
+                    _ if !jumped_onto => "",
+                    Obstacle::Elusive(_) => ", which had just appeared",
+                    _ => ", just after it had jumped",
+                };
                 let darted =
                     mover_speed_mps.filter(|&speed_mps| speed_mps > MovingObstacle::DART_MPS);
                 let darted =
                     darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
                 let darted = darted.unwrap_or_default();
-                format!("touched {with} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
+                format!("touched {name} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(

@@ -29,6 +29,7 @@
 mod cycle_report;
 mod driver;
 mod error;
+mod nearest;
 mod observer;
 mod random_obstacles;
 mod report;
@@ -41,6 +42,7 @@ mod task;
 
 pub use cycle_report::{CycleReport, Scored, Speeds, StepName};
 pub use error::{EpisodeError, RunError};
+pub use nearest::NearestGoal;
 pub use observer::{Cycle, EpisodeObserver};
 pub use random_obstacles::{RandomMoving, RandomObstacles, RandomUnknown};
 pub use report::{EpisodeOutcome, EpisodeReport, RobotReport};
@@ -50,7 +52,7 @@ pub use run::{RunOptions, run_episode, watch_episode};
 pub use start::Start;
 
 use crate::report::{MapSource, Placed};
-use crate::sim::{MovingObstacle, StandingPolygon};
+use crate::sim::{ElusiveObstacle, MovingObstacle, StandingPolygon};
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Point};
 use keyway::given::Given;
@@ -94,6 +96,10 @@ pub struct Episode {
     pub polygons: Vec<StandingPolygon>,
     /// Occupied cells that the map does not show, in ascending order.
     pub hidden_cells: Vec<Cell>,
+    /// Cells that the map shows as occupied although nothing is there, in ascending order.
+    pub absent_cells: Vec<Cell>,
+    /// Obstacles that stand for a time only, or that sensors miss.
+    pub elusive: Vec<ElusiveObstacle>,
     /// Moving obstacles.
     pub movers: Vec<MovingObstacle>,
     /// Number of random ones among these obstacles, and of those not placed
@@ -121,6 +127,8 @@ impl Episode {
             obstacles: Vec::new(),
             polygons: Vec::new(),
             hidden_cells: Vec::new(),
+            absent_cells: Vec::new(),
+            elusive: Vec::new(),
             movers: Vec::new(),
             random: None,
             robots,

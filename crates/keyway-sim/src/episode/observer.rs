@@ -1,9 +1,8 @@
 //! Observation of a run: for progress, animations, logs.
 
 use crate::sim::Run;
-use keyway::geometry::{Pose, Velocity};
-use keyway::navigate::{Controller, NavigateError, Step};
-use keyway::sense::Scan;
+use keyway::navigate::{NavigateError, Navigator, Step};
+use keyway::sense::Observation;
 
 /// One control cycle: the robot's knowledge and its decision.
 #[derive(Clone, Copy)]
@@ -12,17 +11,14 @@ pub struct Cycle<'a> {
     pub index: u64,
     /// Simulated time at its beginning \[s\].
     pub t_s: f64,
-    /// Pose that the robot believes: the true pose with the errors of its localisation.
-    pub pose: Pose,
-    /// Velocity that the robot believes.
-    pub velocity: Velocity,
-    /// Scan of the sensor.
-    pub scan: &'a Scan,
+    /// Measurements of the robot: its pose and velocity with the errors of its localisation, and
+    /// its scans.
+    pub observation: &'a Observation<'a>,
     /// Decision of the robot.
     pub step: &'a Step,
-    /// The controller after the decision: its route, its sensed obstacles, its target, the scores
+    /// The navigator after the decision: its route, its sensed obstacles, its target, the scores
     /// of the candidates.
-    pub controller: &'a Controller,
+    pub navigator: &'a Navigator,
 }
 
 /// Observer of a run. The default methods do nothing; `()` observes nothing. Observers of robots in
@@ -32,7 +28,7 @@ pub trait EpisodeObserver: Send {
     fn no_route(&mut self, _why: &NavigateError) {}
 
     /// Reports that the robot has its first route and is about to drive.
-    fn started(&mut self, _controller: &Controller) {}
+    fn started(&mut self, _navigator: &Navigator) {}
 
     /// Reports the decision of a cycle.
     fn decided(&mut self, _cycle: &Cycle<'_>) {}
@@ -44,7 +40,7 @@ pub trait EpisodeObserver: Send {
     }
 
     /// Reports that the run has ended.
-    fn ended(&mut self, _run: &Run, _controller: &Controller) {}
+    fn ended(&mut self, _run: &Run, _navigator: &Navigator) {}
 }
 
 impl EpisodeObserver for () {}

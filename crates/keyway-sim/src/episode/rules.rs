@@ -1,6 +1,6 @@
 //! Rules that end a run.
 
-use crate::sim::{Arrival, RunRules};
+use crate::sim::{Arrival, ReachedBy, RunRules};
 
 /// Rules that end a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +10,8 @@ pub struct EpisodeRules {
     /// Arrival rule: whether the robot has to stop at the goal, with the goal's heading, or may
     /// pass.
     pub arrival: Arrival,
+    /// Pose by which the goal is reached.
+    pub reached_by: ReachedBy,
     /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at top
     /// speed.
     pub time_limit_s: Option<f64>,
@@ -26,6 +28,7 @@ impl Default for EpisodeRules {
         Self {
             goal_tolerance_m: None,
             arrival: Arrival::Standing,
+            reached_by: ReachedBy::Truth,
             time_limit_s: None,
             stuck_window_s,
             stuck_progress_m: None,

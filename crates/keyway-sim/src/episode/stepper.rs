@@ -1,12 +1,11 @@
 //! The world of an episode, for an external controller.
 
-use super::driver::world_of;
+use super::driver::{bound_for, remaining_m, world_of};
 use super::task::Task;
 use super::{Episode, EpisodeError, EpisodeRobot};
 use crate::sim::{RunRules, Stepper};
 use keyway::ConfigError;
 use keyway::geometry::Pose;
-use keyway::navigate::Controller;
 
 impl Episode {
     /// Returns the episode's robot at the start in its world, to be driven from outside. The stack
@@ -25,11 +24,11 @@ impl Episode {
         let task = Task::new(self, 0);
         let world = world_of(&[task]).map_err(EpisodeError::of_all)?;
         let stack = task.fit()?;
-        let controller = Controller::by_way_of(&self.known, &stack, start.position, via, *goal)?;
-        let start: Pose = task.start_pose(&world, controller.route())?;
-        let rules: RunRules = task.run_rules(controller.guidance().remaining_m);
+        let (navigator, route) = bound_for(&self.known, &stack, (start.position, via, *goal))?;
+        let start: Pose = task.start_pose(&world, &route)?;
+        let rules: RunRules = task.run_rules(remaining_m(&navigator));
         let ends = (start, goal.position);
-        let stepper = Stepper::new(world, robot.clone(), ends, *disturbances, rules);
+        let stepper = Stepper::new(world, robot.clone(), ends, disturbances.clone(), rules);
         stepper.map_err(EpisodeError::of_all)
     }
 }
@@ -45,8 +44,9 @@ mod tests {
     use keyway::map::OccupancyGrid;
     use keyway::navigate::Step;
     use keyway::robot::Robot;
+    use keyway::sense::Observation;
 
-    /// Manual driving with the episode's own controller gives the episode's own run.
+    /// Manual driving with the episode's own navigator gives the episode's own run.
     #[test]
     fn it_is_the_world_of_the_episode() {
         let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);
@@ -55,15 +55,18 @@ mod tests {
         episode.obstacles = vec![Disc::new(Point::new(4.0, 2.1), 0.3)];
         let mut run = episode.stepper().unwrap();
         let EpisodeRobot { robot, stack, .. } = &episode.robots[0];
-        let mut controller =
-            Controller::new(&episode.known, &stack.fit(robot).unwrap(), start, goal).unwrap();
+        let stack = stack.fit(robot).unwrap();
+        let ends = (start, &[][..], goal.into());
+        let (mut navigator, _) = bound_for(&episode.known, &stack, ends).unwrap();
         while run.outcome().is_none() {
-            let RobotState { pose, velocity } = run.told();
-            let action = match controller.step(pose, velocity, run.scan()) {
+            let RobotState { stamp_s, pose, velocity } = run.told();
+            let scans = run.scans();
+            navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+            let action = match navigator.step() {
                 Step::Arrived => Action::Arrived,
                 step => Action::Drive(step.command()),
             };
-            let (remaining_m, route) = (controller.guidance().remaining_m, controller.ways_taken());
+            let (remaining_m, route) = (remaining_m(&navigator), navigator.ways_taken());
             run.step(&Control { action, remaining_m, route }).unwrap();
         }
         let samples = run.into_run().unwrap().samples;

@@ -4,7 +4,7 @@ use super::{
     Episode, EpisodeError, EpisodeOutcome, EpisodeRobot, EpisodeRules, RobotReport, RunError,
 };
 use crate::report::{Clock, Inputs, Parameters, PlanPart, timed};
-use crate::sim::{RunRules, World};
+use crate::sim::{ElusiveObstacle, RunRules, World};
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Pose};
 use keyway::map::{BitGrid, Clearance, LayerConfig, SearchMap, UnknownPolicy};
@@ -83,6 +83,7 @@ impl Task<'_> {
         let EpisodeRules {
             goal_tolerance_m,
             arrival,
+            reached_by,
             time_limit_s,
             stuck_window_s,
             stuck_progress_m,
@@ -93,6 +94,7 @@ impl Task<'_> {
             goal_tolerance_m: goal_tolerance_m
                 .unwrap_or(self.robot.stack.controller.goal_tolerance_m),
             arrival,
+            reached_by,
             time_limit_s: time_limit_s.unwrap_or(usual_s),
             stuck_window_s,
             stuck_progress_m: stuck_progress_m.unwrap_or(usual_m),
@@ -153,6 +155,12 @@ impl Task<'_> {
         })
     }
 
+    /// True if the run follows from the seed of the disturbances, too.
+    fn has_random_numbers(&self) -> bool {
+        let is_glimpsed = |it: &ElusiveObstacle| !matches!(it.presence().seen, 0.0 | 1.0);
+        !self.robot.disturbances.is_none() || self.episode.elusive.iter().any(is_glimpsed)
+    }
+
     /// Returns all inputs of the result; `time_limit_s` is the limit of this run.
     pub(super) fn inputs(&self, time_limit_s: Option<f64>) -> Inputs {
         let to_row = |circle: &Disc| [circle.centre.x, circle.centre.y, circle.radius_m];
@@ -172,11 +180,14 @@ impl Task<'_> {
             obstacles: self.episode.obstacles.iter().map(to_row).collect(),
             polygons: self.episode.polygons.clone(),
             hidden_cells: self.episode.hidden_cells.clone(),
+            absent_cells: self.episode.absent_cells.clone(),
+            elusive: self.episode.elusive.clone(),
             moving: self.episode.movers.clone(),
             random: self.episode.random,
-            disturbances: (!self.robot.disturbances.is_none()).then_some(self.robot.disturbances),
+            disturbances: self.has_random_numbers().then(|| self.robot.disturbances.clone()),
             goal_tolerance_m: self.episode.rules.goal_tolerance_m,
             arrival: Some(self.episode.rules.arrival),
+            reached_by: Some(self.episode.rules.reached_by),
             time_limit_s,
             stuck_window_s: Some(self.episode.rules.stuck_window_s),
             budget: None,

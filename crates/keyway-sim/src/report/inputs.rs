@@ -1,6 +1,8 @@
 //! Inputs of a result.
 
-use crate::sim::{Arrival, Disturbances, MovingObstacle, StandingPolygon};
+use crate::sim::{
+    Arrival, Disturbances, ElusiveObstacle, MovingObstacle, ReachedBy, StandingPolygon,
+};
 use keyway::geometry::Point;
 use keyway::map::{Cell, LayerConfig};
 use keyway::navigate::Stack;
@@ -43,6 +45,10 @@ pub struct Inputs {
     pub polygons: Vec<StandingPolygon>,
     /// Occupied cells that the map does not show.
     pub hidden_cells: Vec<Cell>,
+    /// Cells that the map shows as occupied although nothing is there.
+    pub absent_cells: Vec<Cell>,
+    /// Obstacles that stand for a time only, or that sensors miss.
+    pub elusive: Vec<ElusiveObstacle>,
     /// Moving obstacles.
     pub moving: Vec<MovingObstacle>,
     /// Number of random obstacles; `None` where none was requested.
@@ -53,6 +59,8 @@ pub struct Inputs {
     pub goal_tolerance_m: Option<f64>,
     /// Arrival rule: whether the robot had to stop at its goal; `None` for a route.
     pub arrival: Option<Arrival>,
+    /// Pose by which the goal was reached; `None` for a route.
+    pub reached_by: Option<ReachedBy>,
     /// Limit of the simulated time in this run \[s\].
     pub time_limit_s: Option<f64>,
     /// Time without progress along the remaining path after which the robot was stuck \[s\]; `None`

@@ -20,4 +20,4 @@ pub use scene::{SceneFile, SceneMap};
 pub use scene_error::SceneError;
 pub use scene_robots::SceneRobot;
 pub use scene_rules::SceneRules;
-pub use unknown::{UnknownDisc, UnknownObstacle};
+pub use unknown::{GroundShape, UnknownDisc, UnknownObstacle};

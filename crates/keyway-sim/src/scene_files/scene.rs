@@ -4,7 +4,7 @@ use super::scene_error::SceneError;
 use super::scene_robots::SceneRobot;
 use super::scene_rules::SceneRules;
 use super::scene_version::{VERSION, Versioned};
-use super::unknown::{Standing, UnknownObstacle};
+use super::unknown::{GroundShape, Standing, UnknownObstacle, absent_cells, validate_absent};
 use crate::episode::{Episode, EpisodeRobot, RandomObstacles, Start};
 use crate::report::MapSource;
 use crate::sim::{Disturbances, MovingObstacle};
@@ -54,7 +54,7 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`,
-    /// `rules`, `disturbances`, `robots` and `random`, are read, too.
+    /// `rules`, `disturbances`, `robots`, `absent` and `random`, are read, too.
     #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
     /// What the scene shows, for people.
@@ -102,6 +102,9 @@ pub struct SceneFile {
     /// Obstacles that stand and are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownObstacle>,
+    /// Ground that the map shows as occupied although nothing is there, such as an open door.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub absent: Vec<GroundShape>,
     /// Obstacles that move.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MovingObstacle>,
@@ -163,6 +166,7 @@ impl SceneFile {
             rules: SceneRules::default(),
             robots: Vec::new(),
             unknown: Vec::new(),
+            absent: Vec::new(),
             moving: Vec::new(),
             random: None,
         }
@@ -218,14 +222,16 @@ impl SceneFile {
             let (SceneRobot { start, via, goal, .. }, stack_name) = (way, stack.to_owned());
             let (robot, stack) = find(robot, stack)?;
             let stack = stack.safe_if(self.safe, &robot);
-            let disturbances = Disturbances { seed: self.seed, ..self.disturbances };
+            let disturbances = Disturbances { seed: self.seed, ..self.disturbances.clone() };
             robots.push(EpisodeRobot { robot, disturbances, stack, stack_name, start, via, goal });
         }
-        let Standing { obstacles, polygons, hidden_cells } =
+        let Standing { obstacles, polygons, hidden_cells, elusive } =
             Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
+        let absent_cells = absent_cells(&self.absent, &grid).map_err(SceneError::Obstacle)?;
         let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
         let episode = Episode { source, movers, rules, ..Episode::of_robots(grid, robots) };
-        let mut episode = Episode { obstacles, polygons, hidden_cells, ..episode };
+        let episode = Episode { obstacles, polygons, hidden_cells, ..episode };
+        let mut episode = Episode { absent_cells, elusive, ..episode };
         if let Some(random) = &self.random {
             random.put_into(&mut episode, self.seed).map_err(SceneError::Random)?;
         }
@@ -292,7 +298,10 @@ impl SceneFile {
     pub fn is_random(&self) -> bool {
         let is_generated = self.world.as_ref().is_some_and(|world| world.obstacles.is_random());
         let takes_seed = self.moving.iter().any(MovingObstacle::needs_seed);
-        is_generated || takes_seed || self.random.is_some() || !self.disturbances.is_none()
+        let is_glimpsed = |it: &UnknownObstacle| !matches!(it.presence.seen, 0.0 | 1.0);
+        let glimpses = self.unknown.iter().any(is_glimpsed);
+        let disturbed = !self.disturbances.is_none();
+        is_generated || takes_seed || self.random.is_some() || disturbed || glimpses
     }
 
     /// Returns the map that is generated from the seed, with room around start, way-points and
@@ -340,7 +349,8 @@ impl SceneFile {
                 finite(&format!("{of}{field}"), value)?;
             }
         }
-        UnknownObstacle::validate_all(&self.unknown).map_err(SceneError::Obstacle)
+        UnknownObstacle::validate_all(&self.unknown).map_err(SceneError::Obstacle)?;
+        validate_absent(&self.absent).map_err(SceneError::Obstacle)
     }
 }
 

@@ -94,8 +94,8 @@ mod tests {
         );
         assert_eq!((robots[0].via.len(), robots[1].via[0]), (0, Point::new(2.0, 3.0)));
         assert_eq!(robots[1].stack_name, "mine.toml");
-        let noisy = |Disturbances { seed, actuation, .. }| (seed, actuation.delay_s);
-        assert!(robots.iter().all(|robot| noisy(robot.disturbances) == (7, 0.1)));
+        let noisy = |it: &Disturbances| (it.seed, it.actuation.delay_s);
+        assert!(robots.iter().all(|robot| noisy(&robot.disturbances) == (7, 0.1)));
         let refused = scene.episode(map(), |_, _| Err::<_, Box<dyn Error>>("no such robot".into()));
         assert_eq!(refused.unwrap_err().to_string(), "no such robot");
         // The same robot and stack for all of them.

@@ -1,7 +1,7 @@
 //! Rules that end the run of a scene.
 
 use crate::episode::EpisodeRules;
-use crate::sim::Arrival;
+use crate::sim::{Arrival, ReachedBy};
 use keyway::ConfigError;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,9 @@ pub struct SceneRules {
     /// Whether the robot has to stand at its goal; `None`: it has to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrival: Option<Arrival>,
+    /// Pose by which the goal is reached; `None`: the true one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reached_by: Option<ReachedBy>,
     /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top
     /// speed.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,6 +44,7 @@ impl SceneRules {
         EpisodeRules {
             goal_tolerance_m: self.goal_tolerance_m,
             arrival: self.arrival.unwrap_or(usual.arrival),
+            reached_by: self.reached_by.unwrap_or(usual.reached_by),
             time_limit_s: self.time_limit_s,
             stuck_window_s: self.stuck_window_s.unwrap_or(usual.stuck_window_s),
             ..usual

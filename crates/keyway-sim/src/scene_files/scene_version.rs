@@ -19,6 +19,7 @@ pub(super) struct Versioned {
     rules: Option<toml::Value>,
     disturbances: Option<toml::Value>,
     robots: Option<toml::Value>,
+    absent: Option<toml::Value>,
     random: Option<toml::Value>,
 }
 
@@ -31,7 +32,7 @@ impl Versioned {
 
     /// Returns the first field that version 1 does not have.
     pub(super) fn newer(&self) -> Option<&'static str> {
-        let Self { world, seed, safe, rules, disturbances, robots, random, .. } = self;
+        let Self { world, seed, safe, rules, disturbances, robots, absent, random, .. } = self;
         let fields = [
             ("world", world),
             ("seed", seed),
@@ -39,6 +40,7 @@ impl Versioned {
             ("rules", rules),
             ("disturbances", disturbances),
             ("robots", robots),
+            ("absent", absent),
             ("random", random),
         ];
         fields.into_iter().find(|(_, value)| value.is_some()).map(|(field, _)| field)

@@ -1,23 +1,35 @@
-//! Static obstacles of a scene that are not on its map.
+//! Obstacles of a scene that stand and are not on its map, and what its map shows but is not there.
 
-use crate::sim::StandingPolygon;
+use crate::sim::{ElusiveObstacle, ElusiveShape, Presence, StandingPolygon};
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Point};
-use keyway::map::{Cell, GridFrame};
+use keyway::map::{Cell, GridFrame, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 
-/// An obstacle that no map shows. In files it is a table with `position` and `radius_m`, or with
-/// `vertices_m`, or with `cells`.
+/// An obstacle that no map shows. In files it is a table with the fields of its shape, of the time
+/// in which it stands, and of how well it is seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnknownTable", into = "UnknownTable")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "UnknownTable"))]
+pub struct UnknownObstacle {
+    /// Its shape.
+    pub shape: GroundShape,
+    /// Time in which it stands, and how well it is seen.
+    pub presence: Presence,
+}
+
+/// Ground on a map. In files it is a table with `position` and `radius_m`, or with `vertices_m`, or
+/// with `cells`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "UnknownTable", into = "UnknownTable")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "GroundTable"))]
 #[non_exhaustive]
-pub enum UnknownObstacle {
+pub enum GroundShape {
     /// A round one.
     Disc(UnknownDisc),
     /// A polygon of any shape.
     Polygon(StandingPolygon),
-    /// Cells of the map that are in truth occupied.
+    /// Cells of the map.
     Cells(Vec<Cell>),
 }
 
@@ -35,9 +47,12 @@ pub struct UnknownDisc {
 #[derive(Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "UnknownObstacle", extend("oneOf" = [
-    {"required": ["position", "radius_m"], "propertyNames": {"enum": ["position", "radius_m"]}},
-    {"required": ["vertices_m"], "propertyNames": {"enum": ["vertices_m"]}},
-    {"required": ["cells"], "propertyNames": {"enum": ["cells"]}},
+    {"required": ["position", "radius_m"],
+     "propertyNames": {"enum": ["position", "radius_m", "from_s", "until_s", "seen"]}},
+    {"required": ["vertices_m"],
+     "propertyNames": {"enum": ["vertices_m", "from_s", "until_s", "seen"]}},
+    {"required": ["cells"],
+     "propertyNames": {"enum": ["cells", "from_s", "until_s", "seen"]}},
 ])))]
 #[serde(deny_unknown_fields)]
 struct UnknownTable {
@@ -56,26 +71,91 @@ struct UnknownTable {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     cells: Option<Vec<Cell>>,
+    /// Time at which it appears \[s\]; without it, it is there from the beginning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from_s: Option<f64>,
+    /// Time at which it goes \[s\]; without it, it stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    until_s: Option<f64>,
+    /// Share of the beams on it that see it, from 0 to 1; without it, all do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 1)))]
+    seen: Option<f64>,
+}
+
+/// Ground that the map shows as occupied although nothing is there: a table with `position` and
+/// `radius_m`, or with `vertices_m`, or with `cells`.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[schemars(rename = "AbsentObstacle", extend("oneOf" = [
+    {"required": ["position", "radius_m"], "propertyNames": {"enum": ["position", "radius_m"]}},
+    {"required": ["vertices_m"], "propertyNames": {"enum": ["vertices_m"]}},
+    {"required": ["cells"], "propertyNames": {"enum": ["cells"]}},
+]))]
+#[expect(dead_code, reason = "only its schema counts")]
+struct GroundTable {
+    /// The centre of a disc \[m\]: all cells whose centres it covers are free.
+    position: Option<Point>,
+    /// The radius of a disc \[m\], at least 0.
+    radius_m: Option<f64>,
+    /// The 3 to 100 vertices of a polygon \[m\]: all cells whose centres it covers are free.
+    #[schemars(length(min = 3, max = 100))]
+    vertices_m: Option<Vec<Point>>,
+    /// Cells, `[column, row]` each, `[0, 0]` at the lower left.
+    #[schemars(length(min = 1))]
+    cells: Option<Vec<Cell>>,
 }
 
 impl UnknownObstacle {
-    /// Field that determines the kind, if scenes of version 1 do not have it.
-    pub(super) const fn newer(&self) -> Option<&'static str> {
-        match self {
-            Self::Disc(_) => None,
-            Self::Polygon(_) => Some("unknown.vertices_m"),
-            Self::Cells(_) => Some("unknown.cells"),
+    /// An obstacle that always stands and is seen.
+    pub const fn new(shape: GroundShape) -> Self {
+        Self { shape, presence: Presence::ALWAYS }
+    }
+
+    /// Field that scenes of version 1 do not have.
+    pub(super) fn newer(&self) -> Option<&'static str> {
+        let Presence { from_s, until_s, seen } = self.presence;
+        match self.shape {
+            GroundShape::Polygon(_) => Some("unknown.vertices_m"),
+            GroundShape::Cells(_) => Some("unknown.cells"),
+            GroundShape::Disc(_) if from_s != 0.0 => Some("unknown.from_s"),
+            GroundShape::Disc(_) if until_s.is_some() => Some("unknown.until_s"),
+            GroundShape::Disc(_) if seen != 1.0 => Some("unknown.seen"),
+            GroundShape::Disc(_) => None,
         }
     }
 
     /// Checks every value of all obstacles.
     pub(super) fn validate_all(unknown: &[Self]) -> Result<(), ConfigError> {
-        let mut unknown = unknown.iter().enumerate();
-        unknown.try_for_each(|(i, obstacle)| obstacle.validate().map_err(|error| within(i, error)))
+        unknown.iter().enumerate().try_for_each(|(i, obstacle)| {
+            let checked = obstacle.shape.validate().and_then(|()| obstacle.presence.validate());
+            checked.map_err(|error| error.within(&format!("unknown[{i}]")))
+        })
     }
 
+    /// Adds the obstacle to the others, on a map.
+    fn put_into(&self, standing: &mut Standing, frame: &GridFrame) -> Result<(), ConfigError> {
+        if self.presence != Presence::ALWAYS {
+            for shape in self.shape.elusive(frame)? {
+                standing.elusive.push(ElusiveObstacle::new(shape, self.presence)?);
+            }
+            return Ok(());
+        }
+        match &self.shape {
+            GroundShape::Disc(circle) => standing.obstacles.push((*circle).into()),
+            GroundShape::Polygon(polygon) => standing.polygons.push(polygon.clone()),
+            GroundShape::Cells(cells) => {
+                check_cells(cells, frame)?;
+                standing.hidden_cells.extend(cells);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl GroundShape {
+    /// Checks every value; polygons are checked when they are made, and cells when there is a map.
     fn validate(&self) -> Result<(), ConfigError> {
-        // Polygons are checked at construction, and cells when there is a map.
         let Self::Disc(UnknownDisc { position, radius_m }) = self else { return Ok(()) };
         for (field, value) in [("position[0]", position.x), ("position[1]", position.y)] {
             if !value.is_finite() {
@@ -88,38 +168,63 @@ impl UnknownObstacle {
         Err(ConfigError::must_be("radius_m", "a length of at least 0", *radius_m))
     }
 
-    /// Adds the obstacle to the others, on a map.
-    fn put_into(&self, standing: &mut Standing, frame: &GridFrame) -> Result<(), ConfigError> {
+    /// The same ground as obstacles that need not always be there: a square for each cell.
+    fn elusive(&self, frame: &GridFrame) -> Result<Vec<ElusiveShape>, ConfigError> {
         match self {
-            Self::Disc(circle) => standing.obstacles.push((*circle).into()),
-            Self::Polygon(polygon) => standing.polygons.push(polygon.clone()),
+            Self::Disc(disc) => Ok(vec![ElusiveShape::Disc((*disc).into())]),
+            Self::Polygon(polygon) => Ok(vec![ElusiveShape::Polygon(polygon.clone())]),
             Self::Cells(cells) => {
-                if let Some(i) = cells.iter().position(|&cell| !frame.contains(cell)) {
-                    let (width, height, cell) = (frame.width(), frame.height(), cells[i]);
-                    let reason = format!(
-                        "must be a cell of the map of {width} x {height} cells, got {cell}"
-                    );
-                    return Err(ConfigError::new(format!("cells[{i}]"), reason));
-                }
-                standing.hidden_cells.extend(cells);
+                check_cells(cells, frame)?;
+                let corners = [(0, 0), (1, 0), (1, 1), (0, 1)];
+                let square = |cell: &Cell| {
+                    let corner = |(x, y)| {
+                        let corner = Point::new(f64::from(cell.x + x), f64::from(cell.y + y));
+                        frame.world_from_grid(corner)
+                    };
+                    StandingPolygon::new(corners.map(corner).to_vec()).map(ElusiveShape::Polygon)
+                };
+                cells.iter().map(square).collect()
             }
         }
-        Ok(())
+    }
+
+    /// Cells of a map that it shows as occupied, or of which it knows nothing, and whose centres
+    /// this ground covers.
+    fn cells_on(&self, map: &OccupancyGrid) -> Result<Vec<Cell>, ConfigError> {
+        let frame = map.frame();
+        let is_blocked = |cell: &Cell| map.occupied().get(*cell) || map.unknown().get(*cell);
+        let covers: Box<dyn Fn(Point) -> bool> = match self {
+            Self::Cells(cells) => {
+                check_cells(cells, frame)?;
+                return Ok(cells.iter().copied().filter(is_blocked).collect());
+            }
+            Self::Disc(disc) => {
+                let disc = Disc::from(*disc);
+                Box::new(move |centre| disc.distance(centre) <= 0.0)
+            }
+            Self::Polygon(polygon) => Box::new(|centre| polygon.covers(centre)),
+        };
+        let rows = 0..frame.height() as i32;
+        let cells = rows.flat_map(|y| (0..frame.width() as i32).map(move |x| Cell::new(x, y)));
+        let covered = |cell: &Cell| is_blocked(cell) && covers(frame.world_from_cell(*cell));
+        Ok(cells.filter(covered).collect())
     }
 }
 
-/// Adds the index of the unknown obstacle to an error.
-fn within(index: usize, error: ConfigError) -> ConfigError {
-    error.within(&format!("unknown[{index}]"))
+fn check_cells(cells: &[Cell], frame: &GridFrame) -> Result<(), ConfigError> {
+    let Some(i) = cells.iter().position(|&cell| !frame.contains(cell)) else { return Ok(()) };
+    let (width, height, cell) = (frame.width(), frame.height(), cells[i]);
+    let reason = format!("must be a cell of the map of {width} x {height} cells, got {cell}");
+    Err(ConfigError::new(format!("cells[{i}]"), reason))
 }
 
-/// All unknown obstacles, by kind, as in [`Episode`](crate::episode::Episode) and
-/// [`Episode`](crate::episode::Episode).
+/// All unknown obstacles, by kind, as in [`Episode`](crate::episode::Episode).
 #[derive(Default)]
 pub(super) struct Standing {
     pub(super) obstacles: Vec<Disc>,
     pub(super) polygons: Vec<StandingPolygon>,
     pub(super) hidden_cells: Vec<Cell>,
+    pub(super) elusive: Vec<ElusiveObstacle>,
 }
 
 impl Standing {
@@ -127,81 +232,127 @@ impl Standing {
     pub(super) fn of(unknown: &[UnknownObstacle], frame: &GridFrame) -> Result<Self, ConfigError> {
         let mut standing = Self::default();
         for (i, obstacle) in unknown.iter().enumerate() {
-            obstacle.put_into(&mut standing, frame).map_err(|error| within(i, error))?;
+            let put = obstacle.put_into(&mut standing, frame);
+            put.map_err(|error| error.within(&format!("unknown[{i}]")))?;
         }
-        standing.hidden_cells.sort_unstable();
-        standing.hidden_cells.dedup();
+        in_order(&mut standing.hidden_cells);
         Ok(standing)
     }
+}
+
+/// Checks every value of all ground that a map shows as occupied although nothing is there.
+pub(super) fn validate_absent(absent: &[GroundShape]) -> Result<(), ConfigError> {
+    absent.iter().enumerate().try_for_each(|(i, shape)| {
+        shape.validate().map_err(|error| error.within(&format!("absent[{i}]")))
+    })
+}
+
+/// Cells of a map that are free although it shows them as occupied or unknown; refuses cells that
+/// are not on it.
+pub(super) fn absent_cells(
+    absent: &[GroundShape],
+    map: &OccupancyGrid,
+) -> Result<Vec<Cell>, ConfigError> {
+    let mut all = Vec::new();
+    for (i, shape) in absent.iter().enumerate() {
+        all.extend(shape.cells_on(map).map_err(|error| error.within(&format!("absent[{i}]")))?);
+    }
+    in_order(&mut all);
+    Ok(all)
+}
+
+fn in_order(cells: &mut Vec<Cell>) {
+    cells.sort_unstable();
+    cells.dedup();
 }
 
 impl TryFrom<UnknownTable> for UnknownObstacle {
     type Error = ConfigError;
 
     fn try_from(table: UnknownTable) -> Result<Self, ConfigError> {
-        match table {
-            UnknownTable {
-                position: Some(position),
-                radius_m: Some(radius_m),
-                vertices_m: None,
-                cells: None,
-            } => Ok(Self::Disc(UnknownDisc { position, radius_m })),
-            UnknownTable {
-                vertices_m: Some(vertices),
-                position: None,
-                radius_m: None,
-                cells: None,
-            } => StandingPolygon::new(vertices).map(Self::Polygon),
-            UnknownTable {
-                cells: Some(cells),
-                position: None,
-                radius_m: None,
-                vertices_m: None,
-            } => {
-                if cells.is_empty() {
-                    return Err(ConfigError::new("cells", "needs at least one cell, got none"));
-                }
-                Ok(Self::Cells(cells))
-            }
-            table => Err(table.not_one_kind()),
+        let presence = table.presence();
+        presence.validate()?;
+        Ok(Self { shape: table.shape()?, presence })
+    }
+}
+
+impl TryFrom<UnknownTable> for GroundShape {
+    type Error = ConfigError;
+
+    fn try_from(table: UnknownTable) -> Result<Self, ConfigError> {
+        if table.presence() == Presence::ALWAYS {
+            return table.shape();
         }
+        let reason =
+            "`from_s`, `until_s` and `seen` belong to an obstacle that stands (`[[unknown]]`)";
+        Err(ConfigError::new("the table", format!("has too many fields: {reason}")))
     }
 }
 
 impl UnknownTable {
-    /// Error for too many or too few fields for one kind.
-    fn not_one_kind(&self) -> ConfigError {
-        let Self { position, radius_m, vertices_m, cells } = self;
-        let given = [
-            ("`position`", position.is_some()),
-            ("`radius_m`", radius_m.is_some()),
-            ("`vertices_m`", vertices_m.is_some()),
-            ("`cells`", cells.is_some()),
-        ];
-        let given: Vec<&str> =
-            given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name)).collect();
-        let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
-        let kinds = "`position` and `radius_m`, or `vertices_m`, or `cells`";
-        ConfigError::new("the shape", format!("must be {kinds}, got {given}"))
+    fn presence(&self) -> Presence {
+        let Self { from_s, until_s, seen, .. } = *self;
+        let Presence { from_s: always_s, seen: all, .. } = Presence::ALWAYS;
+        Presence { from_s: from_s.unwrap_or(always_s), until_s, seen: seen.unwrap_or(all) }
+    }
+
+    fn shape(self) -> Result<GroundShape, ConfigError> {
+        let Self { position, radius_m, vertices_m, cells, .. } = self;
+        match (position, radius_m, vertices_m, cells) {
+            (Some(position), Some(radius_m), None, None) => {
+                Ok(GroundShape::Disc(UnknownDisc { position, radius_m }))
+            }
+            (None, None, Some(vertices), None) => {
+                StandingPolygon::new(vertices).map(GroundShape::Polygon)
+            }
+            (None, None, None, Some(cells)) if cells.is_empty() => {
+                Err(ConfigError::new("cells", "needs at least one cell, got none"))
+            }
+            (None, None, None, Some(cells)) => Ok(GroundShape::Cells(cells)),
+            (position, radius_m, vertices_m, cells) => Err(not_one_kind([
+                ("`position`", position.is_some()),
+                ("`radius_m`", radius_m.is_some()),
+                ("`vertices_m`", vertices_m.is_some()),
+                ("`cells`", cells.is_some()),
+            ])),
+        }
+    }
+}
+
+/// Error for too many or too few fields for one kind.
+fn not_one_kind(given: [(&str, bool); 4]) -> ConfigError {
+    let given: Vec<&str> =
+        given.into_iter().filter_map(|(name, is_given)| is_given.then_some(name)).collect();
+    let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };
+    let kinds = "`position` and `radius_m`, or `vertices_m`, or `cells`";
+    ConfigError::new("the shape", format!("must be {kinds}, got {given}"))
+}
+
+impl From<GroundShape> for UnknownTable {
+    fn from(shape: GroundShape) -> Self {
+        let none = Self::default();
+        match shape {
+            GroundShape::Disc(UnknownDisc { position, radius_m }) => {
+                Self { position: Some(position), radius_m: Some(radius_m), ..none }
+            }
+            GroundShape::Polygon(polygon) => Self { vertices_m: Some(polygon.into()), ..none },
+            GroundShape::Cells(cells) => Self { cells: Some(cells), ..none },
+        }
     }
 }
 
 impl From<UnknownObstacle> for UnknownTable {
-    fn from(obstacle: UnknownObstacle) -> Self {
-        let none = Self::default();
-        match obstacle {
-            UnknownObstacle::Disc(UnknownDisc { position, radius_m }) => {
-                Self { position: Some(position), radius_m: Some(radius_m), ..none }
-            }
-            UnknownObstacle::Polygon(polygon) => Self { vertices_m: Some(polygon.into()), ..none },
-            UnknownObstacle::Cells(cells) => Self { cells: Some(cells), ..none },
-        }
+    fn from(UnknownObstacle { shape, presence }: UnknownObstacle) -> Self {
+        let Presence { from_s, until_s, seen } = presence;
+        let from_s = (from_s != Presence::ALWAYS.from_s).then_some(from_s);
+        let seen = (seen != Presence::ALWAYS.seen).then_some(seen);
+        Self { from_s, until_s, seen, ..shape.into() }
     }
 }
 
 impl From<UnknownDisc> for UnknownObstacle {
     fn from(circle: UnknownDisc) -> Self {
-        Self::Disc(circle)
+        Self::new(GroundShape::Disc(circle))
     }
 }
 
@@ -212,95 +363,4 @@ impl From<UnknownDisc> for Disc {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{SceneError, SceneFile};
-    use super::*;
-    use crate::episode::Episode;
-    use keyway::map::formats::map_from_bytes;
-    use keyway::navigate::Stack;
-    use keyway::robot::Robot;
-    use std::path::Path;
-
-    const SCENE: &str = "version = 2\nmap = \"a.map\"\nstart = [1, 2]\ngoal = [3.5, 4]\n";
-    const SHAPES: &str = "[[unknown]]\nvertices_m = [[0, 0], [2, 0], [2, 1], [1, 0.5]]\n\
-                          [[unknown]]\ncells = [[3, 2], [4, 0]]\n\
-                          [[unknown]]\nposition = [2, 3]\nradius_m = 0.5\n";
-
-    fn error(text: &str) -> String {
-        SceneFile::from_toml(text).unwrap_err().to_string()
-    }
-
-    fn episode(text: &str) -> Result<Episode, SceneError> {
-        let octile = b"type octile\nheight 5\nwidth 5\nmap\n.....\n.....\n.....\n.....\n.....\n";
-        let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
-        let robot = Robot::small();
-        let stack = Stack::key_point_fusion(&robot);
-        SceneFile::from_toml(text).unwrap().episode_with(map, &robot, &stack)
-    }
-
-    #[test]
-    fn each_kind_comes_into_the_world() {
-        let scene = SceneFile::from_toml(&format!("{SCENE}{SHAPES}")).unwrap();
-        assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
-        let episode = episode(&format!("{SCENE}{SHAPES}")).unwrap();
-        assert_eq!(episode.obstacles, [Disc::new(Point::new(2.0, 3.0), 0.5)]);
-        assert_eq!(episode.hidden_cells, [Cell::new(3, 2), Cell::new(4, 0)]);
-        assert_eq!(episode.polygons[0].vertices()[3], Point::new(1.0, 0.5));
-    }
-
-    #[test]
-    fn what_is_random_follows_from_the_seed() {
-        let walk = "[[moving]]\nradius_m = 0.1\n[moving.random_walk]\nposition = [2, 2]\n\
-                    area = [[1, 1], [3, 3]]\nspeed_mps = [1, 2]\nleg_s = [1, 2]\n";
-        let own = format!("{walk}seed = 9\n");
-        let random = "[random.unknown]\ncount = 1\nradius_m = [0.1, 0.2]\n";
-        let scene = |seed: u32, text: &str| {
-            let scene = SCENE.replace("version = 2", &format!("version = 2\nseed = {seed}"));
-            format!("{scene}{text}{own}{random}")
-        };
-        let read = |text: &str| SceneFile::from_toml(text).unwrap();
-        let first = read(&scene(1, walk));
-        assert!(first.is_random());
-        assert_eq!(read(&toml::to_string(&first).unwrap()), first);
-        let movers = |seed| episode(&scene(seed, walk)).unwrap().movers;
-        assert_eq!(movers(1), movers(1));
-        assert_ne!(movers(1)[0], movers(2)[0]);
-        assert_eq!(movers(1)[1], movers(2)[1]);
-        // Two walks without a seed are different.
-        let twice = episode(&scene(1, &format!("{walk}{walk}"))).unwrap().movers;
-        assert_ne!(twice[0], twice[1]);
-        let alone = |text: &str| read(&format!("{SCENE}{text}")).is_random();
-        assert!(alone(walk) && alone(random) && !alone(&own));
-        assert_eq!(episode(&scene(1, walk)).unwrap().random.unwrap().unknown_asked, 1);
-        let bad = error(&format!("{SCENE}{}", random.replace("0.1, ", "-0.1, ")));
-        assert_eq!(bad, "`random.unknown.radius_m[0]` must be a positive number, got -0.1");
-        let old = error(&format!("{SCENE}{random}").replace("version = 2", "version = 1"));
-        assert_eq!(old, "`random` needs `version = 2`");
-    }
-
-    #[test]
-    fn errors_name_the_field() {
-        let bad = |table: &str| error(&format!("{SCENE}[[unknown]]\n{table}\n"));
-        let both = bad("cells = [[1, 1]]\nradius_m = 1");
-        assert!(both.contains("`unknown[0]`: the shape must be"), "{both}");
-        assert!(both.contains("got `radius_m`, `cells`"), "{both}");
-        assert!(bad("cells = []").contains("`unknown[0]`: cells needs at least one cell"));
-        let bow = bad("vertices_m = [[0, 0], [1, 1], [1, 0], [0, 1]]");
-        assert!(
-            bow.contains("line 5") && bow.contains("`unknown[0]`: vertices_m must not"),
-            "{bow}"
-        );
-        let half = bad("cells = [[0.5, 1]]");
-        assert!(half.contains("`unknown[0].cells[0]") || half.contains("`unknown[0]"), "{half}");
-        let nan = bad("position = [nan, 1]\nradius_m = 1");
-        assert!(nan.starts_with("`unknown[0].position[0]` must be a finite"), "{nan}");
-        let off = format!("{SCENE}{SHAPES}[[unknown]]\ncells = [[1, 1], [5, 0]]\n");
-        let off = episode(&off).unwrap_err().to_string();
-        assert_eq!(
-            off,
-            "`unknown[3].cells[1]` must be a cell of the map of 5 x 5 cells, got (5, 0)"
-        );
-        let first = format!("{SCENE}{SHAPES}").replace("version = 2", "version = 1");
-        assert_eq!(error(&first), "`unknown.vertices_m` needs `version = 2`");
-    }
-}
+mod tests;

@@ -2,11 +2,12 @@
 
 use super::fleet::{Entrant, Fleet};
 use super::participant::{Action, Control, Participant};
-use super::{Run, World};
+use super::{RobotState, Run, World};
 use crate::parallel::for_each;
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::given::Given;
+use keyway::sense::Observation;
 use std::borrow::Cow;
 use thiserror::Error;
 
@@ -44,11 +45,12 @@ pub enum SimError {
 ///
 /// All robots have the same cycle. At the start and at the end of every cycle, for each robot, the
 /// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit. Then its controller
-/// gets the pose, the velocity and a scan, as changed by its [`Disturbances`](super::Disturbances),
-/// and answers. Then its arrival ([`Arrival::Standing`](super::Arrival)) and progress are tested.
-/// The controllers are called in the order of the participants, but all decide on the state at the
-/// beginning of the cycle. During the cycle the velocities change linearly towards the commands
-/// within the robots' limits, and contact is tested along the whole swept motions.
+/// gets the pose, the velocity and the scans of its sensors, as changed by its
+/// [`Disturbances`](super::Disturbances), and answers. Then its arrival
+/// ([`Arrival::Standing`](super::Arrival)) and progress are tested. The controllers are called in
+/// the order of the participants, but all decide on the state at the beginning of the cycle. During
+/// the cycle the velocities change linearly towards the commands within the robots' limits, and
+/// contact is tested along the whole swept motions.
 ///
 /// Robots see each other, have a clearance from each other ([`Run::min_clearance_m`]) and may
 /// touch. A contact between two robots ends both runs
@@ -94,7 +96,7 @@ pub fn simulate_on(
         decide_all(&mut asked, &fleet, threads);
         let controls: Vec<_> = asked.iter().map(|asked| (asked.index, asked.control)).collect();
         for (index, control) in controls {
-            let (Some(control), (.., cycle)) = (control, fleet.told(index)) else { continue };
+            let (Some(control), cycle) = (control, fleet.cycle(index)) else { continue };
             if fleet.goes_on(index, &control) {
                 fleet.command(index, command(control.action, index, cycle)?);
             }
@@ -113,9 +115,10 @@ struct Asked<'a, 'p> {
 
 impl Asked<'_, '_> {
     fn decide(&mut self, fleet: &Fleet<'_>) {
-        let (pose, velocity, _) = fleet.told(self.index);
-        let scan = fleet.scan(self.index);
-        self.control = Some((self.participant.controller)(pose, velocity, scan));
+        let RobotState { stamp_s, pose, velocity } = fleet.told(self.index);
+        let scans = fleet.scans(self.index);
+        let observation = Observation { stamp_s, pose, velocity, scans: &scans };
+        self.control = Some((self.participant.controller)(&observation));
     }
 }
 
@@ -140,8 +143,9 @@ pub(super) fn check(participants: &[Participant<'_>]) -> Result<(), ConfigError>
         let valid = rules.validate().map_err(|error| error.within("rules"));
         valid.and_then(|()| check_places(*start, *goal)).map_err(|error| named(index, error))?;
     }
-    for (index, Participant { disturbances, .. }) in participants.iter().enumerate() {
-        let valid = disturbances.validate().map_err(|error| error.within("disturbances"));
+    for (index, Participant { robot, disturbances, .. }) in participants.iter().enumerate() {
+        let valid = disturbances.validate_for(robot);
+        let valid = valid.map_err(|error| error.within("disturbances"));
         valid.map_err(|error| named(index, error))?;
     }
     Ok(())

@@ -3,21 +3,21 @@
 //!
 //! [`simulate`] drives one or several robots in the same world at the same time. They see each
 //! other and may touch. A scan does not say what moves, so each controller interprets the robots
-//! that it sees. A [`keyway::navigate::Controller`] tracks what moves if its stack has
+//! that it sees. A [`keyway::navigate::Navigator`] tracks what moves if its stack has
 //! `controller.movers`. Without it, the controller decides as if everything stood still: it does
 //! not run into a standing robot, but two robots that drive towards each other may collide.
 //!
 //! Moving obstacles follow their own course, or give way to robots and to each other
 //! ([`Motion::GivesWay`]).
 //!
-//! A participant may be disturbed ([`Disturbances`]): noise of its scans, late and inexact motors,
+//! A participant may be disturbed ([`Disturbances`]): bad scans, late, weak or inexact motors,
 //! errors of its localisation. The record shows the true motion.
 //!
 //! ```
 //! use keyway::geometry::{Disc, Point, Pose, Velocity};
 //! use keyway::map::OccupancyGrid;
 //! use keyway::robot::Robot;
-//! use keyway::sense::Scan;
+//! use keyway::sense::Observation;
 //! use keyway_sim::sim::{
 //!     Action, Control, Disturbances, Obstacle, Outcome, Participant, RunRules, World, simulate,
 //! };
@@ -28,24 +28,32 @@
 //! let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.0), Point::new(7.0, 1.0));
 //! let radius_m = robot.footprint.inscribed_radius_m();
 //! let mut nearest_m = f64::INFINITY;
-//! let mut straight_on = |pose: Pose, _: Velocity, scan: &Scan| {
-//!     nearest_m = scan.ranges_m.iter().copied().fold(nearest_m, f64::min);
+//! let mut straight_on = |&Observation { pose, scans, .. }: &Observation<'_>| {
+//!     // There is none in a cycle without a scan.
+//!     let ranges_m = scans.iter().flat_map(|one| one.scan.ranges_m.iter().copied());
+//!     nearest_m = ranges_m.fold(nearest_m, f64::min);
 //!     // Whatever is seen.
 //!     let action = Action::Drive(Velocity::new(0.3, 0.0));
 //!     Control { action, remaining_m: pose.point().distance(goal), route: 0 }
 //! };
 //! // An ideal robot.
-//! let disturbances = Disturbances::default();
+//! let ideal = Disturbances::default;
 //! let rules = RunRules::default();
-//! let one =
-//!     Participant { robot: &robot, start, goal, disturbances, rules, controller: &mut straight_on };
+//! let one = Participant {
+//!     robot: &robot,
+//!     start,
+//!     goal,
+//!     disturbances: ideal(),
+//!     rules,
+//!     controller: &mut straight_on,
+//! };
 //! let run = simulate(&world, &mut [one])?.remove(0);
 //! assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Circle(0), .. }));
 //! // Until the footprint touched the post.
 //! assert!((run.length_m - (4.0 - 0.25 - radius_m)).abs() < 1e-3);
 //!
 //! // Another robot stands in its way.
-//! let mut stay = |_: Pose, _: Velocity, _: &Scan| Control {
+//! let mut stay = |_: &Observation<'_>| Control {
 //!     action: Action::Stop,
 //!     remaining_m: 4.0,
 //!     route: 0,
@@ -57,7 +65,7 @@
 //!         robot: &robot,
 //!         start,
 //!         goal,
-//!         disturbances,
+//!         disturbances: ideal(),
 //!         rules: rules(),
 //!         controller: &mut straight_on,
 //!     },
@@ -65,7 +73,7 @@
 //!         robot: &robot,
 //!         start: there,
 //!         goal,
-//!         disturbances,
+//!         disturbances: ideal(),
 //!         rules: rules(),
 //!         controller: &mut stay,
 //!     },
@@ -81,6 +89,7 @@
 mod cycle_motion;
 mod disturbances;
 mod drive;
+mod elusive;
 mod fleet;
 mod free_squares;
 mod giving_way;
@@ -98,13 +107,14 @@ mod sweep;
 mod test_shapes;
 mod world;
 
-pub use disturbances::{ActuationNoise, Disturbances, LocalisationNoise, SensorNoise};
+pub use disturbances::{ActuationFaults, Disturbances, LocalisationFaults, SensorFaults};
 pub use drive::{SimError, simulate, simulate_on};
+pub use elusive::{ElusiveObstacle, ElusiveShape, Presence};
 pub use mover::{
     KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
 };
 pub use participant::{Action, Control, Participant};
-pub use rules::{Arrival, RunRules};
+pub use rules::{Arrival, ReachedBy, RunRules};
 pub use run::{MoverWay, Outcome, RobotState, Run, TrajectoryPoint};
 pub use standing_polygon::StandingPolygon;
 pub use stepper::Stepper;

@@ -3,7 +3,7 @@
 use super::{Disturbances, RunRules};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::Observation;
 
 /// Action that a controller asks for in the next cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,6 @@ pub struct Participant<'a> {
     pub disturbances: Disturbances,
     /// Rules that end its run without contact.
     pub rules: RunRules,
-    /// Controller, called with the robot's pose, its velocity and a scan.
-    pub controller: &'a mut (dyn FnMut(Pose, Velocity, &Scan) -> Control + Send),
+    /// Controller, called with what the robot has measured.
+    pub controller: &'a mut (dyn FnMut(&Observation<'_>) -> Control + Send),
 }

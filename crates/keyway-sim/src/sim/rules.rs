@@ -12,6 +12,8 @@ pub struct RunRules {
     pub goal_tolerance_m: f64,
     /// Further condition of reaching the goal.
     pub arrival: Arrival,
+    /// Pose by which the goal is reached.
+    pub reached_by: ReachedBy,
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
     /// Time \[s\] after which the robot is stuck if the remaining path has not become
@@ -33,11 +35,38 @@ pub enum Arrival {
     Standing,
 }
 
+/// Pose of a robot by which its goal is reached. Contact is always judged by the true one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum ReachedBy {
+    /// The true pose.
+    #[default]
+    Truth,
+    /// The pose that the robot was last told: it cannot know better.
+    Belief,
+}
+
+impl ReachedBy {
+    /// Names of both, as in files.
+    pub const NAMES: [&'static str; 2] = ["truth", "belief"];
+
+    /// The one of a name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        [Self::Truth, Self::Belief]
+            .into_iter()
+            .zip(Self::NAMES)
+            .find(|it| it.1 == name)
+            .map(|it| it.0)
+    }
+}
+
 impl Default for RunRules {
     fn default() -> Self {
         Self {
             goal_tolerance_m: 0.15,
             arrival: Arrival::Passing,
+            reached_by: ReachedBy::Truth,
             time_limit_s: 300.0,
             stuck_window_s: 20.0,
             stuck_progress_m: 0.05,

@@ -48,6 +48,8 @@ pub struct TrajectoryPoint {
 /// Pose and velocity of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotState {
+    /// Time at which they were measured \[s\].
+    pub stamp_s: f64,
     /// Pose in the world frame.
     pub pose: Pose,
     /// Velocity.

@@ -57,6 +57,12 @@ impl StandingPolygon {
         &self.vertices
     }
 
+    /// True if a point lies on its ground, or on its edge.
+    pub fn covers(&self, point: Point) -> bool {
+        let (core, _) = self.footprint.core();
+        core.distance_to_m(self.middle, point) <= 0.0
+    }
+
     /// The polygon as the footprint and pose of a robot.
     pub(super) const fn placed(&self) -> (&Footprint, Pose) {
         (&self.footprint, self.middle)
@@ -144,7 +150,7 @@ mod tests {
                 prop_assert!((a_m - b_m).abs() < 1e-9, "{a_m} {b_m}");
                 if a_m > 1e-9 && a_m < reach_m {
                     let border_m = cells.at(0.0).border_distance(&footprint, pose);
-                    let [a, b] = [&cells, &boxes].map(|world| world.nearest_standing(&footprint, pose));
+                    let [a, b] = [&cells, &boxes].map(|world| world.at(0.0).nearest_standing(&footprint, pose));
                     let is_first = a_m < border_m - 1e-9;
                     prop_assert!(!is_first || a == Obstacle::HiddenSquare, "{a:?}");
                     prop_assert!(!is_first || matches!(b, Obstacle::Polygon(_)), "{b:?}");
@@ -165,7 +171,7 @@ mod tests {
         hidden.set(Cell::new(4, 0), true);
         let world = World::from_known(&known, vec![]).unwrap().with_hidden(&hidden).unwrap();
         let point = Footprint::circle(0.0).unwrap();
-        let nearest = |x, y| world.nearest_standing(&point, Pose::new(x, y, 0.0));
+        let nearest = |x, y| world.at(0.0).nearest_standing(&point, Pose::new(x, y, 0.0));
         assert_eq!(
             (nearest(1.2, 0.5), nearest(3.8, 0.5)),
             (Obstacle::Square, Obstacle::HiddenSquare)

@@ -5,9 +5,9 @@ use super::fleet::{Entrant, Fleet};
 use super::{
     Control, Disturbances, Outcome, Participant, RobotState, Run, RunRules, SimError, World,
 };
-use keyway::geometry::{Point, Pose, Velocity};
+use keyway::geometry::{Point, Pose};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::{Observation, Scan, SensorScan};
 use std::borrow::Cow;
 
 /// One robot in a world, for a caller that cannot provide a closure, such as a learning agent that
@@ -49,12 +49,12 @@ impl Stepper {
         disturbances: Disturbances,
         rules: RunRules,
     ) -> Result<Self, SimError> {
-        let mut nobody = |_: Pose, _: Velocity, _: &Scan| unreachable!("a check asks nobody");
+        let mut nobody = |_: &Observation<'_>| unreachable!("a check asks nobody");
         check(&[Participant {
             robot: &robot,
             start,
             goal,
-            disturbances,
+            disturbances: disturbances.clone(),
             rules: rules.clone(),
             controller: &mut nobody,
         }])?;
@@ -71,7 +71,13 @@ impl Stepper {
         self.fleet.outcome(0)
     }
 
-    /// The last scan; once the run has ended, the scan of its last decision.
+    /// Scans of this cycle, as a controller gets them; once the run has ended, those of its last
+    /// decision.
+    pub fn scans(&self) -> Vec<SensorScan<'_>> {
+        self.fleet.scans(0)
+    }
+
+    /// The last scan of the first sensor; once the run has ended, the scan of its last decision.
     pub fn scan(&self) -> &Scan {
         self.fleet.scan(0)
     }
@@ -79,14 +85,12 @@ impl Stepper {
     /// Pose and velocity that the robot was told; once the run has ended, the true ones, as it is
     /// not told any more.
     pub fn told(&self) -> RobotState {
-        let (pose, velocity, _) = self.fleet.told(0);
-        if self.outcome().is_some() { self.state() } else { RobotState { pose, velocity } }
+        if self.outcome().is_some() { self.state() } else { self.fleet.told(0) }
     }
 
     /// The robot's true pose and velocity.
     pub fn state(&self) -> RobotState {
-        let (pose, velocity) = self.fleet.state(0);
-        RobotState { pose, velocity }
+        self.fleet.state(0)
     }
 
     /// Drives one cycle. Does nothing once the run has ended.
@@ -95,7 +99,7 @@ impl Stepper {
     /// When a velocity is not a number, or the run is given up; nothing changes then.
     pub fn step(&mut self, control: &Control) -> Result<Option<Outcome>, SimError> {
         if self.outcome().is_none() {
-            let (_, _, cycle) = self.fleet.told(0);
+            let cycle = self.fleet.cycle(0);
             let command = command(control.action, 0, cycle)?;
             if self.fleet.goes_on(0, control) {
                 self.fleet.command(0, command);
@@ -115,12 +119,14 @@ impl Stepper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Action, SensorNoise, simulate};
-    use keyway::geometry::Disc;
+    use crate::sim::{Action, SensorFaults, simulate};
+    use keyway::geometry::{Disc, Velocity};
     use keyway::map::OccupancyGrid;
 
     /// Drives in the direction of the longest range; its answers depend on all its inputs.
-    fn wander(pose: Pose, velocity: Velocity, scan: &Scan) -> Control {
+    fn wander(observation: &Observation<'_>) -> Control {
+        let Observation { pose, velocity, scans, .. } = *observation;
+        let scan = scans[0].scan;
         let seen = |i: &usize| scan.ranges_m[*i].min(scan.range_max_m);
         let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();
         let turn = scan.bearing_rad(best);
@@ -139,14 +145,14 @@ mod tests {
         let posts = vec![Disc::new(Point::new(5.0, 1.0), 0.25)];
         let world = World::from_known(&map, posts).unwrap();
         let (robot, start, goal) = (Robot::small(), Pose::new(1.0, 1.0, 0.3), Point::new(7.5, 3.5));
-        let sensor = SensorNoise { range_m: 0.02, ..SensorNoise::default() };
+        let sensor = SensorFaults { range_m: 0.02, ..SensorFaults::default() };
         let disturbances = Disturbances { sensor, seed: 7, ..Disturbances::default() };
         let rules = RunRules { time_limit_s: 30.0, ..RunRules::default() };
         let mut one = [Participant {
             robot: &robot,
             start,
             goal,
-            disturbances,
+            disturbances: disturbances.clone(),
             rules: rules.clone(),
             controller: &mut wander,
         }];
@@ -154,8 +160,9 @@ mod tests {
         let mut run =
             Stepper::new(world, robot.clone(), (start, goal), disturbances, rules).unwrap();
         while run.outcome().is_none() {
-            let RobotState { pose, velocity } = run.told();
-            let control = wander(pose, velocity, run.scan());
+            let RobotState { stamp_s, pose, velocity } = run.told();
+            let scans = run.scans();
+            let control = wander(&Observation { stamp_s, pose, velocity, scans: &scans });
             run.step(&control).unwrap();
         }
         assert!(expected.cycles > 20, "{:?}", expected.outcome);

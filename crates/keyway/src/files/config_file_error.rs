@@ -23,14 +23,6 @@ pub enum ConfigFileError {
         /// The fault.
         reason: TomlError,
     },
-    /// A robot without some of its fields.
-    #[error("{}: missing fields `{}`", path.display(), fields.join("`, `"))]
-    Missing {
-        /// The file.
-        path: PathBuf,
-        /// The fields, as paths; more than one.
-        fields: Vec<String>,
-    },
     /// Neither the name of a bundled robot nor that of a file.
     #[error(
         "there is no robot `{name}`, expected one of {}, or a file{}",
@@ -64,7 +56,6 @@ impl ConfigFileError {
     pub fn field(&self) -> &str {
         match self {
             Self::Toml { reason, .. } => &reason.field,
-            Self::Missing { fields, .. } => fields.first().map_or("", String::as_str),
             Self::Value { reason, .. } => &reason.path,
             Self::File(_) | Self::NoRobot { .. } | Self::NoStack { .. } => "",
         }

@@ -13,6 +13,7 @@ mod parameters;
 #[cfg(feature = "files")]
 mod read;
 mod robot;
+mod robot_file;
 mod robot_size;
 mod stack;
 mod stack_base;
@@ -31,6 +32,7 @@ pub use parameters::parameters_from_bytes;
 #[cfg(feature = "files")]
 pub use read::{find_robot, find_stack, read_parameters, read_robot, read_stack, read_text};
 pub use robot::robot_from_bytes;
+pub use robot_file::{LimitsPart, RobotChangeError, RobotFile, robot_with};
 pub use robot_size::{RadiusBeyondMap, RobotLayersError, RobotSize, StartingValues};
 pub use stack::stack_from_bytes;
 pub use stack_base::{ParameterError, StackBase};

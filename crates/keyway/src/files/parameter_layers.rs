@@ -121,6 +121,13 @@ impl fmt::Display for Assignment {
 }
 
 impl Assignment {
+    /// The same assignment by its path in a robot file, where it is one of the robot's
+    /// (`robot.limits.v_max_mps=0.3`).
+    pub fn of_robot(&self) -> Option<Self> {
+        let path = self.path.strip_prefix("robot.")?.to_owned();
+        Some(Self { path, value: self.value.clone() })
+    }
+
     /// Assignments of all values in a table and in its tables, in their order.
     pub fn all_of(table: &Table) -> Vec<Self> {
         fn walk(table: &Table, path: &str, out: &mut Vec<Assignment>) {

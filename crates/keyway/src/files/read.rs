@@ -94,7 +94,7 @@ mod tests {
         let name = find_robot("hal", folder).unwrap_err().to_string();
         assert_eq!(
             name,
-            "there is no robot `hal`, expected one of small, jackal, paper, or a file"
+            "there is no robot `hal`, expected one of small, jackal, paper, burger, waffle, or a file"
         );
     }
 

@@ -1,10 +1,8 @@
 //! Robots from memory.
 
-use super::missing::missing_fields;
-use super::{ConfigFileError, MAX_TOML_BYTES, file_text, from_toml};
+use super::{ConfigFileError, MAX_TOML_BYTES, RobotFile, file_text, from_toml};
 use crate::robot::Robot;
 use std::path::Path;
-use toml::Table;
 
 /// Reads and checks a robot from memory; errors call the file `name`.
 ///
@@ -20,19 +18,9 @@ use toml::Table;
 pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileError> {
     let text = file_text(name, bytes, MAX_TOML_BYTES)?;
     let path = || name.to_owned();
-    let robot: Robot = from_toml(text).map_err(|reason| {
-        let tables = Table::try_from(Robot::small()).ok().zip(text.parse::<Table>().ok());
-        match tables.map_or_else(Vec::new, |(whole, given)| missing_fields(&whole, &given)) {
-            fields if reason.reason.starts_with("missing field") && fields.len() > 1 => {
-                ConfigFileError::Missing { path: path(), fields }
-            }
-            _ => ConfigFileError::Toml { path: path(), reason },
-        }
-    })?;
-    match robot.validate() {
-        Ok(()) => Ok(robot),
-        Err(reason) => Err(ConfigFileError::Value { path: path(), reason }),
-    }
+    let file: RobotFile =
+        from_toml(text).map_err(|reason| ConfigFileError::Toml { path: path(), reason })?;
+    file.robot().map_err(|reason| ConfigFileError::Value { path: path(), reason })
 }
 
 #[cfg(test)]
@@ -55,6 +43,6 @@ mod tests {
             assert!(error.starts_with("a/b.toml: "), "{error}");
         }
         assert!(errors[0].contains("cycle_s"), "{}", errors[0]);
-        assert!(!errors[3].contains("actuation_delay_s"), "{}", errors[3]);
+        assert!(errors[3].contains("needs `footprint`"), "{}", errors[3]);
     }
 }

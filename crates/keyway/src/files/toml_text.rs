@@ -99,10 +99,10 @@ mod tests {
     #[test]
     fn errors_name_line_and_field() {
         let kind = robot_error(|text| text.replace("range_m = 3.5", "range_m = \"far\""));
-        assert_eq!(kind.field, "sensor.range_m");
+        assert_eq!(kind.field, "sensors[0].range_m");
         assert!(
             kind.to_string()
-                .contains("`sensor.range_m`: invalid type: string \"far\", expected a number")
+                .contains("`sensors[0].range_m`: invalid type: string \"far\", expected a number")
         );
         let unknown = robot_error(|text| format!("colour = 1\n{text}"));
         assert_eq!((unknown.line, unknown.column), (Some(1), Some(1)));

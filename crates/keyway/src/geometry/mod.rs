@@ -14,6 +14,7 @@ mod polyline;
 mod pose;
 mod sample;
 mod segment;
+mod shift;
 
 pub use angle::{degrees, wrap_angle};
 pub use arc::Arc;
@@ -28,3 +29,4 @@ pub use pose::{Pose, Velocity};
 pub use sample::PathSample;
 pub use segment::Segment;
 pub(crate) use segment::Square;
+pub(crate) use shift::Shift;

@@ -1,13 +1,14 @@
 //! The line of a planned path.
 
 use super::{Point, Polyline};
+use serde::{Deserialize, Serialize};
 
 /// A line through the waypoints of a planned path, and which of them are jump points: the points
 /// that a jump point search would have on it.
 ///
 /// The first point, the last one and every point at which the line turns must be jump points, so
 /// that the line through the jump points alone is the same.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlannedLine {
     polyline: Polyline,
     /// For each point of the line.

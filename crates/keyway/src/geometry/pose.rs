@@ -25,6 +25,13 @@ impl Pose {
         Point::new(self.x, self.y)
     }
 
+    /// A pose given in this pose's own frame (x ahead, y left), in the world frame.
+    #[must_use]
+    pub fn compose(&self, body: Self) -> Self {
+        let Point { x, y } = self.world_from_body(body.point());
+        Self::new(x, y, self.theta + body.theta)
+    }
+
     /// A point given in this pose's own frame (x ahead, y left), in the world frame.
     pub fn world_from_body(&self, body: Point) -> Point {
         let (sin, cos) = libm::sincos(self.theta);

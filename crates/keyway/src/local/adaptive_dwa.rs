@@ -61,7 +61,7 @@ impl AdaptiveDwaConfig {
     /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2
     /// and 3, where it has them.
     pub const PAPER: Self = Self {
-        window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
+        window: WindowConfig::AT_THE_END,
         weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
         a: 0.5,
         safe_radius_m: 0.5,

@@ -22,8 +22,7 @@ use super::dynamic_window::{DynamicWindow, Rollout, Term, TermValue, Weighing};
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
 use super::terms::{distance, heading, speed};
 use super::{
-    Decision, DistanceAt, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch,
-    WindowConfig,
+    Decision, DriveMemory, Explanation, LocalPlanner, NoCommand, Scene, Scratch, WindowConfig,
 };
 use crate::ConfigError;
 use crate::geometry::Velocity;
@@ -84,11 +83,8 @@ impl DwaConfig {
     ///
     /// It drops candidates whose braking distance exceeds the distance, which is (7). There the cap
     /// does not count: it would hold the robot below 0.632 m/s.
-    pub const SAMPLE: Self = Self {
-        window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
-        distance_term_cap_m: 1.0,
-        ..Self::PAPER
-    };
+    pub const SAMPLE: Self =
+        Self { window: WindowConfig::AT_THE_END, distance_term_cap_m: 1.0, ..Self::PAPER };
 
     /// The evaluation (11) of \[You2021\] with the weights of its fused runs, and the fixed gamma
     /// of its table 3. Towards key points, key(v, omega) is the heading of the classic dynamic

@@ -2,15 +2,18 @@
 //! robot that cannot drive.
 
 use super::Shares;
-use crate::geometry::{Pose, Velocity};
+use crate::geometry::{Point, Pose, Velocity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::fmt::{Display, Formatter};
 
-/// All candidates of one cycle. A planner that does not choose between candidates leaves it empty.
+/// All candidates of one cycle. A planner that does not choose between candidates has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
+    /// Point towards which the planner drives: the guide point of the scene, or one of its own;
+    /// `None` for a planner that drives to no point.
+    pub target: Option<Point>,
     /// All of them, in the order in which they were tried.
     pub candidates: Vec<JudgedCandidate>,
     /// The best one, as an index of `candidates`; `None` when none was admissible.

@@ -24,7 +24,9 @@
 //! cycle.
 
 use super::parameters::{BoxedLocalPlanner, LocalParameters};
-use super::{Decision, DriveMemory, Evaluation, LocalPlanner, NoCommand, Scene, Scratch};
+use super::{
+    Decision, DriveMemory, Evaluation, Explanation, LocalPlanner, NoCommand, Scene, Scratch,
+};
 use crate::ConfigError;
 use crate::geometry::{Point, Polyline, Velocity};
 use crate::robot::Robot;
@@ -107,6 +109,12 @@ impl Follower {
     pub(super) fn carrot(&self, path: &Polyline, covered_m: f64) -> Option<Point> {
         path.at_length(covered_m + self.config.look_ahead_m)
     }
+
+    /// The length of the route that is covered \[m\].
+    fn covered_m(&self, scene: &Scene<'_>, memory: &DriveMemory) -> f64 {
+        let position = scene.pose.point();
+        scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m)
+    }
 }
 
 impl LocalParameters for FollowerConfig {
@@ -134,9 +142,7 @@ impl LocalPlanner for Follower {
         memory: &mut DriveMemory,
         _: &mut Scratch,
     ) -> Result<Decision, NoCommand> {
-        let position = scene.pose.point();
-        memory.covered_m =
-            scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m);
+        memory.covered_m = self.covered_m(scene, memory);
         let carrot = self.carrot(scene.path, memory.covered_m);
         let left_m = (scene.path.length_m() - memory.covered_m).min(scene.remaining_m);
         // At the end there is nothing to turn to, either.
@@ -144,6 +150,12 @@ impl LocalPlanner for Follower {
         let wanted = carrot.map_or(Velocity::ZERO, |carrot| self.towards(scene, carrot, left_m));
         let command = self.robot.limits.reached(scene.velocity, wanted, self.robot.cycle_s);
         Ok(Decision { command, evaluation: Evaluation::default() })
+    }
+
+    /// The carrot; there are no candidates.
+    fn explain(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        let target = self.carrot(scene.path, self.covered_m(scene, memory));
+        Explanation { target, ..Explanation::default() }
     }
 }
 

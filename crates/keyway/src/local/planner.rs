@@ -46,9 +46,9 @@ pub trait LocalPlanner: Debug {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand>;
 
-    /// The reasons for its decision: what becomes of each candidate, given the memory from before
-    /// the decision, and, where none drives, what would free the robot. Empty for a planner that
-    /// does not choose between candidates.
+    /// The reasons for its decision: the point it drives towards, what becomes of each candidate,
+    /// given the memory from before the decision, and, where none drives, what would free the
+    /// robot. Without candidates for a planner that does not choose between them.
     ///
     /// It costs many times as much as the decision, and allocates.
     fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {

@@ -1,7 +1,7 @@
 //! The leading edges of a footprint: its front, and its rear when the robot backs up.
 
 use crate::geometry::Point;
-use crate::map::{BitGrid, Cell, GridFrame};
+use crate::map::{BitGrid, Cell, Clearance, GridFrame};
 use crate::robot::{Footprint, Robot};
 use std::f64::consts::PI;
 
@@ -57,7 +57,7 @@ impl Front {
 
     /// The front of a robot. No two successive points are farther apart than so many inscribed
     /// radii. Those of the sides are left out, which follow where the front has been, and so are
-    /// those that the sensor does not look at, but for the foremost ones.
+    /// those that no sensor looks at, but for the foremost ones.
     pub(super) fn of(robot: &Robot, spacing_radii: f64) -> Self {
         let footprint = &robot.footprint;
         let mut points = match footprint {
@@ -66,16 +66,21 @@ impl Front {
         };
         let foremost_m = footprint.foremost_m();
         let is_front = |point: &Point| point.x >= foremost_m.min(0.5 * foremost_m.max(0.0)) - 1e-9;
-        let half_rad = 0.5 * robot.sensor.field_of_view_deg.to_radians();
-        let is_looked_at = |point: &Point| point.heading().abs() <= half_rad;
+        let is_looked_at =
+            |point: &Point| robot.sensors.iter().any(|sensor| sensor.looks_at(*point));
         let is_foremost = |point: &Point| point.x >= foremost_m - 1e-9;
         points.retain(|point| is_front(point) && (is_looked_at(point) || is_foremost(point)));
         Self { points }
     }
 
-    /// The same on a grid of cells that have been seen.
-    pub(super) const fn over<'a>(&'a self, cells: &'a BitGrid, frame: &GridFrame) -> SeenAhead<'a> {
-        SeenAhead { points: self.points.as_slice(), cells, cell_m: frame.resolution_m() }
+    /// The same on a grid of cells that have been seen, among obstacles that are known.
+    pub(super) const fn over<'a>(
+        &'a self,
+        cells: &'a BitGrid,
+        known: Clearance<'a>,
+    ) -> SeenAhead<'a> {
+        let (obstacles, cell_m) = (known.obstacles(), known.frame().resolution_m());
+        SeenAhead { points: self.points.as_slice(), cells, obstacles, cell_m }
     }
 }
 
@@ -84,21 +89,31 @@ impl Front {
 pub(super) struct SeenAhead<'a> {
     points: &'a [Point],
     cells: &'a BitGrid,
+    obstacles: &'a BitGrid,
     cell_m: f64,
 }
 
 impl SeenAhead<'_> {
     /// True if all points keep to those cells; to either side, the next one is as good: something
-    /// between two of them would be narrower than both. Arguments as for [`Seen::holds`].
+    /// between two of them would be narrower than both. A point in such a cell may also come as
+    /// near as it likes to an obstacle that is known, and to the end of the map: nothing else
+    /// stands there. Arguments as for [`Seen::holds`].
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
-        let at = at + ahead * (Front::KEPT_CELLS * self.cell_m);
+        let kept = ahead * (Front::KEPT_CELLS * self.cell_m);
         let aside = Point::new(-ahead.y, ahead.x) * self.cell_m;
         self.points.iter().all(|&point| {
-            let place = at + turned(point, ahead);
-            [place, place + aside, place - aside]
-                .into_iter()
-                .any(|place| self.cells.get(cell_of(place, self.cell_m)))
+            let own = at + turned(point, ahead);
+            let place = own + kept;
+            let is_seen = |place| self.cells.get(cell_of(place, self.cell_m));
+            [place, place + aside, place - aside].into_iter().any(is_seen)
+                || is_seen(own) && self.is_end(cell_of(place, self.cell_m))
         })
+    }
+
+    /// True where an obstacle is known, or the map has ended.
+    #[inline]
+    fn is_end(&self, cell: Cell) -> bool {
+        !self.cells.contains(cell) || self.obstacles.get(cell)
     }
 }
 

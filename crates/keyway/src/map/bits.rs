@@ -1,6 +1,7 @@
 //! One bit per cell, in padded rows of 64-bit words.
 
-use super::Cell;
+use super::{Cell, MAX_CELLS};
+use serde::{Deserialize, Serialize};
 
 /// A bit for every cell of a `width` x `height` grid, and a border of one padding cell around it.
 ///
@@ -8,13 +9,69 @@ use super::Cell;
 /// `(y + 1) * stride + x + 1`: neighbours of every real cell can be read without bounds checks of
 /// their own. All padding bits have one value, given when the grid is made. Memory: one bit per
 /// padded cell.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Serialised as runs of equal cells, row by row from the bottom: free ones first, then others, in
+/// turn.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "BitRuns", into = "BitRuns")]
 pub struct BitGrid {
     width: u32,
     height: u32,
     words_per_row: usize,
     padding: bool,
     words: Vec<u64>,
+}
+
+/// A grid of bits in few numbers.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BitRuns {
+    width: u32,
+    height: u32,
+    padding: bool,
+    /// Lengths of runs: of 0, of 1, of 0 and so on.
+    runs: Vec<u64>,
+}
+
+impl From<BitGrid> for BitRuns {
+    fn from(grid: BitGrid) -> Self {
+        let (mut runs, mut value) = (vec![0], false);
+        for y in 0..grid.height as i32 {
+            for x in 0..grid.width as i32 {
+                if grid.get(Cell::new(x, y)) != value {
+                    runs.push(0);
+                    value = !value;
+                }
+                if let Some(last) = runs.last_mut() {
+                    *last += 1;
+                }
+            }
+        }
+        Self { width: grid.width, height: grid.height, padding: grid.padding, runs }
+    }
+}
+
+impl TryFrom<BitRuns> for BitGrid {
+    type Error = String;
+
+    fn try_from(given: BitRuns) -> Result<Self, String> {
+        let BitRuns { width, height, padding, runs } = given;
+        let cells = u64::from(width) * u64::from(height);
+        let padded = (u64::from(width) + 2).saturating_mul(u64::from(height) + 2);
+        let sum = runs.iter().try_fold(0u64, |sum, &run| sum.checked_add(run));
+        if padded > 2 * MAX_CELLS || cells == 0 || sum != Some(cells) {
+            return Err(format!("the runs of a grid of {width} x {height} cells do not fill it"));
+        }
+        let mut grid = Self::new(width, height, padding);
+        let mut at = 0u64;
+        for (index, run) in runs.into_iter().enumerate() {
+            if index % 2 == 1 {
+                grid.fill_run(at, run);
+            }
+            at += run;
+        }
+        Ok(grid)
+    }
 }
 
 /// Some columns of a grid: up to two words, and which of their bits.
@@ -41,6 +98,18 @@ impl BitGrid {
         Self { width, height, words_per_row, padding, words }
     }
 
+    /// Sets some cells, row by row from the bottom.
+    fn fill_run(&mut self, from: u64, count: u64) {
+        let width = u64::from(self.width);
+        let (mut at, end) = (from, from + count);
+        while at < end {
+            let (y, x) = (at / width, at % width);
+            let last = (x + end - at).min(width) - 1;
+            self.fill_span(y as i32, x as i32, last as i32);
+            at += last + 1 - x;
+        }
+    }
+
     /// Columns, without padding.
     pub const fn width(&self) -> u32 {
         self.width
@@ -49,6 +118,11 @@ impl BitGrid {
     /// Rows, without padding.
     pub const fn height(&self) -> u32 {
         self.height
+    }
+
+    /// The value of all padding bits.
+    pub const fn padding(&self) -> bool {
+        self.padding
     }
 
     /// Memory on the heap \[bytes\].
@@ -77,7 +151,8 @@ impl BitGrid {
         &mut self.words[start..start + self.words_per_row]
     }
 
-    fn contains(&self, cell: Cell) -> bool {
+    /// True for a cell of the grid.
+    pub fn contains(&self, cell: Cell) -> bool {
         cell.x >= 0 && cell.y >= 0 && (cell.x as u32) < self.width && (cell.y as u32) < self.height
     }
 

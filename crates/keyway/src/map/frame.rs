@@ -3,7 +3,7 @@
 use super::Cell;
 use crate::geometry::{Point, Pose};
 use crate::given::Given;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
@@ -14,7 +14,8 @@ pub const MAX_CELLS: u64 = 1 << 31;
 ///
 /// Three coordinates are used: *world* (metres), *grid* (continuous, in cells: cell (i, j) is the
 /// square from (i, j) to (i + 1, j + 1)), and *cells* (integers).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "FrameParts")]
 pub struct GridFrame {
     width: u32,
     height: u32,
@@ -25,6 +26,25 @@ pub struct GridFrame {
     sin: f64,
     #[serde(skip)]
     cos: f64,
+}
+
+/// A frame that was not checked yet.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FrameParts {
+    width: u64,
+    height: u64,
+    resolution_m: f64,
+    origin: Pose,
+}
+
+impl TryFrom<FrameParts> for GridFrame {
+    type Error = FrameError;
+
+    fn try_from(parts: FrameParts) -> Result<Self, FrameError> {
+        let FrameParts { width, height, resolution_m, origin } = parts;
+        Self::new(width, height, resolution_m, origin)
+    }
 }
 
 /// Why a grid cannot have such a frame.

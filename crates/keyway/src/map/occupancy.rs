@@ -1,9 +1,10 @@
 //! What a map file says.
 
 use super::{BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyThresholds};
+use serde::{Deserialize, Serialize};
 
 /// A change of one cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edit {
     /// The cell.
     pub cell: Cell,
@@ -15,7 +16,8 @@ pub struct Edit {
 /// value of the file (0 to 100).
 ///
 /// Memory: two bits per cell, one byte more where the file has values.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "GridParts")]
 pub struct OccupancyGrid {
     frame: GridFrame,
     occupied: BitGrid,
@@ -24,8 +26,36 @@ pub struct OccupancyGrid {
     revision: u64,
 }
 
+/// A grid that was not checked yet.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GridParts {
+    frame: GridFrame,
+    occupied: BitGrid,
+    unknown: BitGrid,
+    values: Option<Values>,
+    revision: u64,
+}
+
+impl TryFrom<GridParts> for OccupancyGrid {
+    type Error = &'static str;
+
+    fn try_from(parts: GridParts) -> Result<Self, &'static str> {
+        let GridParts { frame, occupied, unknown, values, revision } = parts;
+        let fits = |bits: &BitGrid| {
+            (bits.width(), bits.height()) == (frame.width(), frame.height()) && !bits.padding()
+        };
+        let cells = frame.cell_count();
+        let has_all = values.as_ref().is_none_or(|it| it.numbers.len() as u64 == cells);
+        if !(fits(&occupied) && fits(&unknown) && has_all) {
+            return Err("the cells of a map are not as many as its frame has");
+        }
+        Ok(Self { frame, occupied, unknown, values, revision })
+    }
+}
+
 /// The values that the states of cells were made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Values {
     /// Row by row from the bottom; 0 to 100, 255 unknown.
     numbers: Vec<u8>,

@@ -5,6 +5,7 @@
 //! all but 100 as free: what nine of ten scans have seen would be free.
 
 use super::CellState;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// From which occupancy value (0 to 100) on a cell is occupied, and up to which it is free. A value
@@ -18,7 +19,7 @@ use thiserror::Error;
 ///     CellState::Free, CellState::Unknown, CellState::Unknown, CellState::Occupied,
 /// ]);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OccupancyThresholds {
     occupied: u8,
     free: u8,

@@ -14,6 +14,8 @@ pub enum Step {
     Drive(Velocity),
     /// The goal is reached: stop.
     Arrived,
+    /// There is no goal, and the robot stands.
+    Idle,
     /// There is no good way on at the moment: drive with `command`, which is safe, and ask again.
     Blocked {
         /// Drives on as far as is safe, brakes along the present arc, or turns on the spot.
@@ -28,16 +30,16 @@ impl Step {
     pub const fn command(&self) -> Velocity {
         match *self {
             Self::Drive(command) | Self::Blocked { command, .. } => command,
-            Self::Arrived => Velocity::ZERO,
+            Self::Arrived | Self::Idle => Velocity::ZERO,
         }
     }
 
-    /// The same with another command; who has arrived is not given any.
+    /// The same with another command; a robot that has arrived, or has no goal, is not given any.
     pub(super) fn commanding(self, command: Velocity) -> Self {
         match self {
             Self::Drive(_) => Self::Drive(command),
             Self::Blocked { why, .. } => Self::Blocked { command, why },
-            Self::Arrived => Self::Arrived,
+            Self::Arrived | Self::Idle => self,
         }
     }
 }
@@ -69,22 +71,79 @@ pub enum Blocked {
         Computed(.0.x), Computed(.0.y)
     )]
     OffTheMap(Point),
-    /// No beam has said anything for longer than the sensor's time-out
+    /// No beam of any sensor has said anything for longer than the sensor's time-out
     /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot sees
     /// nothing. The command brakes, and the robot drives on when it sees again.
     #[error("{}", silence_text(*.silent_s))]
     SensorSilent {
+        /// Index of the sensor that said something the last; 0 where none ever has.
+        sensor: usize,
         /// Since a beam said something \[s\]; infinite when none ever has.
         silent_s: f64,
     },
+    /// The rest of a single act would touch something. The command brakes, and the robot goes on
+    /// once there is room.
+    #[error("there is no room for what is left of the act")]
+    NoRoomForAct,
+    /// A single act has taken longer than it may. The command brakes, and the robot stands.
+    #[error("the act has taken longer than it may: the robot stands; give it another task")]
+    OutOfTime,
     /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided
     /// the robot could no longer stop in time.
     #[error(transparent)]
     Unsafe(Refusal),
-    /// A pose or velocity that cannot be true: where the robot is or how it moves is unknown. The
-    /// command is to stop.
+    /// A stamp, pose or velocity that cannot be true: where the robot is or how it moves is
+    /// unknown. The command is to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
     BadInput(&'static str),
+    /// The last observation is older than the one before: nothing of it was taken in. The command
+    /// is to stop.
+    #[error(
+        "the observation of {} s is older than the last one, of {} s: give observations in the order of their stamps; \
+         after a change of the clock, say that it begins anew (`restart_clock`)",
+        Computed(*.stamp_s), Computed(*.last_s)
+    )]
+    TimeRunsBack {
+        /// Stamp of the observation \[s\].
+        stamp_s: f64,
+        /// The last stamp before it \[s\].
+        last_s: f64,
+    },
+    /// Nothing has been observed yet: where the robot is is unknown. The command is to stop.
+    #[error("nothing has been observed yet: give an observation before the first step")]
+    NothingObserved,
+    /// The last pose is old: where the robot is is unknown. The command brakes.
+    #[error(
+        "the last pose is {} s old: the localisation or the odometry is silent, and the robot stands until it is not",
+        Computed(*.age_s)
+    )]
+    PoseStale {
+        /// Its age \[s\].
+        age_s: f64,
+    },
+}
+
+impl Blocked {
+    /// Its kind as a number, which never changes and which no other stop or error has
+    /// ([`NavigateError::kind`]): for programs that do not read texts.
+    pub const fn kind(&self) -> u16 {
+        match self {
+            Self::NothingAdmissible(_) => 101,
+            Self::NothingDrives(_) => 102,
+            Self::NoRoute(_) => 103,
+            Self::Recovering(_) => 104,
+            Self::NoRoomToTurn => 105,
+            Self::OffTheMap(_) => 106,
+            Self::SensorSilent { .. } => 107,
+            Self::Unsafe(_) => 108,
+            Self::BadInput(_) => 109,
+            Self::TimeRunsBack { .. } => 110,
+            Self::NothingObserved => 111,
+            Self::PoseStale { .. } => 112,
+            Self::NoRoomForAct => 113,
+            Self::OutOfTime => 114,
+        }
+    }
 }
 
 fn silence_text(silent_s: f64) -> String {
@@ -94,7 +153,7 @@ fn silence_text(silent_s: f64) -> String {
         "yet".to_owned()
     };
     format!(
-        "no beam of the sensor has said anything {since}: the robot sees nothing, and stands until it does"
+        "no beam of a sensor has said anything {since}: the robot sees nothing, and stands until it does"
     )
 }
 

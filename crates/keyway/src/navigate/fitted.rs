@@ -36,6 +36,8 @@ pub struct FittedStack {
     pub(super) smoother: Arc<dyn Smoother + Send + Sync>,
     pub(super) guide: Arc<dyn Guide + Send + Sync>,
     pub(super) local: Arc<dyn LocalPlanner + Send + Sync>,
+    /// The local planner is one of the caller's own.
+    has_own_local: bool,
     pub(super) tracker: Option<Tracker>,
     pub(super) stop_rule: Option<StopRule>,
 }
@@ -76,6 +78,7 @@ impl Stack {
             smoother: smoother.into(),
             guide: guide.into(),
             local: local.into(),
+            has_own_local: false,
             tracker: self.controller.build_tracker().map_err(within("controller"))?,
             stop_rule: self.controller.build_stop_rule(&robot).map_err(within("controller"))?,
             stack: Arc::new(self.clone()),
@@ -128,6 +131,25 @@ impl Stack {
 }
 
 impl FittedStack {
+    /// The robot as one that is no faster than a speed \[m/s\], and a local planner for it; one of
+    /// the caller's own stays as it is.
+    pub(super) fn slowed(
+        &self,
+        speed_mps: f64,
+    ) -> (Arc<Robot>, Arc<dyn LocalPlanner + Send + Sync>) {
+        let mut robot = (*self.robot).clone();
+        robot.limits.v_max_mps = robot.limits.v_max_mps.min(speed_mps);
+        robot.limits.v_min_mps = robot.limits.v_min_mps.max(-speed_mps);
+        let robot = Arc::new(robot);
+        if self.has_own_local {
+            return (robot, Arc::clone(&self.local));
+        }
+        let local = self.stack.local.build_for(&robot);
+        // What can be built for a robot can be built for a slower one.
+        let local = local.map_or_else(|_| Arc::clone(&self.local), Arc::from);
+        (robot, local)
+    }
+
     /// The robot that it drives.
     pub fn robot(&self) -> &Robot {
         &self.robot
@@ -153,7 +175,7 @@ impl FittedStack {
     /// The same with a local planner of your own, in the place of that of the stack.
     #[must_use]
     pub fn with_local(self, local: Arc<dyn LocalPlanner + Send + Sync>) -> Self {
-        Self { local, ..self }
+        Self { local, has_own_local: true, ..self }
     }
 
     /// The same with a guide of your own, in the place of that of the stack.

@@ -2,9 +2,10 @@
 //! the same steps.
 
 use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
 
 /// The shortest remaining way so far.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayProgress {
     shortest_m: f64,
 }

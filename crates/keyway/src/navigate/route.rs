@@ -2,142 +2,20 @@
 
 use super::headings::fits_within;
 use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
-use super::{FittedStack, Goal, HeadingRange, Stack};
+use super::{FittedStack, Goal, HeadingRange, NavigateError, Stack};
 use crate::ConfigError;
-use crate::geometry::{Disc, Point, Pose, degrees};
-use crate::given::{Computed, Given};
+use crate::geometry::{Disc, Point, Polyline, Pose};
 use crate::map::{
-    Cell, CellState, CellWindow, DistanceField, Edit, Hindrance, LayerConfig, OccupancyGrid,
-    SearchMap, Separation,
+    Cell, CellState, CellWindow, DistanceField, Edit, FieldConfig, LayerConfig, OccupancyGrid,
+    SearchMap,
 };
-use crate::plan::{GlobalPlanner, PathEnd, PlanError};
+use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::robot::{Footprint, Robot};
 use crate::route::{EndRule, Route, RouteQuery, plan_route};
-use crate::search::{Query, Workspace};
+use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::Smoother;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
-use thiserror::Error;
-
-/// Why a robot cannot be sent to a goal.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum NavigateError {
-    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with
-    /// `robot`.
-    #[error(transparent)]
-    Config(#[from] ConfigError),
-    /// The footprint does not fit at the start or goal.
-    #[error(
-        "{end} ({}, {}) leaves no room for a radius of {} m: {why}{}",
-        Computed(.position.x), Computed(.position.y), Computed(*.radius_m),
-        nearest_text(.nearest.as_ref())
-    )]
-    NoRoom {
-        /// Which of the two.
-        end: PathEnd,
-        /// The position asked for \[m\].
-        position: Point,
-        /// The robot's radius \[m\].
-        radius_m: f64,
-        /// What is too near.
-        why: Hindrance,
-        /// The nearest position with room \[m\], unless there is none.
-        nearest: Option<Point>,
-    },
-    /// The robot would begin in contact with something.
-    #[error(
-        "at the start ({}, {}){} the robot ({footprint}) touches something{} ({why}); move the start away from it{}",
-        Computed(.position.x), Computed(.position.y),
-        .heading_rad.map_or_else(String::new, |yaw_rad| format!(" with a yaw of {} deg", Computed(degrees(yaw_rad)))),
-        every_heading_text(.footprint, .heading_rad.as_ref()),
-        if .heading_rad.is_some() && matches!(.footprint, Footprint::Polygon(_)) { ", or choose another yaw" } else { "" }
-    )]
-    StartTouches {
-        /// The start \[m\].
-        position: Point,
-        /// Its heading \[rad\]; `None`: it touches something at every heading.
-        heading_rad: Option<f64>,
-        /// The robot.
-        footprint: Footprint,
-        /// What is nearest to the start.
-        why: Hindrance,
-    },
-    /// The footprint does not fit at the goal with the heading there.
-    #[error(
-        "at the goal ({}, {}) the robot ({footprint}) does not fit with a yaw of {} deg; {}",
-        Computed(.position.x), Computed(.position.y), Computed(degrees(*.heading_rad)), headings_text(.fits)
-    )]
-    GoalHeading {
-        /// The goal \[m\].
-        position: Point,
-        /// Its heading \[rad\].
-        heading_rad: f64,
-        /// The robot.
-        footprint: Footprint,
-        /// The headings at which it fits there.
-        fits: Vec<HeadingRange>,
-    },
-    /// A start or goal that is not a place.
-    #[error(
-        "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
-         check the localisation, or the file that it is from",
-        Given(.position.x), Given(.position.y)
-    )]
-    NotFinite {
-        /// Which of the two.
-        end: PathEnd,
-        /// The position asked for.
-        position: Point,
-    },
-    /// There is no way on the known map.
-    #[error("{}{why}", margin_text(.why))]
-    NoWay {
-        /// Which clearance would leave one, or how the start and the goal are parted.
-        why: Separation,
-    },
-    /// There is no route.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// There is none to a way-point, or on from the one before it.
-    #[error("way-point {number}: {why}")]
-    WayPoint {
-        /// Its number, from 1.
-        number: usize,
-        /// Why not.
-        why: Box<NavigateError>,
-    },
-}
-
-/// Of which radius it is.
-const fn margin_text(why: &Separation) -> &'static str {
-    match why {
-        Separation::TooNarrow { .. } => "with the safety margin around the robot, ",
-        Separation::Apart { .. } => "",
-    }
-}
-
-const fn every_heading_text(footprint: &Footprint, heading_rad: Option<&f64>) -> &'static str {
-    match (footprint, heading_rad) {
-        (Footprint::Polygon(_), None) => " at every heading",
-        _ => "",
-    }
-}
-
-fn headings_text(fits: &[HeadingRange]) -> String {
-    if fits.is_empty() {
-        return "nor does it with any other: move the goal".to_owned();
-    }
-    let ranges: Vec<String> = fits.iter().map(|range| format!("{range} deg")).collect();
-    format!("there it fits with one of {}", ranges.join(", "))
-}
-
-fn nearest_text(nearest: Option<&Point>) -> String {
-    nearest.map_or_else(
-        || "; no other place on this map has room either".to_owned(),
-        |p| format!("; the nearest position with room is ({:.3}, {:.3})", p.x, p.y),
-    )
-}
 
 /// The map layers of one robot, widest clearance first: a route uses the first on which there is a
 /// way.
@@ -150,6 +28,8 @@ pub(super) struct Layers {
     pub(super) maps: Vec<SearchMap>,
     /// How many of the maps have the clearance that the robot needs.
     fitting: usize,
+    /// The last but one of these was added for a route.
+    is_inserted: bool,
 }
 
 impl Layers {
@@ -170,13 +50,19 @@ impl Layers {
         let narrowest_m = least_m.min(stack.map.clearance_m);
         let clearance_m = (narrowest_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
-        Ok(Self { maps, fitting })
+        Ok(Self { maps, fitting, is_inserted: false })
     }
 
-    /// Adds a map between those on which a way has the clearance that the robot needs.
+    /// Adds a map between those on which a way has the clearance that the robot needs, in the place
+    /// of the last one that was added.
     fn insert(&mut self, map: SearchMap) {
-        self.maps.insert(self.fitting - 1, map);
-        self.fitting += 1;
+        let at = self.fitting - 1;
+        if self.is_inserted {
+            self.maps[at - 1] = map;
+            return;
+        }
+        self.maps.insert(at, map);
+        (self.fitting, self.is_inserted) = (self.fitting + 1, true);
     }
 
     /// The maps on which a way has the clearance that the robot needs.
@@ -185,9 +71,27 @@ impl Layers {
     }
 
     /// Changes some cells of all maps.
-    fn mark(&mut self, cells: &[Cell], state: impl Fn(Cell) -> CellState) {
+    pub(super) fn mark(&mut self, cells: &[Cell], state: impl Fn(Cell) -> CellState) {
         let edits: Vec<_> = cells.iter().map(|&cell| Edit { cell, state: state(cell) }).collect();
         self.maps.iter_mut().for_each(|map| map.apply(&edits));
+    }
+
+    /// Gives some cells of all maps back what the known map says.
+    pub(super) fn unmark(&mut self, cells: &[Cell], known: &OccupancyGrid) {
+        self.mark(cells, |cell| known.state(cell).unwrap_or(CellState::Free));
+    }
+
+    /// The clearance of the map that was added for a route, if one was \[m\].
+    pub(super) fn inserted_m(&self) -> Option<f64> {
+        self.is_inserted.then(|| self.maps[self.fitting - 2].config().clearance_m)
+    }
+
+    /// Adds a map of a clearance \[m\] again.
+    pub(super) fn insert_again(&mut self, known: &OccupancyGrid, clearance_m: f64) {
+        let config = LayerConfig { clearance_m, ..self.maps[0].config().clone() };
+        if let Ok(map) = SearchMap::new(known, config) {
+            self.insert(map);
+        }
     }
 
     /// Any of the maps: they have the same obstacles.
@@ -212,6 +116,20 @@ pub(super) struct Router {
     radius_m: f64,
 }
 
+impl Clone for Router {
+    /// With scratch of its own.
+    fn clone(&self) -> Self {
+        let Self { layers, planner, smoother, radius_m, .. } = self;
+        Self {
+            layers: layers.clone(),
+            planner: Arc::clone(planner),
+            smoother: Arc::clone(smoother),
+            workspace: Workspace::default(),
+            radius_m: *radius_m,
+        }
+    }
+}
+
 impl Router {
     /// # Errors
     /// When the stack cannot be used.
@@ -229,6 +147,22 @@ impl Router {
             workspace: Workspace::default(),
             radius_m: robot.footprint.inscribed_radius_m(),
         })
+    }
+
+    /// Distances to the obstacles of its maps, as far as a robot looks at them.
+    pub(super) fn distances(&self, robot: &Robot) -> DistanceField {
+        let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
+        let map = self.layers.obstacles();
+        DistanceField::new(map.frame(), map.obstacles(), &config)
+    }
+
+    /// The least distance of a path from the obstacles of its maps \[m\], up to the widest
+    /// clearance that its routes keep.
+    pub(super) fn clearance_along(&self, path: &Polyline) -> f64 {
+        let map = self.layers.obstacles();
+        let (clearance, most_m) = (map.clearance(), map.config().clearance_m);
+        let along = path.segments().map(|segment| clearance.of_segment(segment, most_m));
+        along.fold(most_m, f64::min)
     }
 
     /// Refuses a start without room for the robot, or in contact with something, by more than an
@@ -326,6 +260,27 @@ impl Router {
         first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
     }
 
+    /// The nearest place with room for the robot, on what is known and sensed.
+    fn nearest_with_room(&self, position: Point) -> Option<Point> {
+        let map = self.layers.fitting().last()?;
+        let cell = map.nearest_free(map.frame().cell_near(position))?;
+        Some(map.frame().world_from_cell(cell))
+    }
+
+    /// The place nearest to a goal to which there is a way, on what is known and sensed; `None`
+    /// where there is none from the start.
+    pub(super) fn nearest_reachable(&mut self, start: Point, goal: Point) -> Option<Point> {
+        let to = self.nearest_with_room(goal)?;
+        let map = self.layers.fitting().last()?;
+        let query = RouteQuery {
+            if_unreachable: IfUnreachable::NearestReachable,
+            ..footprint_query(start, to, self.radius_m)
+        };
+        let mut plan = Plan::default();
+        query.search(map, &*self.planner, &mut self.workspace, &mut plan, &mut ()).ok()?;
+        plan.cells.last().map(|&cell| map.frame().world_from_cell(cell))
+    }
+
     /// A route between two places around some ground; `None` where there is none, or no ground.
     pub(super) fn around(
         &mut self,
@@ -344,7 +299,7 @@ impl Router {
         let (planner, smoother) = (&*self.planner, &*self.smoother);
         let fitting = self.layers.fitting();
         let route = first_route(fitting, planner, smoother, &query, &mut self.workspace);
-        self.layers.mark(&cells, |cell| known.state(cell).unwrap_or(CellState::Free));
+        self.layers.unmark(&cells, known);
         route.ok()
     }
 }

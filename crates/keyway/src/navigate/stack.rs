@@ -61,8 +61,8 @@ pub struct ControllerConfig {
     pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
-    /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5 cm,
-    /// or by a tenth of what a slow robot drives in that time.
+    /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5
+    /// cm, or by a tenth of what a slow robot drives in that time.
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then
     /// from the beginning. Where `turn` is among them, a robot that is not round also turns before
@@ -79,8 +79,13 @@ pub struct ControllerConfig {
     /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for
     /// something that moves before it counts as getting no farther.
     pub longest_wait_s: f64,
-    /// Stop while the sensor says nothing for longer than its time-out (`sensor.timeout_s` of the
-    /// robot), and before it has said anything. True in stack files that do not have it.
+    /// Reaction to a way-point to which there is no route twice in turn, such as one on which
+    /// something stands. `wait` in stack files that do not have it.
+    #[serde(default)]
+    pub if_way_point_blocked: IfWayPointBlocked,
+    /// Stop while the sensors say nothing for longer than their time-outs (`sensors.timeout_s` of
+    /// the robot), and before they have said anything: all of them, or one where the robot need not
+    /// stay within ground that it has seen. True in stack files that do not have it.
     #[serde(default = "yes")]
     pub stop_when_blind: bool,
     /// How what moves is told from what stands. Without it everything counts as standing where it
@@ -91,6 +96,22 @@ pub struct ControllerConfig {
     /// it commands are issued as they were decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe: Option<StopRuleConfig>,
+}
+
+/// Reaction to a way-point that cannot be reached for now. The goal is always waited for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum IfWayPointBlocked {
+    /// The robot goes on trying, as for the goal.
+    #[default]
+    Wait,
+    /// It passes the nearest place with room for it instead, no farther than a metre or twice its
+    /// diameter from the way-point; where there is none it skips the way-point.
+    PassNear,
+    /// It goes on to the next one.
+    Skip,
 }
 
 const fn yes() -> bool {
@@ -114,6 +135,7 @@ impl ControllerConfig {
         no_progress_s: 3.0,
         replan_budget: 1_000_000,
         longest_wait_s: 8.0,
+        if_way_point_blocked: IfWayPointBlocked::Wait,
         stop_when_blind: false,
         movers: None,
         safe: None,
@@ -134,6 +156,7 @@ impl ControllerConfig {
         "wait_s",
         "replan_budget",
         "longest_wait_s",
+        "if_way_point_blocked",
         "stop_when_blind",
         "movers",
         "safe",
@@ -162,6 +185,7 @@ impl ControllerConfig {
                 RecoveryKind::BackUp,
                 RecoveryKind::Wait,
             ]),
+            if_way_point_blocked: IfWayPointBlocked::PassNear,
             stop_when_blind: true,
             back_up_m: (2.0 * robot.footprint.circumscribed_radius_m()).max(0.1),
             movers: Some(TrackerConfig::default()),

@@ -9,11 +9,12 @@
 use crate::geometry::{Point, Pose};
 use crate::map::{Clearance, Hindrance};
 use crate::robot::Footprint;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// A robot that begins nearer to something than it can stand.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[error(
     "the robot is told to be nearer to something than it can stand ({why}), and leaves it first: the localisation is off by \
      at least {off_m:.3} m, or the map or the footprint is"

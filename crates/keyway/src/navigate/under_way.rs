@@ -1,70 +1,117 @@
 //! Commands that were given and have no effect yet.
 
+use super::time::Time;
 use crate::geometry::{Pose, Velocity};
-use crate::robot::{CycleCount, Limits, Robot};
+use crate::robot::{Limits, Robot};
 use std::collections::VecDeque;
 
 /// The commands that are on their way to the motors, for a robot with a known delay
 /// ([`Robot::actuation_delay_s`]).
 ///
 /// What a robot does before its next command acts is decided already. So that command is chosen for
-/// the pose and the velocity which the robot then has: those that follow from the present ones by
-/// the commands under way, each for a cycle, in which the velocity changes linearly as far as the
-/// limits allow. Without noise this is exactly what happens, and the robot drives as it would
-/// without a delay, only that much later.
+/// the pose and the velocity which the robot then has: those that follow from the last ones that
+/// were observed by the commands under way, each until the next one acts. The velocity changes
+/// linearly as far as the limits allow. Without noise this is exactly what happens, and the robot
+/// drives as it would without a delay, only that much later.
 #[derive(Clone, Debug)]
 pub(super) struct UnderWay {
     limits: Limits,
     cycle_s: f64,
-    /// How many commands at most: those of the whole cycles of the delay, and one for the rest.
+    delay_s: f64,
     most: usize,
-    /// What is left of the effect of the oldest one \[s\]; a whole cycle where the delay is one of
-    /// whole cycles.
-    oldest_s: f64,
-    /// The oldest first.
-    commands: VecDeque<Velocity>,
+    /// Each with the time at which it begins to act, the oldest first.
+    commands: VecDeque<(Time, Velocity)>,
 }
 
 impl UnderWay {
+    /// Commands that are kept beyond those of the delay.
+    const MORE: usize = 256;
+
     pub(super) fn new(robot: &Robot) -> Self {
         let Robot { ref limits, cycle_s, actuation_delay_s, .. } = *robot;
-        let CycleCount { whole, part: rest, .. } = CycleCount::of(actuation_delay_s, cycle_s);
-        let is_whole = rest == 0.0;
-        Self {
-            limits: limits.clone(),
-            cycle_s,
-            most: if is_whole { whole } else { whole + 1 },
-            oldest_s: if is_whole { cycle_s } else { rest * cycle_s },
-            commands: VecDeque::new(),
-        }
+        let most = (actuation_delay_s / cycle_s).ceil() as usize + Self::MORE;
+        let commands = VecDeque::with_capacity(most);
+        Self { limits: limits.clone(), cycle_s, delay_s: actuation_delay_s, most, commands }
     }
 
-    /// Pose and velocity at the instant at which the next command acts. Before the first one, the
-    /// robot has been told to go on as it does.
-    pub(super) fn predicted(&mut self, pose: Pose, velocity: Velocity) -> (Pose, Velocity) {
-        while self.commands.len() < self.most {
-            self.commands.push_front(velocity);
-        }
-        let (mut pose, mut velocity, mut duration_s) = (pose, velocity, self.oldest_s);
-        for &command in &self.commands {
-            let reached = self.limits.reached(velocity, command, duration_s);
-            pose = pose.after_ramp(velocity, reached, duration_s);
-            (velocity, duration_s) = (reached, self.cycle_s);
+    /// Pose and velocity at the instant at which a command that is given `now` acts, for a robot
+    /// that was observed at a time. Before the first command it has been told to go on as it does.
+    pub(super) fn predicted(
+        &self,
+        observed: Time,
+        now: Time,
+        (mut pose, mut velocity): (Pose, Velocity),
+    ) -> (Pose, Velocity) {
+        for (command, duration_s) in self.acting(observed, now.after_s(self.delay_s)) {
+            let command = command.unwrap_or(velocity);
+            let mut left_s = duration_s;
+            while left_s > 0.0 {
+                let part_s = if left_s < 1.5 * self.cycle_s { left_s } else { self.cycle_s };
+                let reached = self.limits.reached(velocity, command, part_s);
+                pose = pose.after_ramp(velocity, reached, part_s);
+                (velocity, left_s) = (reached, left_s - part_s);
+            }
         }
         (pose, velocity)
     }
 
-    /// Notes the command of this cycle.
-    pub(super) fn give(&mut self, command: Velocity) {
-        self.commands.push_back(command);
-        while self.commands.len() > self.most {
+    /// Notes a command that is given now, and forgets those that have long acted. Allocates
+    /// nothing.
+    pub(super) fn give(&mut self, observed: Time, now: Time, command: Velocity) {
+        let acts = now.after_s(self.delay_s);
+        while self.commands.back().is_some_and(|last| last.0 >= acts) {
+            self.commands.pop_back();
+        }
+        while self.commands.get(1).is_some_and(|second| second.0 <= observed)
+            || self.commands.len() >= self.most
+        {
             self.commands.pop_front();
         }
+        self.commands.push_back((acts, command));
+    }
+
+    /// The command that acts at a time; `None` before the first.
+    pub(super) fn acts_at(&self, time: Time) -> Option<Velocity> {
+        let begun = self.commands.partition_point(|command| command.0 <= time);
+        Some(self.commands.get(begun.checked_sub(1)?)?.1)
+    }
+
+    /// The commands that are under way, each with the time at which it begins to act.
+    pub(super) fn commands(&self) -> Vec<(Time, Velocity)> {
+        self.commands.iter().copied().collect()
+    }
+
+    /// Takes up such commands.
+    pub(super) fn take_up(&mut self, commands: &[(Time, Velocity)]) {
+        self.commands.clear();
+        self.commands.extend(commands.iter().take(self.most));
+    }
+
+    /// Forgets all commands.
+    pub(super) fn clear(&mut self) {
+        self.commands.clear();
     }
 
     /// Whether a robot stands, and no command under way moves it.
-    pub(super) fn is_at_rest(&self, robot: &Robot, velocity: Velocity) -> bool {
-        self.commands.iter().chain([&velocity]).all(|velocity| robot.stands(*velocity))
+    pub(super) fn is_at_rest(
+        &self,
+        observed: Time,
+        now: Time,
+        (robot, velocity): (&Robot, Velocity),
+    ) -> bool {
+        let mut acting = self.acting(observed, now.after_s(self.delay_s));
+        robot.stands(velocity) && acting.all(|(it, _)| it.is_none_or(|it| robot.stands(it)))
+    }
+
+    /// The commands that act between two times, and for how long \[s\]; `None` before the first.
+    fn acting(&self, from: Time, to: Time) -> impl Iterator<Item = (Option<Velocity>, f64)> {
+        let begins = move |index: usize| self.commands.get(index).map_or(to, |command| command.0);
+        let spans = (0..=self.commands.len()).map(move |index| {
+            let command = index.checked_sub(1).map(|before| self.commands[before]);
+            let begun = command.map_or(from, |command| command.0.max(from));
+            (command.map(|command| command.1), begins(index).min(to).since_s(begun))
+        });
+        spans.filter(|&(_, duration_s)| duration_s > 0.0)
     }
 }
 
@@ -131,8 +178,8 @@ mod tests {
             // A ramp in two parts is integrated differently, by a few micrometres.
             let off_m = if part == 0.0 { 1e-9 } else { 1e-5 };
             for (cycle, &command) in late.commands.iter().enumerate() {
-                let (pose, velocity) = late.told(cycle);
-                let (pose, velocity) = under_way.predicted(pose, velocity);
+                let now = Time::of_stamp(cycle as f64 * late.robot.cycle_s).unwrap();
+                let (pose, velocity) = under_way.predicted(now, now, late.told(cycle));
                 let (at, reached) = late.after(cycle, 0.0);
                 assert!(
                     pose.point().distance(at.point()) < off_m,
@@ -141,7 +188,7 @@ mod tests {
                 assert!((pose.theta - at.theta).abs() < 1e-9, "{name} {cycle}: {pose:?} {at:?}");
                 assert!((velocity.v - reached.v).abs() < 1e-9, "{name} {cycle}");
                 assert!((velocity.omega - reached.omega).abs() < 1e-9, "{name} {cycle}");
-                under_way.give(command);
+                under_way.give(now, now, command);
             }
         }
     }

@@ -6,12 +6,13 @@
 //! would (\[Karlin1988\]): then it loses no more than twice what somebody loses who knows it
 //! beforehand, but for the time between two looks.
 
-use crate::geometry::{Disc, Point, Segment};
+use crate::geometry::{Disc, Point, Segment, Shift};
 use crate::robot::Robot;
 use crate::sense::Mover;
+use serde::{Deserialize, Serialize};
 
 /// Where movers were seen lately, and around which of it the robot goes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct WalkedGround {
     steps: Vec<Step>,
     /// The discs of those that are avoided.
@@ -19,7 +20,7 @@ pub(super) struct WalkedGround {
 }
 
 /// A mover was seen here.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Step {
     disc: Disc,
     /// Since it was last seen here \[s\].
@@ -48,6 +49,13 @@ impl WalkedGround {
         self.list_avoided();
     }
 
+    /// Moves it with the robot, to where that turns out to be.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        let steps = self.steps.iter_mut();
+        steps.for_each(|step| step.disc.centre = shift.point(step.disc.centre));
+        self.list_avoided();
+    }
+
     fn note_step(&mut self, mover: &Mover) {
         let disc = Disc { centre: mover.centre, radius_m: mover.radius_m };
         let is_same = |step: &&mut Step| {
@@ -58,7 +66,7 @@ impl WalkedGround {
             step.age_s = 0.0;
             return;
         }
-        if self.steps.len() == Self::MOST {
+        if self.steps.len() >= Self::MOST {
             let ages = self.steps.iter().map(|step| step.age_s).enumerate();
             let oldest = ages.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
             self.steps.swap_remove(oldest);
@@ -120,12 +128,12 @@ impl Step {
 }
 
 /// How long a robot has stayed near a place.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Hold {
     at: Option<Point>,
-    cycles: u32,
-    /// Cycles since a way around was looked for.
-    unlooked: u32,
+    held_s: f64,
+    /// Since a way around was looked for \[s\].
+    unlooked_s: f64,
 }
 
 impl Hold {
@@ -136,23 +144,25 @@ impl Hold {
     /// full speed in this time \[s\].
     const AWAY_S: f64 = 0.5;
 
-    /// Notes where the robot is in a cycle.
-    pub(super) fn note(&mut self, position: Point, robot: &Robot) {
+    /// Notes where the robot is, this long after it was noted last \[s\].
+    pub(super) fn note(&mut self, position: Point, robot: &Robot, elapsed_s: f64) {
         let away_m = Self::AWAY_S * robot.limits.v_max_mps;
         let away_m = away_m.max(2.0 * robot.footprint.circumscribed_radius_m());
         if self.at.is_none_or(|at| at.distance(position) >= away_m) {
-            *self = Self { at: Some(position), cycles: 0, unlooked: 0 };
+            *self = Self { at: Some(position), held_s: 0.0, unlooked_s: 0.0 };
         }
-        self.cycles += 1;
-        self.unlooked += 1;
+        self.held_s += elapsed_s;
+        self.unlooked_s += elapsed_s;
     }
 
     /// How long the robot has been held up, when it is time to look for a way around \[s\].
-    pub(super) fn look(&mut self, cycle_s: f64) -> Option<f64> {
-        let is_time = f64::from(self.unlooked) * cycle_s >= Self::LOOK_S;
+    pub(super) fn look(&mut self) -> Option<f64> {
+        // A sum of cycles is that time, rounded or not.
+        const ROUNDING_S: f64 = 1e-9;
+        let is_time = self.unlooked_s >= Self::LOOK_S - ROUNDING_S;
         is_time.then(|| {
-            self.unlooked = 0;
-            f64::from(self.cycles) * cycle_s
+            self.unlooked_s = 0.0;
+            self.held_s
         })
     }
 }
@@ -245,16 +255,16 @@ mod tests {
         let mut held = Vec::new();
         for cycle in 1..=70 {
             // To and fro by 10 cm.
-            hold.note(Point::new(0.1 * f64::from(cycle % 2), 0.0), &robot);
-            held.extend(hold.look(robot.cycle_s).map(|held_s| (cycle, held_s)));
+            hold.note(Point::new(0.1 * f64::from(cycle % 2), 0.0), &robot, 0.1);
+            held.extend(hold.look().map(|held_s| (cycle, held_s)));
         }
         assert_eq!(held.iter().map(|held| held.0).collect::<Vec<_>>(), [30, 60]);
         assert!((held[1].1 - 6.0).abs() < 1e-9, "{held:?}");
         for cycle in 1..30 {
-            hold.note(Point::new(0.5, 0.0), &robot);
-            assert_eq!(hold.look(robot.cycle_s), None, "{cycle}: it got away");
+            hold.note(Point::new(0.5, 0.0), &robot, 0.1);
+            assert_eq!(hold.look(), None, "{cycle}: it got away");
         }
-        hold.note(Point::new(0.5, 0.0), &robot);
-        assert!((hold.look(robot.cycle_s).unwrap() - 3.0).abs() < 1e-9);
+        hold.note(Point::new(0.5, 0.0), &robot, 0.1);
+        assert!((hold.look().unwrap() - 3.0).abs() < 1e-9);
     }
 }

@@ -3,9 +3,10 @@
 use super::WayProgress;
 use crate::geometry::{Point, Polyline, Segment, Square};
 use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
+use serde::{Deserialize, Serialize};
 
 /// How long the robot has made no progress.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Watch {
     /// Age of the route, or time since the last recovery \[s\].
     pub(super) route_s: f64,

@@ -31,7 +31,7 @@
 use super::any_angle::length;
 use super::heuristic::with_metric;
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::two_sided::{self, Half, Meeting};
+use super::two_sided::{self, Half, Meeting, OpenKeys};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
@@ -86,7 +86,8 @@ impl Bidirectional24 {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
-            two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
+            let how = (OpenKeys::Kept, Meeting::Generated);
+            two_sided::take_turns(map, query, forward, backward, rule, how, seen)
         })
     }
 }

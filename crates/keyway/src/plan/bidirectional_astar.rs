@@ -39,7 +39,7 @@
 use super::best_first::with_costs;
 use super::heuristic::with_metric;
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::two_sided::{self, Half, Meeting};
+use super::two_sided::{self, Half, Meeting, OpenKeys};
 use super::{GlobalPlanner, Heuristic, Plan, PlanError, Stop};
 use crate::map::{CellIndex, Connectivity, SearchMap};
 use crate::search::{
@@ -92,7 +92,8 @@ impl BidirectionalAStar {
             let to_goal = Accumulated(DistanceTo::new(map, metric, query.goal));
             let to_start = Accumulated(DistanceTo::new(map, metric, query.start));
             let rule = |side, _| if side == Side::Forward { to_goal } else { to_start };
-            two_sided::take_turns(map, query, forward, backward, rule, Meeting::Generated, seen)
+            let how = (OpenKeys::Kept, Meeting::Generated);
+            two_sided::take_turns(map, query, forward, backward, rule, how, seen)
         })
     }
 }

@@ -55,7 +55,7 @@ pub use bidirectional_24::{Bidirectional24, Bidirectional24Config};
 pub use bidirectional_astar::{BidirectionalAStar, BidirectionalAStarConfig};
 pub use bidirectional_jps::{
     BidirectionalJps, BidirectionalJpsConfig, BidirectionalJpsFixed, BidirectionalJpsFixedConfig,
-    JumpMeeting, OpenKeys,
+    JumpMeeting,
 };
 pub use bidirectional_optimal::{BidirectionalOptimal, BidirectionalOptimalConfig};
 pub use config::PlannerConfig;
@@ -65,7 +65,7 @@ pub use dijkstra::{Dijkstra, DijkstraConfig};
 pub use error::{Advice, Miss, PathEnd, PlanError};
 pub use greedy::{GreedyBestFirst, GreedyConfig};
 pub use heuristic::Heuristic;
-pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight};
+pub use hsta::{Correction, DistanceUnit, Hsta, HstaConfig, IfNoPath, Weight, WeightAt};
 pub use jps::{Jps, JpsConfig};
 pub use lazy_theta_star::{LazyThetaStar, LazyThetaStarConfig};
 pub use nearest_first::{GoalPlan, NearestFirst};
@@ -79,6 +79,7 @@ pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
 pub use rrt::{Rrt, RrtConfig};
 pub use shortest::shortest_line;
 pub use theta_star::{ThetaStar, ThetaStarConfig};
+pub use two_sided::OpenKeys;
 
 pub(crate) use ends::check_end;
 use ends::settle_ends;

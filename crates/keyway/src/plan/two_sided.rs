@@ -6,6 +6,7 @@ use crate::map::{CellIndex, SearchMap};
 use crate::search::{
     Expanded, Frontier, Observer, Query, Rule, SearchStatistics, Side, Successors, cells,
 };
+use serde::{Deserialize, Serialize};
 
 /// The statistics of both sides.
 pub(super) const fn statistics(forward: &Frontier, backward: &Frontier) -> SearchStatistics {
@@ -41,6 +42,29 @@ pub(super) fn finish(
     plan.stop = Some(stop);
 }
 
+/// The fate of the keys of open nodes when what they depend on changes: the other side's target,
+/// or a weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum OpenKeys {
+    /// They stay as they were computed when the node was put in or improved.
+    #[default]
+    Kept,
+    /// All are computed again before each turn of their side: O(n log n) for n open nodes.
+    Renewed,
+}
+
+/// The current nodes of both sides: those that they expanded last, their roots at first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CurrentNodes {
+    /// That of the side whose turn it is.
+    pub(super) own: CellIndex,
+    /// That of the other one.
+    pub(super) other: CellIndex,
+}
+
 /// The rule by which two sides that take turns have met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
@@ -63,8 +87,8 @@ pub(super) struct Half<'a, N, A> {
 }
 
 /// Lets both sides expand one node each in turn, the forward one first, until they meet; returns
-/// where. `rule` is asked before each expansion for the rule of a side, given the current node of
-/// the other one.
+/// where. `rule` gives the rule of a side from the current nodes: for the successors of its node,
+/// which is then its current one, and, where keys are renewed, before it takes that node.
 ///
 /// Where a path exists they meet: a side that runs out of open nodes has expanded all that can be
 /// reached, the root of the other one included.
@@ -76,23 +100,23 @@ pub(super) fn take_turns<R: Rule>(
     query: &Query,
     mut forward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
     mut backward: Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
-    rule: impl Fn(Side, CellIndex) -> R,
-    meeting: Meeting,
+    rule: impl Fn(Side, CurrentNodes) -> R,
+    (keys, meeting): (OpenKeys, Meeting),
     seen: &mut impl Observer,
 ) -> Result<CellIndex, PlanError> {
     let (start, goal) = (map.index(query.start), map.index(query.goal));
-    forward.start(map, start, &rule(Side::Forward, goal));
-    backward.start(map, goal, &rule(Side::Backward, start));
+    let of = |side, [own, other]: [CellIndex; 2]| rule(side, CurrentNodes { own, other });
+    forward.start(map, start, &of(Side::Forward, [start, goal]));
+    backward.start(map, goal, &of(Side::Backward, [goal, start]));
     if start == goal {
         return Ok(start);
     }
+    let how = (keys, meeting);
     loop {
-        let its_rule = rule(Side::Forward, backward.current);
-        if let Some(met) = forward.turn(map, query, &backward, &its_rule, meeting, seen)? {
+        if let Some(met) = forward.turn(map, query, &backward, &rule, how, seen)? {
             return Ok(met);
         }
-        let its_rule = rule(Side::Backward, forward.current);
-        if let Some(met) = backward.turn(map, query, &forward, &its_rule, meeting, seen)? {
+        if let Some(met) = backward.turn(map, query, &forward, &rule, how, seen)? {
             return Ok(met);
         }
     }
@@ -110,22 +134,27 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
 
     /// Takes the best node from the open list, and expands it unless the sides have met there.
     /// Returns where they have met, if they have.
-    fn turn(
+    fn turn<R: Rule>(
         &mut self,
         map: &SearchMap,
         query: &Query,
         other: &Half<'_, impl Successors, impl Fn(CellIndex) -> bool>,
-        rule: &impl Rule,
-        meeting: Meeting,
+        rule: &impl Fn(Side, CurrentNodes) -> R,
+        (keys, meeting): (OpenKeys, Meeting),
         seen: &mut impl Observer,
     ) -> Result<Option<CellIndex>, PlanError> {
         let mut statistics = SearchStatistics::default();
         *statistics.side_mut(self.side) = self.frontier.statistics();
         *statistics.side_mut(other.side) = other.frontier.statistics();
         check_budget(query, statistics)?;
+        let rule = |own| rule(self.side, CurrentNodes { own, other: other.current });
+        if keys == OpenKeys::Renewed {
+            self.frontier.renew_keys(&rule(self.current));
+        }
         let Some(node) = self.frontier.take_best() else {
             return Err(PlanError::NoPath { statistics });
         };
+        let rule = &rule(node.at);
         self.current = node.at;
         if seen.is_watching() {
             seen.expanded(self.side, map.cell(node.at), cells(node.g));

@@ -1,7 +1,10 @@
-//! What a robot is: its size, its limits, its sensor.
+//! Description of a robot: its size, its limits, its sensors.
 
+mod bundled;
+mod derived;
 mod drive_model;
 mod footprint;
+mod mount;
 mod sensor;
 
 use crate::ConfigError;
@@ -11,9 +14,10 @@ pub use drive_model::{CycleCount, Ramp};
 #[cfg(test)]
 pub(crate) use footprint::star;
 pub use footprint::{Circle, Footprint, FootprintError, Polygon};
+pub use mount::Mount;
 pub use sensor::RangeSensor;
 
-/// A differential-drive robot with a planar range sensor at its centre of rotation.
+/// A differential-drive robot with planar range sensors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -33,8 +37,9 @@ pub struct Robot {
     pub safety_margin_m: Option<f64>,
     /// Velocity and acceleration limits.
     pub limits: Limits,
-    /// The range sensor.
-    pub sensor: RangeSensor,
+    /// The range sensors: one to eight.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1, max = 8)))]
+    pub sensors: Vec<RangeSensor>,
 }
 
 /// Velocity and acceleration limits of a differential drive.
@@ -59,83 +64,6 @@ pub struct Limits {
 }
 
 impl Robot {
-    /// Names of the bundled robots, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 3] = ["small", "jackal", "paper"];
-
-    /// A bundled robot.
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "small" => Some(Self::small()),
-            "jackal" => Some(Self::jackal()),
-            "paper" => Some(Self::paper()),
-            _ => None,
-        }
-    }
-
-    /// A small round indoor robot of `TurtleBot` size: radius 0.18 m, up to 0.5 m/s.
-    pub fn small() -> Self {
-        Self {
-            footprint: bundled(Footprint::circle(0.18)),
-            cycle_s: 0.1,
-            actuation_delay_s: 0.0,
-            safety_margin_m: None,
-            limits: Limits {
-                v_min_mps: 0.0,
-                v_max_mps: 0.5,
-                omega_max_radps: 1.5,
-                acceleration_mps2: 0.5,
-                deceleration_mps2: 0.5,
-                angular_acceleration_radps2: 3.0,
-                angular_deceleration_radps2: 3.0,
-            },
-            sensor: RangeSensor::new(360, 360.0, 3.5),
-        }
-    }
-
-    /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270
-    /// degrees and 30 m. It backs up at 0.5 m/s at most, as its lidar looks ahead. Its velocity
-    /// controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its tyres
-    /// hold.
-    pub fn jackal() -> Self {
-        Self {
-            footprint: bundled(Footprint::rectangle(0.508, 0.430)),
-            cycle_s: 0.05,
-            actuation_delay_s: 0.0,
-            safety_margin_m: None,
-            limits: Limits {
-                v_min_mps: -0.5,
-                v_max_mps: 2.0,
-                omega_max_radps: 3.0,
-                acceleration_mps2: 3.0,
-                deceleration_mps2: 3.0,
-                angular_acceleration_radps2: 6.0,
-                angular_deceleration_radps2: 6.0,
-            },
-            sensor: RangeSensor::new(720, 270.0, 30.0),
-        }
-    }
-
-    /// The robot of \[You2021\], table 2: a point that drives at up to 1 m/s on a map of 1 m cells.
-    pub fn paper() -> Self {
-        let degree = std::f64::consts::PI / 180.0;
-        Self {
-            footprint: bundled(Footprint::circle(0.0)),
-            cycle_s: 0.1,
-            actuation_delay_s: 0.0,
-            safety_margin_m: None,
-            limits: Limits {
-                v_min_mps: 0.0,
-                v_max_mps: 1.0,
-                omega_max_radps: 20.0 * degree,
-                acceleration_mps2: 0.2,
-                deceleration_mps2: 0.2,
-                angular_acceleration_radps2: 50.0 * degree,
-                angular_deceleration_radps2: 50.0 * degree,
-            },
-            sensor: RangeSensor::new(360, 360.0, 5.0),
-        }
-    }
-
     /// Checks every value. A footprint was checked when it was made.
     ///
     /// # Errors
@@ -180,15 +108,9 @@ impl Robot {
         {
             return Err(ConfigError::must_be(field, expected, value));
         }
-        self.sensor.validate().map_err(|error| error.within("sensor"))?;
+        self.validate_sensors()?;
         self.limits.check_stopping()
     }
-}
-
-/// The footprint of a bundled robot.
-#[expect(clippy::expect_used, reason = "its numbers stand above")]
-fn bundled(footprint: Result<Footprint, FootprintError>) -> Footprint {
-    footprint.expect("a bundled robot covers some ground")
 }
 
 impl Robot {
@@ -235,8 +157,8 @@ mod tests {
         robot.limits.deceleration_mps2 = f64::NAN;
         assert_eq!(robot.validate().unwrap_err().path, "limits.deceleration_mps2");
         robot = Robot::small();
-        robot.sensor.beams = 0;
-        assert_eq!(robot.validate().unwrap_err().path, "sensor.beams");
+        robot.sensors[0].beams = 0;
+        assert_eq!(robot.validate().unwrap_err().path, "sensors[0].beams");
     }
 
     #[test]
@@ -277,9 +199,9 @@ mod tests {
                 "to stop from limits.omega_max_radps within a minute, got 0.02",
             ),
             (
-                |r, x| r.sensor.range_m = x,
+                |r, x| r.sensors[0].range_m = x,
                 1e300,
-                "sensor.range_m must be a length from 0.001 to 10000 m, got 1e300",
+                "sensors[0].range_m must be a length from 0.001 to 10000 m, got 1e300",
             ),
         ];
         for (set, value, expected) in cases {

@@ -1,17 +1,21 @@
-//! The sensor of a robot.
+//! The sensors of a robot.
 
-use super::Robot;
+use super::{Mount, Robot};
 use crate::ConfigError;
+use crate::geometry::{Point, wrap_angle};
 use serde::{Deserialize, Serialize};
 
-/// A planar range sensor (lidar) at the robot's centre, looking ahead.
+/// A planar range sensor (lidar).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RangeSensor {
+    /// Its place on the robot; by default its centre of rotation, looking ahead.
+    #[serde(default, skip_serializing_if = "Mount::is_centre")]
+    pub mount: Mount,
     /// Number of beams, spread evenly over the field of view.
     pub beams: u32,
-    /// Field of view, centred straight ahead \[deg\]; 360 is all around.
+    /// Field of view, centred where it looks (`mount.yaw_deg`) \[deg\]; 360 is all around.
     pub field_of_view_deg: f64,
     /// Range \[m\], from 0.001 to 10000.
     pub range_m: f64,
@@ -22,8 +26,8 @@ pub struct RangeSensor {
     /// cycles between two scans the controller expects none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// The robot stops when no beam has said anything for this long \[s\], from 0.001 to 3600;
-    /// without it three periods, but at least 0.5 s.
+    /// The sensor is silent when no beam has said anything for this long \[s\], from 0.001 to 3600;
+    /// without it three periods, but at least 0.5 s. The robot stops when all are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timeout_s: Option<f64>,
 }
@@ -34,11 +38,12 @@ fn is_zero(value: &f64) -> bool {
 }
 
 impl RangeSensor {
-    /// A sensor with this many beams over a field of view \[deg\] that sees so far \[m\]: from its
-    /// centre on, and once in every control cycle.
+    /// A sensor with this many beams over a field of view \[deg\] that sees so far \[m\]: at the
+    /// robot's centre of rotation, looking ahead, from there on, and once in every control cycle.
     pub const fn new(beams: u32, field_of_view_deg: f64, range_m: f64) -> Self {
         let (range_min_m, period_s, timeout_s) = (0.0, None, None);
-        Self { beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s }
+        let mount = Mount::CENTRE;
+        Self { mount, beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s }
     }
 
     /// Checks every value.
@@ -46,7 +51,9 @@ impl RangeSensor {
     /// # Errors
     /// Names the first field that cannot be used, with the values that can.
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
-        let Self { beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s } = *self;
+        let Self { beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s, .. } =
+            *self;
+        self.mount.validate().map_err(|error| error.within("mount"))?;
         let checks = [
             ("beams", f64::from(beams), 1.0..=1e5, "a number from 1 to 100000"),
             (
@@ -66,22 +73,79 @@ impl RangeSensor {
         if (0.0..range_m).contains(&range_min_m) {
             return Ok(());
         }
-        let expected = "a length from 0 to below sensor.range_m";
+        let expected = "a length from 0 to below `range_m`";
         Err(ConfigError::must_be("range_min_m", expected, range_min_m))
     }
 }
 
-impl Robot {
-    /// Time from one scan to the next \[s\]: [`RangeSensor::period_s`], or the control cycle.
-    pub fn scan_period_s(&self) -> f64 {
-        self.sensor.period_s.unwrap_or(self.cycle_s)
+impl RangeSensor {
+    /// Time from one scan to the next \[s\] on a robot with this control cycle:
+    /// [`Self::period_s`], or the cycle.
+    pub fn period_in_s(&self, cycle_s: f64) -> f64 {
+        self.period_s.unwrap_or(cycle_s)
     }
 
-    /// Time for which the robot drives on without a scan that says anything \[s\]:
-    /// [`RangeSensor::timeout_s`], or three periods, but at least 0.5 s.
-    pub fn sensor_timeout_s(&self) -> f64 {
+    /// Time without a scan that says anything after which the sensor is silent \[s\], on a robot
+    /// with this control cycle: [`Self::timeout_s`], or three periods, but at least 0.5 s.
+    pub fn timeout_in_s(&self, cycle_s: f64) -> f64 {
         const LEAST_S: f64 = 0.5;
-        self.sensor.timeout_s.unwrap_or_else(|| (3.0 * self.scan_period_s()).max(LEAST_S))
+        self.timeout_s.unwrap_or_else(|| (3.0 * self.period_in_s(cycle_s)).max(LEAST_S))
+    }
+
+    /// True if a place in the robot's frame lies in the field of view, however far away.
+    pub(crate) fn looks_at(&self, place: Point) -> bool {
+        let mount = self.mount.pose();
+        let bearing_rad = (place - mount.point()).heading() - mount.theta;
+        self.field_of_view_deg >= 360.0
+            || wrap_angle(bearing_rad).abs() <= 0.5 * self.field_of_view_deg.to_radians()
+    }
+}
+
+impl Robot {
+    /// Most sensors of a robot.
+    pub const MOST_SENSORS: usize = 8;
+
+    pub(super) fn validate_sensors(&self) -> Result<(), ConfigError> {
+        if !(1..=Self::MOST_SENSORS).contains(&self.sensors.len()) {
+            let reason = format!("must be one to eight sensors, got {}", self.sensors.len());
+            return Err(ConfigError::new("sensors", reason));
+        }
+        self.sensors.iter().enumerate().try_for_each(|(i, sensor)| {
+            sensor.validate().map_err(|error| error.within(&format!("sensors[{i}]")))
+        })
+    }
+
+    /// Longest time from one scan of a sensor to its next \[s\].
+    pub fn scan_period_s(&self) -> f64 {
+        let periods = self.sensors.iter().map(|sensor| sensor.period_in_s(self.cycle_s));
+        periods.reduce(f64::max).unwrap_or(self.cycle_s)
+    }
+
+    /// True if the sensors together look in all directions. What hides behind the robot's own
+    /// body between them does not count.
+    pub(crate) fn sees_all_around(&self) -> bool {
+        let turn = |deg: f64| deg.rem_euclid(360.0);
+        let starts =
+            |sensor: &RangeSensor| turn(sensor.mount.yaw_deg - 0.5 * sensor.field_of_view_deg);
+        // Nobody's field of view ends where no other one goes on.
+        let goes_on = |end: &RangeSensor| {
+            let end_deg = turn(starts(end) + end.field_of_view_deg);
+            let covers = |other: &&RangeSensor| {
+                !std::ptr::eq(*other, end)
+                    && turn(end_deg - starts(other)) < other.field_of_view_deg
+            };
+            self.sensors.iter().any(|other| covers(&other))
+        };
+        let all_around = |sensor: &RangeSensor| sensor.field_of_view_deg >= 360.0;
+        self.sensors.iter().any(all_around)
+            || !self.sensors.is_empty() && self.sensors.iter().all(goes_on)
+    }
+
+    /// Distance from the centre of rotation as far as the sensors that look ahead see \[m\].
+    fn sees_ahead_m(&self) -> f64 {
+        let far = Point::new(1e6, 0.0);
+        let ahead = self.sensors.iter().filter(|sensor| sensor.looks_at(far));
+        ahead.map(|sensor| sensor.mount.x_m + sensor.range_m).fold(0.0, f64::max)
     }
 
     /// As far as any part of the robot comes until it stands, when it drives ahead at full speed,
@@ -104,19 +168,10 @@ impl Robot {
     pub fn sight_mps(&self) -> f64 {
         let react_s =
             self.scan_period_s().max(self.cycle_s) + self.actuation_delay_s + 1.5 * self.cycle_s;
-        let free_m = self.sensor.range_m - self.footprint.foremost_m() - self.safety_margin_m();
+        let free_m = self.sees_ahead_m() - self.footprint.foremost_m() - self.safety_margin_m();
         let lost_mps = self.limits.deceleration_mps2 * react_s;
         let square = lost_mps * lost_mps + 2.0 * self.limits.deceleration_mps2 * free_m.max(0.0);
         square.sqrt() - lost_mps
-    }
-
-    /// True if the sensor makes a scan in a cycle of this number: in the first one, and then once
-    /// in every period.
-    pub fn scans_in(&self, cycle: u64) -> bool {
-        // A period that ends where a cycle begins has ended, rounded or not.
-        let periods =
-            |cycle: u64| (cycle as f64 * self.cycle_s / self.scan_period_s() + 1e-9).floor();
-        cycle == 0 || periods(cycle) > periods(cycle - 1)
     }
 }
 
@@ -125,27 +180,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scan_comes_once_in_every_period() {
-        let mut robot = Robot::small();
-        let scans =
-            |robot: &Robot| (0..=12).filter(|&cycle| robot.scans_in(cycle)).collect::<Vec<_>>();
-        assert_eq!(scans(&robot), (0..=12).collect::<Vec<_>>());
-        robot.sensor.period_s = Some(0.05);
-        assert_eq!(scans(&robot), (0..=12).collect::<Vec<_>>());
-        robot.sensor.period_s = Some(0.3);
-        assert_eq!(scans(&robot), [0, 3, 6, 9, 12]);
-        robot.sensor.period_s = Some(0.25);
-        assert_eq!(scans(&robot), [0, 3, 5, 8, 10]);
-    }
-
-    #[test]
     fn a_robot_waits_three_periods_for_a_scan_and_at_least_half_a_second() {
         let mut robot = Robot::small();
-        assert_eq!((robot.scan_period_s(), robot.sensor_timeout_s()), (0.1, 0.5));
-        robot.sensor.period_s = Some(1.0);
-        assert_eq!((robot.scan_period_s(), robot.sensor_timeout_s()), (1.0, 3.0));
-        robot.sensor.timeout_s = Some(0.2);
-        assert_eq!(robot.sensor_timeout_s(), 0.2);
+        let timeout_s = |robot: &Robot| robot.sensors[0].timeout_in_s(robot.cycle_s);
+        assert_eq!((robot.scan_period_s(), timeout_s(&robot)), (0.1, 0.5));
+        robot.sensors[0].period_s = Some(1.0);
+        assert_eq!((robot.scan_period_s(), timeout_s(&robot)), (1.0, 3.0));
+        robot.sensors[0].timeout_s = Some(0.2);
+        assert_eq!(timeout_s(&robot), 0.2);
     }
 
     #[test]
@@ -164,9 +206,9 @@ mod tests {
             now = slower;
         }
         assert!((3.2..=3.3).contains(&at_m), "{at_m}");
-        robot.sensor.period_s = Some(1.0);
+        robot.sensors[0].period_s = Some(1.0);
         assert!(robot.sight_mps() < v - 0.3);
-        robot.sensor.range_m = 0.19;
+        robot.sensors[0].range_m = 0.19;
         assert_eq!(robot.sight_mps(), 0.0);
     }
 
@@ -174,16 +216,60 @@ mod tests {
     fn bad_values_are_named() {
         let error = |set: fn(&mut RangeSensor)| {
             let mut robot = Robot::small();
-            set(&mut robot.sensor);
+            set(&mut robot.sensors[0]);
             robot.validate().unwrap_err().to_string()
         };
         let text = error(|sensor| sensor.range_min_m = 3.5);
         assert_eq!(
             text,
-            "sensor.range_min_m must be a length from 0 to below sensor.range_m, got 3.5"
+            "sensors[0].range_min_m must be a length from 0 to below `range_m`, got 3.5"
         );
-        assert!(error(|sensor| sensor.range_min_m = f64::NAN).contains("sensor.range_min_m"));
-        assert!(error(|sensor| sensor.period_s = Some(0.0)).contains("sensor.period_s"));
-        assert!(error(|sensor| sensor.timeout_s = Some(f64::NAN)).contains("sensor.timeout_s"));
+        assert!(error(|sensor| sensor.range_min_m = f64::NAN).contains("sensors[0].range_min_m"));
+        assert!(error(|sensor| sensor.period_s = Some(0.0)).contains("sensors[0].period_s"));
+        assert!(error(|sensor| sensor.timeout_s = Some(f64::NAN)).contains("sensors[0].timeout_s"));
+    }
+
+    /// A sensor that looks from there.
+    fn mounted(mount: (f64, f64, f64), field_of_view_deg: f64) -> RangeSensor {
+        let (x_m, y_m, yaw_deg) = mount;
+        let mount = Mount { x_m, y_m, yaw_deg };
+        RangeSensor { mount, ..RangeSensor::new(270, field_of_view_deg, 5.0) }
+    }
+
+    #[test]
+    fn sensors_look_from_where_they_are() {
+        let robot = |sensors: Vec<RangeSensor>| Robot { sensors, ..Robot::jackal() };
+        let corners =
+            |deg| robot(vec![mounted((0.3, 0.2, 45.0), deg), mounted((-0.3, -0.2, -135.0), deg)]);
+        assert!(corners(270.0).sees_all_around() && corners(180.1).sees_all_around());
+        assert!(!corners(179.9).sees_all_around());
+        let thirds =
+            |deg| robot([0.0, 120.0, -120.0].map(|yaw| mounted((0.0, 0.0, yaw), deg)).to_vec());
+        assert!(thirds(121.0).sees_all_around() && !thirds(119.0).sees_all_around());
+        assert!(!Robot::jackal().sees_all_around() && Robot::small().sees_all_around());
+        // Two that look the same way do not see behind.
+        let same = robot(vec![mounted((0.0, 0.0, 0.0), 270.0), mounted((0.1, 0.0, 0.0), 270.0)]);
+        assert!(!same.sees_all_around());
+        // A place beside the sensor, not beside the robot's centre.
+        let corner = mounted((0.3, 0.2, 0.0), 180.0);
+        assert!(
+            corner.looks_at(Point::new(0.31, -0.2)) && !corner.looks_at(Point::new(0.29, -0.2))
+        );
+        // Who looks back does not see ahead.
+        let back = robot(vec![mounted((-0.3, 0.0, 180.0), 180.0)]);
+        assert_eq!(back.sees_ahead_m(), 0.0);
+        assert_eq!(corners(270.0).sees_ahead_m(), 5.3);
+    }
+
+    #[test]
+    fn the_number_of_sensors_and_their_mounts_are_checked() {
+        let error =
+            |sensors| Robot { sensors, ..Robot::small() }.validate().unwrap_err().to_string();
+        assert_eq!(error(vec![]), "sensors must be one to eight sensors, got 0");
+        let nine = vec![RangeSensor::new(9, 90.0, 3.0); 9];
+        assert_eq!(error(nine), "sensors must be one to eight sensors, got 9");
+        let far = vec![RangeSensor::new(9, 90.0, 3.0), mounted((1001.0, 0.0, 0.0), 90.0)];
+        let expected = "sensors[1].mount.x_m must be a length from -1000 to 1000 m, got 1001";
+        assert_eq!(error(far), expected);
     }
 }

@@ -38,15 +38,19 @@ use crate::map::SearchMap;
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::{Smoothed, Smoother};
+use serde::{Deserialize, Serialize};
 
 /// How far the line of a route may be from the curve that it stands for \[cells\].
 pub const CHORD_CELLS: f64 = 0.05;
 
 /// A planned way from one position to another.
-#[derive(Clone, Debug, Default, PartialEq)]
+///
+/// Serialised without the planner's path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Route {
     /// The planner's path.
+    #[serde(skip)]
     pub plan: Plan,
     /// The same as a line from position to position \[m\].
     pub line: PlannedLine,

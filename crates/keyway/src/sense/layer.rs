@@ -3,6 +3,8 @@
 use super::{Hit, Mover, ProjectedScan, Tracker};
 use crate::geometry::{Point, Square};
 use crate::map::{BitGrid, Cell, CellState, CellWindow, Edit, GridFrame, OccupancyGrid};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// Cells in which scans have met something that the known map does not have.
@@ -20,11 +22,33 @@ use std::collections::HashMap;
 pub struct SensedLayer {
     sensed: BitGrid,
     count: u64,
-    /// For each sensed cell the last place in it that a beam has met \[m\].
-    places: HashMap<Cell, Point>,
+    /// For each sensed cell the last place in it that a beam has met, and in which scan.
+    places: HashMap<Cell, Place>,
+    /// Number of scans so far, and of the last one of each sensor.
+    cycle: u64,
+    scanned: [u64; Robot::MOST_SENSORS],
     /// Scratch of [`Self::update`], without meaning between calls.
     cleared: Vec<Cell>,
     marked: Vec<Cell>,
+}
+
+/// A layer in few words.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SensedPlaces {
+    cycle: u64,
+    scanned: [u64; Robot::MOST_SENSORS],
+    /// In the order of [`Cell`].
+    places: Vec<(Cell, Place)>,
+}
+
+/// A place that a beam has met.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Place {
+    /// In the world frame \[m\].
+    point: Point,
+    /// Number of the scan.
+    cycle: u64,
+    sensor: usize,
 }
 
 /// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
@@ -36,7 +60,8 @@ impl SensedLayer {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
         let places = HashMap::with_capacity(USUAL_COUNT);
         let [cleared, marked] = [(); 2].map(|()| Vec::with_capacity(USUAL_COUNT));
-        Self { sensed, count: 0, places, cleared, marked }
+        let scanned = [0; Robot::MOST_SENSORS];
+        Self { sensed, count: 0, places, cycle: 0, scanned, cleared, marked }
     }
 
     /// Cells in which something was met that the known map does not have.
@@ -47,6 +72,34 @@ impl SensedLayer {
     /// Number of sensed cells.
     pub const fn count(&self) -> u64 {
         self.count
+    }
+
+    /// The layer in few words.
+    pub(crate) fn stored(&self) -> SensedPlaces {
+        let places = self.cells().into_iter().map(|cell| (cell, self.places[&cell]));
+        let (cycle, scanned) = (self.cycle, self.scanned);
+        SensedPlaces { cycle, scanned, places: places.collect() }
+    }
+
+    /// The layer that was stored, on a map of this size; cells outside it are left out.
+    pub(crate) fn restored(known: &OccupancyGrid, stored: &SensedPlaces) -> Self {
+        let mut layer = Self { cycle: stored.cycle, ..Self::new(known.frame()) };
+        let inside = stored
+            .places
+            .iter()
+            .filter(|(cell, _)| known.frame().contains(*cell) && !known.occupied().get(*cell));
+        for &(cell, place) in inside {
+            layer.places.insert(cell, place);
+            layer.count += u64::from(layer.sensed.set(cell, true));
+        }
+        layer
+    }
+
+    /// The sensed cells, in the order of [`Cell`].
+    pub(crate) fn cells(&self) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.places.keys().copied().collect();
+        cells.sort_unstable();
+        cells
     }
 
     /// Takes in a scan on the `known` map, whose frame is the one given to [`Self::new`].
@@ -74,6 +127,22 @@ impl SensedLayer {
         tracker: Option<&Tracker>,
         edits: &mut Vec<Edit>,
     ) {
+        self.update_from(known, 0, scan, tracker, edits);
+    }
+
+    /// The same of the sensor of this index. What one sensor has met stands, whatever another one
+    /// has seen through, until the first one has scanned again without meeting it.
+    pub fn update_from(
+        &mut self,
+        known: &OccupancyGrid,
+        sensor: usize,
+        scan: &ProjectedScan,
+        tracker: Option<&Tracker>,
+        edits: &mut Vec<Edit>,
+    ) {
+        self.cycle += 1;
+        let sensor = sensor.min(Robot::MOST_SENSORS - 1);
+        self.scanned[sensor] = self.cycle;
         edits.clear();
         self.cleared.clear();
         self.marked.clear();
@@ -89,7 +158,7 @@ impl SensedLayer {
             tracker.is_some_and(|tracker| tracker.hits_mover(beam, hit.point))
         };
         for (_, hit) in scan.hits().filter(|(beam, hit)| !moves(*beam, hit)) {
-            self.mark(known, &hit);
+            self.mark(known, sensor, &hit);
         }
         self.count = self.count + self.marked.len() as u64 - self.cleared.len() as u64;
         // Marked again is unchanged.
@@ -100,6 +169,53 @@ impl SensedLayer {
         }));
         let fresh = self.marked.iter().filter(|cell| self.cleared.binary_search(cell).is_err());
         edits.extend(fresh.map(|&cell| Edit { cell, state: CellState::Occupied }));
+    }
+
+    /// Moves what was sensed, such as with the robot that has sensed it, on a map that may be
+    /// another one. `edits` is emptied and receives the cells that changed, as those of the map:
+    /// first the cells of before, with the state that is known of them now.
+    pub(crate) fn shift(
+        &mut self,
+        known: &OccupancyGrid,
+        shift: impl Fn(Point) -> Point,
+        edits: &mut Vec<Edit>,
+    ) {
+        let frame = known.frame();
+        let before = {
+            let (cycle, scanned) = (self.cycle, self.scanned);
+            std::mem::replace(self, Self { cycle, scanned, ..Self::new(frame) })
+        };
+        edits.clear();
+        let free = |cell| Some(Edit { cell, state: known.state(cell)? });
+        edits.extend(before.cells().into_iter().filter_map(free));
+        let mut places: Vec<(Cell, Place)> = before.places.into_iter().collect();
+        places.sort_unstable_by_key(|(cell, _)| *cell);
+        for (_, place) in places {
+            let point = shift(place.point);
+            let cell = frame.cell_from_world(point);
+            let Some(cell) = cell.filter(|&cell| !known.occupied().get(cell)) else { continue };
+            self.places.insert(cell, Place { point, ..place });
+            if self.sensed.set(cell, true) {
+                self.count += 1;
+                edits.push(Edit { cell, state: CellState::Occupied });
+            }
+        }
+    }
+
+    /// Takes in changes of the known map. What stands on it is sensed no longer; a cell that was
+    /// sensed stays so where the map now says that it is free. `changes` is emptied and receives
+    /// those that follow for the map of known and sensed cells.
+    pub(crate) fn learn(&mut self, known: &OccupancyGrid, edits: &[Edit], changes: &mut Vec<Edit>) {
+        changes.clear();
+        for edit in edits {
+            if known.occupied().get(edit.cell) && self.sensed.set(edit.cell, false) {
+                self.places.remove(&edit.cell);
+                self.count -= 1;
+            }
+            if !self.sensed.get(edit.cell) {
+                changes.push(*edit);
+            }
+        }
     }
 
     fn clear(&mut self, cell: Cell) {
@@ -126,7 +242,10 @@ impl SensedLayer {
 
     /// Clears the cells whose places are seen through.
     fn clear_seen_through(&mut self, scan: &ProjectedScan) {
-        let through = self.places.iter().filter(|(_, place)| scan.sees_through(**place));
+        // The sensor that has met it has looked again since, or does so now.
+        let is_old = |place: &Place| self.scanned[place.sensor] > place.cycle;
+        let is_gone = |place: &Place| is_old(place) && scan.sees_through(place.point);
+        let through = self.places.iter().filter(|(_, place)| is_gone(place));
         self.cleared.extend(through.map(|(&cell, _)| cell));
         for cell in &self.cleared {
             self.sensed.set(*cell, false);
@@ -134,9 +253,9 @@ impl SensedLayer {
         }
     }
 
-    fn mark(&mut self, known: &OccupancyGrid, hit: &Hit) {
+    fn mark(&mut self, known: &OccupancyGrid, sensor: usize, hit: &Hit) {
         let Some(cell) = hit.cell.filter(|&cell| !known.occupied().get(cell)) else { return };
-        self.places.insert(cell, hit.point);
+        self.places.insert(cell, Place { point: hit.point, cycle: self.cycle, sensor });
         if self.sensed.set(cell, true) {
             self.marked.push(cell);
         }
@@ -281,7 +400,7 @@ mod tests {
             let mut edits = Vec::new();
             for step in 0..290 {
                 let pose = Pose::new(0.5 + f64::from(step) * 0.1, y, 0.003 * f64::from(step));
-                let scan = scan_among((known.frame(), &[]), &discs, pose, &robot.sensor);
+                let scan = scan_among((known.frame(), &[]), &discs, pose, &robot.sensors[0]);
                 layer.update(&known, &projected(known.frame(), pose, &scan), None, &mut edits);
                 let freed = edits.iter().find(|edit| edit.state == Free);
                 assert_eq!(freed, None, "from {pose:?}");

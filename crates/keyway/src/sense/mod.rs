@@ -4,6 +4,7 @@
 
 mod layer;
 mod mover;
+mod observation;
 mod projected;
 mod scan;
 mod seen;
@@ -13,9 +14,12 @@ pub(crate) mod test_scan;
 mod tracker;
 
 pub use layer::SensedLayer;
+pub(crate) use layer::SensedPlaces;
 pub use mover::{Mover, MoverBounds};
+pub use observation::{Observation, SensorScan};
 pub use projected::{Hit, ProjectedScan};
 pub use scan::{Reading, Scan, ScanError};
+pub(crate) use seen::SeenStored;
 pub use seen::{SeenCells, SeenGround, SeenWanted};
 pub use spread::Walls;
 pub use tracker::{Tracker, TrackerConfig};

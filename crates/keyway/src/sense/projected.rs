@@ -1,20 +1,22 @@
 //! A scan where it was made: what each beam says and where it ends, computed once per cycle.
 
-use super::{Reading, Scan};
-use crate::geometry::{Point, Pose, wrap_angle};
+use super::{Reading, Scan, SensorScan};
+use crate::geometry::{Point, Pose, Shift, wrap_angle};
 use crate::map::{Cell, GridFrame};
 use crate::robot::Footprint;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// A scan made at a pose on a grid. Everything that looks at a scan looks at this: the tracker, the
-/// sensed layer, the seen ground.
+/// A scan made by a sensor of a robot at a pose on a grid. Everything that looks at a scan looks at
+/// this: the tracker, the sensed layer, the seen ground.
 ///
 /// Nothing but the robot can be where the robot is: a beam that ends inside the footprint has
 /// met a post of the housing, a cable or a gripper, and says nothing.
 ///
 /// Memory: 48 bytes per beam.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ProjectedScan {
+    robot: Pose,
     pose: Pose,
     angle_min_rad: f64,
     angle_increment_rad: f64,
@@ -22,14 +24,14 @@ pub struct ProjectedScan {
     beams: Vec<Beam>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Beam {
     reading: Option<Reading>,
     hit: Option<Hit>,
 }
 
 /// The end of a beam at something.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Hit {
     /// Place in the world frame \[m\].
@@ -51,15 +53,24 @@ const ON_A_BEAM: f64 = 1e-6;
 const AT_PLACE_M: f64 = 1e-6;
 
 impl ProjectedScan {
-    /// A scan made at `pose` (world frame) by a robot of this footprint.
+    /// A scan made at `pose` (world frame) by a robot of this footprint, with a sensor at its
+    /// centre of rotation.
     pub fn new(frame: &GridFrame, footprint: &Footprint, pose: Pose, scan: &Scan) -> Self {
         let mut projected = Self::default();
-        projected.project(frame, footprint, pose, scan);
+        projected.project(frame, footprint, pose, &SensorScan::centred(0.0, scan));
         projected
     }
 
-    /// Replaces the scan by another one. Allocates nothing where that is not longer.
-    pub fn project(&mut self, frame: &GridFrame, footprint: &Footprint, pose: Pose, scan: &Scan) {
+    /// Replaces the scan by another one, made by a robot of this footprint at `robot` (world
+    /// frame). Allocates nothing where that is not longer.
+    pub fn project(
+        &mut self,
+        frame: &GridFrame,
+        footprint: &Footprint,
+        robot: Pose,
+        &SensorScan { mount, scan, .. }: &SensorScan<'_>,
+    ) {
+        let pose = robot.compose(mount);
         let start = frame.grid_from_world(pose.point());
         let ahead_rad = pose.theta - frame.origin().theta;
         let beam = |number: usize| {
@@ -68,7 +79,7 @@ impl ProjectedScan {
                 return Some(Beam { reading: Some(reading), hit: None });
             };
             let bearing_rad = scan.bearing_rad(number);
-            if is_own(footprint, bearing_rad, range_m) {
+            if is_own(footprint, mount, bearing_rad, range_m) {
                 return None;
             }
             let (sin, cos) = libm::sincos(ahead_rad + bearing_rad);
@@ -84,19 +95,43 @@ impl ProjectedScan {
         self.beams.clear();
         self.beams.extend((0..scan.ranges_m.len()).map(|number| beam(number).unwrap_or(nothing)));
         let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = *scan;
-        (self.pose, self.range_max_m) = (pose, range_max_m);
+        (self.robot, self.pose, self.range_max_m) = (robot, pose, range_max_m);
         (self.angle_min_rad, self.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
+    }
+
+    /// Moves it with the robot that has made it, to where that turns out to be.
+    pub(crate) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
+        (self.robot, self.pose) = (shift.pose(self.robot), shift.pose(self.pose));
+        let from = frame.grid_from_world(self.pose.point());
+        for hit in self.beams.iter_mut().filter_map(|beam| beam.hit.as_mut()) {
+            hit.point = shift.point(hit.point);
+            let end = frame.grid_from_world(hit.point);
+            let length = end.distance(from);
+            let share = if length > 0.0 { 1.0 + HIT_ADVANCE_CELLS / length } else { 1.0 };
+            hit.cell = frame.cell_from_grid(from + (end - from) * share);
+        }
+    }
+
+    /// Becomes a scan without beams, as where a sensor has made none.
+    pub fn clear(&mut self, robot: Pose) {
+        (self.robot, self.pose) = (robot, robot);
+        self.beams.clear();
     }
 
     /// Becomes equal to another one; allocates nothing where that is not longer.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let mut beams = std::mem::take(&mut self.beams);
         beams.clone_from(&other.beams);
-        let Self { pose, angle_min_rad, angle_increment_rad, range_max_m, .. } = *other;
-        *self = Self { pose, angle_min_rad, angle_increment_rad, range_max_m, beams };
+        let Self { robot, pose, angle_min_rad, angle_increment_rad, range_max_m, .. } = *other;
+        *self = Self { robot, pose, angle_min_rad, angle_increment_rad, range_max_m, beams };
     }
 
-    /// Pose at which it was made, in the world frame.
+    /// Pose of the robot when it was made, in the world frame.
+    pub const fn robot(&self) -> Pose {
+        self.robot
+    }
+
+    /// Pose of the sensor when it was made, in the world frame.
     pub const fn pose(&self) -> Pose {
         self.pose
     }
@@ -242,11 +277,11 @@ impl ProjectedScan {
     }
 }
 
-/// True if a beam ends inside the footprint.
-fn is_own(footprint: &Footprint, bearing_rad: f64, range_m: f64) -> bool {
-    range_m <= footprint.circumscribed_radius_m() && {
-        let (sin, cos) = libm::sincos(bearing_rad);
-        footprint.covers(Point::new(cos, sin) * range_m)
+/// True if a beam of a sensor with this mount ends inside the footprint.
+fn is_own(footprint: &Footprint, mount: Pose, bearing_rad: f64, range_m: f64) -> bool {
+    range_m <= mount.point().norm() + footprint.circumscribed_radius_m() && {
+        let (sin, cos) = libm::sincos(mount.theta + bearing_rad);
+        footprint.covers(mount.point() + Point::new(cos, sin) * range_m)
     }
 }
 

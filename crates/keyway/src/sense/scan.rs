@@ -1,12 +1,13 @@
 //! One turn of a range sensor.
 
 use crate::robot::RangeSensor;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
-/// Ranges measured at one instant from the robot's centre, as in ROS `sensor_msgs/LaserScan`.
+/// Ranges measured at one instant by a sensor, as in ROS `sensor_msgs/LaserScan`.
 ///
-/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 straight ahead,
+/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 where the sensor looks,
 /// counter-clockwise): a sensor that turns clockwise has a negative increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scan {
@@ -57,7 +58,7 @@ pub enum ScanError {
 const ONE_TURN_RAD: f64 = TAU * 1.001;
 
 /// What a beam says.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reading {
     /// Something stands so far away, and nothing before it \[m\].
     Hit(f64),
@@ -121,6 +122,11 @@ impl Scan {
     /// Angle between two neighbouring beams \[rad\], whichever way they go.
     pub(crate) const fn step_rad(&self) -> f64 {
         self.angle_increment_rad.abs()
+    }
+
+    /// True if no beam says anything.
+    pub fn says_nothing(&self) -> bool {
+        (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
     }
 
     /// What a beam says; `None` when there is no such beam, or it says nothing.

@@ -5,6 +5,7 @@ use super::spread::{Spread, Walls};
 use crate::geometry::Pose;
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
 use crate::robot::{Footprint, Robot};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
 /// The cells in which nothing stands, as far as a robot has looked: see [`SeenGround`].
@@ -14,14 +15,14 @@ pub struct SeenCells<'a> {
     pub ahead: Option<&'a BitGrid>,
     /// Cells over which it may back up; `None`: anywhere.
     pub behind: Option<&'a BitGrid>,
-    /// The latest scan, which knows better than cells where it met something; `None`: only cells
+    /// The latest scans, which know better than cells where they met something; empty: only cells
     /// are known.
-    pub scan: Option<&'a ProjectedScan>,
+    pub scans: &'a [ProjectedScan],
 }
 
 impl SeenCells<'_> {
     /// No cell need be seen.
-    pub const ANYWHERE: Self = Self { ahead: None, behind: None, scan: None };
+    pub const ANYWHERE: Self = Self { ahead: None, behind: None, scans: &[] };
 }
 
 /// Which seen ground is kept ([`SeenGround::new`]).
@@ -83,13 +84,52 @@ struct Walkers {
     spread: Spread,
 }
 
+/// The cells of seen ground.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SeenStored {
+    seen: BitGrid,
+    /// Window, and the cells to which nobody can have come by now, and until a robot has stopped.
+    walkers: Option<(CellWindow, BitGrid, BitGrid)>,
+}
+
 impl SeenGround {
+    /// Its cells.
+    pub(crate) fn stored(&self) -> SeenStored {
+        let cells =
+            |walkers: &Walkers| (walkers.window, walkers.left.clone(), walkers.free.clone());
+        SeenStored { seen: self.seen.clone(), walkers: self.walkers.as_ref().map(cells) }
+    }
+
+    /// The same ground with the cells that were stored; false where those are of another size.
+    pub(crate) fn restore(&mut self, stored: SeenStored) -> bool {
+        let size = |bits: &BitGrid| (bits.width(), bits.height(), bits.padding());
+        let own = size(&self.seen);
+        let frame = CellWindow {
+            low: Cell::new(0, 0),
+            high: Cell::new(own.0 as i32 - 1, own.1 as i32 - 1),
+        };
+        let fits = |(window, left, free): &(CellWindow, BitGrid, BitGrid)| {
+            let is_empty = window.low.x > window.high.x || window.low.y > window.high.y;
+            let is_inside = frame.contains(window.low) && frame.contains(window.high);
+            size(left) == own && size(free) == own && (is_empty || is_inside)
+        };
+        let fit = stored.walkers.as_ref().is_none_or(fits) && size(&stored.seen) == own;
+        if !fit || stored.walkers.is_some() != self.walkers.is_some() {
+            return false;
+        }
+        self.seen = stored.seen;
+        if let (Some(walkers), Some((window, left, free))) = (&mut self.walkers, stored.walkers) {
+            (walkers.window, walkers.left, walkers.free) = (window, left, free);
+        }
+        true
+    }
+
     /// Somebody's walk for so long is looked at around the robot \[s\].
     const WALK_S: f64 = 1.0;
 
     /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where
     /// nobody walks. `None` where nothing has to be seen: behind a robot that does not drive
-    /// backwards, or sees all around.
+    /// backwards, or sees all around with a single sensor.
     pub fn new(
         frame: &GridFrame,
         robot: &Robot,
@@ -97,7 +137,9 @@ impl SeenGround {
         wanted: SeenWanted,
     ) -> Option<Self> {
         let limits = &robot.limits;
-        let backs_up = limits.v_min_mps < 0.0 && robot.sensor.field_of_view_deg < 360.0;
+        // One of several sensors may be lost, and the robot drives on.
+        let always_sees_behind = robot.sensors.len() == 1 && robot.sees_all_around();
+        let backs_up = limits.v_min_mps < 0.0 && !always_sees_behind;
         let looks_ahead = wanted == SeenWanted::AheadAndBehind;
         if !(backs_up || looks_ahead) {
             return None;
@@ -131,12 +173,13 @@ impl SeenGround {
         SeenCells {
             ahead: self.looks_ahead.then_some(&self.seen),
             behind: self.backs_up.then_some(behind),
-            scan: None,
+            scans: &[],
         }
     }
 
-    /// Takes in a scan made `elapsed_s` after the last one, on the frame given to [`Self::new`],
-    /// with the walls that are known. A pose that is not finite shows nothing.
+    /// Takes in a scan made `elapsed_s` after the last one, 0 for another sensor's of the same
+    /// time, on the frame given to [`Self::new`], with the walls that are known. A pose that is not
+    /// finite shows nothing.
     pub fn update(
         &mut self,
         frame: &GridFrame,
@@ -144,10 +187,14 @@ impl SeenGround {
         walls: Walls<'_>,
         elapsed_s: f64,
     ) {
-        let pose = scan.pose();
+        let pose = scan.robot();
         let window = CellWindow::around(frame, pose.point(), self.reach_m);
         if let Some(walkers) = &mut self.walkers {
-            walkers.walk((frame, walls), pose, elapsed_s);
+            // Of two scans of the same time only the first finds time that has passed.
+            let around = CellWindow::around(frame, pose.point(), walkers.reach_m);
+            if elapsed_s > 0.0 || walkers.window != around {
+                walkers.walk((frame, walls), pose, elapsed_s);
+            }
         }
         for cell in window.cells() {
             let walkers = self.walkers.as_mut().filter(|walkers| walkers.window.contains(cell));
@@ -163,7 +210,24 @@ impl SeenGround {
             }
         }
         if let Some(walkers) = &mut self.walkers {
-            walkers.foresee((frame, walls));
+            walkers.foresee((frame, walls), 0.0);
+        }
+    }
+
+    /// Nothing has been seen any more.
+    pub(crate) fn clear(&mut self) {
+        let nothing = BitGrid::new(self.seen.width(), self.seen.height(), false);
+        if let Some(walkers) = &mut self.walkers {
+            (walkers.left, walkers.free) = (nothing.clone(), nothing.clone());
+        }
+        self.seen = nothing;
+    }
+
+    /// Brings the cells to the present, `age_s` after the last scan: somebody may have come
+    /// farther.
+    pub fn look_ahead(&mut self, frame: &GridFrame, walls: Walls<'_>, age_s: f64) {
+        if let Some(walkers) = &mut self.walkers {
+            walkers.foresee((frame, walls), age_s);
         }
     }
 }
@@ -183,12 +247,13 @@ impl Walkers {
         let _ = (0..steps).find(|_| !self.spread.step(&mut self.left, walls, &window));
     }
 
-    /// Which seen cells stay free until a robot has stopped.
-    fn foresee(&mut self, (frame, walls): (&GridFrame, Walls<'_>)) {
+    /// Finds the seen cells that stay free until a robot has stopped that was told of them `age_s`
+    /// late.
+    fn foresee(&mut self, (frame, walls): (&GridFrame, Walls<'_>), age_s: f64) {
         for y in self.window.low.y..=self.window.high.y {
             self.free.copy_row(y, &self.left);
         }
-        let steps = self.steps(frame, self.stop_s);
+        let steps = self.steps(frame, self.stop_s + age_s);
         let Self { spread, free, window, .. } = self;
         let _ = (0..steps).find(|_| !spread.step(free, walls, window));
     }

@@ -1,7 +1,8 @@
 use super::*;
 use crate::geometry::{Point, Polyline};
-use crate::sense::Scan;
+use crate::robot::RangeSensor;
 use crate::sense::test_scan::{projected, scan_among};
+use crate::sense::{Scan, SensorScan};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -30,7 +31,7 @@ fn the_blind_sector_is_unseen_until_it_is_looked_at() {
     let frame = frame();
     let robot = Robot::jackal();
     let mut seen = SeenGround::new(&frame, &robot, 0.0, SeenWanted::Behind).unwrap();
-    let mut scan = Scan::of_nothing(&robot.sensor);
+    let mut scan = Scan::of_nothing(&robot.sensors[0]);
     // A wall on its left, 0.5 m away.
     for beam in 0..scan.ranges_m.len() {
         let sin = libm::sin(scan.bearing_rad(beam));
@@ -58,7 +59,7 @@ fn who_sees_all_around_or_does_not_back_up_needs_none() {
     let frame = GridFrame::new(9, 9, 0.05, Pose::default()).unwrap();
     assert!(SeenGround::new(&frame, &Robot::small(), 1.0, SeenWanted::Behind).is_none());
     let mut robot = Robot::jackal();
-    robot.sensor.field_of_view_deg = 360.0;
+    robot.sensors[0].field_of_view_deg = 360.0;
     assert!(SeenGround::new(&frame, &robot, 1.0, SeenWanted::Behind).is_none());
 }
 
@@ -66,7 +67,7 @@ fn who_sees_all_around_or_does_not_back_up_needs_none() {
 fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
     let frame = frame();
     let robot = Robot::jackal();
-    let scan = Scan::of_nothing(&robot.sensor);
+    let scan = Scan::of_nothing(&robot.sensors[0]);
     let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
     let facing = |theta| Pose::new(5.0, 5.0, theta);
     seen.update(&frame, &projected(&frame, facing(PI), &scan), walls, 0.05);
@@ -107,7 +108,8 @@ fn seen_ground_is_walked_on() {
 fn what_is_far_away_is_forgotten() {
     let frame = frame();
     let robot = Robot::jackal();
-    let (all, mut nothing) = (Scan::of_nothing(&robot.sensor), Scan::of_nothing(&robot.sensor));
+    let (all, mut nothing) =
+        (Scan::of_nothing(&robot.sensors[0]), Scan::of_nothing(&robot.sensors[0]));
     nothing.ranges_m.fill(0.0);
     // Where nobody walks what was seen stays seen.
     for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
@@ -129,13 +131,18 @@ fn an_update_allocates_nothing() {
     // Rows of many words.
     let frame = GridFrame::new(1000, 100, 0.01, Pose::default()).unwrap();
     let robot = Robot::jackal();
-    let scan = Scan::of_nothing(&robot.sensor);
+    let scan = Scan::of_nothing(&robot.sensors[0]);
     let mut seen = SeenGround::new(&frame, &robot, 1.5, SeenWanted::Behind).unwrap();
     let nothing = BitGrid::new(1000, 100, false);
     let walls = Walls { obstacles: &nothing, unknown: &nothing };
     let mut projected = ProjectedScan::default();
     let mut look = |x: f64| {
-        projected.project(&frame, &robot.footprint, Pose::new(x, 0.5, x), &scan);
+        projected.project(
+            &frame,
+            &robot.footprint,
+            Pose::new(x, 0.5, x),
+            &SensorScan::centred(0.0, &scan),
+        );
         seen.update(&frame, &projected, walls, 0.05);
     };
     look(0.1);
@@ -185,7 +192,7 @@ proptest! {
             let elapsed_s = f64::from(cycles) * robot.cycle_s;
             now_s += elapsed_s;
             pose = pose.after_arc(crate::geometry::Velocity::new(v, omega), elapsed_s);
-            let scan = scan_among((&frame, &[]), &discs_at(now_s), pose, &robot.sensor);
+            let scan = scan_among((&frame, &[]), &discs_at(now_s), pose, &robot.sensors[0]);
             seen.update(&frame, &projected(&frame, pose, &scan), walls(&open()), elapsed_s);
             let touch_m = robot.footprint.circumscribed_radius_m();
             if discs_at(now_s).iter().any(|(centre, radius_m)| centre.distance(pose.point()) < radius_m + touch_m) {
@@ -203,4 +210,19 @@ proptest! {
             }
         }
     }
+}
+
+/// One of several sensors may be lost: what they see together is not enough.
+#[test]
+fn only_a_single_sensor_that_sees_all_around_needs_no_seen_ground_behind() {
+    let frame = GridFrame::new(9, 9, 1.0, Pose::default()).unwrap();
+    let needs = |sensors: Vec<RangeSensor>| {
+        let robot = Robot { sensors, ..Robot::jackal() };
+        let seen = SeenGround::new(&frame, &robot, 0.0, SeenWanted::Behind);
+        seen.is_some_and(|seen| seen.cells().behind.is_some())
+    };
+    let all_around = RangeSensor::new(9, 360.0, 5.0);
+    assert!(!needs(vec![all_around.clone()]));
+    assert!(needs(vec![RangeSensor::new(9, 270.0, 5.0)]));
+    assert!(needs(vec![all_around.clone(), all_around]));
 }

@@ -158,7 +158,7 @@ impl Whole {
     }
 
     fn best(&self, world: &World, state: State, target: P) -> Wanted {
-        window::best(world, state, target, true, |all| window::guided(all, self.weights))
+        window::best(world, state, target, [false, true], |all| window::guided(all, self.weights))
     }
 
     /// The first node that something seen is too near to, and the nearest square there.

@@ -222,7 +222,7 @@ fn classic_dwa_with_the_distance_along_the_trajectory() {
         let mut key_point = KeyPoint::on(path);
         Box::new(move |world, state| {
             let target = key_point.at(state);
-            window::best(world, state, target, false, |all| {
+            window::best(world, state, target, [false; 2], |all| {
                 window::classic(all, [0.08, 0.2, 0.1], 5.0)
             })
         })
@@ -240,7 +240,7 @@ fn classic_dwa_of_the_matlab_sample() {
         let mut key_point = KeyPoint::on(path);
         Box::new(move |world, state| {
             let target = key_point.at(state);
-            window::best(world, state, target, true, |all| {
+            window::best(world, state, target, [true; 2], |all| {
                 window::classic(all, [0.08, 0.2, 0.1], 1.0)
             })
         })
@@ -260,7 +260,7 @@ fn key_point_dwa() {
         Box::new(move |world, state| {
             let target = key_point.at(state);
             let gamma = window::gamma(world, state);
-            window::best(world, state, target, false, |all| {
+            window::best(world, state, target, [false; 2], |all| {
                 window::classic(all, [0.15, 0.1, gamma], 5.0)
             })
         })
@@ -284,7 +284,7 @@ fn adaptive_dwa() {
         let mut local_goal = LocalGoal::on(path);
         Box::new(move |world, state| {
             let target = local_goal.at(state);
-            window::best(world, state, target, true, window::adaptive)
+            window::best(world, state, target, [true; 2], window::adaptive)
         })
     };
     let tally = runs(&planner, &guide, transcription, &mut cases());
@@ -298,8 +298,8 @@ fn adaptive_dwa() {
 fn guided_dwa() {
     let guide = KeyPoints::new(KeyPointsConfig::PAPER).unwrap();
     let paper = GuidedDwaConfig::PAPER.weights;
-    assert_eq!((paper.heading, paper.target_distance, paper.obstacle_distance), (0.08, 0.2, 0.1));
-    for (weights, least_arrived) in [([0.08, 0.2, 0.1], 2), ([0.05, 0.1, 1.0], 4)] {
+    assert_eq!((paper.heading, paper.target_distance, paper.obstacle_distance), (0.08, 0.1, 0.2));
+    for (weights, least_arrived) in [([0.08, 0.1, 0.2], 2), ([0.05, 0.1, 1.0], 4)] {
         let [heading, target_distance, obstacle_distance] = weights;
         let of_config = GuidedWeights { heading, target_distance, obstacle_distance };
         let config = GuidedDwaConfig { weights: of_config, ..GuidedDwaConfig::PAPER };

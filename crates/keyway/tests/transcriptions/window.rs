@@ -48,6 +48,9 @@ pub(crate) struct Terms {
     pub(crate) v: f64,
     pub(crate) omega: f64,
     pub(crate) heading: f64,
+    /// dist of (7).
+    pub(crate) stopping: f64,
+    /// dist of the evaluation.
     pub(crate) dist: f64,
     pub(crate) target: f64,
 }
@@ -90,8 +93,14 @@ fn angle_difference(a: f64) -> f64 {
 }
 
 /// All admissible candidates, (5) to (8), and whether one of them, or one that was refused, is in
-/// doubt. `at_end`: dist is that of the trajectory's end, otherwise of its nearest point.
-fn admissible(world: &World, state: State, target: (f64, f64), at_end: bool) -> (Vec<Terms>, bool) {
+/// doubt. `at_end`: whether dist of (7) and of the evaluation is that of the trajectory's end,
+/// otherwise of its nearest point.
+fn admissible(
+    world: &World,
+    state: State,
+    target: (f64, f64),
+    at_end: [bool; 2],
+) -> (Vec<Terms>, bool) {
     let (mut all, mut has_doubt) = (Vec::new(), false);
     let slowest = (state.v - V_A * DT).max(V_MIN);
     let fastest = (state.v + V_A * DT).min(V_MAX);
@@ -110,8 +119,9 @@ fn admissible(world: &World, state: State, target: (f64, f64), at_end: bool) -> 
 }
 
 /// (7), as it refuses.
-fn is_refused(Terms { v, omega, dist, .. }: &Terms) -> bool {
-    *v > (2.0 * dist * V_A).sqrt() || (*v != 0.0 && omega.abs() > (2.0 * dist * OMEGA_A).sqrt())
+fn is_refused(Terms { v, omega, stopping, .. }: &Terms) -> bool {
+    let slow_enough = |decelerated: f64| (2.0 * stopping * decelerated).sqrt();
+    *v > slow_enough(V_A) || (*v != 0.0 && omega.abs() > slow_enough(OMEGA_A))
 }
 
 /// Contact is what comes nearer than `contact_m`. Also whether rounding decides: whether (7)
@@ -121,14 +131,14 @@ fn rolled_out(
     state: State,
     (v, omega): (f64, f64),
     target: (f64, f64),
-    at_end: bool,
+    at_end: [bool; 2],
     contact_m: f64,
 ) -> Option<(Terms, bool)> {
     let nearest = |at: &State| {
         world.squares().map(|square| to_square(at.x, at.y, square)).fold(RANGE_M, f64::min)
     };
     let mut at = state;
-    let mut dist = nearest(&at);
+    let mut dists = [nearest(&at); 2];
     for _ in 0..STEPS {
         let next = at.driven(v, omega);
         let border = next.x.min(next.y).min(world.width - next.x).min(world.height - next.y);
@@ -137,16 +147,19 @@ fn rolled_out(
             return None;
         }
         at = next;
-        dist = if at_end { nearest(&at) } else { dist.min(nearest(&at)) };
+        for (dist, at_end) in dists.iter_mut().zip(at_end) {
+            *dist = if at_end { nearest(&at) } else { dist.min(nearest(&at)) };
+        }
     }
+    let [stopping, dist] = dists;
     let bearing = (target.1 - at.y).atan2(target.0 - at.x);
     let heading = PI - angle_difference(bearing - at.theta).abs();
     let target = ((target.0 - at.x).powi(2) + (target.1 - at.y).powi(2)).sqrt();
     let is_near = |a: f64, b: f64| (a - b).abs() <= ROUNDING;
-    let is_tie = is_near(v, (2.0 * dist * V_A).sqrt())
-        || is_near(omega.abs(), (2.0 * dist * OMEGA_A).sqrt())
+    let is_tie = is_near(v, (2.0 * stopping * V_A).sqrt())
+        || is_near(omega.abs(), (2.0 * stopping * OMEGA_A).sqrt())
         || is_near(target, 0.0);
-    Some((Terms { v, omega, heading, dist, target }, is_tie))
+    Some((Terms { v, omega, heading, stopping, dist, target }, is_tie))
 }
 
 /// The candidates with their scores.
@@ -154,7 +167,7 @@ pub(crate) fn best(
     world: &World,
     state: State,
     target: (f64, f64),
-    at_end: bool,
+    at_end: [bool; 2],
     scores: impl Fn(&[Terms]) -> Vec<f64>,
 ) -> Wanted {
     let (all, has_doubt) = admissible(world, state, target, at_end);

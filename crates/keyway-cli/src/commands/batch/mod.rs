@@ -8,7 +8,8 @@ use crate::args::{BatchArgs, BatchCli, BatchCommand, Format, Keep, MergeArgs};
 use crate::error::{CliError, Kind};
 use crate::progress::RunBar;
 use keyway_lab::batch::{
-    self, BatchReport, BatchRequest, MergeRequest, against_first_table, summary_table,
+    self, BatchReport, BatchRequest, MergeRequest, against_first_table, cycles_line, summary_table,
+    wins_table,
 };
 pub use plots::BatchPlots;
 
@@ -34,8 +35,10 @@ fn request(args: &BatchArgs) -> BatchRequest {
         out: args.out.clone(),
         stacks: args.stacks.clone(),
         robot: args.robot.clone(),
+        set: args.set.clone(),
         safe: args.safe,
         disturbances: args.disturbances.clone(),
+        reached_by: args.reached_by.map(Into::into),
         seeds: args.seeds,
         jobs: args.jobs,
         shard: args.shard,
@@ -58,6 +61,10 @@ fn show(report: &BatchReport, format: Format) -> Result<(), CliError> {
     }
     print(&summary_table(&report.stacks))?;
     if let Some(text) = against_first_table(&report.against_first) {
+        print(&format!("\n{text}"))?;
+    }
+    let more = [wins_table(&report.wins), cycles_line(&report.cycles)];
+    for text in more.into_iter().flatten() {
         print(&format!("\n{text}"))?;
     }
     crate::stdout::print_files(&report.files)?;

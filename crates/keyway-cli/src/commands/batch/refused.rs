@@ -12,6 +12,7 @@ impl From<BatchError> for CliError {
             BatchError::Stack(error) => return bad_file(error, "--stacks"),
             BatchError::Disturbances(error) => return bad_file(error, "--disturbances"),
             BatchError::Map(error) => return map_error(&error),
+            BatchError::RobotValue(_) | BatchError::Set(_) => Kind::Config,
             BatchError::NoScenes
             | BatchError::NoParts
             | BatchError::NoOut

@@ -1,18 +1,19 @@
 //! The episode that arguments or a scene file describe.
 
+use super::drive::bad_input;
 use crate::args::{DiscArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
 use crate::config::resolve;
 use crate::error::{CliError, Kind};
 use crate::inputs::{
     DEFAULT_ROBOT, PAPER_ROBOT, disturbances, load_map, position, published_stack,
-    refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius,
+    refuse_a_radius_beyond_the_map, robot, source_of, stack, with_radius, with_values,
 };
 use keyway::files::{FieldValue, StackBase};
 use keyway::geometry::{Disc, Point};
 use keyway::map::GridFrame;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
-use keyway_sim::episode::{Episode, EpisodeRobot, Start};
+use keyway_sim::episode::{Episode, EpisodeRobot, NearestGoal, Start};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
 use keyway_sim::sim::{Disturbances, MovingObstacle};
 use std::path::{Path, PathBuf};
@@ -85,13 +86,31 @@ pub(crate) fn given(args: &NavigateArgs, scene: Option<&SceneFile>) -> Result<Gi
     };
     for (robot, stack_name) in episode.robots.iter_mut().zip(stack_names) {
         robot.stack_name = stack_name;
-        robot.disturbances = given_disturbances(args, robot.disturbances)?;
+        robot.disturbances = given_disturbances(args, &robot.disturbances)?;
     }
     episode.source = source;
     episode.obstacles.extend(added_obstacles(args, &frame)?);
     episode.movers.extend(added_movers(args, &frame)?);
     episode.rules.time_limit_s = time_limit_s.or(episode.rules.time_limit_s);
+    if let Some(reached_by) = args.reached_by {
+        episode.rules.reached_by = reached_by.into();
+    }
+    if args.nearest_reachable {
+        reach_nearest(&mut episode)?;
+    }
     Ok(Given { episode, sources: sources(args, map_files) })
+}
+
+/// Drives to the nearest places that can be reached, and says so.
+fn reach_nearest(episode: &mut Episode) -> Result<(), CliError> {
+    let replaced = episode.reach_nearest().map_err(|error| bad_input(&error.why))?;
+    for NearestGoal { asked, goal, .. } in replaced {
+        crate::stdout::warn(format!(
+            "the goal ({:.3}, {:.3}) cannot be reached: the robot drives to the nearest place that can, ({:.3}, {:.3})",
+            asked.x, asked.y, goal.x, goal.y
+        ));
+    }
+    Ok(())
 }
 
 fn scene_folder(args: &NavigateArgs) -> &Path {
@@ -126,10 +145,11 @@ fn added_movers(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<MovingObst
 /// Those of the scene, or of the file that is named.
 fn given_disturbances(
     args: &NavigateArgs,
-    of_scene: Disturbances,
+    of_scene: &Disturbances,
 ) -> Result<Disturbances, CliError> {
-    let given = args.disturbances.as_deref().map(disturbances).transpose()?.unwrap_or(of_scene);
-    Ok(Disturbances { seed: args.seed.unwrap_or(of_scene.seed), ..given })
+    let given = args.disturbances.as_deref().map(disturbances).transpose()?;
+    let seed = args.seed.unwrap_or(of_scene.seed);
+    Ok(Disturbances { seed, ..given.unwrap_or_else(|| of_scene.clone()) })
 }
 
 /// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is
@@ -163,7 +183,15 @@ fn given_robot(
     in_scene: Option<&str>,
     folder: &Path,
 ) -> Result<Robot, CliError> {
-    with_radius(named_robot(args, in_scene, folder)?, args.radius)
+    let (changes, _) = args.config.split_robot();
+    if args.stack.as_published && !changes.is_empty() {
+        let message = format!(
+            "--as-published is for the robot `{PAPER_ROBOT}` as it is; without --as-published its values can be set"
+        );
+        return Err(CliError::new(Kind::Usage, message).field("--set"));
+    }
+    let robot = with_values(named_robot(args, in_scene, folder)?, &changes)?;
+    with_radius(robot, args.radius)
 }
 
 fn named_robot(
@@ -208,14 +236,15 @@ fn given_stack(
         FieldValue::if_given("guide", "guide.name", guide.clone()),
         FieldValue::if_given("local", "local.name", local.clone()),
     ];
+    let (_, config) = args.config.split_robot();
     let guarded = |stack: Stack| stack.safe_if(args.safe || safe_in_scene, robot);
     if *as_published {
         let base = guarded(published_stack(name)?);
-        let stack = resolve(StackBase::as_published(&base, robot), &args.config, parts, &[])?;
+        let stack = resolve(StackBase::as_published(&base, robot), &config, parts, &[])?;
         return Ok((format!("{name}, as published"), stack));
     }
     let base = guarded(stack(name, folder, robot, "--stack")?);
-    let stack = resolve(StackBase::for_robot(&base, robot), &args.config, parts, &[])?;
+    let stack = resolve(StackBase::for_robot(&base, robot), &config, parts, &[])?;
     Ok((name.to_owned(), stack))
 }
 

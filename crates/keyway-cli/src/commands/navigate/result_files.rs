@@ -137,6 +137,8 @@ fn stage<'a>(episode: &'a Episode, movers: &'a [MovingObstacle]) -> Stage<'a> {
         obstacles: episode.obstacles.as_slice(),
         polygons: episode.polygons.as_slice(),
         hidden_cells: episode.hidden_cells.as_slice(),
+        absent_cells: episode.absent_cells.as_slice(),
+        elusive: episode.elusive.as_slice(),
         movers,
         start: robot.start.position,
         goal: robot.goal.position,

@@ -4,9 +4,9 @@ use crate::commands::why;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
-use keyway::navigate::{Controller, NavigateError};
+use keyway::navigate::{NavigateError, Navigator};
 use keyway::route::Route;
-use keyway::sense::{Mover, Reading, Scan};
+use keyway::sense::{Mover, Observation, Reading, Scan};
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
 use std::sync::Arc;
@@ -97,28 +97,29 @@ impl Watcher {
     }
 
     fn moment(&mut self, cycle: &Cycle<'_>, explanation: Explanation) -> Moment {
-        let Cycle { t_s, pose, velocity, controller, .. } = *cycle;
-        let number = controller.routes_planned();
+        let Cycle { t_s, observation, navigator, .. } = *cycle;
+        let Observation { pose, velocity, scans, .. } = *observation;
+        let number = navigator.routes_planned();
         let known = self.path.take().filter(|(of, _)| *of == number);
-        let (_, route) = self.path.insert(
-            known.unwrap_or_else(|| (number, Arc::new(controller.route().smoothed.clone()))),
-        );
+        let path =
+            || navigator.route().map_or_else(Polyline::default, |route| route.smoothed.clone());
+        let (_, route) = self.path.insert(known.unwrap_or_else(|| (number, Arc::new(path()))));
         Moment {
             t_s,
             pose,
             velocity,
-            guide: controller.guidance().point,
-            hits: hits(pose, cycle.scan),
-            sensed: set_cells(controller.sensed()),
+            guide: navigator.guidance().map_or(pose.point(), |guidance| guidance.point),
+            hits: scans.iter().flat_map(|one| hits(pose.compose(one.mount), one.scan)).collect(),
+            sensed: set_cells(navigator.sensed()),
             route: Arc::clone(route),
-            movers: controller.movers().to_vec(),
-            walked: controller.gone_around().to_vec(),
+            movers: navigator.movers().to_vec(),
+            walked: navigator.gone_around().to_vec(),
             explanation,
         }
     }
 
-    fn note_walked(&mut self, controller: &Controller) {
-        for disc in controller.gone_around() {
+    fn note_walked(&mut self, navigator: &Navigator) {
+        for disc in navigator.gone_around() {
             if !self.walked.contains(disc) {
                 self.walked.push(*disc);
             }
@@ -133,12 +134,12 @@ impl EpisodeObserver for Watcher {
         }
     }
 
-    fn started(&mut self, controller: &Controller) {
-        self.route = Some(controller.route().clone());
+    fn started(&mut self, navigator: &Navigator) {
+        self.route = navigator.route().cloned();
     }
 
     fn decided(&mut self, cycle: &Cycle<'_>) {
-        self.note_walked(cycle.controller);
+        self.note_walked(cycle.navigator);
         let is_fan_due =
             self.fan.is_none() && self.wanted.fan_s.is_some_and(|fan_s| cycle.t_s >= fan_s - 1e-9);
         let is_frame_due = self.wanted.film && self.film.is_due(cycle.index);
@@ -146,7 +147,7 @@ impl EpisodeObserver for Watcher {
         if !(self.wanted.explanations || is_fan_due || is_frame_due) {
             return;
         }
-        let explanation = cycle.controller.explain();
+        let explanation = cycle.navigator.explain();
         if self.wanted.explanations {
             let report = CycleReport::of(cycle, &explanation);
             // Plain data with string keys: this cannot fail.
@@ -164,12 +165,12 @@ impl EpisodeObserver for Watcher {
         }
     }
 
-    fn ended(&mut self, _run: &Run, controller: &Controller) {
-        self.sensed = Some(controller.sensed().clone());
+    fn ended(&mut self, _run: &Run, navigator: &Navigator) {
+        self.sensed = Some(navigator.sensed().clone());
     }
 }
 
-/// The ends of the beams that met something.
+/// The ends of the beams of a sensor that met something.
 fn hits(pose: Pose, scan: &Scan) -> Vec<Point> {
     let end = |beam| {
         let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };

@@ -9,7 +9,7 @@ mod you2021;
 mod zhuyin2024;
 
 use super::claim::Figure;
-use super::experiment::Experiment;
+use super::experiment::{Experiment, MapRow};
 use super::family::Family;
 use super::findings::Finding;
 use super::measure::Measure;
@@ -58,6 +58,10 @@ pub struct AblationReport {
     pub left_out: usize,
     /// Change from the base, for each variant and each measure.
     pub figures: Vec<FamilyFigure>,
+    /// Number of reconstructed maps that count; 0 where there is no reconstruction.
+    pub reconstructed_maps: usize,
+    /// The same figures on reconstructed maps; empty where there are none.
+    pub reconstructed: Vec<FamilyFigure>,
 }
 
 impl Ablation {
@@ -72,17 +76,7 @@ impl Ablation {
     /// measures.
     pub fn report(&self, family: &Family, times: bool) -> AblationReport {
         let (parameter, values) = self.parameter.unzip();
-        let measures = || self.measures.iter().filter(|measure| times || !measure.is_timed());
-        let variants = self.experiment.methods.iter().filter(|method| method.name != self.base);
-        let figures = variants.flat_map(|variant| {
-            measures().map(|&measure| {
-                let figure = Figure::lower(measure, variant.name, self.base, None);
-                let finding = Finding::of(&figure, self.experiment, &family.rows);
-                // Neither direction is expected.
-                let figure = family_figure(&figure, &finding);
-                FamilyFigure { expected: "none", verdict: None, ..figure }
-            })
-        });
+        let rows = &family.reconstructed;
         AblationReport {
             experiment: self.experiment.name,
             paper: self.paper,
@@ -92,8 +86,25 @@ impl Ablation {
             values: values.unwrap_or_default(),
             maps: family.rows.len(),
             left_out: family.left_out,
-            figures: figures.collect(),
+            figures: self.figures(&family.rows, times),
+            reconstructed_maps: rows.len(),
+            reconstructed: if rows.is_empty() { Vec::new() } else { self.figures(rows, times) },
         }
+    }
+
+    fn figures(&self, rows: &[MapRow], times: bool) -> Vec<FamilyFigure> {
+        let measures = || self.measures.iter().filter(|measure| times || !measure.is_timed());
+        let variants = self.experiment.methods.iter().filter(|method| method.name != self.base);
+        let figures = variants.flat_map(|variant| {
+            measures().map(|&measure| {
+                let figure = Figure::lower(measure, variant.name, self.base, None);
+                let finding = Finding::of(&figure, self.experiment, rows);
+                // Neither direction is expected.
+                let figure = family_figure(&figure, &finding);
+                FamilyFigure { expected: "none", verdict: None, ..figure }
+            })
+        });
+        figures.collect()
     }
 }
 

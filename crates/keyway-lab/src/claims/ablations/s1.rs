@@ -1,11 +1,11 @@
 //! \[S1\]: weight, density, safe children, passes of the smoother, and distance factors; weights, a
-//! and R of the DWA, and the number of obstacles in its way.
+//! and R of the DWA.
 
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;
 use super::super::method::Method;
 use super::super::planners::{JPS, astar};
-use super::super::s1::{ABOUT, ANYWHERE_M, ENDS, FAMILY, FIXED_FACTORS, FUSED, PAPER};
+use super::super::s1::{ABOUT, ENDS, FAMILY, FIXED_FACTORS, FUSED, PAPER};
 use super::{Ablation, on_maps_of, sweep};
 use keyway::local::{AdaptiveDwaConfig, LocalConfig, Weights};
 use keyway::plan::{Density, DensityAStarConfig, EstimateWeight, PlannerConfig};
@@ -155,27 +155,10 @@ static R: Experiment = on_maps(
     &[with_r("R = 0.25", 0.25), with_r("R = 0.5", 0.5), with_r("R = 1", 1.0), with_r("R = 2", 2.0)],
 );
 
-const fn among(name: &'static str, count: u32) -> Method {
-    Method::driving(name, FUSED).among_unknown([count, 0], ANYWHERE_M).may_fail()
-}
-
-/// Figures 10 to 12.
-static UNKNOWN: Experiment = on_maps(
-    "s1-number",
-    &[
-        among("unknown 0", 0),
-        among("unknown 5", 5),
-        among("unknown 10", 10),
-        among("unknown 20", 20),
-        among("unknown 40", 40),
-    ],
-);
-
 const OF_RUNS: &[Measure] =
     &[Measure::Reached, Measure::RunTime, Measure::Oscillation, Measure::DrivenLength];
-const OF_NUMBER: &[Measure] = &[Measure::Reached, Measure::RunTime, Measure::CycleTime];
 
-pub(super) static ABLATIONS: [Ablation; 8] = [
+pub(super) static ABLATIONS: [Ablation; 7] = [
     Ablation {
         paper: PAPER,
         about: "Parts of the search and of the smoother, each left out",
@@ -232,12 +215,5 @@ pub(super) static ABLATIONS: [Ablation; 8] = [
         (&R, "R = 0.5"),
         ("R [m]", &[0.25, 0.5, 1.0, 2.0]),
         OF_RUNS,
-    ),
-    sweep(
-        PAPER,
-        "How many unknown obstacles there are",
-        (&UNKNOWN, "unknown 0"),
-        ("unknown obstacles", &[0.0, 5.0, 10.0, 20.0, 40.0]),
-        OF_NUMBER,
     ),
 ];

@@ -4,10 +4,12 @@ use super::super::experiment::Experiment;
 use super::super::measure::Measure;
 use super::super::method::Method;
 use super::super::planners::JPS;
-use super::super::you2021::{ABOUT, BIDIRECTIONAL_ASTAR, ENDS, FAMILY, FUSED, PAPER};
+use super::super::you2021::{
+    ABOUT, BIDIRECTIONAL_ASTAR, ENDS, FAMILY, FITTED, FUSED, PAPER, TO_GOAL,
+};
 use super::{Ablation, on_maps_of, sweep};
-use keyway::local::{KeyPointDwaConfig, KeyPointWeights, LocalConfig, SpeedWeight};
-use keyway::plan::{BidirectionalJpsConfig, JumpMeeting, PlannerConfig};
+use keyway::local::{DwaConfig, KeyPointDwaConfig, KeyPointWeights, LocalConfig, SpeedWeight};
+use keyway::plan::{BidirectionalJpsConfig, JumpMeeting, OpenKeys, PlannerConfig};
 use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
 
 const ALL: &str = "as published";
@@ -53,6 +55,52 @@ static PARTS: Experiment = on_maps(
     ],
 );
 
+/// Another reading of when the sides have met and of the keys of open nodes, with a weight a.
+const fn reading(name: &'static str, meeting: JumpMeeting, keys: OpenKeys, a: f64) -> Method {
+    Method::new(name, search(BidirectionalJpsConfig { meeting, keys, a, ..PUBLISHED }), None)
+}
+
+/// Table 4 gives the path of this search the length of A*'s: which reading does that?
+static READINGS: Experiment = Experiment {
+    name: "you2021-readings",
+    about: ABOUT,
+    family: FAMILY,
+    kind: None,
+    ends: ENDS,
+    methods: &[
+        Method::new(ALL, search(PUBLISHED), None),
+        reading("renewed keys", JumpMeeting::Generated, OpenKeys::Renewed, 3.0),
+        reading("met at expanded nodes", JumpMeeting::Expanded, OpenKeys::Kept, 3.0),
+        reading(
+            "met at expanded nodes, renewed keys",
+            JumpMeeting::Expanded,
+            OpenKeys::Renewed,
+            3.0,
+        ),
+        reading("until nothing better can come", JumpMeeting::Best, OpenKeys::Kept, 3.0),
+        reading(
+            "until nothing better can come, renewed keys",
+            JumpMeeting::Best,
+            OpenKeys::Renewed,
+            3.0,
+        ),
+        reading("literal meeting", JumpMeeting::Literal, OpenKeys::Kept, 3.0).may_fail(),
+        reading("a = 1", JumpMeeting::Generated, OpenKeys::Kept, 1.0),
+        reading("a = 1, renewed keys", JumpMeeting::Generated, OpenKeys::Renewed, 1.0),
+        reading("a = 1, met at expanded nodes", JumpMeeting::Expanded, OpenKeys::Kept, 1.0),
+        reading(
+            "a = 1, met at expanded nodes, renewed keys",
+            JumpMeeting::Expanded,
+            OpenKeys::Renewed,
+            1.0,
+        ),
+        reading("a = 1, until nothing better can come", JumpMeeting::Best, OpenKeys::Kept, 1.0),
+        YARDSTICK,
+    ],
+    scene: None,
+    reconstruction: Ok(&FITTED),
+};
+
 /// DWA of the paper with other weights.
 const fn dwa(weights: KeyPointWeights, speed_weight: SpeedWeight) -> LocalConfig {
     let config = KeyPointDwaConfig { weights, speed_weight, ..KeyPointDwaConfig::PAPER };
@@ -71,6 +119,55 @@ const fn driven(name: &'static str, local: LocalConfig) -> Method {
 static GAMMA: Experiment = on_maps(
     "you2021-gamma",
     &[driven(ALL, dwa(WEIGHTS, SPEED)), driven("fixed gamma", dwa(WEIGHTS, FIXED))],
+);
+
+/// The distance term up to 2 R1 and at the end, as in the sample program, and regions of 30
+/// degrees to either side.
+const SAMPLE_FUSED: LocalConfig = LocalConfig::KeyPointDwa(KeyPointDwaConfig {
+    window: DwaConfig::SAMPLE.window,
+    speed_weight: SpeedWeight { half_angle_deg: 30.0, ..SPEED },
+    distance_term_cap_m: DwaConfig::SAMPLE.distance_term_cap_m,
+    ..KeyPointDwaConfig::PAPER
+});
+/// The distance term up to 2 R1, along the trajectory, and the same regions.
+const CAPPED_FUSED: LocalConfig = LocalConfig::KeyPointDwa(KeyPointDwaConfig {
+    speed_weight: SpeedWeight { half_angle_deg: 30.0, ..SPEED },
+    distance_term_cap_m: DwaConfig::SAMPLE.distance_term_cap_m,
+    ..KeyPointDwaConfig::PAPER
+});
+const CAPPED_CLASSIC: LocalConfig = LocalConfig::Dwa(DwaConfig {
+    distance_term_cap_m: DwaConfig::SAMPLE.distance_term_cap_m,
+    ..DwaConfig::PAPER
+});
+
+/// Table 5 with other routes, and with the sample program's evaluation.
+static ROUTE: Experiment = on_maps(
+    "you2021-route",
+    &[
+        Method::driving(TO_GOAL, TO_GOAL),
+        Method::driving("the paper's route as read here", FUSED).may_fail(),
+        Method::driving("a shortest route", FUSED).with_planner(JPS).may_fail(),
+        Method::driving("the paper's route, sample evaluation", FUSED)
+            .with_local(SAMPLE_FUSED)
+            .may_fail(),
+        Method::driving("a shortest route, sample evaluation", FUSED)
+            .with_planner(JPS)
+            .with_local(SAMPLE_FUSED)
+            .may_fail(),
+        Method::driving("the paper's route, distance term up to 2 R1", FUSED)
+            .with_local(CAPPED_FUSED)
+            .may_fail(),
+        Method::driving("a shortest route, distance term up to 2 R1", FUSED)
+            .with_planner(JPS)
+            .with_local(CAPPED_FUSED)
+            .may_fail(),
+        Method::driving("DWA as in the sample program", TO_GOAL)
+            .with_local(LocalConfig::Dwa(DwaConfig::SAMPLE))
+            .may_fail(),
+        Method::driving("DWA, distance term up to 2 R1", TO_GOAL)
+            .with_local(CAPPED_CLASSIC)
+            .may_fail(),
+    ],
 );
 
 const fn with_a(name: &'static str, a: f64) -> Method {
@@ -167,7 +264,7 @@ const OF_PATHS: &[Measure] =
     &[Measure::Expanded, Measure::Length, Measure::Turns, Measure::Clearance, Measure::SearchTime];
 const OF_RUNS: &[Measure] = &[Measure::Reached, Measure::RunTime, Measure::MeanSpeed];
 
-pub(super) static ABLATIONS: [Ablation; 8] = [
+pub(super) static ABLATIONS: [Ablation; 10] = [
     Ablation {
         paper: PAPER,
         about: "Parts of the search and of its optimisation, each left out",
@@ -182,6 +279,22 @@ pub(super) static ABLATIONS: [Ablation; 8] = [
             Measure::Clearance,
             Measure::PlanningTime,
         ],
+    },
+    Ablation {
+        paper: PAPER,
+        about: "Readings of when the two sides have met, of the keys of open nodes, and of a",
+        experiment: &READINGS,
+        base: ALL,
+        parameter: None,
+        measures: &[Measure::Shortest, Measure::Length, Measure::Expanded],
+    },
+    Ablation {
+        paper: PAPER,
+        about: "The fused planner against DWA straight to the goal, by route and by evaluation",
+        experiment: &ROUTE,
+        base: TO_GOAL,
+        parameter: None,
+        measures: &[Measure::Reached, Measure::RunTime, Measure::DrivenLength, Measure::MeanSpeed],
     },
     Ablation {
         paper: PAPER,

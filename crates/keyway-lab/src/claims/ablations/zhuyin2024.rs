@@ -1,16 +1,18 @@
 //! \[ZhuYin2024\]: parts of HSTA*, layers of its smoother, and guidance; L, R and the weights of
 //! the DWA.
 
+use super::super::driven::Vehicle;
 use super::super::experiment::Experiment;
 use super::super::measure::Measure;
 use super::super::method::{How, Method};
 use super::super::planned::Planning;
 use super::super::planners::JPS;
 use super::super::zhuyin2024::{
-    ABOUT, ENDS, FAMILY, PAPER, UNKNOWN_ABOUT, UNKNOWN_ENDS, UNKNOWN_FAMILY, hsta, past_three,
+    ABOUT, ENDS, FAMILY, PAPER, UNKNOWN_ABOUT, UNKNOWN_ENDS, UNKNOWN_FAMILY, by_definition, hsta,
+    past_three,
 };
 use super::{Ablation, on_maps_of, sweep};
-use keyway::local::{DwaConfig, GuidedDwaConfig, GuidedWeights, LocalConfig};
+use keyway::local::{DwaConfig, GuidedDwaConfig, GuidedWeights, LocalConfig, WindowConfig};
 use keyway::plan::{Correction, Weight};
 use keyway::smooth::{HierarchicalSmoothingConfig, LineOfSightConfig, SmootherConfig};
 
@@ -60,6 +62,12 @@ static PARTS: Experiment = on_static(
         planned(ALL, AS_PUBLISHED, SMOOTHER),
         planned("without c", (Weight::Dynamic, Correction::None, L), SMOOTHER),
         planned("k = 1", (Weight::One, Correction::Distance, L), SMOOTHER),
+        Method::new(
+            "keys renewed, k of the current node",
+            by_definition(Weight::Dynamic),
+            Some(SMOOTHER),
+        ),
+        Method::new("keys renewed, k = 1", by_definition(Weight::One), Some(SMOOTHER)),
         planned("L = 0", (Weight::Dynamic, Correction::Distance, 0.0), SMOOTHER),
         planned("inner layer alone", AS_PUBLISHED, INNER_LAYER),
         YARDSTICK,
@@ -94,6 +102,35 @@ static GUIDANCE: Experiment = on_unknown(
 );
 
 const PAPER_WEIGHTS: GuidedWeights = GuidedDwaConfig::PAPER.weights;
+const IN_ORDER: GuidedWeights =
+    GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 };
+
+const fn with_window(name: &'static str, weights: GuidedWeights, window: WindowConfig) -> Method {
+    let config = GuidedDwaConfig { weights, window, ..GuidedDwaConfig::PAPER };
+    past_three(name, GUIDED).with_local(LocalConfig::GuidedDwa(config)).may_fail()
+}
+
+/// Of the weights, which the paper does not give, and of the distance of (16).
+static GUIDED_READINGS: Experiment = on_unknown(
+    "zhuyin2024-readings",
+    &[
+        past_three(ALL, GUIDED).may_fail(),
+        with_weights("weights in the order of the symbols", IN_ORDER),
+        with_window("(16) at the end", PAPER_WEIGHTS, WindowConfig::AT_THE_END),
+        with_window(
+            "(16) at the end, weights in the order of the symbols",
+            IN_ORDER,
+            WindowConfig::AT_THE_END,
+        ),
+        // At 1 m/s, (16) asks for 2.5 m with 0.2 m/s2, and for 0.5 m with 1 m/s2.
+        past_three("a robot that brakes with 1 m/s2", GUIDED)
+            .on(Vehicle::PaperWith([0.2, 1.0]))
+            .may_fail(),
+        past_three("a robot that speeds up and brakes with 1 m/s2", GUIDED)
+            .on(Vehicle::PaperWith([1.0, 1.0]))
+            .may_fail(),
+    ],
+);
 
 const fn with_weights(name: &'static str, weights: GuidedWeights) -> Method {
     let local = LocalConfig::GuidedDwa(GuidedDwaConfig { weights, ..GuidedDwaConfig::PAPER });
@@ -135,9 +172,9 @@ const fn with_gamma(name: &'static str, obstacle_distance: f64) -> Method {
 static GAMMA: Experiment = on_unknown(
     "zhuyin2024-gamma",
     &[
-        with_gamma("gamma = 0.05", 0.05),
         with_gamma("gamma = 0.1", 0.1),
-        with_gamma("gamma = 0.4", 0.4),
+        with_gamma("gamma = 0.2", 0.2),
+        with_gamma("gamma = 0.5", 0.5),
         with_gamma("gamma = 1", 1.0),
     ],
 );
@@ -152,7 +189,7 @@ const OF_PATHS: &[Measure] = &[
     Measure::PlanningTime,
 ];
 
-pub(super) static ABLATIONS: [Ablation; 7] = [
+pub(super) static ABLATIONS: [Ablation; 8] = [
     Ablation {
         paper: PAPER,
         about: "Parts of the search and of the smoother, each left out",
@@ -165,6 +202,14 @@ pub(super) static ABLATIONS: [Ablation; 7] = [
         paper: PAPER,
         about: "The way around unknown obstacles without points to guide it",
         experiment: &GUIDANCE,
+        base: ALL,
+        parameter: None,
+        measures: OF_RUNS,
+    },
+    Ablation {
+        paper: PAPER,
+        about: "Readings of the weights of (18), of the distance of (16), and of the robot's limits",
+        experiment: &GUIDED_READINGS,
         base: ALL,
         parameter: None,
         measures: OF_RUNS,
@@ -195,15 +240,15 @@ pub(super) static ABLATIONS: [Ablation; 7] = [
     sweep(
         PAPER,
         "Weight beta of the distance to the target",
-        (&BETA, "beta = 0.2"),
+        (&BETA, "beta = 0.1"),
         ("beta", &[0.05, 0.1, 0.2, 0.4]),
         OF_RUNS,
     ),
     sweep(
         PAPER,
         "Weight gamma of the distance to obstacles",
-        (&GAMMA, "gamma = 0.1"),
-        ("gamma", &[0.05, 0.1, 0.4, 1.0]),
+        (&GAMMA, "gamma = 0.2"),
+        ("gamma", &[0.1, 0.2, 0.5, 1.0]),
         OF_RUNS,
     ),
 ];

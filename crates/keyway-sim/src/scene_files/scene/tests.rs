@@ -3,7 +3,7 @@
 use super::*;
 use crate::episode::EpisodeRules;
 use crate::scene_files::UnknownDisc;
-use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion};
+use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion, ReachedBy};
 use keyway::geometry::Disc;
 use keyway::map::formats::map_from_bytes;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -103,7 +103,7 @@ fn disturbances_draw_from_the_seed_of_the_scene() {
     let map = map_from_bytes(Path::new("a.map"), octile, |_| Ok(vec![]), None).unwrap();
     let robot = Robot::small();
     let episode = scene.episode_with(map, &robot, &Stack::key_point_fusion(&robot)).unwrap();
-    let Disturbances { seed, actuation, .. } = episode.robots[0].disturbances;
+    let Disturbances { seed, actuation, .. } = episode.robots[0].disturbances.clone();
     assert_eq!((seed, actuation.delay_s), (7, 0.1));
     let late = error(&text.replace("0.1", "-1"));
     assert!(late.starts_with("`disturbances.actuation.delay_s` must be"), "{late}");
@@ -120,7 +120,7 @@ fn disturbances_draw_from_the_seed_of_the_scene() {
 fn a_world_is_made_from_the_seed() {
     let text = "version = 2\nseed = 3\nstart = [1, 1]\ngoal = [7, 5]\n[world]\nwidth_m = 8\nheight_m = 6\n\
                 resolution_m = 0.1\n[world.obstacles.clutter]\nshare = 0.3\nradius_m = [0.1, 0.3]\n\
-                [rules]\narrival = \"passing\"\ngoal_tolerance_m = 1\nstuck_window_s = 60\n";
+                [rules]\nreached_by = \"belief\"\narrival = \"passing\"\ngoal_tolerance_m = 1\nstuck_window_s = 60\n";
     let scene = SceneFile::from_toml(text).unwrap();
     assert_eq!(SceneFile::from_toml(&toml::to_string(&scene).unwrap()).unwrap(), scene);
     let map = scene.generated_map().unwrap().unwrap();
@@ -132,6 +132,7 @@ fn a_world_is_made_from_the_seed() {
     let rules = EpisodeRules {
         goal_tolerance_m: Some(1.0),
         arrival: Arrival::Passing,
+        reached_by: ReachedBy::Belief,
         stuck_window_s: 60.0,
         ..EpisodeRules::default()
     };

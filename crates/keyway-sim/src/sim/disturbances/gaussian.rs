@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     fn gaussian(seed: u64) -> Gaussian {
-        Gaussian::new(Source { seed, robot: 0 }, Kind::Range)
+        Gaussian::new(Source { seed, robot: 0, sensor: 0 }, Kind::Range)
     }
 
     /// Compares the shares of deviations up to a few values with the normal distribution.

@@ -1,70 +1,218 @@
 //! Pose and velocity that a robot is told.
 
 use super::gaussian::{Gaussian, cut};
-use super::{Kind, LocalisationNoise, Source};
-use keyway::geometry::{Pose, Velocity};
+use super::{Kind, LocalisationFaults, Source, cycles_late};
+use keyway::geometry::{Point, Pose, Velocity};
+use keyway::random::Random;
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
 
 /// Errors of a robot's localisation and odometry.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Localisation {
-    noise: LocalisationNoise,
-    x: Drift,
-    y: Drift,
-    heading: Drift,
+    faults: LocalisationFaults,
+    x: CorrelatedError,
+    y: CorrelatedError,
+    heading: CorrelatedError,
     v: Gaussian,
     omega: Gaussian,
+    drift: Drift,
+    jumps: Option<Jumps>,
+    /// Number of cycles from a pose to the one in which the robot is told it.
+    late: usize,
+    cycle_s: f64,
+    /// Poses and velocities that the robot is not told yet, oldest first.
+    under_way: VecDeque<(Pose, Velocity)>,
+}
+
+/// True state of a robot at the beginning of a cycle.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::sim) struct TrueState {
+    /// Time \[s\].
+    pub(in crate::sim) t_s: f64,
+    /// Pose in the world frame.
+    pub(in crate::sim) pose: Pose,
+    /// Velocity that odometry measures: that of the wheels.
+    pub(in crate::sim) odometry: Velocity,
+    /// Distance driven so far \[m\].
+    pub(in crate::sim) driven_m: f64,
 }
 
 impl Localisation {
     /// Returns the errors, or `None` for a robot that knows its state exactly.
     pub(in crate::sim) fn new(
-        noise: LocalisationNoise,
+        faults: LocalisationFaults,
         source: Source,
         cycle_s: f64,
     ) -> Option<Self> {
-        let drift = |kind| Drift::new(source, kind, cycle_s, noise.correlation_s);
-        let localisation = Self {
-            noise,
-            x: drift(Kind::X),
-            y: drift(Kind::Y),
-            heading: drift(Kind::Heading),
+        if faults.is_none() {
+            return None;
+        }
+        let error = |kind| CorrelatedError::new(source, kind, cycle_s, faults.correlation_s);
+        Some(Self {
+            x: error(Kind::X),
+            y: error(Kind::Y),
+            heading: error(Kind::Heading),
             v: Gaussian::new(source, Kind::ToldV),
             omega: Gaussian::new(source, Kind::ToldOmega),
-        };
-        (!noise.is_none()).then_some(localisation)
+            drift: Drift::new(&faults, source),
+            jumps: faults.jumps().then(|| Jumps::new(&faults, source)),
+            late: cycles_late(faults.delay_s, cycle_s),
+            cycle_s,
+            under_way: VecDeque::new(),
+            faults,
+        })
     }
 
-    /// Pose and velocity that the controller is told in the next cycle, given the true ones.
-    pub(in crate::sim) fn told(&mut self, pose: Pose, velocity: Velocity) -> (Pose, Velocity) {
-        let LocalisationNoise { position_m, heading_rad, v_relative, omega_relative, .. } =
-            self.noise;
-        let told_pose = Pose::new(
+    /// Pose and velocity that the controller is told in the next cycle.
+    pub(in crate::sim) fn told(&mut self, state: TrueState) -> (Pose, Velocity) {
+        let now = (self.estimated(state), self.measured(state.odometry));
+        if self.late == 0 {
+            return now;
+        }
+        self.under_way.push_back(now);
+        if self.under_way.len() > self.late + 1 {
+            self.under_way.pop_front();
+        }
+        self.under_way.front().copied().unwrap_or(now)
+    }
+
+    /// Stamp of the pose that the controller is told in a cycle \[s\].
+    pub(in crate::sim) fn stamp_s(&self, cycle: u64) -> f64 {
+        cycle.saturating_sub(self.late as u64) as f64 * self.cycle_s + self.faults.stamp_late_s
+    }
+
+    fn estimated(&mut self, state: TrueState) -> Pose {
+        let TrueState { t_s, pose, driven_m, .. } = state;
+        let LocalisationFaults { position_m, heading_rad, .. } = self.faults;
+        let noisy = Pose::new(
             pose.x + position_m * self.x.next(),
             pose.y + position_m * self.y.next(),
             pose.theta + heading_rad * self.heading.next(),
         );
-        let told_velocity = Velocity::new(
-            velocity.v * (1.0 + v_relative * self.v.next_cut()),
-            velocity.omega * (1.0 + omega_relative * self.omega.next_cut()),
-        );
-        (told_pose, told_velocity)
+        let drifted = self.drift.after(driven_m).of(noisy);
+        match &mut self.jumps {
+            Some(jumps) => jumps.at(t_s).of(drifted),
+            None => drifted,
+        }
+    }
+
+    fn measured(&mut self, odometry: Velocity) -> Velocity {
+        let LocalisationFaults { v_relative, omega_relative, .. } = self.faults;
+        let (v_error, omega_error) = (self.v.next_cut(), self.omega.next_cut());
+        if self.faults.velocity_is_zero {
+            return Velocity::ZERO;
+        }
+        Velocity::new(
+            odometry.v * (1.0 + v_relative * v_error),
+            odometry.omega * (1.0 + omega_relative * omega_error),
+        )
     }
 }
 
-/// A drifting error with mean 0 and standard deviation 1: a stationary Gauss-Markov process in
-/// discrete time.
+/// Error of a pose in the world frame.
+#[derive(Clone, Copy, Debug)]
+struct Offset {
+    position: Point,
+    heading_rad: f64,
+}
+
+impl Offset {
+    const NONE: Self = Self { position: Point::new(0.0, 0.0), heading_rad: 0.0 };
+
+    /// The pose that is told in the place of another.
+    fn of(self, pose: Pose) -> Pose {
+        let Self { position: Point { x, y }, heading_rad } = self;
+        Pose::new(pose.x + x, pose.y + y, pose.theta + heading_rad)
+    }
+}
+
+/// Point at a distance \[m\] from the origin in a random direction.
+fn anywhere_at(distance_m: f64, random: &mut Random) -> Point {
+    let (sin, cos) = libm::sincos(TAU * random.unit());
+    Point::new(cos, sin) * distance_m
+}
+
+/// Error that grows with the driven distance.
+#[derive(Clone, Copy, Debug)]
+struct Drift {
+    per_metre: Offset,
+}
+
+impl Drift {
+    fn new(faults: &LocalisationFaults, source: Source) -> Self {
+        let mut random = source.stream(Kind::Drift);
+        let position = anywhere_at(faults.drift, &mut random);
+        let side = if random.is_chosen(0.5) { 1.0 } else { -1.0 };
+        Self { per_metre: Offset { position, heading_rad: side * faults.heading_drift_radpm } }
+    }
+
+    fn after(self, driven_m: f64) -> Offset {
+        let Offset { position, heading_rad } = self.per_metre;
+        Offset { position: position * driven_m, heading_rad: heading_rad * driven_m }
+    }
+}
+
+/// Jumps of a pose, one in each stretch of time.
+#[derive(Clone, Debug)]
+struct Jumps {
+    random: Random,
+    jump_m: f64,
+    jump_rad: f64,
+    every_s: f64,
+    for_s: f64,
+    /// Number of the stretch whose jump is drawn, its beginning \[s\], and its offset.
+    drawn: Option<(u64, f64, Offset)>,
+}
+
+impl Jumps {
+    fn new(faults: &LocalisationFaults, source: Source) -> Self {
+        let LocalisationFaults { jump_m, jump_rad, jump_every_s, jump_for_s, .. } = *faults;
+        let random = source.stream(Kind::Jump);
+        Self { random, jump_m, jump_rad, every_s: jump_every_s, for_s: jump_for_s, drawn: None }
+    }
+
+    /// The error at a time; times do not run back.
+    fn at(&mut self, t_s: f64) -> Offset {
+        let stretch = (t_s / self.every_s) as u64;
+        let mut next = self.drawn.map_or(0, |(drawn, ..)| drawn + 1);
+        // Those that nobody asked for are drawn, too: a jump does not depend on the cycle.
+        while next <= stretch {
+            self.drawn = Some(self.draw(next));
+            next += 1;
+        }
+        let is_always_off = self.for_s >= self.every_s;
+        match self.drawn {
+            Some((_, _, offset)) if is_always_off => offset,
+            Some((_, from_s, offset)) if (from_s..from_s + self.for_s).contains(&t_s) => offset,
+            _ => Offset::NONE,
+        }
+    }
+
+    fn draw(&mut self, stretch: u64) -> (u64, f64, Offset) {
+        let idle_s = self.every_s - self.for_s;
+        let from_s = stretch as f64 * self.every_s + idle_s * self.random.unit();
+        let distance_m = self.jump_m * self.random.unit();
+        let position = anywhere_at(distance_m, &mut self.random);
+        let heading_rad = self.random.between([-self.jump_rad, self.jump_rad]);
+        (stretch, from_s, Offset { position, heading_rad })
+    }
+}
+
+/// An error that changes slowly, with mean 0 and standard deviation 1: a stationary Gauss-Markov
+/// process in discrete time.
 ///
 /// e' = q e + sqrt(1 - q²) n, where n is normal and q is the correlation of two errors one step
 /// apart. The variance stays q² + (1 - q²) = 1, and errors k steps apart have the correlation q^k.
 #[derive(Clone, Debug)]
-struct Drift {
+struct CorrelatedError {
     gaussian: Gaussian,
     /// Correlation of two errors one cycle apart.
     kept: f64,
     error: Option<f64>,
 }
 
-impl Drift {
+impl CorrelatedError {
     fn new(source: Source, kind: Kind, cycle_s: f64, correlation_s: f64) -> Self {
         let kept = libm::exp(-cycle_s / correlation_s);
         Self { gaussian: Gaussian::new(source, kind), kept, error: None }
@@ -86,25 +234,39 @@ impl Drift {
 mod tests {
     use super::*;
 
-    const NONE: LocalisationNoise = LocalisationNoise {
+    const NONE: LocalisationFaults = LocalisationFaults {
         position_m: 0.0,
         heading_rad: 0.0,
         correlation_s: 0.0,
         v_relative: 0.0,
         omega_relative: 0.0,
+        drift: 0.0,
+        heading_drift_radpm: 0.0,
+        jump_m: 0.0,
+        jump_rad: 0.0,
+        jump_every_s: 0.0,
+        jump_for_s: 0.0,
+        delay_s: 0.0,
+        stamp_late_s: 0.0,
+        velocity_is_zero: false,
     };
 
-    fn localisation(noise: LocalisationNoise, robot: usize) -> Localisation {
-        Localisation::new(noise, Source { seed: 6, robot }, 0.1).unwrap()
+    /// State at the beginning, with a velocity.
+    fn moving(pose: Pose, odometry: Velocity) -> TrueState {
+        TrueState { t_s: 0.0, pose, odometry, driven_m: 0.0 }
+    }
+
+    fn localisation(noise: LocalisationFaults, robot: usize) -> Localisation {
+        Localisation::new(noise, Source { seed: 6, robot, sensor: 0 }, 0.1).unwrap()
     }
 
     /// The errors of x, y and heading, in units of their standard deviations.
-    fn errors(noise: LocalisationNoise, robot: usize, count: usize) -> Vec<[f64; 3]> {
+    fn errors(noise: LocalisationFaults, robot: usize, count: usize) -> Vec<[f64; 3]> {
         let mut localisation = localisation(noise, robot);
-        let LocalisationNoise { position_m, heading_rad, .. } = noise;
+        let LocalisationFaults { position_m, heading_rad, .. } = noise;
         let mut next = || {
             let (Pose { x, y, theta }, _) =
-                localisation.told(Pose::new(4.0, -2.0, 1.0), Velocity::ZERO);
+                localisation.told(moving(Pose::new(4.0, -2.0, 1.0), Velocity::ZERO));
             [(x - 4.0) / position_m, (y + 2.0) / position_m, (theta - 1.0) / heading_rad]
         };
         (0..count).map(|_| next()).collect()
@@ -119,7 +281,7 @@ mod tests {
     /// time.
     #[test]
     fn errors_without_correlation_are_white() {
-        let noise = LocalisationNoise { position_m: 0.05, heading_rad: 0.02, ..NONE };
+        let noise = LocalisationFaults { position_m: 0.05, heading_rad: 0.02, ..NONE };
         let all = errors(noise, 0, 100_000);
         // Four standard deviations of the mean of 100,000 errors.
         let tolerance = 4.0 / f64::sqrt(1e5);
@@ -141,7 +303,7 @@ mod tests {
     fn errors_drift_with_their_correlation_time() {
         const ROBOTS: usize = 20_000;
         let noise =
-            LocalisationNoise { position_m: 0.05, heading_rad: 0.02, correlation_s: 0.5, ..NONE };
+            LocalisationFaults { position_m: 0.05, heading_rad: 0.02, correlation_s: 0.5, ..NONE };
         let drifts: Vec<Vec<[f64; 3]>> =
             (0..ROBOTS).map(|robot| errors(noise, robot, 21)).collect();
         let tolerance = 4.0 / f64::sqrt(ROBOTS as f64);
@@ -162,11 +324,11 @@ mod tests {
     #[test]
     fn velocities_are_off_by_a_share_of_themselves() {
         let mut localisation =
-            localisation(LocalisationNoise { v_relative: 0.1, omega_relative: 0.2, ..NONE }, 0);
+            localisation(LocalisationFaults { v_relative: 0.1, omega_relative: 0.2, ..NONE }, 0);
         let pose = Pose::new(4.0, -2.0, 1.0);
         let mut sums = [0.0; 4];
         for _ in 0..100_000 {
-            let (told_pose, told) = localisation.told(pose, Velocity::new(0.5, -2.0));
+            let (told_pose, told) = localisation.told(moving(pose, Velocity::new(0.5, -2.0)));
             assert_eq!(told_pose, pose);
             let (v, omega) = (told.v / 0.5 - 1.0, told.omega / -2.0 - 1.0);
             assert!(v.abs() <= 0.3 + 1e-9 && omega.abs() <= 0.6 + 1e-9);
@@ -181,6 +343,107 @@ mod tests {
         assert!((omega_squared / 0.04 - 0.995).abs() < 4.0 * f64::sqrt(2e-5), "{omega_squared}");
         assert!(product.abs() < 4.0 * 0.02 / f64::sqrt(1e5), "{product}");
         // A standing robot is told that it stands.
-        assert_eq!(localisation.told(pose, Velocity::ZERO), (pose, Velocity::ZERO));
+        assert_eq!(localisation.told(moving(pose, Velocity::ZERO)), (pose, Velocity::ZERO));
+    }
+
+    /// Errors of the pose at some times and distances: x, y, heading.
+    fn pose_errors(
+        faults: LocalisationFaults,
+        robot: usize,
+        states: impl Iterator<Item = (f64, f64)>,
+    ) -> Vec<[f64; 3]> {
+        let mut localisation = localisation(faults, robot);
+        let pose = Pose::new(4.0, -2.0, 1.0);
+        let told = |(t_s, driven_m)| {
+            let state = TrueState { t_s, pose, odometry: Velocity::ZERO, driven_m };
+            let (Pose { x, y, theta }, _) = localisation.told(state);
+            [x - 4.0, y + 2.0, theta - 1.0]
+        };
+        states.map(told).collect()
+    }
+
+    #[test]
+    fn drift_grows_with_the_way_in_a_direction_of_its_own() {
+        let faults = LocalisationFaults { drift: 0.02, heading_drift_radpm: 0.01, ..NONE };
+        let errors_of =
+            |robot| pose_errors(faults, robot, (0..=100).map(|step| (0.0, 0.5 * f64::from(step))));
+        let mut sides = [0; 2];
+        for robot in 0..200 {
+            let errors = errors_of(robot);
+            let [x, y, heading] = errors[100];
+            assert!((x.hypot(y) - 1.0).abs() < 1e-9 && (heading.abs() - 0.5).abs() < 1e-9);
+            sides[usize::from(heading > 0.0)] += 1;
+            for (step, error) in errors.iter().enumerate() {
+                let expected = [x, y, heading].map(|it| it * step as f64 / 100.0);
+                assert!(error.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9));
+            }
+        }
+        // Expected are 100 with a standard deviation of 7.
+        assert!(sides[0] > 70 && sides[1] > 70, "{sides:?}");
+        assert_ne!(errors_of(0), errors_of(1));
+    }
+
+    #[test]
+    fn the_pose_jumps_once_in_each_stretch_and_back() {
+        let faults = LocalisationFaults {
+            jump_m: 0.3,
+            jump_rad: 0.2,
+            jump_every_s: 20.0,
+            jump_for_s: 5.0,
+            ..NONE
+        };
+        // 500 stretches of 200 cycles.
+        let errors =
+            pose_errors(faults, 0, (0..100_000).map(|cycle| (f64::from(cycle) / 10.0, 0.0)));
+        let (mut largest_m, mut largest_rad, mut distinct) = (0.0_f64, 0.0_f64, 0);
+        for stretch in errors.chunks(200) {
+            let is_off = |error: &&[f64; 3]| error.iter().any(|part| part.abs() > 1e-9);
+            let off: Vec<_> = stretch.iter().filter(is_off).collect();
+            // 5 s begin and end within two cycles.
+            assert!((49..=51).contains(&off.len()), "{}", off.len());
+            let first = stretch.iter().position(|error| is_off(&error)).unwrap();
+            assert!(
+                stretch[first..first + off.len()].iter().all(|error| error == off[0]),
+                "in one"
+            );
+            let [x, y, heading] = *off[0];
+            largest_m = largest_m.max(x.hypot(y));
+            largest_rad = largest_rad.max(heading.abs());
+            distinct += usize::from(x.hypot(y) > 0.15);
+        }
+        assert!((0.29..=0.3).contains(&largest_m) && (0.19..=0.2).contains(&largest_rad));
+        // Any distance is equally likely: expected are 250 with a standard deviation of 11.
+        assert!((205..=295).contains(&distinct), "{distinct}");
+        // A jump does not depend on the cycle.
+        let rarely = pose_errors(faults, 0, (0..50_000).map(|cycle| (f64::from(cycle) / 5.0, 0.0)));
+        assert!(rarely.iter().zip(errors.iter().step_by(2)).all(|(a, b)| a == b));
+        let always = LocalisationFaults { jump_for_s: 20.0, ..faults };
+        let errors = pose_errors(always, 0, (0..1000).map(|cycle| (f64::from(cycle) / 10.0, 0.0)));
+        assert!(errors.iter().all(|error| *error != [0.0; 3]));
+    }
+
+    #[test]
+    fn a_late_pose_is_an_earlier_one() {
+        // The delay is two cycles: it is rounded up.
+        let faults = LocalisationFaults { delay_s: 0.15, ..NONE };
+        let mut localisation = localisation(faults, 0);
+        let told: Vec<_> = (0..6)
+            .map(|cycle| {
+                let x = f64::from(cycle);
+                localisation.told(moving(Pose::new(x, 0.0, 0.0), Velocity::new(x, -x)))
+            })
+            .map(|(pose, velocity)| (pose.x, velocity.v, velocity.omega))
+            .collect();
+        let at = |x: f64| (x, x, -x);
+        assert_eq!(told, [0.0, 0.0, 0.0, 1.0, 2.0, 3.0].map(at));
+    }
+
+    #[test]
+    fn odometry_may_always_say_zero() {
+        let mut localisation =
+            localisation(LocalisationFaults { velocity_is_zero: true, ..NONE }, 0);
+        let pose = Pose::new(4.0, -2.0, 1.0);
+        let told = localisation.told(moving(pose, Velocity::new(0.5, 1.0)));
+        assert_eq!(told, (pose, Velocity::ZERO));
     }
 }

@@ -1,5 +1,5 @@
-//! Disturbances of a simulated robot: an inexact sensor, late and inexact motors, and errors of its
-//! localisation.
+//! Disturbances of a simulated robot: a late, inexact or half blind sensor, late, weak or inexact
+//! motors, and errors of its localisation.
 //!
 //! Disturbances change only the controller's inputs and the action of the motors. Contact,
 //! clearance, arrival and the record of a run ([`Run`](super::Run)) follow the true motion.
@@ -14,10 +14,11 @@ mod localisation;
 mod sensing;
 
 pub(super) use actuation::Actuation;
-pub(super) use localisation::Localisation;
+pub(super) use localisation::{Localisation, TrueState};
 pub(super) use sensing::Sensing;
 
 use keyway::ConfigError;
+use keyway::robot::{CycleCount, Robot};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -37,30 +38,30 @@ use std::f64::consts::PI;
 /// let error = disturbances.validate().unwrap_err();
 /// assert_eq!(error.to_string(), "actuation.v_relative must be a share from 0 to 0.3, got 5");
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Disturbances {
     /// Seed of the random numbers: the same seed gives the same run.
     pub seed: u64,
     /// Errors of the sensor.
-    pub sensor: SensorNoise,
+    pub sensor: SensorFaults,
     /// Errors of the motors.
-    pub actuation: ActuationNoise,
+    pub actuation: ActuationFaults,
     /// Errors of the robot's estimated pose and velocity.
-    pub localisation: LocalisationNoise,
+    pub localisation: LocalisationFaults,
 }
 
-/// Errors of a range sensor.
+/// Errors of the range sensors: each has them, with random numbers of its own.
 ///
 /// The range r of a beam that hits something is measured as r + e. The standard deviation of e is
 /// the root of `range_m`² + (`range_relative` r)², and e is drawn anew for every beam and scan. The
 /// result stays between 0, which carries no information, and the sensor's range. A beam that hits
 /// nothing reports this without error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct SensorNoise {
+pub struct SensorFaults {
     /// Standard deviation of every range \[m\], from 0 to 100.
     pub range_m: f64,
     /// Standard deviation as a share of the range, from 0 to 0.3.
@@ -70,17 +71,37 @@ pub struct SensorNoise {
     /// ground.
     pub dropped_beams: f64,
     /// Share of the scans that are lost, from 0 to 1, chosen independently. The controller is
-    /// called in every cycle, as on a real robot. Without a scan of that cycle, it gets one in
-    /// which every beam is NaN, and not an old one, which would show obstacles in wrong places.
+    /// called in every cycle, as on a real robot. It gets no scan then, and not an old one, which
+    /// would show obstacles in wrong places.
     pub dropped_scans: f64,
+    /// Share of the scans in whose place the scan before is given again as if it were new, from 0
+    /// to 1, chosen independently. It shows obstacles where they were in relation to the robot.
+    pub repeated_scans: f64,
+    /// Time from a scan to the first cycle in which the controller can get it \[s\], from 0 to 10.
+    /// The controller gets the latest scan that has arrived, once, with the time at which it was
+    /// made. Until the first one arrives it gets none.
+    pub delay_s: f64,
+    /// Time by which the stamps of scans are later than the scans \[s\], from 0 to `delay_s`. With
+    /// all of the delay a scan seems to have been made when it arrives.
+    pub stamp_late_s: f64,
+    /// Time from one scan to the next \[s\], from 0.001 to 60, where it is not what the robot's
+    /// description says ([`RangeSensor::period_s`](keyway::robot::RangeSensor::period_s)); 0: as
+    /// described.
+    pub period_s: f64,
+    /// Sectors in which the sensor is blind, each from one bearing counter-clockwise to another
+    /// \[deg\], from -360 to 360 and 0 where the sensor looks: a dirty window, or a mast. Their
+    /// beams are NaN.
+    pub blind_deg: Vec<[f64; 2]>,
+    /// Indices of the sensors that say nothing at all.
+    pub lost: Vec<usize>,
 }
 
-/// Errors of the motors. The robot still keeps its limits of speed and acceleration, and stands
-/// when commanded to stand.
+/// Errors of the motors and wheels. The robot still keeps its limits of speed and acceleration, and
+/// comes to a stand when commanded to stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct ActuationNoise {
+pub struct ActuationFaults {
     /// Delay from a command to its effect that the robot does not know \[s\], from 0 to 10. It adds
     /// to the known delay ([`Robot::actuation_delay_s`](keyway::robot::Robot::actuation_delay_s)).
     /// A command given at the time t changes the velocity from t + `delay_s` on, for one cycle, as
@@ -95,6 +116,21 @@ pub struct ActuationNoise {
     pub v_relative: f64,
     /// Standard deviation of the turn rate as a share of it, from 0 to 0.3.
     pub omega_relative: f64,
+    /// Time constant of the drive \[s\], from 0 to 10. With 0 the wheels follow the velocity w that
+    /// the command and the limits allow. Otherwise their velocity u is a first-order lag behind it:
+    /// in each cycle of length T, u' = u + (1 - exp(-T / `lag_s`)) (w - u). Below 0.001 m/s and
+    /// 0.001 rad/s the wheels stand when w is 0.
+    pub lag_s: f64,
+    /// Dead band of the speed \[m/s\], from 0 to 100: a command below it, without its sign, drives
+    /// as if it were 0.
+    pub dead_band_mps: f64,
+    /// Dead band of the turn rate \[rad/s\], from 0 to 100.
+    pub dead_band_radps: f64,
+    /// Share of the wheels' speed that is lost to slip, from 0 to 0.9. The velocity that the robot
+    /// is told is that of the wheels.
+    pub v_slip: f64,
+    /// The same of the turn rate: skid-steered robots lose much of it.
+    pub omega_slip: f64,
 }
 
 /// Errors of a robot's estimated pose and velocity.
@@ -107,7 +143,7 @@ pub struct ActuationNoise {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
-pub struct LocalisationNoise {
+pub struct LocalisationFaults {
     /// Standard deviation of each coordinate of the position \[m\], from 0 to 100.
     pub position_m: f64,
     /// Standard deviation of the heading \[rad\], from 0 to pi.
@@ -120,6 +156,33 @@ pub struct LocalisationNoise {
     pub v_relative: f64,
     /// Standard deviation of the turn rate as a share of it, from 0 to 0.3.
     pub omega_relative: f64,
+    /// Error of the position per driven distance, from 0 to 0.3: after d metres the position is off
+    /// by `drift` d. Its direction in the world frame is drawn once.
+    pub drift: f64,
+    /// Error of the heading per driven distance \[rad/m\], from 0 to 1, to a side that is drawn
+    /// once.
+    pub heading_drift_radpm: f64,
+    /// Largest distance of a jump of the position \[m\], from 0 to 100. The pose jumps once in each
+    /// stretch of `jump_every_s`, at a random time, and is right again `jump_for_s` later, within
+    /// the same stretch. Distance, direction and turn are drawn anew for each jump, every one
+    /// equally likely.
+    pub jump_m: f64,
+    /// Largest turn of a jump to either side \[rad\], from 0 to pi.
+    pub jump_rad: f64,
+    /// Time in which there is one jump \[s\], from 0 to 1000000 and at least `jump_for_s`; at least
+    /// 0.001 where there are jumps.
+    pub jump_every_s: f64,
+    /// Duration of a jump \[s\], from 0 to `jump_every_s`; where both are equal, the pose is always
+    /// off.
+    pub jump_for_s: f64,
+    /// Time from a pose and its velocity to the first cycle in which the controller is told them
+    /// \[s\], from 0 to 10. It is told their time, too. Until then it is told those of the start.
+    pub delay_s: f64,
+    /// Time by which the stamps of poses are later than the poses \[s\], from 0 to `delay_s`. With
+    /// all of the delay a pose seems to be the present one.
+    pub stamp_late_s: f64,
+    /// True if the velocity is always told as 0, as by odometry without wheel encoders.
+    pub velocity_is_zero: bool,
 }
 
 impl Disturbances {
@@ -134,62 +197,164 @@ impl Disturbances {
     /// Names the first field that cannot be used, with its valid values. Relative deviations are at
     /// most 0.3, so that three of them cannot change the sign.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        let SensorNoise { range_m, range_relative, dropped_beams, dropped_scans } = self.sensor;
-        let Self { actuation, localisation, .. } = self;
-        let (length, relative) =
-            ((100.0, "a length from 0 to 100 m"), (0.3, "a share from 0 to 0.3"));
-        let share = (1.0, "a share from 0 to 1");
-        let checks = [
-            ("sensor.range_m", range_m, length),
-            ("sensor.range_relative", range_relative, relative),
-            ("sensor.dropped_beams", dropped_beams, share),
-            ("sensor.dropped_scans", dropped_scans, share),
-            ("actuation.delay_s", actuation.delay_s, (10.0, "a time from 0 to 10 s")),
-            ("actuation.v_relative", actuation.v_relative, relative),
-            ("actuation.omega_relative", actuation.omega_relative, relative),
-            ("localisation.position_m", localisation.position_m, length),
-            ("localisation.heading_rad", localisation.heading_rad, (PI, "an angle from 0 to pi")),
-            (
-                "localisation.correlation_s",
-                localisation.correlation_s,
-                (1e6, "a time from 0 to 1000000 s"),
-            ),
-            ("localisation.v_relative", localisation.v_relative, relative),
-            ("localisation.omega_relative", localisation.omega_relative, relative),
-        ];
-        let is_unusable =
-            |(_, value, (most, _)): &(_, f64, (f64, _))| !(0.0..=*most).contains(value);
-        match checks.into_iter().find(is_unusable) {
-            Some((path, value, (_, expected))) => Err(ConfigError::must_be(path, expected, value)),
+        self.sensor.validate().map_err(|error| error.within("sensor"))?;
+        self.actuation.validate().map_err(|error| error.within("actuation"))?;
+        self.localisation.validate().map_err(|error| error.within("localisation"))
+    }
+}
+
+impl Disturbances {
+    /// Checks every value, those that depend on the robot, too.
+    ///
+    /// # Errors
+    /// As for [`Self::validate`]; for an index of a sensor that the robot does not have, and for a
+    /// delay of scans in which more ranges are under way than a simulation may hold.
+    pub fn validate_for(&self, robot: &Robot) -> Result<(), ConfigError> {
+        /// About a gigabyte.
+        const MOST_RANGES: f64 = 1e8;
+        self.validate()?;
+        let count = robot.sensors.len();
+        if let Some(&lost) = self.sensor.lost.iter().find(|&&lost| lost >= count) {
+            let expected = format!("indices below {count}, the number of the robot's sensors");
+            return Err(ConfigError::must_be("sensor.lost", &expected, lost as f64));
+        }
+        let beams: u32 = robot.sensors.iter().map(|sensor| sensor.beams).max().unwrap_or(0);
+        let under_way = self.sensor.delay_s / robot.cycle_s * f64::from(beams);
+        if under_way <= MOST_RANGES {
+            return Ok(());
+        }
+        let expected = "a time in which at most 100000000 ranges are under way";
+        Err(ConfigError::must_be("sensor.delay_s", expected, self.sensor.delay_s))
+    }
+}
+
+/// Largest value of a field, and its description for an error.
+type Most = (f64, &'static str);
+
+const LENGTH: Most = (100.0, "a length from 0 to 100 m");
+const RELATIVE: Most = (0.3, "a share from 0 to 0.3");
+const SHARE: Most = (1.0, "a share from 0 to 1");
+const DELAY: Most = (10.0, "a time from 0 to 10 s");
+const LONG_TIME: Most = (1e6, "a time from 0 to 1000000 s");
+const ANGLE: Most = (PI, "an angle from 0 to pi");
+const BAND: Most = (100.0, "a number from 0 to 100");
+const SLIP: Most = (0.9, "a share from 0 to 0.9");
+
+/// Refuses the first value that is not from 0 to its largest.
+fn check<const N: usize>(checks: [(&'static str, f64, Most); N]) -> Result<(), ConfigError> {
+    let is_unusable = |(_, value, (most, _)): &(_, f64, Most)| !(0.0..=*most).contains(value);
+    match checks.into_iter().find(is_unusable) {
+        Some((field, value, (_, expected))) => Err(ConfigError::must_be(field, expected, value)),
+        None => Ok(()),
+    }
+}
+
+/// Refuses stamps that would be in the future.
+fn check_stamps(stamp_late_s: f64, delay_s: f64) -> Result<(), ConfigError> {
+    if (0.0..=delay_s).contains(&stamp_late_s) {
+        return Ok(());
+    }
+    Err(ConfigError::must_be("stamp_late_s", "a time from 0 to `delay_s`", stamp_late_s))
+}
+
+impl SensorFaults {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn validate(&self) -> Result<(), ConfigError> {
+        check([
+            ("range_m", self.range_m, LENGTH),
+            ("range_relative", self.range_relative, RELATIVE),
+            ("dropped_beams", self.dropped_beams, SHARE),
+            ("dropped_scans", self.dropped_scans, SHARE),
+            ("repeated_scans", self.repeated_scans, SHARE),
+            ("delay_s", self.delay_s, DELAY),
+        ])?;
+        check_stamps(self.stamp_late_s, self.delay_s)?;
+        if self.period_s != 0.0 && !(1e-3..=60.0).contains(&self.period_s) {
+            let expected = "0, or a time from 0.001 to 60 s";
+            return Err(ConfigError::must_be("period_s", expected, self.period_s));
+        }
+        let mut bearings = self.blind_deg.iter().flatten();
+        match bearings.find(|bearing_deg| !(-360.0..=360.0).contains(*bearing_deg)) {
+            Some(&deg) => Err(ConfigError::must_be("blind_deg", "angles from -360 to 360", deg)),
             None => Ok(()),
         }
     }
 }
 
-impl SensorNoise {
+impl ActuationFaults {
     fn is_none(&self) -> bool {
         *self == Self::default()
     }
-}
 
-impl ActuationNoise {
-    fn is_none(&self) -> bool {
-        *self == Self::default()
+    fn validate(&self) -> Result<(), ConfigError> {
+        check([
+            ("delay_s", self.delay_s, DELAY),
+            ("v_relative", self.v_relative, RELATIVE),
+            ("omega_relative", self.omega_relative, RELATIVE),
+            ("lag_s", self.lag_s, DELAY),
+            ("dead_band_mps", self.dead_band_mps, BAND),
+            ("dead_band_radps", self.dead_band_radps, BAND),
+            ("v_slip", self.v_slip, SLIP),
+            ("omega_slip", self.omega_slip, SLIP),
+        ])
     }
 }
 
-impl LocalisationNoise {
+impl LocalisationFaults {
     fn is_none(&self) -> bool {
-        Self { correlation_s: 0.0, ..*self } == Self::default()
+        let without_sizes =
+            Self { correlation_s: 0.0, jump_every_s: 0.0, jump_for_s: 0.0, ..*self };
+        without_sizes == Self::default()
+    }
+
+    /// True if the pose jumps.
+    fn jumps(&self) -> bool {
+        self.jump_m > 0.0 || self.jump_rad > 0.0
+    }
+
+    fn validate(&self) -> Result<(), ConfigError> {
+        check([
+            ("position_m", self.position_m, LENGTH),
+            ("heading_rad", self.heading_rad, ANGLE),
+            ("correlation_s", self.correlation_s, LONG_TIME),
+            ("v_relative", self.v_relative, RELATIVE),
+            ("omega_relative", self.omega_relative, RELATIVE),
+            ("drift", self.drift, RELATIVE),
+            (
+                "heading_drift_radpm",
+                self.heading_drift_radpm,
+                (1.0, "an angle per metre from 0 to 1"),
+            ),
+            ("jump_m", self.jump_m, LENGTH),
+            ("jump_rad", self.jump_rad, ANGLE),
+            ("jump_every_s", self.jump_every_s, LONG_TIME),
+            ("jump_for_s", self.jump_for_s, LONG_TIME),
+            ("delay_s", self.delay_s, DELAY),
+        ])?;
+        check_stamps(self.stamp_late_s, self.delay_s)?;
+        if self.jumps() && self.jump_every_s < 1e-3 {
+            let expected = "a time of at least 0.001 s where the pose jumps (`jump_m`, `jump_rad`)";
+            return Err(ConfigError::must_be("jump_every_s", expected, self.jump_every_s));
+        }
+        if self.jump_for_s > self.jump_every_s {
+            let expected = "a time from 0 to `jump_every_s`";
+            return Err(ConfigError::must_be("jump_for_s", expected, self.jump_for_s));
+        }
+        Ok(())
     }
 }
 
-/// Seed and robot that random numbers are drawn for.
+/// Seed, robot and sensor that random numbers are drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     pub(super) seed: u64,
     /// Place of the robot among the participants.
     pub(super) robot: usize,
+    /// Place of the sensor among those of the robot.
+    pub(super) sensor: usize,
 }
 
 /// Purpose of random numbers. The discriminants are part of the meaning of a seed.
@@ -205,11 +370,25 @@ enum Kind {
     Heading = 7,
     ToldV = 8,
     ToldOmega = 9,
+    RepeatedScan = 10,
+    Drift = 11,
+    Jump = 12,
+    Glimpse = 13,
+}
+
+/// Number of cycles after which something is there that is so late: it waits for the cycle's
+/// beginning.
+fn cycles_late(delay_s: f64, cycle_s: f64) -> usize {
+    let CycleCount { whole, part, .. } = CycleCount::of(delay_s, cycle_s);
+    whole + usize::from(part > 0.0)
 }
 
 impl Source {
     fn stream(self, kind: Kind) -> keyway::random::Random {
-        keyway::random::Random::stream(self.seed, &[self.robot as u64, kind as u64])
+        let names = [self.robot as u64, kind as u64, self.sensor as u64];
+        // The first sensor has the numbers of a robot without others.
+        let names = if self.sensor == 0 { &names[..2] } else { &names[..] };
+        keyway::random::Random::stream(self.seed, names)
     }
 }
 

@@ -3,7 +3,7 @@ use crate::sim::{Control, Disturbances, Obstacle, Outcome, RunRules};
 use keyway::geometry::Disc;
 use keyway::map::{GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::Observation;
 use std::f64::consts::FRAC_PI_2;
 
 /// A world of 20 m x 20 m around the origin.
@@ -17,7 +17,7 @@ fn world(circles: &[(f64, f64, f64)]) -> World {
 /// The small robot (0.5 m/s², 0.5 m/s, radius 0.18 m) with a sparse sensor.
 fn robot() -> Robot {
     let mut robot = Robot::small();
-    robot.sensor.beams = 8;
+    robot.sensors[0].beams = 8;
     robot
 }
 
@@ -39,7 +39,7 @@ fn alone(
     start: Pose,
     goal: Point,
     rules: &RunRules,
-    mut controller: impl FnMut(Pose, Velocity, &Scan) -> Control + Send,
+    mut controller: impl FnMut(&Observation<'_>) -> Control + Send,
 ) -> Result<Run, SimError> {
     let participant = Participant {
         robot,
@@ -56,7 +56,7 @@ fn alone(
 
 fn drive(world: &World, robot: &Robot, goal: Point, rules: &RunRules, command: Velocity) -> Run {
     let mut left = 1e6;
-    alone(world, robot, Pose::default(), goal, rules, |_, _, _| {
+    alone(world, robot, Pose::default(), goal, rules, |_| {
         left -= 1.0;
         Control { action: Action::Drive(command), remaining_m: left, route: 1 }
     })
@@ -181,7 +181,7 @@ fn stuck_at_the_exact_time() {
     let world = world(&[]);
     let stuck_at = |remaining: &(dyn Fn(u64) -> f64 + Sync)| {
         let mut cycle = 0;
-        let run = alone(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_, _, _| {
+        let run = alone(&world, &robot(), Pose::default(), FAR, &limit(60.0), |_| {
             cycle += 1;
             let remaining_m = remaining(cycle - 1);
             // A path longer than 20 m is a second route.
@@ -212,7 +212,7 @@ fn stuck_at_the_exact_time() {
 fn stop_and_arrived_brake() {
     let mut cycle = 0;
     let world = world(&[]);
-    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(3.0), |_, _, _| {
+    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(3.0), |_| {
         cycle += 1;
         let action = match cycle {
             1..=10 => Action::Drive(Velocity::new(0.5, 0.0)),
@@ -231,7 +231,9 @@ fn stop_and_arrived_brake() {
 fn the_controller_sees_the_state_and_a_scan() {
     let world = world(&[(3.0, 0.0, 1.0)]);
     let mut seen = Vec::new();
-    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(1.0), |pose, v, scan| {
+    let run = alone(&world, &robot(), Pose::default(), FAR, &limit(1.0), |observation| {
+        let Observation { pose, velocity: v, scans, .. } = *observation;
+        let scan = scans[0].scan;
         // Beam 4 of 8 looks straight ahead.
         assert!((scan.ranges_m[4] - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
@@ -247,11 +249,19 @@ fn a_rerun_gives_the_same_bytes() {
     let world = world(&[(1.0, 0.5, 0.1), (-1.0, -1.0, 0.3)]);
     let bytes = || {
         let start = Pose::new(0.0, 0.0, FRAC_PI_2);
-        let run = alone(&world, &robot(), start, FAR, &limit(30.0), |pose, _, scan| {
-            let nearest = scan.ranges_m.iter().copied().fold(3.5, f64::min);
-            let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
-            Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
-        });
+        let run = alone(
+            &world,
+            &robot(),
+            start,
+            FAR,
+            &limit(30.0),
+            |&Observation { pose, scans, .. }| {
+                let scan = scans[0].scan;
+                let nearest = scan.ranges_m.iter().copied().fold(3.5, f64::min);
+                let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
+                Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
+            },
+        );
         serde_json::to_vec(&run.unwrap()).unwrap()
     };
     let first = bytes();
@@ -265,11 +275,7 @@ fn refuses_what_cannot_be() {
     let world = world(&[]);
     let run = |robot: &Robot, start: Pose, rules: &RunRules, v: f64| {
         let action = Action::Drive(Velocity::new(v, 0.0));
-        alone(&world, robot, start, FAR, rules, |_, _, _| Control {
-            action,
-            remaining_m: 1.0,
-            route: 1,
-        })
+        alone(&world, robot, start, FAR, rules, |_| Control { action, remaining_m: 1.0, route: 1 })
     };
     let (start, rules) = (Pose::default(), limit(1.0));
     let bad_robot = Robot { cycle_s: 0.0, ..robot() };

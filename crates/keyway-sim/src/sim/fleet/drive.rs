@@ -2,15 +2,17 @@
 
 use super::{Entrant, Touched};
 use crate::sim::cycle_motion::CycleMotion;
-use crate::sim::disturbances::{Actuation, Localisation, Sensing, Source};
+use crate::sim::disturbances::{Actuation, Localisation, Sensing, Source, TrueState};
 use crate::sim::lidar::Beams;
-use crate::sim::rules::{Arrival, StuckWatch, cycles_within};
+use crate::sim::rules::{Arrival, ReachedBy, StuckWatch, cycles_within};
 use crate::sim::social_force::Body;
 use crate::sim::sweep::{MoverSweep, Moving, PairSweep, StandingSweep};
-use crate::sim::{MoverWay, MovingObstacle, Obstacle, Outcome, Run, TrajectoryPoint, World};
+use crate::sim::{
+    MoverWay, MovingObstacle, Obstacle, Outcome, RobotState, Run, TrajectoryPoint, World, WorldAt,
+};
 use keyway::geometry::{Point, Pose, Velocity};
-use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::robot::{RangeSensor, Robot};
+use keyway::sense::{Scan, SensorScan};
 use std::borrow::Cow;
 
 /// A run that is in progress or has ended.
@@ -19,18 +21,17 @@ pub(super) struct Drive<'a> {
     goal: Point,
     goal_tolerance_m: f64,
     pub(super) arrival: Arrival,
+    reached_by: ReachedBy,
     pub(super) last_cycle: u64,
     pub(super) pose: Pose,
     pub(super) velocity: Velocity,
     pub(super) cycles: u64,
     length_m: f64,
     pub(super) least: Clearances,
-    pub(super) beams: Beams,
-    pub(super) scan: Scan,
-    /// Pose and velocity that the controller is told for [`Self::pose`] and [`Self::velocity`].
-    pub(super) told: (Pose, Velocity),
+    pub(super) sensors: Vec<Sensor>,
+    /// State that the controller is told for [`Self::pose`] and [`Self::velocity`].
+    pub(super) told: RobotState,
     /// Disturbances of the robot, each `None` if nothing is disturbed.
-    sensing: Option<Sensing>,
     pub(super) actuation: Option<Actuation>,
     localisation: Option<Localisation>,
     samples: Vec<TrajectoryPoint>,
@@ -51,12 +52,34 @@ pub(super) struct Clearances {
     pub(super) robots_m: f64,
 }
 
+/// A sensor of a robot.
+pub(super) struct Sensor {
+    pub(super) beams: Beams,
+    pub(super) sensing: Sensing,
+    /// The last scan; every beam is NaN where there was none in the last cycle.
+    pub(super) scan: Scan,
+    /// True if there was one in the last cycle.
+    pub(super) is_given: bool,
+}
+
+impl Sensor {
+    fn new(described: &RangeSensor, sensing: Sensing) -> Self {
+        let beams = Beams::of(described);
+        Self { scan: beams.scan(), beams, sensing, is_given: false }
+    }
+}
+
 impl<'a> Drive<'a> {
     pub(super) fn new(index: usize, entrant: Entrant<'a>, cycle_s: f64) -> Self {
         let Entrant { robot, start: pose, goal, disturbances, rules } = entrant;
-        let source = Source { seed: disturbances.seed, robot: index };
+        let source = Source { seed: disturbances.seed, robot: index, sensor: 0 };
         let velocity = Velocity::ZERO;
-        let beams = Beams::of(&robot.sensor);
+        let sensor = |(sensor, described): (usize, &RangeSensor)| {
+            let source = Source { sensor, ..source };
+            let faults = disturbances.sensor.clone();
+            Sensor::new(described, Sensing::new(faults, source, (described, cycle_s)))
+        };
+        let sensors = robot.sensors.iter().enumerate().map(sensor).collect();
         let actuation = Actuation::new(disturbances.actuation, source, &robot);
         let infinite_m = f64::INFINITY;
         Self {
@@ -64,6 +87,7 @@ impl<'a> Drive<'a> {
             goal,
             goal_tolerance_m: rules.goal_tolerance_m,
             arrival: rules.arrival,
+            reached_by: rules.reached_by,
             last_cycle: cycles_within(rules.time_limit_s, cycle_s),
             pose,
             velocity,
@@ -74,10 +98,8 @@ impl<'a> Drive<'a> {
                 movers_m: infinite_m,
                 robots_m: infinite_m,
             },
-            scan: beams.scan(),
-            beams,
-            told: (pose, velocity),
-            sensing: Sensing::new(disturbances.sensor, source),
+            sensors,
+            told: RobotState { stamp_s: 0.0, pose, velocity },
             actuation,
             localisation: Localisation::new(disturbances.localisation, source, cycle_s),
             samples: vec![TrajectoryPoint { t_s: 0.0, pose, velocity }],
@@ -94,24 +116,44 @@ impl<'a> Drive<'a> {
     }
 
     pub(super) fn is_near_goal(&self) -> bool {
-        self.pose.point().distance(self.goal) <= self.goal_tolerance_m
-    }
-
-    /// Updates the controller's inputs from an exact scan.
-    pub(super) fn learn(&mut self, mut scan: Scan) {
-        if let Some(sensing) = &mut self.sensing {
-            sensing.disturb(&mut scan);
-        }
-        self.learn_place(scan);
-    }
-
-    /// Stores a scan as it is, and updates the pose and velocity that the controller is told.
-    pub(super) fn learn_place(&mut self, scan: Scan) {
-        self.scan = scan;
-        self.told = match &mut self.localisation {
-            Some(localisation) => localisation.told(self.pose, self.velocity),
-            None => (self.pose, self.velocity),
+        let pose = match self.reached_by {
+            ReachedBy::Truth => self.pose,
+            ReachedBy::Belief => self.told.pose,
         };
+        pose.point().distance(self.goal) <= self.goal_tolerance_m
+    }
+
+    /// Turns the exact scans of this cycle, if there are any, into what the controller gets.
+    pub(super) fn learn_scans(&mut self) {
+        for sensor in &mut self.sensors {
+            sensor.is_given = sensor.sensing.give(self.cycles, &mut sensor.scan);
+        }
+    }
+
+    /// Updates the pose and velocity that the controller is told.
+    pub(super) fn learn_place(&mut self, cycle_s: f64) {
+        let (pose, t_s, driven_m) = (self.pose, self.time_s(cycle_s), self.length_m);
+        let actuation = self.actuation.as_ref();
+        let odometry = actuation.map_or(self.velocity, |it| it.odometry(self.velocity));
+        let (mut stamp_s, mut told) = (t_s, (pose, odometry));
+        if let Some(localisation) = &mut self.localisation {
+            told = localisation.told(TrueState { t_s, pose, odometry, driven_m });
+            stamp_s = localisation.stamp_s(self.cycles);
+        }
+        self.told = RobotState { stamp_s, pose: told.0, velocity: told.1 };
+    }
+
+    /// Scans that the controller gets in this cycle.
+    pub(super) fn scans(&self) -> Vec<SensorScan<'_>> {
+        let given = self.sensors.iter().enumerate().filter(|(_, sensor)| sensor.is_given);
+        given
+            .map(|(sensor, Sensor { beams, sensing, scan, .. })| SensorScan {
+                stamp_s: sensing.stamp_s(self.cycles),
+                sensor,
+                mount: beams.mount(),
+                scan,
+            })
+            .collect()
     }
 
     /// True if the robot stands and no pending command moves it.
@@ -129,8 +171,8 @@ impl<'a> Drive<'a> {
         Moving { footprint: &self.robot.footprint, motion: &self.motion }
     }
 
-    pub(super) fn sweep<'s>(&'s self, world: &'s World) -> StandingSweep<'s> {
-        StandingSweep { world, robot: self.moving() }
+    pub(super) fn sweep<'s>(&'s self, world: &'s World, cycle_s: f64) -> StandingSweep<'s> {
+        StandingSweep { world, start_s: self.time_s(cycle_s), robot: self.moving() }
     }
 
     pub(super) fn beside<'s>(&'s self, mover: &'s MovingObstacle, cycle_s: f64) -> MoverSweep<'s> {
@@ -155,22 +197,25 @@ impl<'a> Drive<'a> {
         self.pose = self.motion.pose(end);
         self.velocity = self.motion.velocity(end);
         self.length_m += self.motion.driven_m(end);
+        let start_s = self.time_s(cycle_s);
         let t_s = (self.cycles as f64 + end / CycleMotion::END) * cycle_s;
         self.cycles += 1;
         self.samples.push(TrajectoryPoint { t_s, pose: self.pose, velocity: self.velocity });
         if let Some(with) = self.touched {
-            self.collide(end, with, world, cycle_s);
+            self.collide(end, with, &world.at(start_s), cycle_s);
         }
     }
 
-    /// Ends the run with a contact at a place on the current motion.
-    pub(super) fn collide(&mut self, place: f64, with: Touched, world: &World, cycle_s: f64) {
+    /// Ends the run with a contact at a place on the current motion, in the world as the cycle
+    /// began.
+    pub(super) fn collide(&mut self, place: f64, with: Touched, world: &WorldAt<'_>, cycle_s: f64) {
         let (jumped_onto, mover_speed_mps) = match with {
             Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
-            Touched::Standing | Touched::Robot(_) => (false, None),
+            Touched::Standing { appeared } => (appeared, None),
+            Touched::Robot(_) => (false, None),
         };
         let with = match with {
-            Touched::Standing => world.nearest_standing(&self.robot.footprint, self.pose),
+            Touched::Standing { .. } => world.nearest_standing(&self.robot.footprint, self.pose),
             Touched::Mover { index, .. } => Obstacle::Mover(index),
             Touched::Robot(index) => Obstacle::Robot(index),
         };
@@ -179,7 +224,8 @@ impl<'a> Drive<'a> {
             Obstacle::Square
             | Obstacle::HiddenSquare
             | Obstacle::Circle(_)
-            | Obstacle::Polygon(_) => self.least.standing_m = 0.0,
+            | Obstacle::Polygon(_)
+            | Obstacle::Elusive(_) => self.least.standing_m = 0.0,
             Obstacle::Mover(_) => self.least.movers_m = 0.0,
             Obstacle::Robot(_) => self.least.robots_m = 0.0,
         }

@@ -8,11 +8,11 @@ use super::participant::{Action, Control, Participant};
 use super::rules::Arrival;
 use super::social_force::Body;
 use super::sweep::Sweep;
-use super::{Disturbances, Outcome, Run, RunRules, World};
-use drive::{Clearances, Drive};
+use super::{Disturbances, Outcome, RobotState, Run, RunRules, World};
+use drive::{Clearances, Drive, Sensor};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::{Scan, SensorScan};
 use std::borrow::Cow;
 
 /// Robots that drive in a world at the same time. Between two cycles, each robot has decided, or
@@ -38,16 +38,17 @@ pub(super) struct Entrant<'a> {
 
 impl<'a> Entrant<'a> {
     pub(super) fn of<'p: 'a>(participant: &Participant<'p>) -> Self {
-        let Participant { robot, start, goal, disturbances, ref rules, .. } = *participant;
-        Self { robot: Cow::Borrowed(robot), start, goal, disturbances, rules: rules.clone() }
+        let Participant { robot, start, goal, ref disturbances, ref rules, .. } = *participant;
+        let (disturbances, rules) = (disturbances.clone(), rules.clone());
+        Self { robot: Cow::Borrowed(robot), start, goal, disturbances, rules }
     }
 }
 
 /// Object that a robot touched.
 #[derive(Clone, Copy)]
 enum Touched {
-    /// The nearest stationary obstacle, or the border.
-    Standing,
+    /// The nearest stationary obstacle, or the border; `appeared` if it has just appeared there.
+    Standing { appeared: bool },
     /// The moving obstacle of this index, with its speed; `jumped_onto` if it has just jumped
     /// there.
     Mover { index: usize, jumped_onto: bool, speed_mps: f64 },
@@ -88,36 +89,54 @@ impl<'a> Fleet<'a> {
         if drive.outcome.is_some() {
             return false;
         }
+        drive.learn_place(self.cycle_s);
         let is_there = drive.arrival == Arrival::Passing && drive.is_near_goal();
         if is_there || drive.cycles >= drive.last_cycle {
             drive.end(if is_there { Outcome::Reached } else { Outcome::Timeout }, self.cycle_s);
             return false;
         }
-        let mut scan = std::mem::take(&mut drive.scan);
-        if !drive.robot.scans_in(drive.cycles) {
-            // Between two scans, the controller is told only its pose and velocity.
-            scan.ranges_m.fill(f64::NAN);
-            drive.learn_place(scan);
-            return true;
+        for sensor in 0..self.drives[index].sensors.len() {
+            self.scan_with(index, sensor);
         }
-        let drive = &self.drives[index];
-        let world = self.world.at(drive.time_s(self.cycle_s));
-        let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));
-        world.cast_among(drive.pose, &drive.beams, others, &mut scan);
-        self.drives[index].learn(scan);
+        self.drives[index].learn_scans();
         true
     }
 
-    /// Last scan of a robot.
-    pub(super) fn scan(&self, index: usize) -> &Scan {
-        &self.drives[index].scan
+    /// Makes the exact scan of a sensor, if it scans in this cycle.
+    fn scan_with(&mut self, index: usize, sensor: usize) {
+        let cycle = self.drives[index].cycles;
+        let scanning = &mut self.drives[index].sensors[sensor];
+        if !scanning.sensing.scans_in(cycle) {
+            return;
+        }
+        let mut scan = std::mem::take(&mut scanning.scan);
+        let drive = &self.drives[index];
+        let Sensor { beams, sensing, .. } = &drive.sensors[sensor];
+        let mut glimpses = sensing.glimpses(cycle);
+        let world = self.world.at(drive.time_s(self.cycle_s));
+        let others = self.others(index).map(|other| (&other.robot.footprint, other.pose));
+        world.cast_among(drive.pose, beams, others, &mut glimpses, &mut scan);
+        self.drives[index].sensors[sensor].scan = scan;
     }
 
-    /// Pose and velocity that a robot was last told, at the beginning of a cycle, and the number of
-    /// that cycle.
-    pub(super) fn told(&self, index: usize) -> (Pose, Velocity, u64) {
-        let Drive { told: (pose, velocity), cycles, .. } = self.drives[index];
-        (pose, velocity, cycles)
+    /// Last scan of a robot's first sensor.
+    pub(super) fn scan(&self, index: usize) -> &Scan {
+        &self.drives[index].sensors[0].scan
+    }
+
+    /// Scans that a robot's controller gets in this cycle.
+    pub(super) fn scans(&self, index: usize) -> Vec<SensorScan<'_>> {
+        self.drives[index].scans()
+    }
+
+    /// State that a robot was last told, at the beginning of a cycle.
+    pub(super) fn told(&self, index: usize) -> RobotState {
+        self.drives[index].told
+    }
+
+    /// Number of the cycle that a robot begins.
+    pub(super) fn cycle(&self, index: usize) -> u64 {
+        self.drives[index].cycles
     }
 
     /// Tests a robot's arrival and progress by its controller's answer; true if the run goes on.
@@ -175,9 +194,9 @@ impl<'a> Fleet<'a> {
     }
 
     /// A robot's true pose and velocity.
-    pub(super) fn state(&self, index: usize) -> (Pose, Velocity) {
+    pub(super) fn state(&self, index: usize) -> RobotState {
         let Drive { pose, velocity, .. } = self.drives[index];
-        (pose, velocity)
+        RobotState { stamp_s: self.drives[index].time_s(self.cycle_s), pose, velocity }
     }
 
     /// Runs of all robots, which have all ended.
@@ -192,7 +211,7 @@ impl<'a> Fleet<'a> {
             let (least, touched) = self.clearances_at_start(index);
             self.drives[index].least = least;
             if let Some(with) = touched {
-                self.drives[index].collide(0.0, with, &self.world, self.cycle_s);
+                self.drives[index].collide(0.0, with, &self.world.at(0.0), self.cycle_s);
             }
         }
     }
@@ -203,7 +222,7 @@ impl<'a> Fleet<'a> {
         let Drive { ref robot, pose, .. } = self.drives[index];
         let footprint = &robot.footprint;
         let border_m = self.world.border_distance(footprint, pose);
-        let standing_m = self.world.distance_to_standing(footprint, pose, f64::INFINITY);
+        let standing_m = self.world.distance_to_standing(footprint, pose, 0.0, f64::INFINITY);
         let world = self.world.at(0.0);
         let (movers_m, mover) = world.distance_to_movers(footprint, pose, f64::INFINITY);
         let (mut robots_m, mut nearest_robot) = (f64::INFINITY, None);
@@ -217,7 +236,7 @@ impl<'a> Fleet<'a> {
             }
         }
         let touched = if border_m.min(standing_m) <= 0.0 {
-            Some(Touched::Standing)
+            Some(Touched::Standing { appeared: false })
         } else if movers_m <= 0.0 {
             mover.map(|index| {
                 let speed_mps = self.world.movers()[index].speed_mps(0.0);
@@ -257,8 +276,14 @@ impl<'a> Fleet<'a> {
         if !drive.is_moving() {
             return None;
         }
-        let place = drive.sweep(&self.world).first_contact(CycleMotion::END)?;
-        Some(Contact { place, robot, with: Touched::Standing })
+        let now_s = drive.time_s(self.cycle_s);
+        let times_s = [now_s - self.cycle_s, now_s];
+        let (footprint, pose) = (&drive.robot.footprint, drive.motion.pose(0.0));
+        if self.world.appears_onto(footprint, pose, times_s) {
+            return Some(Contact { place: 0.0, robot, with: Touched::Standing { appeared: true } });
+        }
+        let place = drive.sweep(&self.world, self.cycle_s).first_contact(CycleMotion::END)?;
+        Some(Contact { place, robot, with: Touched::Standing { appeared: false } })
     }
 
     fn contact_with_mover(&self, robot: usize, mover: usize, until: f64) -> Option<Contact> {
@@ -290,9 +315,10 @@ impl<'a> Fleet<'a> {
             return least;
         }
         let until = drive.motion.stop();
-        // The clearance stays infinite if there is nothing of the kind.
-        let standing_m = if least.standing_m.is_finite() {
-            drive.sweep(&self.world).least_clearance(until, least.standing_m)
+        // The clearance stays infinite if there never is anything of the kind.
+        let anything = least.standing_m.is_finite() || !self.world.elusive().is_empty();
+        let standing_m = if anything {
+            drive.sweep(&self.world, self.cycle_s).least_clearance(until, least.standing_m)
         } else {
             least.standing_m
         };

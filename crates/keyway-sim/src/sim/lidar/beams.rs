@@ -1,6 +1,6 @@
 //! Directions of a sensor's beams.
 
-use keyway::geometry::Point;
+use keyway::geometry::{Point, Pose};
 use keyway::robot::RangeSensor;
 use keyway::sense::Scan;
 use std::f64::consts::{PI, TAU};
@@ -9,9 +9,11 @@ use std::f64::consts::{PI, TAU};
 /// between beams.
 const MARGIN_RAD: f64 = 1e-6;
 
-/// Beams of a sensor in the robot's frame, computed once.
+/// Beams of a sensor in its own frame, computed once.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Beams {
+    /// Pose of the sensor in the robot's frame.
+    mount: Pose,
     angle_min_rad: f64,
     angle_increment_rad: f64,
     range_min_m: f64,
@@ -26,7 +28,18 @@ impl Beams {
         let RangeSensor { range_min_m, range_m: range_max_m, .. } = *sensor;
         let bearing = |beam| angle_min_rad + f64::from(beam) * angle_increment_rad;
         let directions = (0..sensor.beams).map(|beam| direction(bearing(beam))).collect();
-        Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, directions }
+        let mount = sensor.mount.pose();
+        Self { mount, angle_min_rad, angle_increment_rad, range_min_m, range_max_m, directions }
+    }
+
+    /// Pose of the sensor in the robot's frame.
+    pub(in crate::sim) const fn mount(&self) -> Pose {
+        self.mount
+    }
+
+    /// Pose of the sensor of a robot at a pose.
+    pub(super) fn pose_on(&self, robot: Pose) -> Pose {
+        robot.compose(self.mount)
     }
 
     /// A scan of these beams without measurements.
@@ -36,7 +49,7 @@ impl Beams {
         Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
-    /// Directions of all beams of a robot with the heading `theta` \[rad\].
+    /// Directions of all beams of a sensor with the heading `theta` \[rad\].
     pub(super) fn directions(&self, theta: f64) -> impl Iterator<Item = Point> {
         let ahead = direction(theta);
         self.directions.iter().map(move |&beam| turned(beam, ahead))

@@ -8,14 +8,15 @@ pub(super) use beams::Beams;
 use super::{StandingPolygon, WorldAt};
 use keyway::geometry::{Point, Pose};
 use keyway::map::RayCells;
+use keyway::random::Random;
 use keyway::robot::{Footprint, RangeSensor};
 use keyway::sense::Scan;
 use shapes::Shapes;
 
 impl WorldAt<'_> {
-    /// Scan of a sensor at `pose`, without noise. Each range is the exact distance to the first
-    /// square, circle or polygon: infinity beyond the sensor's range, 0 inside an obstacle. There
-    /// are no squares outside the map.
+    /// Scan of a sensor of a robot at `pose`, without noise. Each range is the exact distance to
+    /// the first square, circle or polygon: infinity beyond the sensor's range, 0 inside an
+    /// obstacle. There are no squares outside the map.
     ///
     /// With a field of view of 360 degrees, beam 0 looks back (-180 degrees) and the others follow
     /// evenly. With a smaller field of view, the first and the last beam look along its edges. A
@@ -24,24 +25,29 @@ impl WorldAt<'_> {
     /// A beam is a line without width: it passes between two squares that only share a corner.
     /// Along the border of two squares, it sees the one that `map::ray` visits.
     ///
+    /// Beams that [may miss](super::Presence::seen) something are chosen by the same numbers for
+    /// each scan.
+    ///
     /// Costs a few operations per free square of cells on a beam (not per cell), per circle within
     /// range, and per beam that looks towards it.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {
         let beams = Beams::of(sensor);
         let mut scan = beams.scan();
-        self.cast_among(pose, &beams, std::iter::empty(), &mut scan);
+        self.cast_among(pose, &beams, std::iter::empty(), &mut Random::new(0), &mut scan);
         scan
     }
 
     /// Casts prepared beams into their scan, among other robots: each is seen as its footprint at
-    /// its pose.
+    /// its pose. `glimpses` decides which beams see what they may miss.
     pub(super) fn cast_among<'f>(
         &self,
-        pose: Pose,
+        robot: Pose,
         beams: &Beams,
         robots: impl Iterator<Item = (&'f Footprint, Pose)>,
+        glimpses: &mut Random,
         scan: &mut Scan,
     ) {
+        let pose = beams.pose_on(robot);
         let (point, range_max_m) = (pose.point(), scan.range_max_m);
         let ranges_m = &mut scan.ranges_m;
         self.cast_at_squares(pose, beams, range_max_m, ranges_m);
@@ -51,6 +57,9 @@ impl WorldAt<'_> {
             shapes.add_footprint(footprint, at);
         }
         robots.for_each(|(footprint, at)| shapes.add_footprint(footprint, at));
+        for elusive in self.elusive() {
+            shapes.add_elusive(elusive, glimpses);
+        }
         for range_m in &mut scan.ranges_m {
             if *range_m > range_max_m {
                 *range_m = f64::INFINITY;

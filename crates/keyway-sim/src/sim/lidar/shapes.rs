@@ -1,7 +1,9 @@
 //! Ranges to circles and polygons.
 
 use super::beams::Beams;
+use crate::sim::{ElusiveObstacle, ElusiveShape};
 use keyway::geometry::{Disc, Point, Pose, Segment, outline};
+use keyway::random::Random;
 use keyway::robot::Footprint;
 
 /// Ranges of all beams, lowered shape by shape.
@@ -49,6 +51,27 @@ impl Shapes<'_> {
             // An edge lies within the circle around it.
             let (middle, half_m) = (edge.a.lerp(edge.b, 0.5), 0.5 * edge.length());
             self.lower_near(middle, half_m, |direction| range_to_edge(from, direction, &edge));
+        }
+    }
+
+    /// Adds an obstacle that a part of the beams on it see.
+    pub(super) fn add_elusive(&mut self, elusive: &ElusiveObstacle, glimpses: &mut Random) {
+        let seen = elusive.presence().seen;
+        if seen == 0.0 {
+            return;
+        }
+        let behind_m = (seen < 1.0).then(|| self.ranges_m.to_vec());
+        match elusive.shape() {
+            ElusiveShape::Disc(disc) => self.add_disc(disc),
+            ElusiveShape::Polygon(polygon) => {
+                let (footprint, at) = polygon.placed();
+                self.add_footprint(footprint, at);
+            }
+        }
+        for (range_m, behind_m) in self.ranges_m.iter_mut().zip(behind_m.into_iter().flatten()) {
+            if *range_m < behind_m && !glimpses.is_chosen(seen) {
+                *range_m = behind_m;
+            }
         }
     }
 

@@ -16,7 +16,7 @@ fn cast_among<'f>(
 ) -> Scan {
     let beams = Beams::of(sensor);
     let mut scan = beams.scan();
-    world.at(0.0).cast_among(from, &beams, robots, &mut scan);
+    world.at(0.0).cast_among(from, &beams, robots, &mut Random::new(0), &mut scan);
     scan
 }
 
@@ -255,7 +255,13 @@ proptest! {
         let among = |robots: &[(&Footprint, Pose)]| {
             let beams = Beams::of(&sensor);
             let mut scan = beams.scan();
-            world.at(t_s).cast_among(from, &beams, robots.iter().copied(), &mut scan);
+            world.at(t_s).cast_among(
+                from,
+                &beams,
+                robots.iter().copied(),
+                &mut Random::new(0),
+                &mut scan,
+            );
             scan.ranges_m
         };
         prop_assert_eq!(among(&robots), beam_by_beam(&world, t_s, from, &sensor, &robots));

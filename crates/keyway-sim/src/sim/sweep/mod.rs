@@ -77,9 +77,12 @@ pub(super) struct Moving<'a> {
     pub(super) motion: &'a CycleMotion,
 }
 
-/// A robot among the stationary obstacles of a world; leaving the map is contact.
+/// A robot among the obstacles of a world that stand when a cycle begins; leaving the map is
+/// contact.
 pub(super) struct StandingSweep<'a> {
     pub(super) world: &'a World,
+    /// Time at which the cycle begins \[s\].
+    pub(super) start_s: f64,
     pub(super) robot: Moving<'a>,
 }
 
@@ -101,7 +104,7 @@ impl Moving<'_> {
 impl Sweep for StandingSweep<'_> {
     fn clearance_m(&self, place: f64, reach_m: f64) -> f64 {
         let Moving { footprint, motion } = self.robot;
-        self.world.distance_to_standing(footprint, motion.pose(place), reach_m)
+        self.world.distance_to_standing(footprint, motion.pose(place), self.start_s, reach_m)
     }
 
     fn gap_m(&self, place: f64, reach_m: f64) -> f64 {

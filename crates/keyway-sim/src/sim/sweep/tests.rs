@@ -25,7 +25,7 @@ fn a_turn_on_the_spot_touches_nothing_new() {
     let motion = CycleMotion::new(Pose::default(), turn, turn, 0.5);
     let footprint = Footprint::circle(0.2).unwrap();
     let robot = Moving { footprint: &footprint, motion: &motion };
-    let sweep = StandingSweep { world: &world, robot };
+    let sweep = StandingSweep { world: &world, start_s: 0.0, robot };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
 }
 
@@ -36,7 +36,7 @@ fn leaving_the_map_is_contact() {
     let motion = CycleMotion::new(Pose::new(4.5, 0.0, 0.0), ahead, ahead, 1.0);
     let footprint = Footprint::circle(0.25).unwrap();
     let robot = Moving { footprint: &footprint, motion: &motion };
-    let sweep = StandingSweep { world: &world, robot };
+    let sweep = StandingSweep { world: &world, start_s: 0.0, robot };
     let place = sweep.first_contact(CycleMotion::END).unwrap();
     assert!((motion.pose(place).x - 4.75).abs() < TOLERANCE_M);
 }
@@ -60,7 +60,7 @@ proptest! {
         let world = World::from_known(&known, vec![circle]).unwrap();
         prop_assume!(world.at(0.0).distance(&footprint, start, 1.0) > TOLERANCE_M);
         let motion = CycleMotion::new(start, Velocity::new(v.0, omega.0), Velocity::new(v.1, omega.1), 1.0);
-        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
+        let sweep = StandingSweep { world: &world, start_s: 0.0, robot: Moving { footprint: &footprint, motion: &motion } };
         // Brute force over all squares at 20000 places, 0.05 mm apart.
         let squares: Vec<Cell> = frame.cells().filter(|&c| known.occupied().get(c)).collect();
         let clearance = |place: f64| {
@@ -110,13 +110,13 @@ proptest! {
         let footprint = Footprint::polygon(vertices.clone()).unwrap();
         let motion = CycleMotion::new(Pose::new(1.0, 1.0, theta), Velocity::new(v.0, omega.0),
                                       Velocity::new(v.1, omega.1), 1.0);
-        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
+        let sweep = StandingSweep { world: &world, start_s: 0.0, robot: Moving { footprint: &footprint, motion: &motion } };
         let field = DistanceField::new(&frame, known.occupied(), &FieldConfig::default());
         let is_free = |place: f64| {
             let pose = motion.pose(place);
             polygon_gap_m(&vertices, pose, &circle) > 0.0 && footprint.is_free(pose, &field)
         };
-        prop_assume!(is_free(0.0) && world.distance_to_standing(&footprint, motion.pose(0.0), 1.0) > TOLERANCE_M);
+        prop_assume!(is_free(0.0) && world.distance_to_standing(&footprint, motion.pose(0.0), 0.0, 1.0) > TOLERANCE_M);
         let contact = sweep.first_contact(CycleMotion::END);
         let until = contact.unwrap_or(CycleMotion::END);
         let mut places = (0..=4000).map(|i| f64::from(i) / 1000.0).filter(|&place| place <= until);
@@ -140,7 +140,7 @@ proptest! {
         let motion = CycleMotion::new(Pose::new(0.0, 0.0, theta), Velocity::new(v.0, omega.0),
                                       Velocity::new(v.1, omega.1), 1.0);
         let footprint = Footprint::circle(radius_m).unwrap();
-        let sweep = StandingSweep { world: &world, robot: Moving { footprint: &footprint, motion: &motion } };
+        let sweep = StandingSweep { world: &world, start_s: 0.0, robot: Moving { footprint: &footprint, motion: &motion } };
         let gap_m = |place: f64| {
             let robot = Disc::new(motion.pose(place).point(), radius_m);
             polygon_gap_m(&vertices, Pose::default(), &robot)

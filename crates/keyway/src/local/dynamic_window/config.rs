@@ -32,7 +32,10 @@ pub struct WindowConfig {
     pub backwards: bool,
     /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.
     pub admissible: Admissible,
-    /// Where on a trajectory its distance is measured: `trajectory` or `end`.
+    /// Place on a trajectory of the distance within which a velocity must be able to stop: the
+    /// nearest of all (`trajectory`), or the `end`.
+    pub stopping_distance_at: DistanceAt,
+    /// Place on a trajectory of the distance in the evaluation: `trajectory` or `end`.
     pub distance_at: DistanceAt,
     /// Larger distances count as this one \[m\].
     pub distance_cap_m: f64,
@@ -52,10 +55,15 @@ impl WindowConfig {
         omega_step_radps: PI / 180.0,
         backwards: true,
         admissible: Admissible::StoppingDistance,
+        stopping_distance_at: DistanceAt::Trajectory,
         distance_at: DistanceAt::Trajectory,
         distance_cap_m: 5.0,
         safety_margin_m: 0.0,
     };
+
+    /// The same with both distances at the end of the trajectory \[S1\].
+    pub const AT_THE_END: Self =
+        Self { stopping_distance_at: DistanceAt::End, distance_at: DistanceAt::End, ..Self::PAPER };
 
     /// Derived from the robot, one rule for all maps:
     ///
@@ -92,6 +100,7 @@ impl WindowConfig {
             omega_step_radps: widest.omega / 20.0,
             backwards: false,
             admissible: Admissible::Rollout,
+            stopping_distance_at: DistanceAt::Trajectory,
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: limits.stop_m(),
             safety_margin_m: robot.safety_margin_m(),

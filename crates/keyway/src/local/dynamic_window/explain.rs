@@ -38,7 +38,7 @@ impl DynamicWindow {
         let mut shrunk = Vec::new();
         let mut judge = Judge::new(self, scene, &mut shrunk);
         let lattice = self.lattice(scene);
-        let mut explanation = Explanation::default();
+        let mut explanation = Explanation { target: Some(scene.guide), ..Explanation::default() };
         let (mut admissible, mut places) = (Vec::new(), Vec::new());
         for (velocity, judged) in lattice.candidates().zip(judge.judge(&lattice)) {
             let fate = match judged {
@@ -125,12 +125,14 @@ impl<'a> Judge<'a> {
     fn judge(&mut self, lattice: &Lattice) -> Vec<Result<Rollout, &'static str>> {
         self.roller.roll(lattice, &mut self.memory);
         let mover_rule = self.window.mover_rule(self.roller.scene);
-        let judged = |(velocity, rollout): (Velocity, Option<Rollout>)| {
+        let rollouts = self.memory.rollouts();
+        let judged = |(index, (velocity, rollout)): (usize, (Velocity, Option<Rollout>))| {
             let rollout = rollout.ok_or(CONTACT)?;
-            let distance_m = self.window.admitted(&mover_rule, velocity, rollout.distance_m)?;
+            let distances_m = rollouts.distances(index, rollout.distance_m);
+            let distance_m = self.window.admitted(&mover_rule, velocity, distances_m)?;
             Ok(Rollout { distance_m, ..rollout })
         };
-        self.memory.rollouts().all(lattice).map(judged).collect()
+        rollouts.all(lattice).enumerate().map(judged).collect()
     }
 
     fn refused(&mut self, velocity: Velocity, rule: &'static str) -> Fate {

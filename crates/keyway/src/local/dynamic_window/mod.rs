@@ -20,7 +20,8 @@
 //! - `dist` is capped at `distance_cap_m`, the sensing range.
 //! - [`WindowConfig::for_robot`] does without (7) ([`Admissible::Rollout`]), and compares with the
 //!   guide point earlier.
-//! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured.
+//! - Contact anywhere on a rollout refuses the candidate, wherever `dist` is measured. `dist` of
+//!   (7) and that of the evaluation may be measured at different places.
 //! - In (10) a term whose sum over the candidates is 0 contributes 0.
 //! - (7) bounds the turn rate's magnitude, in radians, and does not apply on the spot, where
 //!   contact is refused anyway and nothing else can come nearer.
@@ -46,7 +47,8 @@
 //! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any
 //! candidate, one per turn rate and pose where nothing is near to it; near obstacles, where the
 //! speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and
-//! near box, and usually a few per candidate.
+//! near box, and usually a few per candidate. Twice that where (7) and the evaluation measure the
+//! distance at different places.
 
 mod body;
 mod config;
@@ -77,7 +79,7 @@ use body::Standing;
 use evaluation::Ranking;
 use motion::Timing;
 use roller::{RollMemory, Roller};
-use rollouts::Rollouts;
+use rollouts::{Distances, Rollouts};
 use std::sync::Arc;
 use window::{Lattice, Window};
 
@@ -228,8 +230,8 @@ impl DynamicWindow {
         rejected.add_many(CONTACT, candidates - rollouts.count(lattice, |_| true));
         if self.config.admissible != Admissible::Rollout || !scene.movers.is_empty() {
             let mover_rule = self.mover_rule(scene);
-            rollouts.retain(lattice, |velocity, distance_m| {
-                let admitted = self.admitted(&mover_rule, velocity, distance_m);
+            rollouts.retain(lattice, |velocity, distances_m| {
+                let admitted = self.admitted(&mover_rule, velocity, distances_m);
                 admitted.map_err(|rule| rejected.add(rule)).ok()
             });
         }
@@ -244,13 +246,13 @@ impl DynamicWindow {
         &self,
         mover_rule: &MoverRule<'_>,
         velocity: Velocity,
-        distance_m: f64,
+        Distances { stopping_m, evaluated_m }: Distances,
     ) -> Result<f64, &'static str> {
-        if let Some(rule) = self.refused_by(velocity, distance_m) {
+        if let Some(rule) = self.refused_by(velocity, stopping_m) {
             return Err(rule);
         }
         let room_m = mover_rule.room_m(velocity).ok_or(MOVER)?;
-        Ok(distance_m.min(room_m))
+        Ok(evaluated_m.min(room_m))
     }
 
     /// All candidates of a cycle.
@@ -261,13 +263,18 @@ impl DynamicWindow {
     }
 
     fn roller<'a>(&'a self, scene: &'a Scene<'a>, shrunk: &'a mut Vec<Point>) -> Roller<'a> {
-        let WindowConfig { horizon_s, distance_cap_m: cap_m, .. } = self.config;
+        let WindowConfig { horizon_s, distance_cap_m: cap_m, distance_at, .. } = self.config;
+        let stopping_at = match self.config.admissible {
+            Admissible::StoppingDistance => self.config.stopping_distance_at,
+            Admissible::Rollout => distance_at,
+        };
         Roller {
             scene,
             body: Standing { robot: &self.robot, scene, reach_m: cap_m }
                 .body(self.config.safety_margin_m, shrunk),
             timing: self.timing(scene, horizon_s),
-            counts_all: self.config.distance_at == DistanceAt::Trajectory,
+            evaluated_at: distance_at,
+            stopping_at,
             distance_cap_m: cap_m,
         }
     }

@@ -4,6 +4,7 @@ use super::body::Body;
 use super::contacts::Contacts;
 use super::counting::Counting;
 use super::motion::{Motion, Timing};
+use super::rollout::DistanceAt;
 use super::rollouts::Rollouts;
 use super::speeds::{Bounds, Speeds};
 use super::stretch::Stretch;
@@ -17,8 +18,10 @@ pub(super) struct Roller<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) body: Body<'a>,
     pub(super) timing: Timing,
-    /// Whether the nearest of all poses counts, or the last one alone.
-    pub(super) counts_all: bool,
+    /// Place of the distance in the evaluation.
+    pub(super) evaluated_at: DistanceAt,
+    /// Place of the distance in eq. (7).
+    pub(super) stopping_at: DistanceAt,
     pub(super) distance_cap_m: f64,
 }
 
@@ -54,6 +57,16 @@ impl Roller<'_> {
     /// Rolls out every candidate; refused are those whose footprint would touch something on the
     /// way or leave the map, and all where numbers are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
+        memory.rollouts.forget_stopping_distances();
+        if self.stopping_at != self.evaluated_at {
+            self.roll_at(self.stopping_at, lattice, memory);
+            memory.rollouts.keep_as_stopping_distances();
+        }
+        self.roll_at(self.evaluated_at, lattice, memory);
+    }
+
+    /// The same with the distances at one place.
+    fn roll_at(&self, distance_at: DistanceAt, lattice: &Lattice, memory: &mut RollMemory) {
         let RollMemory { near, turned, motion, touching, bounds, rollouts } = memory;
         if !self.is_finite() {
             rollouts.refuse_all(lattice);
@@ -61,7 +74,7 @@ impl Roller<'_> {
         }
         let (field, core) = (self.scene.obstacles, &self.body.core);
         let frame = field.frame();
-        let mut counting = self.counting(lattice);
+        let mut counting = self.counting(lattice, distance_at);
         let reach = self.reach(&counting, lattice);
         let mut surroundings = NearObstacles::new(core, field, reach, near);
         let (origin, ahead) = on_grid(self.scene.pose, frame);
@@ -125,7 +138,7 @@ impl Roller<'_> {
         [pose.x, pose.y, pose.theta, velocity.v, velocity.omega].iter().all(|n| n.is_finite())
     }
 
-    fn counting(&self, lattice: &Lattice) -> Counting {
+    fn counting(&self, lattice: &Lattice, distance_at: DistanceAt) -> Counting {
         let cell_m = self.scene.obstacles.frame().resolution_m();
         let contact = self.body.contact_m / cell_m - Self::ROUNDING_CELLS;
         let farthest = (self.distance_cap_m + self.body.offset_m) / cell_m;
@@ -135,7 +148,7 @@ impl Roller<'_> {
             contact,
             certain: if is_point { contact.max(Self::ROUNDING_CELLS) } else { contact },
             farthest,
-            counts_all: self.counts_all,
+            counts_all: distance_at == DistanceAt::Trajectory,
             enough: farthest.max(contact.abs() + longest),
             is_near_border: true,
         }

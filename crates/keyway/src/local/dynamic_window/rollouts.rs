@@ -11,11 +11,22 @@ use super::window::Lattice;
 use crate::geometry::{Point, Velocity};
 use crate::local::terms::heading;
 
+/// The two distances of a candidate \[m\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Distances {
+    /// Within which it must be able to stop, eq. (7).
+    pub(super) stopping_m: f64,
+    /// Of its evaluation.
+    pub(super) evaluated_m: f64,
+}
+
 /// The rollouts of all candidates.
 #[derive(Debug, Default)]
 pub(super) struct Rollouts {
     /// [`Rollout::distance_m`], or [`Self::REFUSED`].
     distances_m: Vec<f64>,
+    /// [`Distances::stopping_m`]; empty where it is the same.
+    stopping_m: Vec<f64>,
     /// [`Rollout::heading`]; of refused candidates any number.
     headings: Vec<f64>,
     /// Of each turn rate, where its candidates are compared with the guide point.
@@ -40,6 +51,23 @@ impl Rollouts {
     pub(super) fn refuse_all(&mut self, lattice: &Lattice) {
         self.reset(lattice, Self::REFUSED);
         self.judged.resize(lattice.turn_rates_radps().len(), Judged::default());
+    }
+
+    /// From now on both distances are the same.
+    pub(super) fn forget_stopping_distances(&mut self) {
+        self.stopping_m.clear();
+    }
+
+    /// Keeps the distances of these rollouts as those of eq. (7), for the next ones.
+    pub(super) fn keep_as_stopping_distances(&mut self) {
+        std::mem::swap(&mut self.stopping_m, &mut self.distances_m);
+    }
+
+    /// Both distances of a candidate, given that of its evaluation.
+    #[inline]
+    pub(super) fn distances(&self, index: usize, evaluated_m: f64) -> Distances {
+        let stopping_m = self.stopping_m.get(index).copied().unwrap_or(evaluated_m);
+        Distances { stopping_m, evaluated_m }
     }
 
     /// Adds where the next turn rate's candidates are compared with the guide point.
@@ -83,11 +111,13 @@ impl Rollouts {
     pub(super) fn retain(
         &mut self,
         lattice: &Lattice,
-        mut rule: impl FnMut(Velocity, f64) -> Option<f64>,
+        mut rule: impl FnMut(Velocity, Distances) -> Option<f64>,
     ) {
-        for (distance_m, velocity) in self.distances_m.iter_mut().zip(lattice.candidates()) {
-            if *distance_m > Self::REFUSED {
-                *distance_m = rule(velocity, *distance_m).unwrap_or(Self::REFUSED);
+        for (index, velocity) in lattice.candidates().enumerate() {
+            let distance_m = self.distances_m[index];
+            if distance_m > Self::REFUSED {
+                let distances_m = self.distances(index, distance_m);
+                self.distances_m[index] = rule(velocity, distances_m).unwrap_or(Self::REFUSED);
             }
         }
     }

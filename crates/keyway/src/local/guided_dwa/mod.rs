@@ -16,7 +16,10 @@
 //!
 //! # Where this differs from the paper
 //! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are tables 2 and 3 of
-//!   \[You2021\] where they have them, its weights in the order of the symbols.
+//!   \[You2021\] where they have them. Its weights are those of the same terms there, 0.08 for the
+//!   heading and 0.2 for the distance to obstacles; the distance to the target, which is not there,
+//!   has the third of them, 0.1.
+//! - Equation (16) takes the nearest distance on the trajectory, od of (18) that of its end.
 //! - In (18) beta target becomes beta (the largest target of all candidates - target).
 //! - Something unknown is on the route when a cell that was sensed comes nearer than
 //!   `detour.clearance_m` to one of the nodes of the route within `detour.look_ahead_m`. Nodes are
@@ -55,6 +58,7 @@ use super::{
     WindowConfig,
 };
 use crate::ConfigError;
+use crate::geometry::Point;
 use crate::robot::Robot;
 use detour::{AllCovered, GuidePoints};
 use obstacle::Cluster;
@@ -102,7 +106,7 @@ impl GuidedDwaConfig {
     /// and 3, where it has them.
     pub const PAPER: Self = Self {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
-        weights: GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 },
+        weights: GuidedWeights { heading: 0.08, target_distance: 0.1, obstacle_distance: 0.2 },
         detour: DetourConfig::PAPER,
         follower: FollowerConfig::PAPER,
     };
@@ -127,13 +131,14 @@ impl GuidedDwaConfig {
     ];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with all terms at
-    /// the end, [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`].
+    /// the end, [`DetourConfig::for_robot`] and [`FollowerConfig::for_robot`]. The target weighs
+    /// twice as much as obstacles, which the rollout avoids anyway.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         let judged_s = window.horizon_s;
         Self {
             window: WindowConfig { distance_at: DistanceAt::End, judged_s, ..window },
-            weights: Self::PAPER.weights,
+            weights: GuidedWeights { heading: 0.08, target_distance: 0.2, obstacle_distance: 0.1 },
             detour: DetourConfig::for_robot(robot),
             follower: FollowerConfig::for_robot(robot),
         }
@@ -227,8 +232,33 @@ impl GuidedDwa {
         if self.rule.admits(&Surroundings::standing(scene), decision.command, scratch).is_ok() {
             return Ok(decision);
         }
-        let guide = self.follower.carrot(scene.path, memory.covered_m).unwrap_or(scene.guide);
+        let guide = self.carrot(scene, memory);
         self.drive_to_guide(&Scene { guide, ..*scene }, scratch)
+    }
+
+    /// The follower's point of the route, once it has decided.
+    fn carrot(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Point {
+        self.follower.carrot(scene.path, memory.covered_m).unwrap_or(scene.guide)
+    }
+
+    /// The reasons for what [`Self::drive_to_guide`] does.
+    fn explain_towards(&self, scene: &Scene<'_>) -> Explanation {
+        let terms = |_, rollout: &Rollout| Self::terms(scene, rollout);
+        self.window.explain(scene, &self.weighing, terms)
+    }
+
+    /// The reasons for what [`Self::follow`] does.
+    fn explain_following(&self, scene: &Scene<'_>, memory: &mut DriveMemory) -> Explanation {
+        let mut scratch = Scratch::default();
+        let command = self.follower.decide(scene, memory, &mut scratch).map(|one| one.command);
+        let around = Surroundings::standing(scene);
+        let guide = self.carrot(scene, memory);
+        match command {
+            Ok(command) if self.rule.admits(&around, command, &mut scratch).is_err() => {
+                self.explain_towards(&Scene { guide, ..*scene })
+            }
+            _ => Explanation { target: Some(guide), ..Explanation::default() },
+        }
     }
 
     /// Nothing behind the obstacle is free: brake, and let the caller plan a new route.
@@ -275,16 +305,14 @@ impl LocalPlanner for GuidedDwa {
         }
     }
 
-    /// While it follows the route there are no candidates.
+    /// While the follower drives along the route there are no candidates.
     fn explain(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
+        let mut memory = memory.clone();
         let guide_points = GuidePoints { config: &self.detour, scene };
-        match guide_points.target(&mut memory.clone(), &mut Cluster::default()) {
-            Ok(Some(guide)) => {
-                let scene = Scene { guide, ..*scene };
-                let terms = |_, rollout: &Rollout| Self::terms(&scene, rollout);
-                self.window.explain(&scene, &self.weighing, terms)
-            }
-            Ok(None) | Err(_) => Explanation::default(),
+        match guide_points.target(&mut memory, &mut Cluster::default()) {
+            Ok(Some(guide)) => self.explain_towards(&Scene { guide, ..*scene }),
+            Ok(None) => self.explain_following(scene, &mut memory),
+            Err(_) => Explanation::default(),
         }
     }
 }

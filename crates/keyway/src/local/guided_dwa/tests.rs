@@ -313,12 +313,16 @@ fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
     let planner = GuidedDwa::new(GuidedDwaConfig::PAPER, Robot::paper()).unwrap();
     let path = line(&[[1.5, 4.5], [18.5, 4.5]]);
     let pose = Pose::new(3.5, 4.5, 0.0);
-    for (world, is_asked) in [(hall(&[(6, 4)], &[]), true), (hall(&[], &[]), false)] {
+    // x_ga behind the cell, as x_j is (4.5, 4.5) (eq. 19), and the carrot, 1 m ahead.
+    for (world, is_asked, target) in
+        [(hall(&[(6, 4)], &[]), true, [8.5, 4.5]), (hall(&[], &[]), false, [4.5, 4.5])]
+    {
         let scene = Scene { velocity: Velocity::new(0.2, 0.0), ..world.scene(pose, &path) };
-        let mut memory = DriveMemory::default();
+        let mut memory = covered(2.0);
         let explanation = planner.explain(&scene, &memory);
         let decision = planner.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
         let chosen = explanation.chosen.map(|index| explanation.candidates[index].velocity);
+        assert_eq!(explanation.target, Some(target.into()));
         assert_eq!(chosen, is_asked.then_some(decision.command));
         let candidates = explanation.candidates.len() as u32;
         assert_eq!(candidates, if is_asked { decision.evaluation.candidates } else { 0 });
@@ -334,11 +338,18 @@ fn a_command_after_which_it_cannot_stop_is_not_followed() {
     let robot = Robot::small();
     let planner = GuidedDwa::new(GuidedDwaConfig::for_robot(&robot), robot.clone()).unwrap();
     let velocity = Velocity::new(0.5, 0.0);
+    let look_ahead_m = FollowerConfig::for_robot(&robot).look_ahead_m;
     let candidates = |x: f64| {
         let scene = Scene { velocity, ..world.scene(Pose::new(x, 2.5, 0.0), &path) };
         let mut memory = DriveMemory { covered_m: x - 0.5, ..DriveMemory::default() };
+        let explanation = planner.explain(&scene, &memory);
         let decided = planner.decide(&scene, &mut memory, &mut Scratch::default());
-        decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation).candidates
+        let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);
+        // Whoever decides drives to the carrot, and the explanation is that of who decides.
+        assert_eq!(explanation.candidates.len() as u32, evaluation.candidates);
+        let off_m = explanation.target.unwrap().distance(Point::new(x + look_ahead_m, 2.5));
+        assert!(off_m < 1e-9, "{explanation:?}");
+        evaluation.candidates
     };
     // The wall begins at 12 m: 0.18 m of footprint, 5 mm of margin, 0.05 m of the next cycle and
     // 0.25 m to stop.

@@ -138,7 +138,7 @@ impl<'a> Manoeuvres<'a> {
             config,
             robot,
             around,
-            ahead: around.seen.ahead.map(|cells| front.over(cells, around.obstacles.frame())),
+            ahead: around.seen.ahead.map(|cells| front.over(cells, around.obstacles.clearance())),
             behind: around.seen.behind.map(|cells| rear.over(cells, around.obstacles.frame())),
             near,
             grounds,

@@ -28,10 +28,11 @@
 //!    ([`SeenGround`](crate::sense::SeenGround)), and it stands within the time for which that is
 //!    known. What is left of a way back that is reversed in the cycle is not asked about.
 //! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has
-//!    been seen ([`Surroundings::seen`]); to either side, the next cell is as good. What stands
-//!    farther away is met too late. So the robot never drives faster than it can stop within what
-//!    it has seen free: within its sensor's range, before it can look around a corner, and where no
-//!    beam says anything.
+//!    been seen ([`Surroundings::seen`]); to either side, the next cell is as good. Within what has
+//!    been seen it may come as near as it likes to an obstacle that is known and to the end of the
+//!    map, where nothing else stands. What stands farther away is met too late. So the robot never
+//!    drives faster than it can stop within what it has seen free: within its sensor's range,
+//!    before it can look around a corner, and where no beam says anything.
 //!
 //! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which
 //! the movers are known. What the robot does until then was decided before, when it was the

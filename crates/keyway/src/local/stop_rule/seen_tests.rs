@@ -2,7 +2,8 @@
 
 use super::tests::{Ground, gate, rule};
 use super::*;
-use crate::map::{BitGrid, Cell};
+use crate::geometry::Pose;
+use crate::map::{BitGrid, Cell, GridFrame};
 use std::f64::consts::PI;
 
 const BACK: Velocity = Velocity::new(-0.5, 0.0);
@@ -68,4 +69,29 @@ fn it_backs_up_over_seen_ground_only() {
         some.set(Cell::new(97, y), false);
     }
     assert!(at(0.0, REST, BACK, &some).changed());
+}
+
+/// In cells of 1 m, three quarters of a cell before a wall or the end of the map may be nothing
+/// that was seen: no beam goes on beyond either.
+#[test]
+fn it_drives_up_to_what_is_known_to_end_the_way() {
+    let frame = GridFrame::new(6, 3, 1.0, Pose::default()).unwrap();
+    let wall = Cell::new(5, 1);
+    let walled = frame.cells().map(|cell| cell == wall).collect::<Vec<_>>();
+    let (with_wall, open) = (Ground::new(&frame, &walled), Ground::new(&frame, &[]));
+    let rule = rule(&Robot::paper());
+    let passes = |ground: &Ground, x: f64, is_seen: &dyn Fn(Cell) -> bool| {
+        let mut cells = BitGrid::new(6, 3, false);
+        for cell in frame.cells() {
+            cells.set(cell, is_seen(cell));
+        }
+        let around = ground.around(Pose::new(x, 1.5, 0.0), REST, &[]);
+        let seen = SeenCells { ahead: Some(&cells), ..SeenCells::ANYWHERE };
+        !gate(&rule, &Surroundings { seen, ..around }, Velocity::new(0.02, 0.0)).changed()
+    };
+    // 0.4 m before the wall, and before the end of the map.
+    assert!(passes(&with_wall, 4.6, &|cell| cell != wall));
+    assert!(passes(&open, 5.6, &|_| true));
+    // What was not seen may hold something.
+    assert!(!passes(&open, 4.6, &|cell| cell.x < 5));
 }

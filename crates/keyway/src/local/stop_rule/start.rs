@@ -30,9 +30,9 @@ pub(super) struct Covered;
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     /// Obstacle squares, row by row: those that it touches, and those beside them in which the
-    /// latest scan met something.
+    /// latest scans met something.
     pub(super) squares: Vec<Cell>,
-    /// Places at which the scan met something near the robot, outside of it.
+    /// Places at which the scans met something near the robot, outside of it.
     pub(super) places: Vec<Point>,
     /// Distance that it must keep from those places \[m\].
     pub(super) places_kept_m: f64,
@@ -53,11 +53,12 @@ impl Touched {
         self.places.iter().map(spare_m).fold(f64::INFINITY, f64::min)
     }
 
-    /// Adds the squares beside those that are touched in which a scan met something: where that is,
+    /// Adds the squares beside those that are touched in which scans met something: where that is,
     /// is known better than by squares.
-    fn add_squares_met(&mut self, scan: &ProjectedScan, clearance: &Clearance<'_>) {
+    fn add_squares_met(&mut self, scans: &[ProjectedScan], clearance: &Clearance<'_>) {
         let count = self.squares.len();
-        for cell in scan.hits().filter_map(|(_, hit)| hit.cell) {
+        let hits = scans.iter().flat_map(ProjectedScan::hits);
+        for cell in hits.filter_map(|(_, hit)| hit.cell) {
             let is_beside =
                 |&one: &Cell| (one.x - cell.x).abs() <= 1 && (one.y - cell.y).abs() <= 1;
             let touched = &self.squares[..count];
@@ -69,17 +70,20 @@ impl Touched {
         self.squares.dedup();
     }
 
-    /// Notes the places around a robot at which a scan met something; what lies inside of the robot
+    /// Notes the places around a robot at which scans met something; what lies inside of the robot
     /// does not stand there. Returns the distance to the nearest, `reach_m` if none is nearer.
     fn note_places(
         &mut self,
-        scan: &ProjectedScan,
+        scans: &[ProjectedScan],
         (core, radius_m): (&Core<'_>, f64),
         pose: Pose,
         (reach_m, cell_m): (f64, f64),
     ) -> f64 {
         let around_m = core.swing_m() + radius_m + reach_m;
-        scan.note_places(pose.point(), around_m, Self::JOINED_CELLS * cell_m, &mut self.places);
+        let joined_m = Self::JOINED_CELLS * cell_m;
+        for scan in scans {
+            scan.note_places(pose.point(), around_m, joined_m, &mut self.places);
+        }
         let mut nearest_m = reach_m;
         self.places.retain(|&place| {
             let room_m = core.distance_to_m(pose, place) - radius_m;
@@ -154,10 +158,10 @@ impl<'a> Start<'a> {
         let (core, radius_m) = self.robot.footprint.core();
         let touch_m = radius_m + ROUNDING_M;
         core.touched(pose, &clearance, touch_m, &mut touched.squares);
-        if let Some(scan) = seen.scan {
-            touched.add_squares_met(scan, &clearance);
+        if !seen.scans.is_empty() {
+            touched.add_squares_met(seen.scans, &clearance);
             let reach = (self.margin_m + moves_m, obstacles.frame().resolution_m());
-            let room_m = touched.note_places(scan, (&core, radius_m), pose, reach);
+            let room_m = touched.note_places(seen.scans, (&core, radius_m), pose, reach);
             touched.places_kept_m = self.kept_m(room_m);
         }
         let reach_m = touch_m.max(radius_m + self.margin_m);

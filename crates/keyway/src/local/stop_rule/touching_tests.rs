@@ -80,11 +80,11 @@ impl AmongDiscs {
     /// A cycle of the stop rule after a scan.
     fn gate(&mut self, pose: Pose, velocity: Velocity, command: Velocity) -> Gated {
         let frame = *self.map.frame();
-        let scan = scan_among((&frame, &[]), &self.discs, pose, &self.robot.sensor);
+        let scan = scan_among((&frame, &[]), &self.discs, pose, &self.robot.sensors[0]);
         let scan = ProjectedScan::new(&frame, &self.robot.footprint, pose, &scan);
         self.layer.update(&self.map, &scan, None, &mut Vec::new());
         let field = DistanceField::new(&frame, self.layer.sensed(), &FieldConfig::default());
-        let seen = SeenCells { scan: Some(&scan), ..SeenCells::ANYWHERE };
+        let seen = SeenCells { scans: std::slice::from_ref(&scan), ..SeenCells::ANYWHERE };
         let around =
             Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity };
         gate(&rule(&self.robot), &around, command)
@@ -124,7 +124,7 @@ proptest! {
     ) {
         // It looks all around, from within.
         prop_assume!(robot.footprint.covers(Point::default()) || robot.footprint.inscribed_radius_m() > 0.0);
-        let robot = Robot { sensor: Robot::small().sensor, ..robot };
+        let robot = Robot { sensors: Robot::small().sensors, ..robot };
         let mut among = AmongDiscs::new(robot, &discs);
         let pose = Pose::new(x, y, theta);
         for disc in &beside {
@@ -133,8 +133,8 @@ proptest! {
         prop_assume!(among.room_m(pose) >= 0.5e-3);
         let commands = every_cycle(&among.robot, &commands);
         let least_m = among.drive(pose, &commands);
-        let Robot { footprint, sensor, .. } = &among.robot;
-        let apart_m = footprint.circumscribed_radius_m() * TAU / f64::from(sensor.beams);
+        let Robot { footprint, sensors, .. } = &among.robot;
+        let apart_m = footprint.circumscribed_radius_m() * TAU / f64::from(sensors[0].beams);
         prop_assert!(least_m > -apart_m, "{least_m}");
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::geometry::Point;
 use crate::map::{Cell, GridFrame};
+use serde::{Deserialize, Serialize};
 
 /// A rectangle of cells, both corners included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellWindow {
     /// Lower-left cell.
     pub low: Cell,

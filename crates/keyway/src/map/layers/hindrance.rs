@@ -2,10 +2,11 @@
 
 use crate::geometry::Point;
 use crate::map::{Clearance, SearchMap, UnknownPolicy};
+use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Formatter, Result};
 
 /// What is nearest to a position, of all that a footprint may not touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Hindrance {
     /// The position is outside the map, which no footprint may leave.

@@ -8,10 +8,10 @@ mod motion;
 mod track;
 
 pub(super) use manoeuvre::TightPlace;
-pub(super) use motion::{Motion, MotionStep, MotionUnderWay};
+pub(super) use motion::{Moment, Motion, MotionStep, MotionUnderWay};
 pub(super) use track::Track;
 
-use crate::geometry::{Point, Pose, Velocity, wrap_angle};
+use crate::geometry::{Point, Pose, Shift, Velocity, wrap_angle};
 use crate::map::DistanceField;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -87,22 +87,16 @@ impl Display for RecoveryKind {
     }
 }
 
-/// The recovery under way, and the order.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Recovery {
-    under_way: Option<(RecoveryKind, MotionUnderWay)>,
-    /// What comes after it.
-    motions: VecDeque<Motion>,
-    /// The robot brakes first, to begin this kind where it then stands.
-    stopping_for: Option<RecoveryKind>,
-    /// How many kinds have been tried since the last progress.
+/// The kinds that have been tried since the last progress.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct RecoveryOrder {
+    /// Their number.
     pub(super) tried: usize,
     /// The remaining way at the first of them \[m\].
     trouble_m: f64,
-    pub(super) counts: RecoveryCounts,
 }
 
-impl Recovery {
+impl RecoveryOrder {
     /// A way that is shorter by this than where the trouble began is progress: the order begins
     /// anew \[m\].
     const PROGRESS_M: f64 = 0.3;
@@ -124,57 +118,51 @@ impl Recovery {
             self.trouble_m = remaining_m;
         }
         let kind = order.get(self.tried % order.len().max(1)).copied()?;
-        self.tried += 1;
+        self.tried = self.tried.wrapping_add(1);
         Some(kind)
     }
 
-    /// Puts a kind off until the robot stands: what it can do there is not known before.
-    pub(super) const fn stop_for(&mut self, kind: RecoveryKind) {
-        self.tried -= 1;
-        self.stopping_for = Some(kind);
+    /// The last kind will be tried later.
+    pub(super) const fn put_off(&mut self) {
+        self.tried = self.tried.saturating_sub(1);
+    }
+}
+
+/// The motions of a recovery.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct RecoveryUnderWay {
+    kind: RecoveryKind,
+    motion: MotionUnderWay,
+    /// The motions after it.
+    later: VecDeque<Motion>,
+}
+
+impl RecoveryUnderWay {
+    /// A recovery that begins; `None` where it has no motions.
+    pub(super) fn begin(kind: RecoveryKind, motions: Vec<Motion>) -> Option<Self> {
+        let mut later = VecDeque::from(motions);
+        let motion = MotionUnderWay::new(later.pop_front()?);
+        Some(Self { kind, motion, later })
     }
 
-    /// The kind for which the robot brakes.
-    pub(super) const fn stopping_for(&self) -> Option<RecoveryKind> {
-        self.stopping_for
+    /// Moves it with the robot.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        self.motion.shift(shift);
     }
 
-    /// Begins to move.
-    pub(super) fn begin(&mut self, kind: RecoveryKind, motions: Vec<Motion>) {
-        self.stopping_for = None;
-        self.motions = motions.into();
-        self.under_way = self.motions.pop_front().map(|first| (kind, MotionUnderWay::new(first)));
-    }
-
-    /// Breaks off what is under way: the robot is at its goal, or on another way.
-    pub(super) fn end(&mut self) {
-        (self.under_way, self.stopping_for) = (None, None);
-    }
-
-    /// Goes on with what is under way: its kind and the next command. `None` when nothing is, or it
-    /// has just ended or been refused.
+    /// Goes on: its kind and the next command. `None` when it has just ended or been refused.
     pub(super) fn step(
         &mut self,
-        pose: Pose,
-        velocity: Velocity,
-        robot: &Robot,
+        moment: &Moment<'_>,
         obstacles: &DistanceField,
     ) -> Option<(RecoveryKind, Velocity)> {
-        while let Some((kind, motion)) = &mut self.under_way {
-            match motion.step(pose, velocity, robot, obstacles) {
-                MotionStep::Moving(command) => return Some((*kind, command)),
-                MotionStep::Refused => self.under_way = None,
-                MotionStep::Done => {
-                    let next = self.motions.pop_front();
-                    self.under_way = next.map(|motion| (*kind, MotionUnderWay::new(motion)));
-                }
+        loop {
+            match self.motion.step(moment, obstacles) {
+                MotionStep::Moving(command) => return Some((self.kind, command)),
+                MotionStep::Refused => return None,
+                MotionStep::Done => self.motion = MotionUnderWay::new(self.later.pop_front()?),
             }
         }
-        None
-    }
-
-    pub(super) const fn is_under_way(&self) -> bool {
-        self.under_way.is_some() || self.stopping_for.is_some()
     }
 }
 
@@ -283,8 +271,8 @@ mod tests {
     #[test]
     fn kinds_come_in_order_until_there_is_progress() {
         let order = [RecoveryKind::Replan, RecoveryKind::Wait];
-        let mut recovery = Recovery::default();
-        let next = |recovery: &mut Recovery| recovery.next(&order, 5.0).unwrap();
+        let mut recovery = RecoveryOrder::default();
+        let next = |recovery: &mut RecoveryOrder| recovery.next(&order, 5.0).unwrap();
         assert_eq!(next(&mut recovery), RecoveryKind::Replan);
         recovery.note_progress(4.9);
         assert_eq!(next(&mut recovery), RecoveryKind::Wait);

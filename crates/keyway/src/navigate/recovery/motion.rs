@@ -9,12 +9,13 @@
 //! [`Footprint::is_free_turn`]: crate::robot::Footprint::is_free_turn
 //! [`Footprint::is_free_drive`]: crate::robot::Footprint::is_free_drive
 
-use crate::geometry::{Pose, Velocity, wrap_angle};
+use crate::geometry::{Pose, Shift, Velocity, wrap_angle};
 use crate::map::DistanceField;
 use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
 
 /// A motion, or what is left of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::navigate) enum Motion {
     /// A turn on the spot, positive to the left \[rad\].
     Turn(f64),
@@ -35,8 +36,18 @@ pub(in crate::navigate) enum MotionStep {
     Refused,
 }
 
-/// A motion under way.
+/// State of a robot when it decides.
 #[derive(Clone, Copy, Debug)]
+pub(in crate::navigate) struct Moment<'a> {
+    pub(in crate::navigate) robot: &'a Robot,
+    pub(in crate::navigate) pose: Pose,
+    pub(in crate::navigate) velocity: Velocity,
+    /// Since the last decision \[s\].
+    pub(in crate::navigate) elapsed_s: f64,
+}
+
+/// A motion under way.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct MotionUnderWay {
     left: Motion,
     /// Where the robot was when `left` was left; `None` before it begins, while the robot still
@@ -55,12 +66,15 @@ impl MotionUnderWay {
         Self { left: motion, from: None }
     }
 
+    /// Moves it with the robot: a correction is no motion.
+    pub(in crate::navigate) fn shift(&mut self, shift: &Shift) {
+        self.from = self.from.map(|from| shift.pose(from));
+    }
+
     /// The next cycle. `obstacles` are all that are known and sensed.
     pub(in crate::navigate) fn step(
         &mut self,
-        pose: Pose,
-        velocity: Velocity,
-        robot: &Robot,
+        &Moment { robot, pose, velocity, elapsed_s }: &Moment<'_>,
         obstacles: &DistanceField,
     ) -> MotionStep {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
@@ -69,7 +83,7 @@ impl MotionUnderWay {
             return MotionStep::Moving(limits.braked(velocity, cycle_s));
         }
         let from = self.from.replace(pose).unwrap_or(pose);
-        self.left = self.left.after(from, pose, cycle_s);
+        self.left = self.left.after(from, pose, elapsed_s);
         if is_standing && self.left.size() <= Self::NOTHING {
             return MotionStep::Done;
         }
@@ -100,7 +114,7 @@ impl MotionUnderWay {
 
 impl Motion {
     /// What is left after the robot has come from one pose to another.
-    fn after(self, from: Pose, to: Pose, cycle_s: f64) -> Self {
+    fn after(self, from: Pose, to: Pose, elapsed_s: f64) -> Self {
         match self {
             Self::Turn(left_rad) => Self::Turn(left_rad - wrap_angle(to.theta - from.theta)),
             Self::Drive(left_m) => {
@@ -108,7 +122,7 @@ impl Motion {
                 let moved = to.point() - from.point();
                 Self::Drive(left_m - (moved.x * cos + moved.y * sin))
             }
-            Self::Wait(left_s) => Self::Wait((left_s - cycle_s).max(0.0)),
+            Self::Wait(left_s) => Self::Wait((left_s - elapsed_s).max(0.0)),
         }
     }
 
@@ -132,7 +146,8 @@ mod tests {
         let (mut pose, mut velocity) = start;
         let (mut under_way, mut fastest) = (MotionUnderWay::new(motion), 0.0f64);
         for _ in 0..2000 {
-            match under_way.step(pose, velocity, robot, &obstacles) {
+            let moment = Moment { robot, pose, velocity, elapsed_s: robot.cycle_s };
+            match under_way.step(&moment, &obstacles) {
                 MotionStep::Moving(command) => {
                     let reached = robot.limits.reached(velocity, command, robot.cycle_s);
                     pose = pose.after_ramp(velocity, reached, robot.cycle_s);

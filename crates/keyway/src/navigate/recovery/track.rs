@@ -1,10 +1,11 @@
 //! Where the robot has driven.
 
-use crate::geometry::Point;
+use crate::geometry::{Point, Shift};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// The last places on the way that the robot has driven, newest last.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct Track {
     places: VecDeque<Point>,
     spacing_m: f64,
@@ -22,11 +23,16 @@ impl Track {
     pub(in crate::navigate) fn note(&mut self, position: Point) {
         let is_far = |last: &Point| last.distance(position) >= self.spacing_m;
         if self.places.back().is_none_or(is_far) {
-            if self.places.len() == Self::MOST {
+            if self.places.len() >= Self::MOST {
                 self.places.pop_front();
             }
             self.places.push_back(position);
         }
+    }
+
+    /// Moves them with the robot, to where that turns out to be.
+    pub(in crate::navigate) fn shift(&mut self, shift: &Shift) {
+        self.places.iter_mut().for_each(|place| *place = shift.point(*place));
     }
 
     /// The places up to `length_m` back along the track from a position, the farthest first.

@@ -18,10 +18,11 @@
 //! As there.
 
 use super::search::{Method, Targets};
-use super::{JumpMeeting, OpenKeys, with_metric};
+use super::{JumpMeeting, with_metric};
 use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};
 use crate::plan::parameters::{BoxedPlanner, PlannerParameters};
+use crate::plan::two_sided::OpenKeys;
 use crate::plan::{GlobalPlanner, Heuristic, Plan, PlanError};
 use crate::search::{Observer, Query, Workspace};
 use serde::{Deserialize, Serialize};
@@ -31,8 +32,9 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsFixedConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when
-    /// the same node is in both lists (`literal`).
+    /// The sides have met when a scan comes upon any node of the other side (`generated`; with
+    /// `best` they go on until nothing better can come), when one takes a node that the other has
+    /// expanded (`expanded`), or when the same node is in both lists (`literal`).
     pub meeting: JumpMeeting,
     /// The estimate H of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
     /// `mean`, eq. (3).

@@ -67,6 +67,7 @@ pub use fixed::{BidirectionalJpsFixed, BidirectionalJpsFixedConfig};
 
 use super::heuristic::with_metric;
 use super::parameters::{BoxedPlanner, PlannerParameters};
+use super::two_sided::OpenKeys;
 use super::{GlobalPlanner, Heuristic, Plan, PlanError};
 use crate::ConfigError;
 use crate::map::{Connectivity, SearchMap};
@@ -83,22 +84,15 @@ pub enum JumpMeeting {
     /// They meet when a scan comes upon any node of the other side.
     #[default]
     Generated,
+    /// They meet when one takes from its list a node that the other has expanded.
+    Expanded,
+    /// They go on after they have met as with [`Self::Generated`], until no open node of one side
+    /// can lead to a cheaper path. As closed nodes stay closed, even that need not be a shortest
+    /// one.
+    Best,
     /// They meet when the same node is in both lists; of the other side's nodes only the target
     /// stops a scan. Can miss.
     Literal,
-}
-
-/// The fate of the keys of open nodes when the target moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum OpenKeys {
-    /// They keep the target with which they were computed.
-    #[default]
-    Kept,
-    /// All are computed again, with the present target. Then b has no effect.
-    Renewed,
 }
 
 /// Parameters of [`BidirectionalJps`].
@@ -106,10 +100,12 @@ pub enum OpenKeys {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`), or when
-    /// the same node is in both lists (`literal`, which can miss).
+    /// The sides have met when a scan comes upon any node of the other side (`generated`; with
+    /// `best` they go on until nothing better can come), when one takes a node that the other has
+    /// expanded (`expanded`), or when the same node is in both lists (`literal`, which can miss).
     pub meeting: JumpMeeting,
-    /// The fate of the keys of open nodes when the target moves: `kept` or `renewed`.
+    /// The fate of the keys of open nodes when the target moves: `kept` or `renewed`. Renewed, b
+    /// has no effect.
     pub keys: OpenKeys,
     /// The estimate H of the cost to the target: `octile`, `euclidean`, `manhattan` or `mean`, eq.
     /// (3).

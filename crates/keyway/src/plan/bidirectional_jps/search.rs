@@ -1,14 +1,15 @@
 //! The search under both planners: two sides in turn, until they have a node in common.
 
+use super::JumpMeeting;
 use super::jumps::{Direction, Jumps};
 use super::marks::Marks;
-use super::{JumpMeeting, OpenKeys};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::plan::best_first::check_budget;
+use crate::plan::two_sided::OpenKeys;
 use crate::plan::{Miss, Plan, PlanError, Stop, path_cost};
 use crate::search::{
-    Cost, DistanceTo, Expanded, Frontier, GridStep, Metric, Observer, Query, Rule, SearchMemory,
-    SearchStatistics, Side, Workspace, cells,
+    Cost, DistanceTo, Expanded, Frontier, GridStep, Metric, Observer, Octile, Query, Rule,
+    SearchMemory, SearchStatistics, Side, Workspace, cells,
 };
 
 /// The aim of a side.
@@ -58,6 +59,15 @@ struct Half<'w> {
     marks: &'w mut Marks,
     /// The other side's target.
     aim: Expanded,
+    /// The root of the other side.
+    other_root: Cell,
+}
+
+/// A node over which a path leads from root to root, and the cost of that path.
+#[derive(Clone, Copy, Debug)]
+struct Meeting {
+    at: CellIndex,
+    cost: u64,
 }
 
 /// Equation (2): a node's key, towards the target of the moment.
@@ -96,8 +106,8 @@ impl<M: Metric> Method<M> {
     ) -> Result<(), PlanError> {
         let [forward, backward] = &mut workspace.part::<JumpSides>().0;
         let sides = [
-            Half::start(map, Side::Forward, query.start, forward),
-            Half::start(map, Side::Backward, query.goal, backward),
+            Half::start(map, Side::Forward, [query.start, query.goal], forward),
+            Half::start(map, Side::Backward, [query.goal, query.start], backward),
         ];
         let meeting = match seen {
             None => self.run(map, query, sides, &mut ()),
@@ -124,21 +134,25 @@ impl<M: Metric> Method<M> {
         if query.start == query.goal {
             return Ok(active.aim.at);
         }
+        let mut best = None;
         loop {
-            if let Some(meeting) = self.turn(map, query, &mut active, &waiting, seen)? {
+            if let Some(meeting) =
+                self.turn(map, query, [&mut active, &mut waiting], &mut best, seen)?
+            {
                 return Ok(meeting);
             }
             std::mem::swap(&mut active, &mut waiting);
         }
     }
 
-    /// Expands nodes of one side until it has put a node into its list, or the sides have met.
+    /// Expands nodes of one side until it has put a node into its list, or the search ends: then it
+    /// gives the node in which the sides have met. `best` is the cheapest meeting so far.
     fn turn(
         &self,
         map: &SearchMap,
         query: &Query,
-        active: &mut Half<'_>,
-        waiting: &Half<'_>,
+        [active, waiting]: [&mut Half<'_>; 2],
+        best: &mut Option<Meeting>,
         seen: &mut impl Observer,
     ) -> Result<Option<CellIndex>, PlanError> {
         let target = map.cell(waiting.aim.at);
@@ -154,38 +168,57 @@ impl<M: Metric> Method<M> {
             let statistics = statistics(active, waiting);
             check_budget(query, statistics)?;
             let Some(node) = active.frontier.take_best() else {
+                // Nothing is left that could lead to a better meeting.
                 let (planner, miss) = (self.planner, Miss::SidesPassed);
-                return Err(PlanError::Missed { planner, miss, statistics });
+                let missed = PlanError::Missed { planner, miss, statistics };
+                return best.map(|meeting| Some(meeting.at)).ok_or(missed);
             };
+            if seen.is_watching() {
+                seen.expanded(active.side, map.cell(node.at), cells(node.g));
+            }
+            if self.meeting == JumpMeeting::Expanded && waiting.frontier.is_closed(node.at) {
+                if seen.is_watching() {
+                    seen.met(map.cell(node.at));
+                }
+                return Ok(Some(node.at));
+            }
+            let rest = DistanceTo::new(map, Octile, active.other_root).from(node.at);
+            if best.is_some_and(|meeting| node.g + rest >= meeting.cost) {
+                continue;
+            }
             let before = active.frontier.statistics().generated;
-            let meeting = self.expand(map, node, &rule, active, waiting, seen);
+            let met = self.expand(map, node, &rule, [active, waiting], *best, seen);
             if self.targets == Targets::Moving {
                 active.aim_at(map, node, self.meeting);
             }
-            if meeting.is_some() || active.frontier.statistics().generated > before {
-                return Ok(meeting);
+            match (self.meeting, met) {
+                (JumpMeeting::Generated | JumpMeeting::Literal, Some(met)) => {
+                    return Ok(Some(met.at));
+                }
+                (JumpMeeting::Best, _) => *best = met,
+                _ => {}
+            }
+            if active.frontier.statistics().generated > before {
+                return Ok(None);
             }
         }
     }
 
-    /// Puts the next nodes in all directions of a node into the open list; the node over which the
-    /// cheapest path leads, if the other side has any of them (in a tie the first one).
+    /// Puts the next nodes in all directions of a node into the open list. Gives the cheapest
+    /// meeting: the best one so far, or one over those of these nodes that the other side has (in a
+    /// tie the first one).
     fn expand(
         &self,
         map: &SearchMap,
         node: Expanded,
         rule: &impl Rule,
-        active: &mut Half<'_>,
-        waiting: &Half<'_>,
+        [active, waiting]: [&mut Half<'_>; 2],
+        mut best: Option<Meeting>,
         seen: &mut impl Observer,
-    ) -> Option<CellIndex> {
+    ) -> Option<Meeting> {
         let from = map.cell(node.at);
-        if seen.is_watching() {
-            seen.expanded(active.side, from, cells(node.g));
-        }
         let jumps = Jumps { map, targets: waiting.marks };
         let arrival = Direction::between(map.cell(active.frontier.parent(node.at)), from);
-        let mut best: Option<(u64, CellIndex)> = None;
         for direction in jumps.onward(from, arrival) {
             let scan = jumps.scan(from, direction);
             if seen.is_watching() && scan.end != from {
@@ -199,18 +232,20 @@ impl<M: Metric> Method<M> {
             if seen.is_watching() {
                 seen.generated(active.side, to, from, cells(g));
             }
-            if self.meeting == JumpMeeting::Generated {
+            if self.meeting != JumpMeeting::Literal {
                 active.marks.mark(to);
             }
             let whole = waiting.frontier.value(index).map(|rest| g + rest);
-            if let Some(cost) = whole.filter(|&cost| best.is_none_or(|(least, _)| cost < least)) {
-                best = Some((cost, index));
+            let is_met = self.meeting != JumpMeeting::Expanded;
+            let is_cheaper = |&cost: &u64| best.is_none_or(|best| cost < best.cost);
+            if let Some(cost) = whole.filter(is_cheaper).filter(|_| is_met) {
+                best = Some(Meeting { at: index, cost });
                 if seen.is_watching() {
                     seen.met(to);
                 }
             }
         }
-        best.map(|(_, meeting)| meeting)
+        best
     }
 }
 
@@ -218,7 +253,7 @@ impl<'w> Half<'w> {
     fn start(
         map: &SearchMap,
         side: Side,
-        root: Cell,
+        [root, other_root]: [Cell; 2],
         JumpSide { frontier, marks }: &'w mut JumpSide,
     ) -> Self {
         let aim = Expanded { at: map.index(root), g: 0 };
@@ -226,7 +261,7 @@ impl<'w> Half<'w> {
         frontier.start(map, aim.at, 0);
         marks.start(map);
         marks.mark(root);
-        Self { side, frontier, marks, aim }
+        Self { side, frontier, marks, aim, other_root }
     }
 
     /// Makes a node that was just expanded the other side's target.

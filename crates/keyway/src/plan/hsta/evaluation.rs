@@ -1,6 +1,6 @@
 //! The worth of a node: equations (1) and (3) to (5).
 
-use super::{Correction, HstaConfig, Weight};
+use super::{Correction, HstaConfig, Weight, WeightAt};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::search::{Euclidean, GridStep, Metric, Rule};
 
@@ -8,6 +8,7 @@ use crate::search::{Euclidean, GridStep, Metric, Rule};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Terms {
     weight: Weight,
+    weight_at: WeightAt,
     correction: Correction,
     cells_per_unit: f64,
     /// l + m, in the unit of the distances.
@@ -24,6 +25,8 @@ pub(super) struct Evaluation<'m> {
     pub(super) first: Cell,
     /// goal1, the root of the other one.
     pub(super) goal: Cell,
+    /// The current node of this side.
+    pub(super) own: Cell,
     /// x2, the current node of the other one.
     pub(super) other: Cell,
 }
@@ -32,8 +35,8 @@ impl Terms {
     pub(super) fn new(config: &HstaConfig, map: &SearchMap) -> Self {
         let cells_per_unit = config.cells_per_unit(map);
         let (l, m) = (f64::from(map.frame().width()), f64::from(map.frame().height()));
-        let (weight, correction) = (config.weight, config.correction);
-        Self { weight, correction, cells_per_unit, sides: (l + m) / cells_per_unit }
+        let HstaConfig { weight, weight_at, correction, .. } = *config;
+        Self { weight, weight_at, correction, cells_per_unit, sides: (l + m) / cells_per_unit }
     }
 }
 
@@ -54,7 +57,10 @@ impl Rule for Evaluation<'_> {
         // Eq. (4).
         let h = straight_line(at, self.other);
         let weighted = match self.terms.weight {
-            Weight::Dynamic => (self.weight(at) * h as f64) as u64,
+            Weight::Dynamic => {
+                let x1 = if self.terms.weight_at == WeightAt::Node { at } else { self.own };
+                (self.weight(x1) * h as f64) as u64
+            }
             Weight::One => h,
         };
         // Eq. (5).
@@ -100,8 +106,9 @@ mod tests {
     }
 
     fn rule<'m>(map: &'m SearchMap, config: &HstaConfig) -> Evaluation<'m> {
-        let (first, goal, other) = (Cell::new(0, 0), Cell::new(6, 11), Cell::new(9, 7));
-        Evaluation { map, terms: Terms::new(config, map), first, goal, other }
+        let (first, goal) = (Cell::new(0, 0), Cell::new(6, 11));
+        let (own, other) = (Cell::new(2, 4), Cell::new(9, 7));
+        Evaluation { map, terms: Terms::new(config, map), first, goal, own, other }
     }
 
     #[test]
@@ -133,6 +140,9 @@ mod tests {
         let key = |config: HstaConfig| rule(&map, &config).key(at, g);
         let exact = |cells: f64| g + (cells * Q as f64) as u64;
         assert_eq!(key(HstaConfig::PAPER), exact(1.84375 * 5.0 + 8.0));
+        // k of the current node, (2, 4): 6^2 / 96 = 0.375.
+        let weight_at = WeightAt::Current;
+        assert_eq!(key(HstaConfig { weight_at, ..HstaConfig::PAPER }), exact(1.375 * 5.0 + 8.0));
         let weight = Weight::One;
         assert_eq!(key(HstaConfig { weight, ..HstaConfig::PAPER }), g + 13 * Q);
         let correction = Correction::None;

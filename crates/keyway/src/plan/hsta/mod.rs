@@ -16,7 +16,7 @@
 //! | f(x1), eq. (1) | key of `Evaluation` | | |
 //! | g(x1) | cost from this side's root, a [`Cost::key`](crate::search::Cost::key) | | |
 //! | h(x1), eq. (4) | `straight_line` to `other` | | |
-//! | k1, eq. (3) | `dynamic_weight`, switched by [`HstaConfig::weight`] | | |
+//! | k1, eq. (3) | `dynamic_weight`: [`HstaConfig::weight`], [`HstaConfig::weight_at`] | | |
 //! | c(x1), eq. (5) | `straight_line` to `goal`, switched by [`HstaConfig::correction`] | | |
 //! | L, eq. (2) | [`HstaConfig::l1_constraint`] | reference cells | 2 |
 //! | `o_J` | cells of [`SearchMap::obstacles`] | | |
@@ -35,8 +35,12 @@
 //!   corner. With L = 2 m that is 1.5 and 0.71 m on the paper's cells of 1 m, 1.98 and 1.38 m on
 //!   cells of 0.05 m. No other L keeps both of the paper's distances on a finer grid.
 //! - The map's border is not an obstacle.
-//! - x2 moves. f is computed when a node is put into the open list or improved there, and then
-//!   kept.
+//! - x2 moves, and the paper contradicts itself on the keys of open nodes. Its step 4 computes f of
+//!   a node when that is put into the open list: then f is kept, and k is that of the node
+//!   ([`OpenKeys::Kept`], [`WeightAt::Node`]). Its definitions make x1 the *current* node of the
+//!   side, of which k is a function: then one k weighs the whole open list, and changes with every
+//!   turn ([`OpenKeys::Renewed`], [`WeightAt::Current`]). As published means the first here;
+//!   `docs/FINDINGS.md` has the figures of both.
 //! - The sides have met when their best nodes are the same (step 5), and also when one takes a node
 //!   that the other has expanded before: otherwise they might never meet. The first is a case of
 //!   the second: the forward side expands the common best node, then the backward side takes it.
@@ -74,7 +78,7 @@ mod evaluation;
 
 use super::best_first::with_costs;
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::two_sided::{self, Half, Meeting};
+use super::two_sided::{self, CurrentNodes, Half, Meeting, OpenKeys};
 use super::{GlobalPlanner, Miss, Plan, PlanError, PlanNote, Relaxed, Stop};
 use crate::ConfigError;
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
@@ -102,6 +106,11 @@ pub struct HstaConfig {
     pub distances: DistanceUnit,
     /// The weight k of h, eq. (3): `dynamic`, or `one`.
     pub weight: Weight,
+    /// The node x1 of eq. (3): each `node` has its own k, or all have that of the side's `current`
+    /// one.
+    pub weight_at: WeightAt,
+    /// The fate of the keys of open nodes when a current node moves: `kept` or `renewed`.
+    pub keys: OpenKeys,
     /// The correction factor c, eq. (5): the `distance` to the other side's root, or `none`.
     pub correction: Correction,
     /// The answer when the constraint leaves no path: `relax` it as little as possible, and say so,
@@ -140,6 +149,20 @@ pub enum Weight {
     One,
 }
 
+/// The node whose distance from the side's root determines the weight k of [`Hsta`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum WeightAt {
+    /// The node whose key is computed.
+    #[default]
+    Node,
+    /// The node that the side expands, or expanded last. With [`OpenKeys::Renewed`], one weight
+    /// holds for all open nodes.
+    Current,
+}
+
 /// The correction factor c of [`Hsta`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -173,6 +196,8 @@ impl HstaConfig {
         reference_cell_m: 1.0,
         distances: DistanceUnit::Reference,
         weight: Weight::Dynamic,
+        weight_at: WeightAt::Node,
+        keys: OpenKeys::Kept,
         correction: Correction::Distance,
         if_no_path: IfNoPath::Fail,
         free_ends_m: 0.0,
@@ -271,15 +296,15 @@ impl Hsta {
         let forward = Half::new(Side::Forward, &mut sides.forward, there, allows);
         let backward = Half::new(Side::Backward, &mut sides.backward, back, allows);
         let terms = Terms::new(&self.config, map);
-        let rule = |side, other| {
+        let rule = |side, CurrentNodes { own, other }| {
             let (first, goal) = match side {
                 Side::Forward => (query.start, query.goal),
                 Side::Backward => (query.goal, query.start),
             };
-            Evaluation { map, terms, first, goal, other: map.cell(other) }
+            Evaluation { map, terms, first, goal, own: map.cell(own), other: map.cell(other) }
         };
-        let met =
-            two_sided::take_turns(map, query, forward, backward, rule, Meeting::Expanded, seen)?;
+        let how = (self.config.keys, Meeting::Expanded);
+        let met = two_sided::take_turns(map, query, forward, backward, rule, how, seen)?;
         Ok((met, self.relaxed(map, &constraint)))
     }
 
@@ -320,7 +345,7 @@ impl PlannerParameters for HstaConfig {
     }
 
     fn readings(&self) -> &'static [&'static str] {
-        &["reference_cell_m", "distances", "if_no_path", "corners"]
+        &["reference_cell_m", "distances", "weight_at", "keys", "if_no_path", "corners"]
     }
 }
 

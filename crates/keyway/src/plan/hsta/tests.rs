@@ -3,6 +3,7 @@
 use super::*;
 use crate::plan::PathEnd;
 use crate::plan::two_sided::drawn;
+use crate::search::Cost;
 
 fn hsta(config: HstaConfig) -> Hsta {
     Hsta::new(config).unwrap()
@@ -123,4 +124,116 @@ fn a_huge_constraint() {
     assert!(matches!(error, PlanError::Constrained { end: PathEnd::Start, .. }), "{error}");
     let relaxing = HstaConfig { if_no_path: IfNoPath::Relax, ..huge };
     assert!(drawn::plan(&hsta(relaxing), &["S..G#"]).is_ok());
+}
+
+/// The definitions of the paper, transcribed without anything that makes them fast: every turn
+/// computes f of all open nodes with k and h of the current nodes, and takes the least (of equal
+/// ones that with the larger g, then the lower index).
+struct ByDefinition<'m> {
+    map: &'m SearchMap,
+    roots: [Cell; 2],
+    open: [Vec<(Cell, u64)>; 2],
+    closed: [Vec<Cell>; 2],
+    current: [Cell; 2],
+}
+
+impl ByDefinition<'_> {
+    /// Sides of one cell by 2^26.5, as costs of steps are.
+    fn length(a: Cell, b: Cell) -> u64 {
+        let (dx, dy) = (f64::from(a.x - b.x), f64::from(a.y - b.y));
+        (dx.hypot(dy) * Cost::KEY_STRAIGHT as f64).round() as u64
+    }
+
+    fn f(&self, side: usize, (at, g): (Cell, u64)) -> f64 {
+        let l1 = |a: Cell, b: Cell| f64::from((a.x - b.x).abs() + (a.y - b.y).abs());
+        let sides = f64::from(self.map.frame().width() + self.map.frame().height());
+        let k = 1.0 + l1(self.current[side], self.roots[side]).powi(2) / (4.0 * sides);
+        let h = Self::length(at, self.current[1 - side]) as f64;
+        g as f64 + k * h + Self::length(at, self.roots[1 - side]) as f64
+    }
+
+    /// The cells that both sides expand until one takes a node that the other has expanded; `None`
+    /// where two open nodes are so nearly equal that rounding decides.
+    fn run(mut self) -> Option<[Vec<Cell>; 2]> {
+        for side in [0, 1].into_iter().cycle() {
+            let order = |&(at, g): &(Cell, u64)| (self.f(side, (at, g)), u64::MAX - g, at.y, at.x);
+            let mut keys: Vec<_> = self.open[side].iter().map(order).collect();
+            keys.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            let first = *keys.first()?;
+            let near = |f: f64| f - first.0 < 1e3;
+            if keys[1..].iter().any(|key| near(key.0) && key.1 != first.1) {
+                return None;
+            }
+            let equal = keys.iter().filter(|key| near(key.0));
+            let (y, x) = equal.map(|&(_, _, y, x)| (y, x)).min()?;
+            let at = Cell::new(x, y);
+            let place = self.open[side].iter().position(|node| node.0 == at)?;
+            let (_, g) = self.open[side].swap_remove(place);
+            self.current[side] = at;
+            let is_met = self.closed[1 - side].contains(&at);
+            self.closed[side].push(at);
+            if is_met {
+                return Some(self.closed);
+            }
+            self.expand(side, at, g);
+        }
+        None
+    }
+
+    fn expand(&mut self, side: usize, at: Cell, g: u64) {
+        for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
+            let to = Cell::new(at.x + dx, at.y + dy);
+            let is_free = |x, y| self.map.is_free(Cell::new(x, y));
+            let is_legal = is_free(to.x, to.y) && is_free(at.x, to.y) && is_free(to.x, at.y);
+            if (dx, dy) == (0, 0) || !is_legal || self.closed[side].contains(&to) {
+                continue;
+            }
+            let g = g + Cost::octile(dx.unsigned_abs(), dy.unsigned_abs()).key();
+            match self.open[side].iter_mut().find(|node| node.0 == to) {
+                Some(known) => known.1 = known.1.min(g),
+                None => self.open[side].push((to, g)),
+            }
+        }
+    }
+}
+
+#[test]
+fn renewed_keys_with_the_current_weight_are_the_definitions() {
+    let config = HstaConfig {
+        weight_at: WeightAt::Current,
+        keys: OpenKeys::Renewed,
+        l1_constraint: 0.0,
+        ..HstaConfig::PAPER
+    };
+    let mut random = 1_u64;
+    let mut next = |n: u64| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (random >> 33) % n
+    };
+    let mut compared = 0;
+    for _ in 0..400 {
+        let mut rows: Vec<Vec<u8>> = (0..9)
+            .map(|_| (0..11).map(|_| if next(4) == 0 { b'#' } else { b'.' }).collect())
+            .collect();
+        let ends = [(next(4) as usize, 8), (10 - next(4) as usize, 0)];
+        (rows[ends[0].1][ends[0].0], rows[ends[1].1][ends[1].0]) = (b'S', b'G');
+        let rows: Vec<String> =
+            rows.into_iter().map(|row| String::from_utf8(row).unwrap()).collect();
+        let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+        let Ok((_, sides)) = drawn::plan(&hsta(config.clone()), &rows) else { continue };
+        let free: Vec<String> = rows.iter().map(|row| row.replace(['S', 'G'], ".")).collect();
+        let map = drawn::map(&free.iter().map(String::as_str).collect::<Vec<_>>());
+        let roots = ends.map(|(x, row)| Cell::new(x as i32, 8 - row as i32));
+        let open = roots.map(|root| vec![(root, 0)]);
+        let (closed, current) = ([vec![], vec![]], roots);
+        let Some(expected) = (ByDefinition { map: &map, roots, open, closed, current }).run()
+        else {
+            continue;
+        };
+        let expected =
+            expected.map(|cells| cells.iter().map(|at| (at.x, at.y)).collect::<Vec<_>>());
+        assert_eq!(sides, expected, "{rows:#?}");
+        compared += usize::from(expected.iter().all(|cells| cells.len() > 4));
+    }
+    assert!(compared > 50, "{compared}");
 }

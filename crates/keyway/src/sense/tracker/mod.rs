@@ -66,10 +66,12 @@ pub use config::TrackerConfig;
 
 use super::{Mover, ProjectedScan};
 use crate::ConfigError;
-use crate::geometry::Point;
-use crate::map::{Cell, OccupancyGrid};
+use crate::geometry::{Point, Shift};
+use crate::map::{Cell, GridFrame, OccupancyGrid};
+use crate::robot::Robot;
 use hits::{Hits, Owner};
-use seen_through::{OldScan, beams_before, beams_now};
+use seen_through::{OldScans, beams_before, beams_now};
+use serde::{Deserialize, Serialize};
 use track::{Sight, Track};
 
 /// Follows what moves.
@@ -85,7 +87,7 @@ use track::{Sight, Track};
 /// for cycle in 0..20 {
 ///     // A disc of 0.25 m walks by.
 ///     let to_disc = Point::new(2.0, -1.0) + velocity_mps * (0.1 * f64::from(cycle));
-///     let mut scan = Scan::of_nothing(&Robot::small().sensor);
+///     let mut scan = Scan::of_nothing(&Robot::small().sensors[0]);
 ///     for beam in 0..scan.ranges_m.len() {
 ///         let bearing_rad = scan.bearing_rad(beam);
 ///         let along = Point::new(bearing_rad.cos(), bearing_rad.sin());
@@ -102,7 +104,7 @@ use track::{Sight, Track};
 /// assert!((mover.velocity_mps - velocity_mps).norm() < 0.05);
 /// # Ok::<(), keyway::ConfigError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker {
     config: TrackerConfig,
     tracks: Vec<Track>,
@@ -113,17 +115,16 @@ pub struct Tracker {
     moving: usize,
     /// Cells marked by what only now is known to move.
     left: Vec<Cell>,
+    #[serde(skip)]
     hits: Hits,
     /// Hits of the track that is looked at.
+    #[serde(skip)]
     own: Vec<Point>,
+    #[serde(skip)]
     own_beams: Vec<usize>,
-    old: [OldScan; OLD_SCANS],
-    remembered: usize,
+    /// Remembered scans, sensor by sensor.
+    old: Vec<OldScans>,
 }
-
-/// Scans that are remembered, and the time from one to the next \[s\].
-const OLD_SCANS: usize = 4;
-const OLD_SCAN_STEP_S: f64 = 0.25;
 
 /// Beams that show in one scan that something moves, and such scans that it takes.
 const EVIDENCE_BEAMS: u32 = 2;
@@ -162,8 +163,7 @@ impl Tracker {
             hits: Hits::default(),
             own: Vec::new(),
             own_beams: Vec::new(),
-            old: Default::default(),
-            remembered: 0,
+            old: Vec::new(),
         })
     }
 
@@ -194,9 +194,24 @@ impl Tracker {
         &self.left
     }
 
-    /// Takes in a scan on the `known` map, `elapsed_s` after the last one. A scan at a pose that is
-    /// not finite shows nothing; a time that is negative or not finite counts as 0.
+    /// Takes in the scan of a robot's only sensor on the `known` map, `elapsed_s` after the last
+    /// one. A scan at a pose that is not finite shows nothing; a time that is negative or not
+    /// finite counts as 0.
     pub fn update(&mut self, known: &OccupancyGrid, scan: &ProjectedScan, elapsed_s: f64) {
+        self.update_from(known, 0, scan, elapsed_s);
+    }
+
+    /// The same of the sensor of this index, `elapsed_s` after the last scan of any sensor: 0 for
+    /// two of the same time.
+    pub fn update_from(
+        &mut self,
+        known: &OccupancyGrid,
+        sensor: usize,
+        scan: &ProjectedScan,
+        elapsed_s: f64,
+    ) {
+        let sensor = sensor.min(Robot::MOST_SENSORS - 1);
+        self.old.resize_with(self.old.len().max(sensor + 1), OldScans::default);
         let pose = scan.pose();
         let elapsed_s = if elapsed_s.is_finite() { elapsed_s.max(0.0) } else { 0.0 };
         self.left.clear();
@@ -206,19 +221,33 @@ impl Tracker {
         self.own_beams.reserve(scan.len());
         let config = &self.config;
         self.tracks.iter_mut().for_each(|track| track.predict(elapsed_s, config));
-        self.old.iter_mut().for_each(|old| old.age_s += elapsed_s);
+        self.old.iter_mut().for_each(|old| old.age(elapsed_s));
         self.hits.take_in(known, scan, config.explained_m);
         if pose.point().is_finite() && pose.theta.is_finite() {
             self.offer_hits(scan);
             for track in 0..self.tracks.len() {
-                self.see(track, scan);
+                self.see(track, sensor, scan);
             }
             self.end_tracks();
-            self.begin_tracks(scan);
+            self.begin_tracks(sensor, scan);
             self.note_cells();
-            self.remember(scan);
+            self.old[sensor].remember(scan);
         }
         self.list_movers();
+    }
+
+    /// Moves all that it knows with the robot, to where that turns out to be: nothing becomes fast
+    /// by that.
+    pub(crate) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
+        self.tracks.iter_mut().for_each(|track| track.shift(shift));
+        self.old.iter_mut().for_each(|old| old.shift(frame, shift));
+        self.left.clear();
+        self.list_movers();
+    }
+
+    /// True if one that was stored can be used.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.config.validate().is_ok() && self.moving <= self.movers.len()
     }
 
     fn list_movers(&mut self) {
@@ -248,14 +277,17 @@ impl Tracker {
     }
 
     /// What a scan shows of a track.
-    fn see(&mut self, index: usize, scan: &ProjectedScan) {
+    fn see(&mut self, index: usize, sensor: usize, scan: &ProjectedScan) {
         self.collect(index, scan);
         let track = &mut self.tracks[index];
         if self.own.is_empty() {
-            note_unseen(track, scan);
+            if track.sensor == sensor {
+                note_unseen(track, scan);
+            }
             return;
         }
-        let sight = Sight { hits: &self.own, sensor: scan.pose().point() };
+        track.sensor = sensor;
+        let sight = Sight { hits: &self.own, sensor: scan.pose().point(), index: sensor };
         track.see(&sight, &self.config);
         if track.is_mover {
             track.watch_rest(&self.own, &self.config);
@@ -263,7 +295,7 @@ impl Tracker {
         }
         let has_left = track.has_left_its_anchor();
         let needed = if has_left { EVIDENCE_BEAMS } else { CLEAR_EVIDENCE_BEAMS };
-        let before = beams_before(track, &sight, scan, (&self.old, &self.config));
+        let before = beams_before(track, &sight, scan, (&self.old[sensor..=sensor], &self.config));
         track.note_seen_through(before, self.own.len());
         let is_shown = before.max(beams_now(track, scan, &self.config)) >= needed;
         // Who has not been seen to leave has to be contradicted in scans that follow each other.
@@ -338,7 +370,7 @@ impl Tracker {
     }
 
     /// Groups what is left of the hits into new tracks.
-    fn begin_tracks(&mut self, scan: &ProjectedScan) {
+    fn begin_tracks(&mut self, index: usize, scan: &ProjectedScan) {
         let sensor = scan.pose().point();
         let gap_m = self.config.gap_m;
         let step_rad = scan.step_rad();
@@ -360,23 +392,23 @@ impl Tracker {
                 beam += 1;
                 continue;
             }
-            self.begin_track(scan);
+            self.begin_track(index, scan);
         }
     }
 
     /// A new track of the collected hits.
-    fn begin_track(&mut self, scan: &ProjectedScan) {
+    fn begin_track(&mut self, sensor: usize, scan: &ProjectedScan) {
         let (Some(&first), Some(&last)) = (self.own.first(), self.own.last()) else { return };
         let is_large = first.distance(last) > self.config.largest_diameter_m;
         if self.own.len() < LEAST_HITS || is_large {
             return;
         }
-        let sight = Sight { hits: &self.own, sensor: scan.pose().point() };
+        let sight = Sight { hits: &self.own, sensor: scan.pose().point(), index: sensor };
         let Some(mut track) = Track::new(self.next_id, &sight, &self.config) else { return };
         if 2.0 * track.radius_m > self.config.largest_diameter_m {
             return;
         }
-        let before = beams_before(&track, &sight, scan, (&self.old, &self.config));
+        let before = beams_before(&track, &sight, scan, (&self.old[sensor..=sensor], &self.config));
         track.note_seen_through(before, self.own.len());
         let index = self.tracks.len() as u32;
         self.own_beams.iter().for_each(|&beam| self.hits.give(beam, index));
@@ -392,17 +424,6 @@ impl Tracker {
             if !track.is_mover {
                 track.note_cell(cell);
             }
-        }
-    }
-
-    /// Keeps a scan from time to time, in the place of the oldest one.
-    fn remember(&mut self, scan: &ProjectedScan) {
-        let is_used = |old: &&OldScan| !old.scan.is_empty();
-        let youngest_s = self.old.iter().filter(is_used).map(|old| old.age_s);
-        // Times are sums of cycles.
-        if youngest_s.fold(f64::INFINITY, f64::min) >= OLD_SCAN_STEP_S * (1.0 - 1e-9) {
-            self.old[self.remembered % OLD_SCANS].replace(scan);
-            self.remembered += 1;
         }
     }
 }

@@ -2,22 +2,59 @@
 
 use super::TrackerConfig;
 use super::track::{Sight, Track};
-use crate::geometry::Point;
+use crate::geometry::{Point, Shift};
+use crate::map::GridFrame;
 use crate::sense::ProjectedScan;
+use serde::{Deserialize, Serialize};
 
-/// A scan that is remembered.
-#[derive(Clone, Debug, Default)]
-pub(super) struct OldScan {
-    pub(super) scan: ProjectedScan,
-    /// How long ago \[s\].
-    pub(super) age_s: f64,
+/// Scans of one sensor that are remembered, and the time from one to the next \[s\].
+const OLD_SCANS: usize = 4;
+const OLD_SCAN_STEP_S: f64 = 0.25;
+
+/// Remembered scans of one sensor.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct OldScans {
+    scans: [OldScan; OLD_SCANS],
+    remembered: usize,
 }
 
-impl OldScan {
-    /// Takes the place of what was remembered; allocates nothing for a scan that is not longer.
-    pub(super) fn replace(&mut self, scan: &ProjectedScan) {
-        self.age_s = 0.0;
-        self.scan.copy_from(scan);
+/// A scan that is remembered.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct OldScan {
+    scan: ProjectedScan,
+    /// How long ago \[s\].
+    age_s: f64,
+}
+
+impl OldScans {
+    /// Time has passed.
+    pub(super) fn age(&mut self, elapsed_s: f64) {
+        self.scans.iter_mut().for_each(|old| old.age_s += elapsed_s);
+    }
+
+    /// Moves all of them.
+    pub(super) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
+        self.scans.iter_mut().for_each(|old| old.scan.shift(frame, shift));
+    }
+
+    fn used(&self) -> impl Iterator<Item = &OldScan> {
+        self.scans.iter().filter(|old| !old.scan.is_empty())
+    }
+
+    /// Keeps a scan from time to time, in the place of the oldest one; allocates nothing for one
+    /// that is not longer.
+    pub(super) fn remember(&mut self, scan: &ProjectedScan) {
+        if scan.is_empty() {
+            return;
+        }
+        let youngest_s = self.used().map(|old| old.age_s).fold(f64::INFINITY, f64::min);
+        // Times are sums of cycles.
+        if youngest_s >= OLD_SCAN_STEP_S * (1.0 - 1e-9) {
+            let oldest = &mut self.scans[self.remembered % OLD_SCANS];
+            oldest.age_s = 0.0;
+            oldest.scan.copy_from(scan);
+            self.remembered = self.remembered.wrapping_add(1);
+        }
     }
 }
 
@@ -30,10 +67,10 @@ pub(super) fn beams_before(
     track: &Track,
     sight: &Sight<'_>,
     scan: &ProjectedScan,
-    (old, config): (&[OldScan], &TrackerConfig),
+    (old, config): (&[OldScans], &TrackerConfig),
 ) -> u32 {
     let surface = Surface::of(track, sight.hits, scan, config);
-    let old = old.iter().filter(|old| !old.scan.is_empty());
+    let old = old.iter().flat_map(OldScans::used);
     old.map(|old| surface.beams_through(&old.scan)).fold(0, u32::max)
 }
 
@@ -170,5 +207,19 @@ mod tests {
         assert_eq!(seen_from(Pose::new(4.0, 0.0, std::f64::consts::PI), &[inf; 5]), 5);
         assert_eq!(seen_from(Pose::new(4.0, 0.0, 0.0), &[inf; 5]), 0);
         assert_eq!(seen_from(Pose::new(2.05, -2.0, std::f64::consts::FRAC_PI_2), &[inf; 5]), 0);
+    }
+
+    /// A sensor that scans every half second, in cycles of 0.05 s: nothing is remembered of those
+    /// between.
+    #[test]
+    fn cycles_without_a_scan_leave_what_is_remembered() {
+        let mut old = OldScans::default();
+        let (made, nothing) = (scan(Pose::default(), &[1.0; 5]), ProjectedScan::default());
+        for cycle in 0..60 {
+            old.age(0.05);
+            old.remember(if cycle % 10 == 0 { &made } else { &nothing });
+        }
+        assert_eq!(old.used().count(), OLD_SCANS);
+        assert!(old.used().all(|old| old.scan.len() == 5));
     }
 }

@@ -6,7 +6,7 @@ use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, CellState, Edit, GridFrame};
 use crate::robot::{Footprint, Robot};
 use crate::sense::test_scan::{projected, scan_among};
-use crate::sense::{Scan, SensedLayer};
+use crate::sense::{Scan, SensedLayer, SensorScan};
 
 /// 12 m x 12 m around the origin, in cells of 5 cm, with the cells inside these boxes occupied.
 fn map(boxes: &[[f64; 4]]) -> OccupancyGrid {
@@ -47,7 +47,7 @@ impl Drive {
 
     fn scan(&self, pose: Pose, circles: &[(Point, f64)]) -> Scan {
         let squares = [self.known.occupied(), &self.hidden];
-        scan_among((self.known.frame(), &squares), circles, pose, &self.robot.sensor)
+        scan_among((self.known.frame(), &squares), circles, pose, &self.robot.sensors[0])
     }
 
     fn step(&mut self, pose: Pose, circles: &[(Point, f64)]) -> &[Mover] {
@@ -262,7 +262,7 @@ fn what_stands_where_a_mover_is_expected_is_marked() {
 #[test]
 fn where_a_mover_is_only_expected_nothing_is_forgotten() {
     let mut drive = Drive::new(map(&[]), &[]);
-    drive.robot.sensor.field_of_view_deg = 180.0;
+    drive.robot.sensors[0].field_of_view_deg = 180.0;
     let post = (Point::new(1.5, 0.0), 0.08);
     let at = |cycle: u32| Point::new(1.5, -2.2 + 0.06 * f64::from(cycle));
     for cycle in 0..22 {
@@ -478,7 +478,12 @@ fn warm_it_allocates_nothing_and_nothing_is_random() {
     let mut again = || {
         allocation_counter::measure(|| {
             for (pose, scan) in &scans {
-                projected.project(known.frame(), &Footprint::POINT, *pose, scan);
+                projected.project(
+                    known.frame(),
+                    &Footprint::POINT,
+                    *pose,
+                    &SensorScan::centred(0.0, scan),
+                );
                 tracker.update(known, &projected, 0.1);
                 layer.update(known, &projected, Some(tracker), edits);
             }

@@ -2,18 +2,21 @@
 
 use super::disc_fit::{Fit, fit, fit_of_radius};
 use super::{EVIDENCE_BEAMS, TrackerConfig};
-use crate::geometry::{Disc, Point};
+use crate::geometry::{Disc, Point, Shift};
 use crate::map::Cell;
 use crate::sense::Mover;
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 
 /// A thing that no map shows: its state, and what shows whether it moves.
 ///
 /// Position and velocity are estimated by a Kalman filter of constant velocity \[BarShalom2001,
 /// section 6.3\], with the same covariance along both axes, so that three numbers are enough.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Track {
     pub(super) id: u64,
+    /// The sensor that has met it last: another one may look over it.
+    pub(super) sensor: usize,
     pub(super) centre: Point,
     velocity_mps: Point,
     /// Variances of position \[m²\] and velocity \[m²/s²\], and their covariance \[m²/s\].
@@ -35,10 +38,10 @@ pub(super) struct Track {
     /// Scans in a row that see through it.
     pub(super) empty_scans: u32,
     /// Cells that its hits marked while it counted as standing.
-    pub(super) marked: ArrayVec<Cell, { Self::MOST_CELLS }>,
+    pub(super) marked: ArrayVec<Cell, { Track::MOST_CELLS }>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Spread {
     position: f64,
     both: f64,
@@ -46,7 +49,7 @@ struct Spread {
 }
 
 /// A place, with the surface that was seen there.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Anchor {
     pub(super) surface: ArrayVec<Point, { Track::MOST_HITS }>,
     centre: Point,
@@ -61,6 +64,8 @@ pub(super) struct Sight<'a> {
     /// Hits in the order of the beams; at least one.
     pub(super) hits: &'a [Point],
     pub(super) sensor: Point,
+    /// Index of the sensor.
+    pub(super) index: usize,
 }
 
 impl Track {
@@ -86,6 +91,7 @@ impl Track {
         let fit = fit(sight.hits, sight.sensor, config.range_noise_m, config.largest_diameter_m)?;
         let mut track = Self {
             id,
+            sensor: sight.index,
             centre: fit.disc.centre,
             velocity_mps: Point::default(),
             spread: Spread { position: 0.0, both: 0.0, velocity: 0.0 },
@@ -124,6 +130,15 @@ impl Track {
         self.anchor.age_s += elapsed_s;
         self.unseen_s += elapsed_s;
         self.since_doubted_s += elapsed_s;
+    }
+
+    /// Moves it with the robot that follows it. The cells that it marked are marked no more.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        self.centre = shift.point(self.centre);
+        self.velocity_mps = shift.vector(self.velocity_mps);
+        self.anchor.centre = shift.point(self.anchor.centre);
+        self.anchor.surface.iter_mut().for_each(|place| *place = shift.point(*place));
+        self.marked.clear();
     }
 
     /// The ground that it may cover now.

@@ -1,7 +1,9 @@
 //! Runs of robots that are not ideal.
 
+mod weak_drive;
+
 use super::*;
-use crate::sim::{ActuationNoise, Arrival, LocalisationNoise, SensorNoise};
+use crate::sim::{ActuationFaults, Arrival, LocalisationFaults, ReachedBy, SensorFaults};
 
 /// Pose, velocity and ranges that the controller was given in a cycle.
 type Told = (Pose, Velocity, Vec<f64>);
@@ -16,7 +18,8 @@ fn driven(
     command: impl Fn(u64) -> Velocity + Sync,
 ) -> (Run, Vec<Told>) {
     let (mut cycle, mut told) = (0, vec![]);
-    let mut controller = |pose: Pose, velocity: Velocity, scan: &Scan| {
+    let mut controller = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
         told.push((pose, velocity, scan.ranges_m.clone()));
         cycle += 1;
         let action = Action::Drive(command(cycle - 1));
@@ -42,7 +45,7 @@ fn wavy(cycle: u64) -> Velocity {
 }
 
 fn late(delay_s: f64) -> Disturbances {
-    let actuation = ActuationNoise { delay_s, ..ActuationNoise::default() };
+    let actuation = ActuationFaults { delay_s, ..ActuationFaults::default() };
     Disturbances { actuation, ..Disturbances::default() }
 }
 
@@ -60,7 +63,7 @@ fn without_disturbances_all_is_exact_to_the_bit() {
     let (mut pose, mut velocity) = (run.samples[0].pose, Velocity::ZERO);
     for (cycle, (told_pose, told_velocity, ranges_m)) in told.iter().enumerate() {
         assert_eq!((*told_pose, *told_velocity), (pose, velocity));
-        assert_eq!(*ranges_m, world.at(0.0).cast(pose, &robot.sensor).ranges_m);
+        assert_eq!(*ranges_m, world.at(0.0).cast(pose, &robot.sensors[0]).ranges_m);
         let reached = robot.limits.reached(velocity, wavy(cycle as u64), robot.cycle_s);
         pose = pose.after_ramp(velocity, reached, robot.cycle_s);
         // The reached velocity, by the formula that changes it linearly.
@@ -158,7 +161,7 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
     let rules = RunRules { arrival: Arrival::Standing, goal_tolerance_m: 1.0, ..limit(20.0) };
     let cycles = |delay_s| {
         let mut cycle = 0;
-        let mut controller = |_: Pose, _: Velocity, _: &Scan| {
+        let mut controller = |_: &Observation<'_>| {
             cycle += 1;
             let is_first = cycle == 1;
             let drive = Action::Drive(Velocity::new(0.05, 0.0));
@@ -191,7 +194,7 @@ fn a_robot_that_turns_back_has_not_arrived() {
     let limits = &mut robot.limits;
     (limits.v_min_mps, limits.deceleration_mps2) = (-10.0, 1e4);
     let mut told = vec![];
-    let mut controller = |_: Pose, velocity: Velocity, _: &Scan| {
+    let mut controller = |&Observation { velocity, .. }: &Observation<'_>| {
         told.push(velocity.v);
         let action = match told.len() {
             1 => Action::Drive(Velocity::new(-1.0, 0.0)),
@@ -214,7 +217,8 @@ fn a_robot_that_turns_back_has_not_arrived() {
 
 #[test]
 fn driven_velocities_deviate_as_told() {
-    let actuation = ActuationNoise { v_relative: 0.05, omega_relative: 0.1, delay_s: 0.0 };
+    let actuation =
+        ActuationFaults { v_relative: 0.05, omega_relative: 0.1, ..ActuationFaults::default() };
     let disturbances = Disturbances { seed: 4, actuation, ..Disturbances::default() };
     // Strong enough to reach any velocity within a cycle, in a small circle.
     let mut robot = brisk(0.01);
@@ -246,7 +250,9 @@ fn limits_are_kept_and_who_is_told_to_stand_stands() {
     let robot = robot();
     let limits = &robot.limits;
     for (seed, delay_s) in [(1, 0.0), (2, 0.1), (3, 0.13), (4, 0.28)] {
-        let actuation = ActuationNoise { v_relative: 0.3, omega_relative: 0.3, delay_s };
+        let noisy =
+            ActuationFaults { v_relative: 0.3, omega_relative: 0.3, ..ActuationFaults::default() };
+        let actuation = ActuationFaults { delay_s, ..noisy };
         let disturbances = Disturbances { seed, actuation, ..Disturbances::default() };
         // From one limit to another, then to stand.
         let command = |cycle: u64| match cycle {
@@ -254,7 +260,7 @@ fn limits_are_kept_and_who_is_told_to_stand_stands() {
             cycle if cycle / 7 % 3 == 0 => Velocity::new(9.0, -9.0),
             cycle => Velocity::new(0.5, 1.5 * libm::sin(cycle as f64)),
         };
-        let (run, _) = driven(&world(&[]), &robot, disturbances, 30.0, command);
+        let (run, _) = driven(&world(&[]), &robot, disturbances.clone(), 30.0, command);
         let driven = velocities(&run);
         assert_eq!(driven.len(), 301);
         for pair in driven.windows(2) {
@@ -277,18 +283,89 @@ fn driven_never(robot: &Robot, disturbances: Disturbances) -> (Run, Vec<Told>) {
     driven(&world(&[]), robot, disturbances, 3.0, |_| Velocity::ZERO)
 }
 
+/// A robot that knows its pose believes the truth.
+#[test]
+fn without_disturbances_truth_and_belief_are_the_same_run() {
+    let (world, robot) = (world(&[]), robot());
+    let run = |reached_by| {
+        let mut ahead = |&Observation { pose, .. }: &Observation<'_>| {
+            let action = Action::Drive(Velocity::new(0.4, 0.0));
+            Control { action, remaining_m: -pose.x, route: 1 }
+        };
+        let participant = Participant {
+            robot: &robot,
+            start: Pose::default(),
+            goal: Point::new(2.0, 0.0),
+            disturbances: Disturbances::default(),
+            rules: RunRules { reached_by, ..limit(60.0) },
+            controller: &mut ahead,
+        };
+        simulate(&world, &mut [participant]).unwrap().remove(0)
+    };
+    let truth = run(ReachedBy::Truth);
+    assert_eq!(truth.outcome, Outcome::Reached);
+    assert_eq!(truth, run(ReachedBy::Belief));
+}
+
+/// A pose that is always off by as much: who goes by it is at the goal by what it believes alone.
+#[test]
+fn a_goal_is_reached_by_truth_or_by_belief() {
+    let localisation = LocalisationFaults {
+        jump_m: 2.0,
+        jump_every_s: 100.0,
+        jump_for_s: 100.0,
+        ..LocalisationFaults::default()
+    };
+    let disturbances = Disturbances { seed: 3, localisation, ..Disturbances::default() };
+    let robot = robot();
+    let outcome = |reached_by, arrival, by_told: bool| {
+        let goal = Point::new(2.0, 0.0);
+        let mut all_told = Vec::new();
+        let mut controller = |&Observation { pose: told, .. }: &Observation<'_>| {
+            all_told.push(told);
+            // The goal that is driven to is the true one, or the one that the robot believes.
+            let at = if by_told { told.point() } else { told.point() - all_told[0].point() };
+            let to_goal = goal - at;
+            let heading = to_goal.heading() - told.theta;
+            let is_there = to_goal.norm() < 0.05;
+            let velocity = Velocity::new(if heading.abs() < 0.1 { 0.3 } else { 0.0 }, heading);
+            let action = if is_there { Action::Arrived } else { Action::Drive(velocity) };
+            Control { action, remaining_m: -(all_told.len() as f64), route: 1 }
+        };
+        let rules = RunRules { arrival, reached_by, goal_tolerance_m: 0.2, ..limit(60.0) };
+        let participant = Participant {
+            robot: &robot,
+            start: Pose::default(),
+            goal,
+            disturbances: disturbances.clone(),
+            rules,
+            controller: &mut controller,
+        };
+        let run = simulate(&world(&[]), &mut [participant]).unwrap().remove(0);
+        assert!(all_told[0].point().norm() > 0.5, "the pose is off: {:?}", all_told[0]);
+        run.outcome
+    };
+    for arrival in [Arrival::Passing, Arrival::Standing] {
+        assert_eq!(outcome(ReachedBy::Belief, arrival, true), Outcome::Reached);
+        assert_eq!(outcome(ReachedBy::Truth, arrival, false), Outcome::Reached);
+        assert_eq!(outcome(ReachedBy::Truth, arrival, true), Outcome::Timeout);
+        assert_eq!(outcome(ReachedBy::Belief, arrival, false), Outcome::Timeout);
+    }
+}
+
 /// Errors of the sensor and the localisation change only the controller's inputs.
 #[test]
 fn what_is_recorded_is_the_truth() {
     let disturbances = Disturbances {
         seed: 8,
-        sensor: SensorNoise { range_m: 0.1, dropped_beams: 0.1, ..SensorNoise::default() },
-        localisation: LocalisationNoise {
+        sensor: SensorFaults { range_m: 0.1, dropped_beams: 0.1, ..SensorFaults::default() },
+        localisation: LocalisationFaults {
             position_m: 0.2,
             heading_rad: 0.1,
             correlation_s: 2.0,
             v_relative: 0.1,
             omega_relative: 0.1,
+            ..LocalisationFaults::default()
         },
         ..Disturbances::default()
     };
@@ -325,12 +402,12 @@ fn what_is_recorded_is_the_truth() {
 #[test]
 fn every_robot_has_its_own_numbers() {
     let robot = robot();
-    let actuation = ActuationNoise { v_relative: 0.1, ..ActuationNoise::default() };
+    let actuation = ActuationFaults { v_relative: 0.1, ..ActuationFaults::default() };
     let disturbances = Disturbances { seed: 3, actuation, ..Disturbances::default() };
     let run_of = |starts: &[Pose]| {
         let mut controllers = [(), ()].map(|()| {
             let mut left = 1e6;
-            move |_: Pose, _: Velocity, _: &Scan| {
+            move |_: &Observation<'_>| {
                 left -= 1.0;
                 let action = Action::Drive(Velocity::new(0.3, 0.0));
                 Control { action, remaining_m: left, route: 1 }
@@ -343,7 +420,7 @@ fn every_robot_has_its_own_numbers() {
                 robot: &robot,
                 start,
                 goal: FAR,
-                disturbances,
+                disturbances: disturbances.clone(),
                 rules: limit(5.0),
                 controller,
             })
@@ -359,20 +436,20 @@ fn every_robot_has_its_own_numbers() {
 
 #[test]
 fn what_cannot_disturb_is_refused() {
-    let mut disturbances = [Disturbances::default(); 2];
+    let mut disturbances = [Disturbances::default(), Disturbances::default()];
     disturbances[1].sensor.range_m = -1.0;
     let robot = robot();
     let error = |disturbances: &[Disturbances]| {
-        let refused = |_: Pose, _: Velocity, _: &Scan| -> Control { unreachable!() };
+        let refused = |_: &Observation<'_>| -> Control { unreachable!() };
         let mut controllers = [refused; 2];
         let mut participants: Vec<Participant<'_>> = disturbances
             .iter()
             .zip(&mut controllers)
-            .map(|(&disturbances, controller)| Participant {
+            .map(|(disturbances, controller)| Participant {
                 robot: &robot,
                 start: Pose::default(),
                 goal: FAR,
-                disturbances,
+                disturbances: disturbances.clone(),
                 rules: limit(1.0),
                 controller,
             })

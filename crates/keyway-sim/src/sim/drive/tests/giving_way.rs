@@ -12,7 +12,7 @@ fn between(from: Point, to: Point) -> MovingObstacle {
 /// A run among moving obstacles with one commanded velocity.
 fn among(movers: Vec<MovingObstacle>, start: Pose, command: Velocity, time_limit_s: f64) -> Run {
     let mut left = 1e6;
-    let controller = move |_: Pose, _: Velocity, _: &Scan| {
+    let controller = move |_: &Observation<'_>| {
         left -= 1.0;
         Control { action: Action::Drive(command), remaining_m: left, route: 1 }
     };

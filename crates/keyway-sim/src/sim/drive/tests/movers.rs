@@ -128,7 +128,8 @@ fn contact_at_the_start() {
 fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
     let world = open(vec![straight(3.0, 0.0, -0.5, 0.0)]);
     let mut cycle = 0;
-    alone(&world, &robot(), Pose::default(), FAR, &limit(2.0), |_, _, scan| {
+    alone(&world, &robot(), Pose::default(), FAR, &limit(2.0), |observation| {
+        let scan = observation.scans[0].scan;
         // Beam 4 of 8 looks straight ahead.
         let range_m = 2.75 - 0.5 * 0.1 * f64::from(cycle);
         assert!((scan.ranges_m[4] - range_m).abs() < 1e-9);

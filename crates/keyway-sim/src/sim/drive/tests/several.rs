@@ -10,7 +10,7 @@ type Task<'a> = (&'a Robot, Pose, Point, Velocity);
 fn drive_all(world: &World, rules: &RunRules, tasks: &[Task<'_>]) -> Vec<Run> {
     let controller = |command: Velocity| {
         let mut left = 1e6;
-        move |_: Pose, _: Velocity, _: &Scan| {
+        move |_: &Observation<'_>| {
             left -= 1.0;
             Control { action: Action::Drive(command), remaining_m: left, route: 1 }
         }
@@ -75,21 +75,20 @@ fn two_robots_that_drive_towards_each_other_meet_at_the_computed_time() {
 fn robots_see_each_other_where_they_are() {
     let (round, long) = (robot(), boxy(0.6, 0.3));
     let mut gaps = Vec::new();
-    let mut look = |pose: Pose, _: Velocity, scan: &Scan| {
+    let mut look = |&Observation { pose, scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
         // Beam 4 of 8 looks straight ahead, beam 6 to the left.
         gaps.push((pose.x, scan.ranges_m[4], scan.ranges_m[6]));
         Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
     };
     let mut positions = Vec::new();
-    let mut back = |pose: Pose, _: Velocity, scan: &Scan| {
+    let mut back = |&Observation { pose, scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
         positions.push((pose.x, scan.ranges_m[4]));
         Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
     };
-    let mut stand = |_: Pose, _: Velocity, _: &Scan| Control {
-        action: Action::Stop,
-        remaining_m: 9.0,
-        route: 1,
-    };
+    let mut stand =
+        |_: &Observation<'_>| Control { action: Action::Stop, remaining_m: 9.0, route: 1 };
     let mut participants = [
         Participant {
             robot: &round,
@@ -129,7 +128,7 @@ fn robots_see_each_other_where_they_are() {
 #[test]
 fn out_of_reach_of_each_other_they_drive_as_if_alone() {
     let mut short_sighted = robot();
-    short_sighted.sensor.range_m = 0.5;
+    short_sighted.sensors[0].range_m = 0.5;
     let world = world(&[(1.0, 0.5, 0.1), (0.5, 5.0, 0.3)]);
     let tasks = [
         (&short_sighted, Pose::new(0.0, -5.0, 0.3), FAR, Velocity::new(0.4, 0.1)),
@@ -190,11 +189,11 @@ fn who_has_ended_stands_in_the_way() {
     // One robot is stuck, and another one has its goal beyond it. The run of the latter ends when
     // it has not moved for 20 s.
     let mut cycles = 0;
-    let mut stays = |_: Pose, _: Velocity, _: &Scan| {
+    let mut stays = |_: &Observation<'_>| {
         cycles += 1;
         Control { action: Action::Stop, remaining_m: 5.0, route: 1 }
     };
-    let mut waits = |pose: Pose, _: Velocity, _: &Scan| Control {
+    let mut waits = |&Observation { pose, .. }: &Observation<'_>| Control {
         action: Action::Drive(ahead(0.05)),
         remaining_m: 9.0 - pose.x,
         route: 1,
@@ -229,7 +228,7 @@ fn contacts_in_one_cycle_happen_in_their_order() {
     // stands. Robot 1 crosses its line at 0.75 s, when robot 0 would be 1 m farther on, and runs
     // into it.
     let mut fast = brisk(1.0);
-    fast.sensor.beams = 1;
+    fast.sensors[0].beams = 1;
     let world = world(&[(0.6, 0.0, 0.1)]);
     let tasks = [
         (&fast, Pose::new(0.0, 0.0, 0.0), FAR, ahead(4.0)),
@@ -299,12 +298,9 @@ fn robots_in_one_place_are_in_contact_at_the_start() {
 fn what_is_wrong_with_whom() {
     let (good, slow) = (robot(), Robot { cycle_s: 0.2, ..robot() });
     let error = |robots: [&Robot; 2], start: Pose, v: f64| {
-        let mut stop = |_: Pose, _: Velocity, _: &Scan| Control {
-            action: Action::Stop,
-            remaining_m: 1.0,
-            route: 1,
-        };
-        let mut drive = |_: Pose, _: Velocity, _: &Scan| Control {
+        let mut stop =
+            |_: &Observation<'_>| Control { action: Action::Stop, remaining_m: 1.0, route: 1 };
+        let mut drive = |_: &Observation<'_>| Control {
             action: Action::Drive(ahead(v)),
             remaining_m: 1.0,
             route: 1,

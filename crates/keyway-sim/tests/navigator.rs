@@ -3,42 +3,45 @@
 
 #[path = "../../keyway/tests/support/building.rs"]
 mod building;
+#[path = "../../keyway/tests/support/driving.rs"]
+mod driving;
 
 use building::{GOAL, START, blocks, building};
+use driving::{bound_for, next_step};
 use keyway::geometry::{Disc, Point, Pose, Segment, Velocity};
 use keyway::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
-use keyway::navigate::{Blocked, Controller, NavigateError, Stack, Step};
+use keyway::navigate::{Blocked, NavigateError, Navigator, Stack, Step};
 use keyway::robot::Robot;
-use keyway::sense::Scan;
+use keyway::sense::{Observation, Scan};
 use keyway_sim::sim::{
     Action, Control, Disturbances, Outcome, Participant, Run, RunRules, World, simulate,
 };
 
 /// The stack `key-point-fusion` on the small robot, from [`START`] to [`GOAL`].
-fn small_controller(map: &OccupancyGrid) -> Controller {
+fn small_navigator(map: &OccupancyGrid) -> Navigator {
     let robot = Robot::small();
-    Controller::new(map, &Stack::key_point_fusion(&robot).fit(&robot).unwrap(), START, GOAL)
-        .unwrap()
+    bound_for(map, &Stack::key_point_fusion(&robot).fit(&robot).unwrap(), START, GOAL).unwrap()
 }
 
-/// Everything a controller saw and answered in a run.
+/// Everything a navigator saw and answered in a run.
 type Record = Vec<(Pose, Velocity, Scan, Step)>;
 
 fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
-    let (robot, mut controller) = (Robot::small(), small_controller(map));
+    let (robot, mut navigator) = (Robot::small(), small_navigator(map));
     let goal_tolerance_m = Stack::key_point_fusion(&robot).controller.goal_tolerance_m;
     let world = World::from_known(map, unknown).unwrap();
     let rules = RunRules { goal_tolerance_m, time_limit_s: 120.0, ..RunRules::default() };
     let start = Pose::new(START.x, START.y, 0.0);
-    let mut decide = |pose: Pose, velocity: Velocity, scan: &Scan| {
-        let step = controller.step(pose, velocity, scan);
+    let mut decide = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
+        let scan = scans[0].scan;
+        let step = next_step(&mut navigator, pose, velocity, scan);
         record.push((pose, velocity, scan.clone(), step.clone()));
         let action = match step {
-            Step::Drive(command) | Step::Blocked { command, .. } => Action::Drive(command),
             Step::Arrived => Action::Arrived,
+            step => Action::Drive(step.command()),
         };
-        let remaining_m = controller.guidance().remaining_m;
-        Control { action, remaining_m, route: controller.routes_planned() }
+        let remaining_m = navigator.guidance().unwrap().remaining_m;
+        Control { action, remaining_m, route: navigator.routes_planned() }
     };
     let participant = Participant {
         robot: &robot,
@@ -53,7 +56,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
 
 /// A scan that meets nothing.
 fn nothing() -> Scan {
-    Scan::of_nothing(&Robot::small().sensor)
+    Scan::of_nothing(&Robot::small().sensors[0])
 }
 
 fn circle(x: f64, y: f64, radius_m: f64) -> Disc {
@@ -88,9 +91,9 @@ fn the_same_inputs_give_the_same_commands() {
     let map = building();
     let mut record = Record::new();
     drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
-    let mut again = small_controller(&map);
+    let mut again = small_navigator(&map);
     for (pose, velocity, scan, step) in record {
-        assert_eq!(again.step(pose, velocity, &scan), step);
+        assert_eq!(next_step(&mut again, pose, velocity, &scan), step);
     }
 }
 
@@ -100,12 +103,12 @@ fn a_cycle_allocates_nothing() {
     let map = building();
     let mut record = Record::new();
     drive(&map, vec![circle(3.4, 0.8, 0.15)], &mut record);
-    let mut again = small_controller(&map);
+    let mut again = small_navigator(&map);
     let (mut quiet, mut planned) = (0, 0);
     for (index, (pose, velocity, scan, _)) in record.iter().enumerate() {
         let (routes, sensed) = (again.routes_planned(), again.sensed().clone());
         let info = allocation_counter::measure(|| {
-            again.step(*pose, *velocity, scan);
+            next_step(&mut again, *pose, *velocity, scan);
         });
         if again.routes_planned() != routes {
             planned += 1;
@@ -123,7 +126,7 @@ fn says_when_what_it_sees_leaves_no_route() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
-    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     // A fence from wall to wall, 1 m ahead.
     let scan = Scan {
         angle_min_rad: -1.0,
@@ -133,8 +136,9 @@ fn says_when_what_it_sees_leaves_no_route() {
         ranges_m: (0..200).map(|i| 1.0 / (-1.0 + 0.01 * f64::from(i)).cos()).collect(),
     };
     let pose = Pose::new(start.x, start.y, 0.0);
-    let steps: Vec<Step> = (0..40).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
-    assert!(controller.sensed().count_ones() > 0);
+    let steps: Vec<Step> =
+        (0..40).map(|_| next_step(&mut navigator, pose, Velocity::ZERO, &scan)).collect();
+    assert!(navigator.sensed().count_ones() > 0);
     let no_route = |step: &Step| {
         matches!(step, Step::Blocked { why: Blocked::NoRoute(NavigateError::Plan(_)), .. })
     };
@@ -162,20 +166,20 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
         range_max_m: 3.0,
         ranges_m: (0..40).map(|i| if i < first { f64::NAN } else { range(i) }).collect(),
     };
-    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
-    controller.step(pose, Velocity::ZERO, &scan(0));
-    assert_eq!((controller.routes_planned(), controller.ways_taken()), (2, 2));
+    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    next_step(&mut navigator, pose, Velocity::ZERO, &scan(0));
+    assert_eq!((navigator.routes_planned(), navigator.ways_taken()), (2, 2));
     for _ in 0..25 {
-        controller.step(pose, Velocity::ZERO, &scan(0));
+        next_step(&mut navigator, pose, Velocity::ZERO, &scan(0));
     }
-    assert_eq!(controller.routes_planned(), 2, "nothing new");
+    assert_eq!(navigator.routes_planned(), 2, "nothing new");
     // Beams that see only what the first ones have seen, or nothing at all.
-    controller.step(pose, Velocity::ZERO, &scan(12));
-    assert_eq!(controller.routes_planned(), 2);
+    next_step(&mut navigator, pose, Velocity::ZERO, &scan(12));
+    assert_eq!(navigator.routes_planned(), 2);
     // As published, nobody watches.
     stack.controller.watch_route = false;
-    let mut unwatched = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
-    unwatched.step(pose, Velocity::ZERO, &scan(0));
+    let mut unwatched = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    next_step(&mut unwatched, pose, Velocity::ZERO, &scan(0));
     assert_eq!(unwatched.routes_planned(), 1);
 }
 
@@ -187,7 +191,7 @@ fn says_that_something_stands_on_the_goal() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(2.0, 1.0));
-    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let range = |i: i32| if (90..110).contains(&i) { 1.0 } else { f64::INFINITY };
     let scan = Scan {
         angle_min_rad: -1.0,
@@ -197,7 +201,8 @@ fn says_that_something_stands_on_the_goal() {
         ranges_m: (0..200).map(range).collect(),
     };
     let pose = Pose::new(start.x, start.y, 0.0);
-    let steps: Vec<Step> = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &scan)).collect();
+    let steps: Vec<Step> =
+        (0..100).map(|_| next_step(&mut navigator, pose, Velocity::ZERO, &scan)).collect();
     let no_route = |step: &Step| match step {
         Step::Blocked { why: Blocked::NoRoute(why), .. } => Some(why.to_string()),
         _ => None,
@@ -216,16 +221,15 @@ fn the_guide_leaves_a_rectangle_room_to_turn() {
     let stack = Stack::key_point_fusion(&robot);
     let layers = SearchMap::new(&map, LayerConfig::default()).unwrap();
     let turning_m = robot.footprint.circumscribed_radius_m();
-    let first = Controller::new(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
-    assert!(first.route().clearance_m > turning_m && first.misfit().is_none());
-    let path = first.route().smoothed.clone();
+    let first = bound_for(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
+    assert!(first.route().unwrap().clearance_m > turning_m && first.misfit().is_none());
+    let path = first.route().unwrap().smoothed.clone();
     let mut guides = Vec::new();
     for step in 0..60 {
         let Some(place) = path.at_length(0.1 * f64::from(step)) else { break };
-        let mut controller =
-            Controller::new(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
-        controller.step(Pose::new(place.x, place.y, 0.0), Velocity::ZERO, &nothing());
-        let guide = controller.guidance().point;
+        let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), START, GOAL).unwrap();
+        next_step(&mut navigator, Pose::new(place.x, place.y, 0.0), Velocity::ZERO, &nothing());
+        let guide = navigator.guidance().unwrap().point;
         let way = Segment::new(place, guide);
         assert!(layers.clearance().is_clear(way, turning_m), "from {place:?} to {guide:?}");
         guides.push(guide);
@@ -246,32 +250,32 @@ fn a_route_through_a_narrow_place_keeps_to_its_middle() {
     let robot = Robot::jackal();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(0.6, 0.6), Point::new(3.4, 0.6));
-    let controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
-    let route = controller.route();
+    let navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let route = navigator.route().unwrap();
     assert!((0.3..0.325).contains(&route.clearance_m), "{}", route.clearance_m);
     let inside = (0..100).filter_map(|i| route.smoothed.at_length(0.05 * f64::from(i)));
     let inside: Vec<Point> = inside.filter(|point| (1.5..2.5).contains(&point.x)).collect();
     assert!(inside.len() > 10 && inside.iter().all(|point| (point.y - 1.525).abs() < 0.03));
-    assert_eq!(controller.misfit(), None);
+    assert_eq!(navigator.misfit(), None);
 }
 
 #[test]
 fn a_pose_off_the_map_is_no_place_to_drive_from() {
-    let mut controller = small_controller(&building());
+    let mut navigator = small_navigator(&building());
     let away = Pose::new(-2.0, 1.0, 0.0);
-    let step = controller.step(away, Velocity::new(0.5, 0.0), &nothing());
+    let step = next_step(&mut navigator, away, Velocity::new(0.5, 0.0), &nothing());
     let Step::Blocked { command, why } = step else { panic!("{step:?}") };
     assert!(command.v < 0.5 && why == Blocked::OffTheMap(away.point()));
     assert!(why.to_string().starts_with("the pose (-2, 1) is outside the map: "), "{why}");
     // Back on the map, it drives.
     let here = Pose::new(START.x, START.y, 0.0);
-    assert!(matches!(controller.step(here, Velocity::ZERO, &nothing()), Step::Drive(_)));
+    assert!(matches!(next_step(&mut navigator, here, Velocity::ZERO, &nothing()), Step::Drive(_)));
 }
 
 #[test]
 fn stops_when_it_cannot_know_where_it_is() {
     let map = building();
-    let mut controller = small_controller(&map);
+    let mut navigator = small_navigator(&map);
     let here = Pose::new(START.x, START.y, 0.0);
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let inputs = [
@@ -282,12 +286,12 @@ fn stops_when_it_cannot_know_where_it_is() {
             (here, Velocity::new(0.0, bad), "velocity.omega"),
         ];
         for (pose, velocity, field) in inputs {
-            let step = controller.step(pose, velocity, &nothing());
+            let step = next_step(&mut navigator, pose, velocity, &nothing());
             let why = Blocked::BadInput(field);
             assert_eq!(step, Step::Blocked { command: Velocity::ZERO, why });
         }
     }
-    let absurd = controller.step(here, Velocity::new(1e9, 0.0), &nothing());
+    let absurd = next_step(&mut navigator, here, Velocity::new(1e9, 0.0), &nothing());
     let Step::Blocked { why, .. } = absurd else { panic!("{absurd:?}") };
     assert_eq!(why, Blocked::BadInput("velocity.v"));
     assert_eq!(
@@ -301,10 +305,10 @@ fn stops_when_it_cannot_know_where_it_is() {
         range_max_m: f64::NAN,
         ranges_m: vec![f64::NAN, -1.0, 0.0, f64::INFINITY, 1e300],
     };
-    let step = controller.step(here, Velocity::ZERO, &nonsense);
+    let step = next_step(&mut navigator, here, Velocity::ZERO, &nonsense);
     assert!(matches!(step, Step::Blocked { why: Blocked::SensorSilent { .. }, .. }), "{step:?}");
     assert_eq!(step.command(), Velocity::ZERO);
-    assert!(matches!(controller.step(here, Velocity::ZERO, &nothing()), Step::Drive(_)));
+    assert!(matches!(next_step(&mut navigator, here, Velocity::ZERO, &nothing()), Step::Drive(_)));
 }
 
 #[test]
@@ -313,7 +317,7 @@ fn says_so_as_long_as_there_is_no_route() {
     let robot = Robot::small();
     let stack = Stack::key_point_fusion(&robot);
     let (start, goal) = (Point::new(1.0, 1.0), Point::new(5.0, 1.0));
-    let mut controller = Controller::new(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let fence = |range: f64| Scan {
         angle_min_rad: -1.2,
         angle_increment_rad: 0.01,
@@ -324,25 +328,26 @@ fn says_so_as_long_as_there_is_no_route() {
     let pose = Pose::new(start.x, start.y, 0.0);
     let mut blocked = 0;
     for _ in 0..300 {
-        let step = controller.step(pose, Velocity::ZERO, &fence(1.0));
+        let step = next_step(&mut navigator, pose, Velocity::ZERO, &fence(1.0));
         let waits = matches!(step, Step::Blocked { why: Blocked::NoRoute(_), .. });
         assert!(blocked == 0 || waits, "says that there is a route although nothing has changed");
         blocked += i32::from(waits);
     }
     assert!(blocked > 250);
     // 1 + 2 + 4 + 8 + 8 s of waiting.
-    assert!(controller.routes_planned() <= 8, "{}", controller.routes_planned());
+    assert!(navigator.routes_planned() <= 8, "{}", navigator.routes_planned());
     // The fence is taken away.
-    let gone = (0..100).map(|_| controller.step(pose, Velocity::ZERO, &fence(f64::INFINITY)));
+    let gone =
+        (0..100).map(|_| next_step(&mut navigator, pose, Velocity::ZERO, &fence(f64::INFINITY)));
     assert!(gone.into_iter().any(|step| matches!(step, Step::Drive(_))));
 }
 
 #[test]
 fn arrives_within_the_tolerance() {
     let map = building();
-    let mut controller = small_controller(&map);
+    let mut navigator = small_navigator(&map);
     let near = Pose::new(GOAL.x + 0.149, GOAL.y, 1.0);
-    assert_eq!(controller.step(near, Velocity::ZERO, &nothing()), Step::Arrived);
+    assert_eq!(next_step(&mut navigator, near, Velocity::ZERO, &nothing()), Step::Arrived);
     let far = Pose::new(GOAL.x + 0.151, GOAL.y, 1.0);
-    assert_ne!(controller.step(far, Velocity::ZERO, &nothing()), Step::Arrived);
+    assert_ne!(next_step(&mut navigator, far, Velocity::ZERO, &nothing()), Step::Arrived);
 }

@@ -1,0 +1,56 @@
+//! Steps of a navigator.
+
+use keyway::geometry::Velocity;
+use keyway::navigate::Blocked;
+use pyo3::prelude::*;
+
+/// Command until the next cycle, and its reason.
+///
+/// >>> import keyway, numpy as np
+/// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+/// >>> navigator = keyway.Navigator(grid)
+/// >>> navigator.observe(0.0, pose=(1, 1, 0), velocity=(0, 0), scan=navigator.clear_scan)
+/// >>> navigator.set_goal((3, 1))
+/// >>> navigator.step()
+/// <keyway.Step drive: 0.050 m/s, 0.000 rad/s>
+#[pyclass(frozen, get_all, module = "keyway")]
+pub(crate) struct Step {
+    /// Forward speed [m/s].
+    v: f64,
+    /// Turn rate, positive to the left [rad/s].
+    omega: f64,
+    /// `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`,
+    /// or `idle` (there is no goal).
+    status: &'static str,
+    /// The reason why the robot is blocked, for people; otherwise `None`.
+    why: Option<String>,
+    /// The kind of that as a number, which never changes, for programs; otherwise `None`.
+    kind: Option<u16>,
+    /// A notice for people: the robot began nearer to something than it can stand, and is leaving
+    /// it. Otherwise `None`.
+    notice: Option<String>,
+}
+
+#[pymethods]
+impl Step {
+    fn __repr__(&self) -> String {
+        let Self { v, omega, status, why, .. } = self;
+        let why = why.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
+        format!("<keyway.Step {status}: {v:.3} m/s, {omega:.3} rad/s{why}>")
+    }
+}
+
+impl Step {
+    pub(crate) fn new(step: keyway::navigate::Step, notice: Option<String>) -> Self {
+        use keyway::navigate::Step;
+        let Velocity { v, omega, .. } = step.command();
+        let (status, why) = match step {
+            Step::Drive(_) => ("drive", None),
+            Step::Arrived => ("arrived", None),
+            Step::Idle => ("idle", None),
+            Step::Blocked { why, .. } => ("blocked", Some(why)),
+        };
+        let kind = why.as_ref().map(Blocked::kind);
+        Self { v, omega, status, why: why.map(|why| why.to_string()), kind, notice }
+    }
+}

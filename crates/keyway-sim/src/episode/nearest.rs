@@ -1,0 +1,67 @@
+//! Goals that cannot be reached.
+
+use super::task::Task;
+use super::{Episode, EpisodeError};
+use keyway::geometry::Point;
+use keyway::navigate::{Goal, Navigator};
+
+/// A goal in the place of another one that cannot be reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestGoal {
+    /// Index of the robot.
+    pub robot: usize,
+    /// Goal that was asked for \[m\].
+    pub asked: Point,
+    /// Goal that it gets: the nearest place that can be reached \[m\].
+    pub goal: Point,
+}
+
+impl Episode {
+    /// Replaces each goal to which the map has no way, from the last way-point or the start, by the
+    /// nearest place to which it has one, with any heading; returns those that were replaced. A
+    /// goal stays where nothing can be reached.
+    ///
+    /// # Errors
+    /// When the episode cannot be run.
+    pub fn reach_nearest(&mut self) -> Result<Vec<NearestGoal>, EpisodeError> {
+        self.check()?;
+        let mut replaced = Vec::new();
+        for robot in 0..self.robots.len() {
+            let task = Task::new(self, robot);
+            let blame = |error| task.blame(error);
+            let mut navigator = Navigator::new(&self.known, &task.fit()?).map_err(blame)?;
+            let (start, asked) = (task.robot.start.position, task.robot.goal.position);
+            let from = task.robot.via.last().copied().unwrap_or(start);
+            let nearest = navigator.nearest_reachable(from, asked);
+            if let Some(goal) = nearest.filter(|&goal| goal != asked) {
+                self.robots[robot].goal = Goal::from(goal);
+                replaced.push(NearestGoal { robot, asked, goal });
+            }
+        }
+        Ok(replaced)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::episode::{EpisodeOutcome, EpisodeRobot, run_episode};
+    use keyway::map::OccupancyGrid;
+    use keyway::robot::Robot;
+
+    #[test]
+    fn it_drives_to_the_nearest_place() {
+        let map = OccupancyGrid::from_ascii(&["....#...", "....#...", "....#...", "....#..."]);
+        let robot = |goal: [f64; 2]| {
+            EpisodeRobot::new(Robot::small(), Point::new(0.6, 2.0), Point::from(goal))
+        };
+        let mut episode = Episode::of_robots(map, vec![robot([7.0, 2.4]), robot([2.5, 2.5])]);
+        let replaced = episode.reach_nearest().unwrap();
+        let [NearestGoal { robot: 0, goal, .. }] = replaced[..] else { panic!("{replaced:?}") };
+        assert_eq!(goal, Point::new(3.5, 2.5));
+        assert_eq!(episode.robots[1].goal.position, Point::new(2.5, 2.5));
+        episode.robots.truncate(1);
+        assert_eq!(run_episode(&episode).unwrap().first().outcome, EpisodeOutcome::Reached);
+        assert_eq!(episode.reach_nearest().unwrap(), [], "it can be reached now");
+    }
+}

@@ -1,0 +1,132 @@
+//! Inputs that contradict each other are noticed, and true ones are not.
+
+use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
+use keyway::geometry::{Disc, Point, Pose, Velocity};
+use keyway::navigate::Doubt;
+use keyway::sense::{Observation, SensorScan};
+use keyway_sim::sim::World;
+
+fn driving() -> RobotInAWorld {
+    let map = hall(wall_with_doors(&[2.0, 6.0]));
+    let mut life = RobotInAWorld::new(&map, Pose::new(2.0, 4.0, 0.0));
+    life.posts = vec![Disc::new(Point::new(4.0, 5.0), 0.25)];
+    life.navigator.set_goal(Point::new(10.0, 4.0)).unwrap();
+    life
+}
+
+/// The cycles until something is doubted, of a robot that is told and driven in a way of its own.
+fn noticed(
+    life: &mut RobotInAWorld,
+    told: impl Fn(&RobotInAWorld, u32) -> (Pose, Velocity),
+    obeys: bool,
+) -> Option<(u32, Vec<Doubt>)> {
+    for cycle in 0..60 {
+        let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
+        let scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+        let stamp_s = life.stamp_s;
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
+        let (pose, velocity) = told(life, cycle);
+        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        if !life.navigator.doubts().is_empty() {
+            return Some((cycle, life.navigator.doubts().to_vec()));
+        }
+        let command = life.navigator.step().command();
+        life.obey(if obeys { command } else { Velocity::ZERO });
+    }
+    None
+}
+
+#[test]
+fn what_is_true_is_not_doubted() {
+    let mut life = driving();
+    life.posts.push(Disc::new(Point::new(9.0, 4.0), 0.2));
+    while life.navigator.guidance().unwrap().remaining_m > 0.3 {
+        life.cycle();
+        assert_eq!(life.navigator.doubts(), [], "{:?}", life.pose);
+    }
+    // Braking, standing, turning and starting again.
+    life.navigator.cancel();
+    life.drive_for(4.0);
+    life.navigator.spin(3.0, 30.0).unwrap();
+    for _ in 0..150 {
+        life.cycle();
+        assert_eq!(life.navigator.doubts(), [], "{:?}", life.pose);
+    }
+}
+
+#[test]
+fn a_velocity_that_is_always_0_is_noticed() {
+    let mut life = driving();
+    let (cycle, doubts) = noticed(&mut life, |life, _| (life.pose, Velocity::ZERO), true).unwrap();
+    assert_eq!(doubts, [Doubt::VelocityAlwaysZero]);
+    assert!(cycle <= 22, "{cycle}");
+}
+
+#[test]
+fn a_robot_that_does_not_move_is_noticed() {
+    let mut life = driving();
+    let (cycle, doubts) = noticed(&mut life, |life, _| (life.pose, life.velocity), false).unwrap();
+    assert_eq!(doubts, [Doubt::DoesNotMove]);
+    assert!(cycle <= 40, "{cycle}");
+}
+
+#[test]
+fn a_robot_that_is_pushed_is_noticed() {
+    let mut life = driving();
+    life.navigator.cancel();
+    let pushed = |life: &RobotInAWorld, cycle: u32| {
+        let away_m = 0.01 * f64::from(cycle);
+        (Pose::new(life.pose.x + away_m, life.pose.y, 0.0), Velocity::new(0.0, 1e-9))
+    };
+    let (cycle, doubts) = noticed(&mut life, pushed, true).unwrap();
+    assert_eq!(doubts, [Doubt::MovesUntold]);
+    assert!(cycle <= 22, "{cycle}");
+}
+
+#[test]
+fn a_scan_that_is_given_again_is_noticed() {
+    let mut life = driving();
+    life.drive_for(2.0);
+    let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
+    let scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+    for cycle in 0..4 {
+        let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
+        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        let expected: &[Doubt] =
+            if cycle == 0 { &[] } else { &[Doubt::ScanRepeated { sensor: 0 }] };
+        assert_eq!(life.navigator.doubts(), expected, "{cycle}");
+        life.navigator.step();
+        life.obey(Velocity::new(0.4, 0.0));
+    }
+    life.drive_for(2.2);
+    assert_eq!(life.navigator.doubts(), [], "it is over");
+}
+
+/// The localisation jumps by 0.3 m and 10 degrees: that is named, and the post stays beside the
+/// robot.
+#[test]
+fn a_jump_is_noticed_and_what_was_sensed_goes_with_it() {
+    let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
+    life.posts = vec![Disc::new(Point::new(5.0, 4.0), 0.2)];
+    life.drive_for(2.0);
+    let sensed_there = |life: &RobotInAWorld, place: Point| {
+        let (frame, sensed) = (*life.truth.frame(), life.navigator.sensed());
+        let cells = frame.cells().filter(|&cell| sensed.get(cell));
+        cells.filter(|&cell| frame.world_from_cell(cell).distance(place) < 0.12).count()
+    };
+    let face = Point::new(4.8, 4.0);
+    assert!(sensed_there(&life, face) >= 3);
+    life.told = |pose| Pose::new(pose.x - 0.2, pose.y + 0.22, pose.theta + 0.17);
+    // Without a scan, so that all that is sensed there is what was sensed before.
+    let (stamp_s, velocity, pose) = (life.stamp_s, life.velocity, (life.told)(life.pose));
+    life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &[] });
+    let [Doubt::PoseJumped { by_m, by_rad }] = life.navigator.doubts() else { panic!() };
+    assert!((by_m - 0.297).abs() < 0.01 && (by_rad - 0.17).abs() < 1e-9, "{by_m} {by_rad}");
+    let moved = pose.world_from_body(life.pose.body_from_world(face));
+    assert!(sensed_there(&life, moved) >= 3 && sensed_there(&life, face) == 0);
+    // And right again.
+    life.told = |pose| pose;
+    life.cycle();
+    assert!(sensed_there(&life, face) >= 3);
+}

@@ -1,0 +1,13 @@
+//! The life of a navigator: goals, maps, limits and clocks change while the robot drives.
+#![allow(clippy::unwrap_used)]
+
+mod acts;
+mod changes;
+mod clocks;
+mod doubts;
+mod goals;
+mod mishaps;
+mod random_calls;
+mod robot_in_a_world;
+mod snapshots;
+mod way_points;

@@ -1,0 +1,54 @@
+//! Corrections of where a robot is.
+
+use super::{Point, Pose, wrap_angle};
+
+/// The shift and turn of all ground that takes one pose to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shift {
+    from: Pose,
+    to: Pose,
+}
+
+impl Shift {
+    pub(crate) const fn new(from: Pose, to: Pose) -> Self {
+        Self { from, to }
+    }
+
+    /// The place to which a point comes.
+    pub(crate) fn point(&self, point: Point) -> Point {
+        self.to.world_from_body(self.from.body_from_world(point))
+    }
+
+    /// The vector to which another one is turned.
+    pub(crate) fn vector(&self, vector: Point) -> Point {
+        let (sin, cos) = libm::sincos(self.turn_rad());
+        Point::new(vector.x * cos - vector.y * sin, vector.x * sin + vector.y * cos)
+    }
+
+    /// The pose to which another one comes.
+    pub(crate) fn pose(&self, pose: Pose) -> Pose {
+        let Point { x, y } = self.point(pose.point());
+        Pose::new(x, y, pose.theta + self.turn_rad())
+    }
+
+    fn turn_rad(&self) -> f64 {
+        wrap_angle(self.to.theta - self.from.theta)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn all_keeps_its_place_beside_the_robot() {
+        let shift = Shift::new(Pose::new(1.0, 2.0, 0.0), Pose::new(5.0, 5.0, FRAC_PI_2));
+        // What was 1 m ahead still is, and what went to the left of the robot does.
+        assert!(shift.point(Point::new(2.0, 2.0)).distance(Point::new(5.0, 6.0)) < 1e-12);
+        assert!(shift.vector(Point::new(0.0, 1.0)).distance(Point::new(-1.0, 0.0)) < 1e-12);
+        let pose = shift.pose(Pose::new(1.0, 3.0, 3.0));
+        assert!(pose.point().distance(Point::new(4.0, 5.0)) < 1e-12);
+        assert!((wrap_angle(pose.theta - 3.0 - FRAC_PI_2)).abs() < 1e-12);
+    }
+}

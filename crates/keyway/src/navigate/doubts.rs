@@ -1,0 +1,240 @@
+//! Inputs that contradict each other.
+
+use super::time::Time;
+use crate::geometry::{Pose, Velocity, wrap_angle};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::fmt::{self, Display, Formatter};
+
+/// Something that cannot be true of what a robot is told: its pose, its velocity, its scans and its
+/// own commands contradict each other. It drives on as if all were true; whoever looks after it
+/// should know.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Doubt {
+    /// The pose was elsewhere than the velocity could take the robot, within the last 2 s. What was
+    /// sensed went with the robot.
+    PoseJumped {
+        /// Distance of the last jump \[m\].
+        by_m: f64,
+        /// Its turn \[rad\], positive to the left.
+        by_rad: f64,
+    },
+    /// The velocity has been told as 0 for 2 s, while the pose moved by more than 0.1 m or 0.1 rad.
+    VelocityAlwaysZero,
+    /// The robot has been told to move for 2 s, and its pose has moved by less than a fifth of
+    /// that.
+    DoesNotMove,
+    /// The robot stood, has been told to stand for 2 s, and its pose has moved by more than 0.1 m
+    /// or 0.1 rad.
+    MovesUntold,
+    /// A scan within the last 2 s had the same ranges as the one before, to the last bit, while the
+    /// robot drove or turned, by more than 2 cm or 1 degree.
+    ScanRepeated {
+        /// Index of the sensor.
+        sensor: usize,
+    },
+}
+
+impl Display for Doubt {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PoseJumped { by_m, by_rad } => write!(
+                f,
+                "the pose has jumped by {by_m:.2} m and {:.1} deg: the localisation was wrong before, or is now",
+                by_rad.to_degrees()
+            ),
+            Self::VelocityAlwaysZero => {
+                f.write_str("the velocity is always 0 although the pose moves: check the odometry")
+            }
+            Self::DoesNotMove => f.write_str(
+                "the robot does not move although it is told to: check its motors, or it is stuck",
+            ),
+            Self::MovesUntold => f.write_str(
+                "the robot moves although it is told to stand: it is pushed, or slides, or its localisation drifts",
+            ),
+            Self::ScanRepeated { sensor } => write!(
+                f,
+                "sensor {sensor} gives the same scan again although the robot moves: check its driver"
+            ),
+        }
+    }
+}
+
+/// The last 2 s of inputs, and the doubts about them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Doubts {
+    moments: VecDeque<Moment>,
+    /// Usual distance of poses from those to which the velocity takes the robot \[m\], \[rad\].
+    usual_m: f64,
+    usual_rad: f64,
+    /// The last jump, and when.
+    jump: Option<(Time, [f64; 2])>,
+    /// Time at which each sensor last repeated a scan.
+    repeated: Vec<Option<Time>>,
+    found: Vec<Doubt>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Moment {
+    time: Time,
+    pose: Pose,
+    told: Velocity,
+    command: Velocity,
+}
+
+impl Doubts {
+    /// Time that is looked back \[s\].
+    const WINDOW_S: f64 = 2.0;
+
+    /// More moments than this are thinned out by forgetting the oldest.
+    const MOST: usize = 512;
+
+    /// Usual error of poses, until it is known better.
+    const AT_FIRST_M: f64 = 0.03;
+    const AT_FIRST_RAD: f64 = 0.02;
+
+    const MOVED_M: f64 = 0.1;
+    const MOVED_RAD: f64 = 0.1;
+
+    pub(super) fn new(sensors: usize) -> Self {
+        Self {
+            moments: VecDeque::with_capacity(Self::MOST),
+            usual_m: Self::AT_FIRST_M,
+            usual_rad: Self::AT_FIRST_RAD,
+            jump: None,
+            repeated: vec![None; sensors],
+            found: Vec::with_capacity(5 + sensors),
+        }
+    }
+
+    /// The expected pose, if the one that was observed is a jump: farther from it than 5 cm or
+    /// 0.03 rad, and four times as far as poses usually are, and farther than the robot can have
+    /// sped up or braked meanwhile. After more than three cycles, or 0.3 s, nobody knows.
+    pub(super) fn jump(
+        &mut self,
+        robot: &Robot,
+        (before, velocity): (Pose, Velocity),
+        (pose, now): (Pose, Velocity),
+        elapsed_s: f64,
+    ) -> Option<Pose> {
+        /// Share by which the last pose counts in what is usual.
+        const FRESH: f64 = 0.1;
+        const TIMES: f64 = 4.0;
+        const LONGEST_S: f64 = 0.3;
+        if elapsed_s > LONGEST_S.max(3.0 * robot.cycle_s) {
+            return None;
+        }
+        let limits = &robot.limits;
+        let changes = 0.5 * elapsed_s * elapsed_s;
+        let faster_m = changes * limits.acceleration_mps2.max(limits.deceleration_mps2);
+        let angular_radps2 =
+            limits.angular_acceleration_radps2.max(limits.angular_deceleration_radps2);
+        let expected = before.after_ramp(velocity, now, elapsed_s);
+        let off_m = pose.point().distance(expected.point());
+        let off_rad = wrap_angle(pose.theta - expected.theta).abs();
+        let mut is_jump = false;
+        for (off, usual, least) in [
+            (off_m, &mut self.usual_m, 0.05 + faster_m),
+            (off_rad, &mut self.usual_rad, 0.03 + changes * angular_radps2),
+        ] {
+            let far = least + TIMES * *usual;
+            is_jump |= off > far;
+            *usual += FRESH * (off.min(far) - *usual);
+        }
+        is_jump.then_some(expected)
+    }
+
+    /// Notes a jump from where the robot was expected.
+    pub(super) fn note_jump(&mut self, time: Time, expected: Pose, pose: Pose) {
+        let by_m = pose.point().distance(expected.point());
+        self.jump = Some((time, [by_m, wrap_angle(pose.theta - expected.theta)]));
+        self.moments.clear();
+    }
+
+    /// True if a robot that moves like this has come so far that a scan can no longer be the same.
+    pub(super) fn has_come_far(velocity: Velocity, from: Pose, to: Pose) -> bool {
+        const FAR_M: f64 = 0.02;
+        const FAR_RAD: f64 = 0.017;
+        let is_far = from.point().distance(to.point()) > FAR_M;
+        let is_turned = wrap_angle(to.theta - from.theta).abs() > FAR_RAD;
+        !stands(velocity) && (is_far || is_turned)
+    }
+
+    /// Notes that a sensor has repeated a scan.
+    pub(super) fn note_repeated(&mut self, sensor: usize, time: Time) {
+        self.repeated[sensor] = Some(time);
+    }
+
+    /// Notes what is told, and the command that acts meanwhile.
+    pub(super) fn note(&mut self, time: Time, (pose, told): (Pose, Velocity), command: Velocity) {
+        self.moments.push_back(Moment { time, pose, told, command });
+        // The first moment is kept that is as old as the window.
+        let is_old = |moments: &VecDeque<Moment>| {
+            moments.get(1).is_some_and(|second| time.since_s(second.time) >= Self::WINDOW_S)
+        };
+        while is_old(&self.moments) || self.moments.len() > Self::MOST {
+            self.moments.pop_front();
+        }
+    }
+
+    /// Number of sensors that are looked at.
+    pub(super) fn sensors(&self) -> usize {
+        self.repeated.len()
+    }
+
+    /// The doubts.
+    pub(super) fn found(&self) -> &[Doubt] {
+        &self.found
+    }
+
+    /// Looks at the last 2 s.
+    pub(super) fn look(&mut self, now: Time) {
+        self.found.clear();
+        let is_recent = |time: &Time| now.since_s(*time) <= Self::WINDOW_S;
+        if let Some((_, [by_m, by_rad])) = self.jump.filter(|(time, _)| is_recent(time)) {
+            self.found.push(Doubt::PoseJumped { by_m, by_rad });
+        }
+        for (sensor, time) in self.repeated.iter().enumerate() {
+            if time.is_some_and(|time| is_recent(&time)) {
+                self.found.push(Doubt::ScanRepeated { sensor });
+            }
+        }
+        let (Some(first), Some(last)) = (self.moments.front(), self.moments.back()) else { return };
+        if now.since_s(first.time) < Self::WINDOW_S {
+            return;
+        }
+        let moved_m = last.pose.point().distance(first.pose.point());
+        let moved_rad = wrap_angle(last.pose.theta - first.pose.theta).abs();
+        let has_moved = moved_m > Self::MOVED_M || moved_rad > Self::MOVED_RAD;
+        let [asked_m, asked_rad] = self.asked();
+        if has_moved && self.moments.iter().all(|moment| moment.told == Velocity::ZERO) {
+            self.found.push(Doubt::VelocityAlwaysZero);
+        }
+        let is_asked = asked_m > Self::MOVED_M || asked_rad > Self::MOVED_RAD;
+        if is_asked && moved_m <= 0.2 * asked_m && moved_rad <= 0.2 * asked_rad {
+            self.found.push(Doubt::DoesNotMove);
+        }
+        let is_to_stand = self.moments.iter().all(|moment| moment.command == Velocity::ZERO);
+        if is_to_stand && stands(first.told) && has_moved {
+            self.found.push(Doubt::MovesUntold);
+        }
+    }
+
+    /// The distance and the turn from where the window begins to where the commands lead: all the
+    /// way around comes to nothing.
+    fn asked(&self) -> [f64; 2] {
+        let begin = Pose::default();
+        let spans = self.moments.iter().zip(self.moments.iter().skip(1));
+        let end = spans.fold(begin, |pose, (one, next)| {
+            pose.after_arc(one.command, next.time.since_s(one.time))
+        });
+        [end.point().distance(begin.point()), end.theta.abs()]
+    }
+}
+
+/// Noise of odometry is no motion.
+const fn stands(velocity: Velocity) -> bool {
+    velocity.v.abs() < 0.01 && velocity.omega.abs() < 0.02
+}

@@ -1,0 +1,102 @@
+//! One decision, from what is known and what is wanted.
+
+use super::Record;
+use super::slowing::{Slow, slowed};
+use crate::geometry::{Pose, Velocity};
+use crate::guide::Guide;
+use crate::local::{Evaluation, LocalPlanner};
+use crate::navigate::mode::Mode;
+use crate::navigate::recovery::Moment;
+use crate::navigate::start::touches;
+use crate::navigate::task::Task;
+use crate::navigate::world::World;
+use crate::navigate::{Blocked, Stack, Step};
+use crate::robot::Robot;
+
+/// Everything that a decision looks at and remembers.
+pub(super) struct Deciding<'a> {
+    pub(super) robot: &'a Robot,
+    pub(super) stack: &'a Stack,
+    pub(super) local: &'a dyn LocalPlanner,
+    pub(super) guide: &'a dyn Guide,
+    /// The parts for a speed limit, while there is one.
+    pub(super) slow: Option<&'a Slow>,
+    pub(super) world: &'a mut World,
+    pub(super) task: &'a mut Task,
+    pub(super) record: &'a mut Record,
+    /// Pose of the robot when the command acts.
+    pub(super) pose: Pose,
+    /// Its velocity then.
+    pub(super) velocity: Velocity,
+    /// Since the last decision \[s\].
+    pub(super) elapsed_s: f64,
+}
+
+impl<'a> Deciding<'a> {
+    pub(super) const fn moment(&self) -> Moment<'a> {
+        let Self { robot, pose, velocity, elapsed_s, .. } = *self;
+        Moment { robot, pose, velocity, elapsed_s }
+    }
+
+    /// Notes that the robot has left what it was too near to, once it is told so.
+    pub(super) fn leave(&mut self, pose: Pose) {
+        let known = self.world.router.layers.obstacles().clearance();
+        self.task.too_near.take_if(|_| !touches(&self.robot.footprint, pose, &known));
+    }
+
+    /// A command at no more than the speed limit, on the same arc.
+    pub(super) fn slowed(&self, step: Step) -> Step {
+        slowed(self.slow, step)
+    }
+
+    /// The step before the stop rule is asked.
+    pub(super) fn decided(&mut self) -> Step {
+        self.pass_way_point();
+        let step = self.arrive().unwrap_or_else(|| self.go_on());
+        self.world.forget_edits();
+        step
+    }
+
+    /// The step of a robot on its way.
+    fn go_on(&mut self) -> Step {
+        self.look_after_route();
+        if let Some((kind, command)) = self.go_on_recovering() {
+            return Step::Blocked { command, why: Blocked::Recovering(kind) };
+        }
+        if let Some(command) = self.turn_first() {
+            return Step::Drive(command);
+        }
+        let driven = self.drive();
+        if let Ok(command) = driven {
+            self.turn_before(command);
+            if let Some(command) = self.turn_first() {
+                return Step::Drive(command);
+            }
+        }
+        let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
+        if let Mode::Waiting { why, left_s } = &mut self.task.mode {
+            // On along the old route, as far as is safe: the robot sees better when it is nearer.
+            *left_s -= self.elapsed_s;
+            let why = Blocked::NoRoute(why.clone());
+            let command =
+                if self.task.is_lost { braked } else { driven.unwrap_or_else(|why| why.fallback) };
+            return Step::Blocked { command, why };
+        }
+        match driven {
+            Ok(command) if self.can_only_stand(command) => {
+                let why = Blocked::NothingDrives(self.record.evaluation.clone());
+                Step::Blocked { command, why }
+            }
+            Ok(command) => Step::Drive(command),
+            Err(why) => {
+                Step::Blocked { command: why.fallback, why: Blocked::NothingAdmissible(why) }
+            }
+        }
+    }
+
+    /// True if the robot stands because no other velocity was admissible.
+    fn can_only_stand(&self, command: Velocity) -> bool {
+        let Evaluation { candidates, driving, .. } = self.record.evaluation;
+        self.robot.stands(command) && candidates > 0 && driving == 0
+    }
+}

@@ -1,0 +1,350 @@
+//! The navigation loop, as a value that observes and steps.
+
+mod arriving;
+mod changes;
+mod deciding;
+mod driving;
+mod guarding;
+mod recovering;
+mod replanning;
+mod slowing;
+mod stored_record;
+mod storing;
+mod tasks;
+mod turning_first;
+mod views;
+
+use super::act::Act;
+use super::recovery::Moment;
+use super::task::Task;
+use super::time::Time;
+use super::world::{Told, World};
+use super::{Blocked, FittedStack, NavigateError, RecoveryCounts, Step};
+use crate::geometry::{Pose, Shift, Velocity};
+use crate::local::{DriveMemory, Evaluation, Scratch};
+use crate::map::OccupancyGrid;
+use crate::robot::Robot;
+use crate::sense::Observation;
+use deciding::Deciding;
+use guarding::{Guard, beside_movers};
+use serde::{Deserialize, Serialize};
+use slowing::Slow;
+use std::sync::Arc;
+pub(super) use stored_record::StoredRecord;
+
+/// Drives a robot to goals: it plans on the known map, remembers what scans show, follows the guide
+/// points of its route with the local planner, plans again when the route turns out to be
+/// obstructed, and tries its recoveries when it gets no farther.
+///
+/// It is given what was measured ([`Self::observe`]) and asked for a command in every cycle
+/// ([`Self::step`]). Goals come and go while it drives: what was sensed stays.
+///
+/// It sees the known map, poses, velocities and scans, and nothing else, and it reads no clock: the
+/// same inputs give the same commands. Frames and units are those of the map: metres, radians,
+/// seconds.
+pub struct Navigator {
+    parts: FittedStack,
+    world: World,
+    /// The present errand, if there is one.
+    errand: Option<Errand>,
+    record: Record,
+    /// The speed that is not to be exceeded \[m/s\].
+    speed_limit_mps: Option<f64>,
+    /// The parts for a speed limit, while there is one.
+    slow: Option<Slow>,
+    /// Pose of the robot, as observed or told.
+    place: Option<Pose>,
+    /// Time of the last step.
+    stepped: Option<Time>,
+    /// Steps since the last observation that was taken in.
+    unobserved: u32,
+    /// The last step, while nothing has changed since.
+    last: Option<Step>,
+    /// The last command, from which a robot brakes that is told nothing new.
+    issued: Velocity,
+}
+
+/// Work that a robot is asked to do.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) enum Errand {
+    /// To drive to a goal, or along a path.
+    Drive(Box<Task>),
+    /// A single motion.
+    Act(Act),
+}
+
+/// Memory of decisions, whatever the goal.
+struct Record {
+    /// Fate of the candidates of the last decision.
+    evaluation: Evaluation,
+    /// The last question to the local planner; `None` when it was not asked.
+    asked: Option<Asked>,
+    guard: Guard,
+    counts: Counts,
+    /// Without meaning between decisions.
+    scratch: Scratch,
+}
+
+/// A question to the local planner, as far as it is not kept elsewhere.
+#[derive(Clone, Debug)]
+struct Asked {
+    pose: Pose,
+    velocity: Velocity,
+    /// Its memory before it answered.
+    memory: DriveMemory,
+}
+
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct Counts {
+    routes_planned: u32,
+    ways_taken: u32,
+    recoveries: RecoveryCounts,
+}
+
+impl Navigator {
+    /// A robot without a goal, which knows nothing but a map, of which it takes a copy.
+    ///
+    /// # Errors
+    /// When the layers of the map, or the planner on them, cannot be made as the stack says.
+    pub fn new(known: &OccupancyGrid, stack: &FittedStack) -> Result<Self, NavigateError> {
+        Ok(Self {
+            world: World::new(&Arc::new(known.clone()), stack)?,
+            errand: None,
+            speed_limit_mps: None,
+            slow: None,
+            record: Record {
+                evaluation: Evaluation::default(),
+                asked: None,
+                guard: Guard::new(stack.stop_rule.clone()),
+                counts: Counts::default(),
+                scratch: Scratch::default(),
+            },
+            place: None,
+            stepped: None,
+            unobserved: 0,
+            last: None,
+            issued: Velocity::ZERO,
+            parts: stack.clone(),
+        })
+    }
+
+    /// Takes in what was measured. Nothing of it is taken in where its stamp, its pose or its
+    /// velocity cannot be true, or where it is older than the observation before; then the next
+    /// step stops the robot and says so.
+    ///
+    /// A pose that is elsewhere than the robot could have driven is a correction, as by
+    /// [`Self::relocate`]; that and other contradictions are told by [`Self::doubts`].
+    ///
+    /// May be called any number of times between two steps, as measurements arrive. A scan is put
+    /// where the robot was when it was made; one that is no newer than the last of its sensor says
+    /// nothing.
+    pub fn observe(&mut self, observation: &Observation<'_>) {
+        self.forget_last();
+        let before = self.world.told().map(|told| told.time).ok();
+        let shift = self.world.observe(&self.parts, observation);
+        if let Ok(told) = self.world.told() {
+            let is_first = self.place.is_none();
+            self.place = Some(told.pose);
+            // The same pose again says nothing of where the robot is now.
+            if before.is_none_or(|before| told.time > before) {
+                self.unobserved = 0;
+            }
+            if is_first && self.errand.is_some() {
+                self.plan_again();
+            }
+        }
+        if let Some(shift) = shift {
+            self.shift_errand(&shift);
+            self.plan_again();
+        }
+    }
+
+    /// Forgets the last answer: something has changed since.
+    fn forget_last(&mut self) {
+        (self.last, self.record.asked) = (None, None);
+    }
+
+    /// Moves what is under way with the robot: a correction is no motion.
+    fn shift_errand(&mut self, shift: &Shift) {
+        match &mut self.errand {
+            Some(Errand::Act(act)) => act.shift(shift),
+            Some(Errand::Drive(task)) => task.mode.shift(shift),
+            None => {}
+        }
+    }
+
+    /// One control cycle: what the robot is to do, from what was observed. It counts for the time
+    /// that has passed by the stamps since the last step; the first one for a cycle of the robot.
+    /// Asked again before anything has changed, it gives the same answer, which counts once.
+    ///
+    /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot
+    /// will be when it acts. It is taken to be given: whoever gives another one makes that
+    /// prediction wrong. Whatever velocity is told, the command is within the robot's limits of
+    /// speed.
+    pub fn step(&mut self) -> Step {
+        self.unobserved = self.unobserved.saturating_add(1);
+        let told = match self.world.told() {
+            Ok(told) => told,
+            Err(why) => return self.stop(why),
+        };
+        let now = self.world.now().unwrap_or(told.time);
+        let staleness = self.staleness(&told, now);
+        if let Some(last) = self.last.as_ref().filter(|_| staleness.is_none()) {
+            return last.clone();
+        }
+        self.record.asked = None;
+        self.record.guard.pause();
+        let step = self.stepped(&told, now, staleness);
+        // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
+        let command = self.parts.robot.limits.clamped(step.command());
+        self.world.under_way.give(told.time, now, command);
+        let step = step.commanding(command);
+        (self.issued, self.last) = (command, Some(step.clone()));
+        step
+    }
+
+    /// Stops at once, without knowing where the robot is.
+    fn stop(&mut self, why: Blocked) -> Step {
+        self.record.asked = None;
+        self.record.guard.pause();
+        self.stepped = None;
+        self.issued = Velocity::ZERO;
+        if let Some(now) = self.world.now() {
+            self.world.under_way.give(now, now, Velocity::ZERO);
+        }
+        Step::Blocked { command: Velocity::ZERO, why }
+    }
+
+    /// A step counts for no more time than this, or three cycles: whoever was away for longer has
+    /// not waited \[s\].
+    const LONGEST_S: f64 = 1.0;
+
+    fn stepped(&mut self, told: &Told, now: Time, staleness: Option<Blocked>) -> Step {
+        let &Told { time, pose, velocity } = told;
+        let Robot { limits, cycle_s, .. } = &*self.parts.robot;
+        let (pose_then, velocity_then) =
+            self.world.under_way.predicted(time, now, (pose, velocity));
+        let braked = limits.braked(velocity_then, *cycle_s);
+        let outside =
+            |pose: &Pose| self.world.known.frame().cell_from_world(pose.point()).is_none();
+        let since = self.stepped.take();
+        if let Some(pose) = [pose, pose_then].iter().find(|&pose| outside(pose)) {
+            return Step::Blocked { command: braked, why: Blocked::OffTheMap(pose.point()) };
+        }
+        if let Some(why) = staleness {
+            // The velocity is as old as the pose.
+            let command = limits.braked(self.issued, *cycle_s);
+            return Step::Blocked { command, why };
+        }
+        let longest_s = Self::LONGEST_S.max(3.0 * cycle_s);
+        let elapsed_s = since.map_or(*cycle_s, |last| now.since_s(last).min(longest_s));
+        self.stepped = Some(now);
+        let robot = Arc::clone(&self.parts.robot);
+        self.world.look_ahead(&robot);
+        self.slow_down(pose.point(), velocity_then);
+        let silence = self.world.silence(&self.parts);
+        let is_at_rest = self.world.under_way.is_at_rest(time, now, (&robot, velocity));
+        let moment = Moment { robot: &robot, pose: pose_then, velocity: velocity_then, elapsed_s };
+        let step = match &mut self.errand {
+            None if is_at_rest => Step::Idle,
+            None => Step::Drive(braked),
+            Some(Errand::Act(_)) => self.act(&moment, silence, braked),
+            Some(Errand::Drive(_)) => self.drive(pose, &moment, silence, braked),
+        };
+        if matches!(self.errand, None | Some(Errand::Act(_))) {
+            // No route looks at them.
+            self.world.forget_edits();
+        }
+        match step {
+            Step::Arrived if !is_at_rest => Step::Drive(Velocity::ZERO),
+            step => step,
+        }
+    }
+
+    /// The step of a robot that drives to a goal.
+    fn drive(
+        &mut self,
+        told: Pose,
+        moment: &Moment<'_>,
+        silence: Option<Blocked>,
+        braked: Velocity,
+    ) -> Step {
+        let Some(mut deciding) = self.deciding(moment) else { return Step::Idle };
+        deciding.leave(told);
+        // A robot that stands at its goal need not see it.
+        if let Some(why) = silence.filter(|_| !deciding.has_arrived()) {
+            return Step::Blocked { command: braked, why };
+        }
+        let step = deciding.decided();
+        let step = deciding.slowed(step);
+        deciding.guarded(step)
+    }
+
+    /// The step of a robot that does a single act.
+    fn act(&mut self, moment: &Moment<'_>, silence: Option<Blocked>, braked: Velocity) -> Step {
+        let Some(Errand::Act(act)) = &mut self.errand else { return Step::Idle };
+        if let Some(why) = silence {
+            act.wait(moment.elapsed_s);
+            return Step::Blocked { command: braked, why };
+        }
+        let step = match act.step(moment, &self.world.obstacles) {
+            Step::Drive(command) => Step::Drive(beside_movers(&self.world, moment, command)),
+            step => step,
+        };
+        let step = slowing::slowed(self.slow.as_ref(), step);
+        self.record.guarded(&self.world, moment, step)
+    }
+
+    /// The reason to stop, if the last pose is too old.
+    fn staleness(&self, told: &Told, now: Time) -> Option<Blocked> {
+        const LEAST_S: f64 = 0.5;
+        let cycle_s = self.parts.robot.cycle_s;
+        let repeated_s = f64::from(self.unobserved.saturating_sub(1)) * cycle_s;
+        let age_s = now.since_s(told.time).max(repeated_s);
+        let is_stale = age_s > LEAST_S.max(3.0 * cycle_s) * (1.0 + 1e-9);
+        is_stale.then_some(Blocked::PoseStale { age_s })
+    }
+
+    /// A decision about what is wanted, if that is a goal.
+    fn deciding<'a>(&'a mut self, moment: &Moment<'a>) -> Option<Deciding<'a>> {
+        let FittedStack { robot, stack, local, guide, .. } = &self.parts;
+        let Some(Errand::Drive(task)) = &mut self.errand else { return None };
+        let slow = self.slow.as_ref();
+        let local = slow.map_or(local, |slow| &slow.local);
+        let (local, guide) = (&**local, &**guide);
+        let (world, record) = (&mut self.world, &mut self.record);
+        let &Moment { pose, velocity, elapsed_s, .. } = moment;
+        Some(Deciding {
+            robot,
+            stack,
+            local,
+            guide,
+            slow,
+            world,
+            task,
+            record,
+            pose,
+            velocity,
+            elapsed_s,
+        })
+    }
+
+    /// Plans the route anew from where the robot is.
+    fn plan_again(&mut self) {
+        self.forget_last();
+        let Some(pose) = self.place.filter(|pose| pose.point().is_finite()) else { return };
+        let robot = Arc::clone(&self.parts.robot);
+        let moment = Moment { robot: &robot, pose, velocity: Velocity::ZERO, elapsed_s: 0.0 };
+        if let Some(mut deciding) = self.deciding(&moment) {
+            deciding.replan();
+        }
+    }
+
+    /// The task to drive to a goal, if there is one.
+    fn task(&self) -> Option<&Task> {
+        match &self.errand {
+            Some(Errand::Drive(task)) => Some(task),
+            Some(Errand::Act(_)) | None => None,
+        }
+    }
+}

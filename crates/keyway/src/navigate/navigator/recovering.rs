@@ -1,0 +1,87 @@
+//! Recoveries of a robot that gets no farther.
+
+use super::Deciding;
+use super::replanning::Replanned;
+use crate::geometry::Velocity;
+use crate::navigate::RecoveryKind;
+use crate::navigate::mode::Mode;
+use crate::navigate::recovery::{Motion, OnTheSpot, RecoveryUnderWay, TightPlace};
+use crate::navigate::watch::{RestOfRoute, Watch};
+
+impl Deciding<'_> {
+    /// Begins the first kind of recovery in the order that can do something. Motions begin where
+    /// the robot stands.
+    pub(super) fn recover(&mut self) {
+        self.task.watch = Watch::NEW;
+        self.task.mode = Mode::Following;
+        for _ in 0..self.stack.controller.recoveries.len() {
+            let order = &self.stack.controller.recoveries;
+            let remaining_m = self.task.guidance.remaining_m;
+            let Some(kind) = self.task.order.next(order, remaining_m) else { return };
+            if kind != RecoveryKind::Replan && !self.robot.stands(self.velocity) {
+                self.task.order.put_off();
+                self.task.mode = Mode::StoppingFor(kind);
+                return;
+            }
+            if self.begin(kind) {
+                self.record.counts.recoveries.add(kind);
+                return;
+            }
+        }
+    }
+
+    /// Begins a recovery; false when it can do nothing here.
+    fn begin(&mut self, kind: RecoveryKind) -> bool {
+        let config = &self.stack.controller;
+        let (robot, pose, obstacles) = (self.robot, self.pose, &self.world.obstacles);
+        let spot = OnTheSpot { robot, obstacles };
+        let motions = match kind {
+            RecoveryKind::Replan => return self.replan() != Replanned::Alike,
+            RecoveryKind::Turn => spot.turn_towards(pose, self.task.guidance.point),
+            RecoveryKind::Manoeuvre => {
+                let goal_tolerance_m = config.goal_tolerance_m;
+                let RestOfRoute { path, covered_m } = self.rest();
+                TightPlace { robot, obstacles, path, covered_m, goal_tolerance_m }.manoeuvre(pose)
+            }
+            RecoveryKind::BackUp => {
+                let places = self.world.track.back(pose.point(), config.back_up_m);
+                spot.back_up(pose, places, 0.5 * config.back_up_m)
+            }
+            RecoveryKind::Wait => Some(vec![Motion::Wait(config.wait_s)]),
+        };
+        let Some(motions) = motions else { return false };
+        let begun = RecoveryUnderWay::begin(kind, motions);
+        self.task.mode = begun.map_or(Mode::Following, Mode::Recovering);
+        true
+    }
+
+    /// Goes on with a recovery, if one is under way. After it the route begins where the robot then
+    /// is.
+    pub(super) fn go_on_recovering(&mut self) -> Option<(RecoveryKind, Velocity)> {
+        if let Mode::StoppingFor(kind) = self.task.mode {
+            if !self.robot.stands(self.velocity) {
+                let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
+                return Some((kind, braked));
+            }
+            self.recover();
+        }
+        if self.record.guard.held_s() >= self.stack.controller.blocked_s {
+            // The stop rule is stricter than what its motions are certified by.
+            if self.task.mode.is_recovering() {
+                self.task.mode = Mode::Following;
+            }
+            self.task.watch = Watch::NEW;
+        }
+        let moment = self.moment();
+        let Mode::Recovering(recovery) = &mut self.task.mode else { return None };
+        let Some((kind, command)) = recovery.step(&moment, &self.world.obstacles) else {
+            self.task.mode = Mode::Following;
+            self.task.watch = Watch::NEW;
+            self.replan();
+            return None;
+        };
+        // What is left of the way is reported in every cycle.
+        self.find_guide_point();
+        Some((kind, self.beside_movers(command)))
+    }
+}

@@ -1,0 +1,99 @@
+//! A navigator as a value, and back.
+
+use super::guarding::Guard;
+use super::stored_record::StoredRecord;
+use super::{Errand, Navigator, Record};
+use crate::ConfigError;
+use crate::local::Scratch;
+use crate::navigate::mode::Mode;
+use crate::navigate::world::World;
+use crate::navigate::{FittedStack, RestoreError, Snapshot};
+
+impl Navigator {
+    /// All that it knows, wants and does, as a value. Costs a copy of the map and the layers that
+    /// follow what was sensed.
+    pub fn snapshot(&self) -> Snapshot {
+        let Self { parts, world, errand, record, .. } = self;
+        let Record { evaluation, guard, counts, .. } = record;
+        let record =
+            StoredRecord { evaluation: evaluation.clone(), guard: guard.stored(), counts: *counts };
+        Snapshot {
+            form: Snapshot::FORM,
+            robot: (*parts.robot).clone(),
+            stack: (*parts.stack).clone(),
+            world: world.stored(),
+            errand: errand.clone(),
+            record,
+            speed_limit_mps: self.speed_limit_mps,
+            place: self.place,
+            stepped: self.stepped,
+            unobserved: self.unobserved,
+            issued: self.issued,
+        }
+    }
+
+    /// The navigator that was stored. It gives the same commands from here on.
+    ///
+    /// # Errors
+    /// When the snapshot has another form, its robot or stack cannot be used, or its parts
+    /// contradict each other.
+    pub fn restore(snapshot: Snapshot) -> Result<Self, RestoreError> {
+        let stack = snapshot.stack.fit(&snapshot.robot)?;
+        Self::restore_with(snapshot, &stack)
+    }
+
+    /// The same for a stack with parts of the caller's own, which are not stored. The robot and the
+    /// parameters of the snapshot do not count then.
+    ///
+    /// # Errors
+    /// As for [`Self::restore`].
+    pub fn restore_with(snapshot: Snapshot, stack: &FittedStack) -> Result<Self, RestoreError> {
+        let Snapshot { form, world, errand, record, speed_limit_mps, place, .. } = snapshot;
+        if form != Snapshot::FORM {
+            return Err(RestoreError::Form(form));
+        }
+        if let Some(speed_mps) = speed_limit_mps {
+            ConfigError::unless_positive("speed_limit_mps", speed_mps)?;
+        }
+        if place.is_some_and(|place| !(place.point().is_finite() && place.theta.is_finite())) {
+            return Err(RestoreError::Contradiction("place"));
+        }
+        let mut world = World::restored(world, stack)?;
+        let errand = errand.map(|errand| revived(errand, &mut world, stack)).transpose()?;
+        let StoredRecord { evaluation, guard, counts } = record;
+        let guard = Guard::restored(stack.stop_rule.clone(), guard);
+        Ok(Self {
+            world,
+            errand,
+            record: Record { evaluation, asked: None, guard, counts, scratch: Scratch::default() },
+            speed_limit_mps,
+            slow: None,
+            place,
+            stepped: snapshot.stepped,
+            unobserved: snapshot.unobserved,
+            last: None,
+            issued: snapshot.issued,
+            parts: stack.clone(),
+        })
+    }
+}
+
+/// An errand with the parts that are not stored.
+fn revived(
+    mut errand: Errand,
+    world: &mut World,
+    parts: &FittedStack,
+) -> Result<Errand, RestoreError> {
+    let Errand::Drive(task) = &mut errand else { return Ok(errand) };
+    if task.passed >= task.stops.len() || task.asked.len() != task.stops.len() {
+        return Err(RestoreError::Contradiction("errand"));
+    }
+    let stop = task.next_stop();
+    if let (Mode::Waiting { why, .. }, Ok(told)) = (&mut task.mode, world.told()) {
+        let budget = parts.stack.controller.replan_budget;
+        if let Err(error) = world.router.again(told.pose.point(), stop, budget) {
+            *why = error;
+        }
+    }
+    Ok(errand)
+}

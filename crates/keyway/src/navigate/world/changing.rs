@@ -1,0 +1,116 @@
+//! Corrections of what is known: of the place of the robot, or the map.
+
+use super::World;
+use crate::geometry::{Pose, Shift};
+use crate::map::{Cell, CellState, Edit, OccupancyGrid};
+use crate::navigate::doubts::Doubts;
+use crate::navigate::masks::Masks;
+use crate::navigate::{FittedStack, NavigateError};
+use std::sync::Arc;
+
+impl World {
+    /// The robot is not where it was taken to be. What was sensed keeps its place beside it; ground
+    /// that was seen is ground that was seen no more.
+    pub(in crate::navigate) fn relocate(&mut self, from: Pose, to: Pose) -> Shift {
+        let (shift, frame) = (Shift::new(from, to), *self.known.frame());
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        self.sensed.shift(map, |place| shift.point(place), &mut self.changed);
+        self.keep_out();
+        self.spread_changes();
+        if let Some(tracker) = &mut self.tracker {
+            tracker.shift(&frame, &shift);
+        }
+        self.walked.shift(&shift);
+        self.track.shift(&shift);
+        self.scans.iter_mut().for_each(|scan| scan.shift(&frame, &shift));
+        if let Some(seen) = &mut self.seen {
+            seen.clear();
+        }
+        self.poses.clear();
+        if let Some(told) = &mut self.told {
+            told.pose = shift.pose(told.pose);
+            self.poses.note(told.time, told.pose, told.velocity);
+        }
+        shift
+    }
+
+    /// The clock begins anew.
+    pub(in crate::navigate) fn restart_clock(&mut self) {
+        (self.told, self.now, self.scanned, self.refused) = (None, None, None, None);
+        self.times.fill(super::SensorTimes::default());
+        self.poses.clear();
+        self.under_way.clear();
+        self.doubts = Doubts::new(self.times.len());
+    }
+
+    /// The map as it was given and edited, without ground to keep out of.
+    pub(in crate::navigate) fn map(&self) -> &OccupancyGrid {
+        self.unmasked.as_ref().unwrap_or(&self.known)
+    }
+
+    /// The map is another one. What was sensed keeps its place in the world.
+    pub(in crate::navigate) fn set_map(
+        &mut self,
+        map: Arc<OccupancyGrid>,
+        parts: &FittedStack,
+    ) -> Result<(), NavigateError> {
+        let known = self.masks.over(&map);
+        let next = Self::new(&known, parts)?;
+        self.unmasked = self.masks.keep_out.is_some().then_some(map);
+        self.known = known;
+        (self.router, self.obstacles, self.seen) = (next.router, next.obstacles, next.seen);
+        let frame = *self.known.frame();
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        self.sensed.shift(map, |place| place, &mut self.changed);
+        // The cells of the last map mean nothing on this one.
+        self.changed.retain(|edit| edit.state == CellState::Occupied);
+        self.edits.clear();
+        self.spread_changes();
+        let nothing = Shift::new(Pose::default(), Pose::default());
+        if let Some(tracker) = &mut self.tracker {
+            tracker.shift(&frame, &nothing);
+        }
+        self.scans.iter_mut().for_each(|scan| scan.shift(&frame, &nothing));
+        self.changes += 1;
+        Ok(())
+    }
+
+    /// Cells of the map are otherwise; those outside it are ignored.
+    pub(in crate::navigate) fn edit_map(&mut self, edits: &[Edit]) {
+        let frame = *self.known.frame();
+        let masked = |edit: &Edit| {
+            let state = self.masks.state(frame.world_from_cell(edit.cell), edit.state);
+            Edit { cell: edit.cell, state }
+        };
+        let inside = edits.iter().filter(|edit| frame.contains(edit.cell));
+        let masked: Vec<Edit> = inside.map(masked).collect();
+        if let Some(map) = &mut self.unmasked {
+            Arc::make_mut(map).apply(edits);
+        }
+        Arc::make_mut(&mut self.known).apply(&masked);
+        self.learn(&masked);
+    }
+
+    /// Other ground is to be kept out of, or to be slow on.
+    pub(in crate::navigate) fn set_masks(&mut self, masks: Masks) {
+        self.masks = masks;
+        let map = self.unmasked.take().unwrap_or_else(|| Arc::clone(&self.known));
+        let next = self.masks.over(&map);
+        let before = std::mem::replace(&mut self.known, next);
+        self.unmasked = self.masks.keep_out.is_some().then_some(map);
+        let known = &self.known;
+        let is_changed = |cell: &Cell| known.state(*cell) != before.state(*cell);
+        let to = |cell| Some(Edit { cell, state: known.state(cell)? });
+        let cells = known.frame().cells();
+        let edits: Vec<Edit> = cells.filter(is_changed).filter_map(to).collect();
+        self.learn(&edits);
+    }
+
+    /// Takes in cells of the known map that have changed.
+    fn learn(&mut self, edits: &[Edit]) {
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        self.sensed.learn(map, edits, &mut self.changed);
+        self.spread_changes();
+        self.changes += 1;
+    }
+}

@@ -1,0 +1,427 @@
+//! Knowledge of a navigator: the map, and what was observed.
+
+mod changing;
+mod storing;
+
+pub(super) use storing::StoredWorld;
+
+use super::doubts::{Doubt, Doubts};
+use super::masks::Masks;
+use super::poses::Poses;
+use super::recovery::Track;
+use super::route::Router;
+use super::task::Task;
+use super::time::Time;
+use super::under_way::UnderWay;
+use super::walked_ground::WalkedGround;
+use super::{Blocked, FittedStack, NavigateError};
+use crate::geometry::{Pose, Shift, Velocity};
+use crate::guide::Guidance;
+use crate::local::Scene;
+use crate::map::{CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
+use crate::robot::Robot;
+use crate::sense::{
+    Mover, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer, SensorScan, Tracker,
+    Walls,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Everything that is known. It follows the observations, as they come; decisions read it.
+pub(super) struct World {
+    /// Number of changes of the map.
+    pub(super) changes: u64,
+    /// The map, with ground to keep out of as obstacles.
+    pub(super) known: Arc<OccupancyGrid>,
+    /// The same without that; `None` where there is none.
+    unmasked: Option<Arc<OccupancyGrid>>,
+    pub(super) masks: Masks,
+    /// Plans on layers that follow what is sensed.
+    pub(super) router: Router,
+    /// Distances to what is known and what was sensed.
+    pub(super) obstacles: DistanceField,
+    pub(super) sensed: SensedLayer,
+    seen: Option<SeenGround>,
+    /// Moving obstacles are in its list, not in the sensed layer; none where everything counts as
+    /// standing.
+    pub(super) tracker: Option<Tracker>,
+    pub(super) walked: WalkedGround,
+    /// The last places of the robot.
+    pub(super) track: Track,
+    pub(super) under_way: UnderWay,
+    /// Moving obstacles as they will be when the next command acts.
+    pub(super) movers_then: Vec<Mover>,
+    /// Cells that have become occupied since the last decision.
+    pub(super) edits: Vec<Edit>,
+    /// They were too many to be listed.
+    pub(super) has_changed_much: bool,
+    poses: Poses,
+    /// The last pose that was observed.
+    told: Option<Told>,
+    /// The latest of all stamps.
+    now: Option<Time>,
+    /// The reason why the last observation was not taken in.
+    refused: Option<Blocked>,
+    /// The last scan of each sensor; without beams before the first one, and where it is silent.
+    scans: Vec<ProjectedScan>,
+    times: Vec<SensorTimes>,
+    /// The ranges of each sensor's last scan \[m\].
+    ranges_m: Vec<Vec<f64>>,
+    /// Time of the latest scan of any sensor.
+    scanned: Option<Time>,
+    doubts: Doubts,
+    /// Changes of the map by the last scan.
+    changed: Vec<Edit>,
+}
+
+/// State of a robot when it was observed.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Told {
+    pub(super) time: Time,
+    pub(super) pose: Pose,
+    pub(super) velocity: Velocity,
+}
+
+/// Times of a sensor's scans.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+struct SensorTimes {
+    /// The last one.
+    scanned: Option<Time>,
+    /// The last one of which a beam has said something.
+    said: Option<Time>,
+}
+
+impl World {
+    /// Cells that are listed at most; of more, it is only known that there are some.
+    const MOST_EDITS: usize = 4096;
+
+    /// Nothing but the map is known.
+    pub(super) fn new(
+        known: &Arc<OccupancyGrid>,
+        parts: &FittedStack,
+    ) -> Result<Self, NavigateError> {
+        let FittedStack { robot, stack, tracker, .. } = parts;
+        let frame = known.frame();
+        let router = Router::new(known, parts)?;
+        Ok(Self {
+            obstacles: router.distances(robot),
+            sensed: SensedLayer::new(frame),
+            seen: stack.build_seen_ground(frame, robot),
+            tracker: tracker.clone(),
+            walked: WalkedGround::default(),
+            track: Track::new(frame.resolution_m()),
+            under_way: UnderWay::new(robot),
+            movers_then: Vec::new(),
+            edits: Vec::new(),
+            has_changed_much: false,
+            poses: Poses::new(),
+            told: None,
+            now: None,
+            refused: None,
+            scans: vec![ProjectedScan::default(); robot.sensors.len()],
+            times: vec![SensorTimes::default(); robot.sensors.len()],
+            ranges_m: vec![Vec::new(); robot.sensors.len()],
+            scanned: None,
+            doubts: Doubts::new(robot.sensors.len()),
+            changed: Vec::new(),
+            known: Arc::clone(known),
+            unmasked: None,
+            changes: 0,
+            masks: Masks::default(),
+            router,
+        })
+    }
+
+    /// Takes in what was measured; nothing of it where it cannot be true. The shift of all ground
+    /// if the robot turns out to be elsewhere than it could have driven.
+    pub(super) fn observe(
+        &mut self,
+        parts: &FittedStack,
+        observation: &Observation<'_>,
+    ) -> Option<Shift> {
+        let Observation { pose, velocity, .. } = *observation;
+        let time = match self.believe(&parts.robot, observation) {
+            Ok(time) => time,
+            Err(why) => {
+                self.refused = Some(why);
+                return None;
+            }
+        };
+        self.refused = None;
+        let shift = self.follow_jump(&parts.robot, time, (pose, velocity));
+        self.told = Some(Told { time, pose, velocity });
+        self.poses.note(time, pose, velocity);
+        let command = self.under_way.acts_at(time).unwrap_or(velocity);
+        self.doubts.note(time, (pose, velocity), command);
+        self.now = self.now.max(Some(time));
+        if self.known.frame().cell_from_world(pose.point()).is_some() {
+            self.track.note(pose.point());
+            self.forget_silent(&parts.robot);
+            observation.scans.iter().for_each(|scan| self.take_in(parts, scan));
+        }
+        self.doubts.look(time);
+        shift
+    }
+
+    /// Moves what was sensed with a robot whose pose has jumped: beside it, it is where it was.
+    fn follow_jump(&mut self, robot: &Robot, time: Time, now: (Pose, Velocity)) -> Option<Shift> {
+        let Told { time: before, pose, velocity } = self.told?;
+        let elapsed_s = time.since_s(before);
+        let expected = self.doubts.jump(robot, (pose, velocity), now, elapsed_s)?;
+        let shift = self.relocate(expected, now.0);
+        self.doubts.note_jump(time, expected, now.0);
+        Some(shift)
+    }
+
+    /// Contradictions in what was observed lately.
+    pub(super) fn doubts(&self) -> &[Doubt] {
+        self.doubts.found()
+    }
+
+    /// Time of an observation that can be true.
+    fn believe(&self, robot: &Robot, observation: &Observation<'_>) -> Result<Time, Blocked> {
+        let Observation { stamp_s, pose, velocity, .. } = *observation;
+        let time = Time::of_stamp(stamp_s).ok_or(Blocked::BadInput("stamp_s"))?;
+        if let Some(told) = self.told.filter(|told| time < told.time) {
+            return Err(Blocked::TimeRunsBack { stamp_s, last_s: told.time.stamp_s() });
+        }
+        match unbelievable(robot, pose, velocity) {
+            Some(field) => Err(Blocked::BadInput(field)),
+            None => Ok(time),
+        }
+    }
+
+    /// Clears the last scan of each silent sensor: what it met may have gone.
+    fn forget_silent(&mut self, robot: &Robot) {
+        for sensor in 0..self.scans.len() {
+            if self.silent_s(sensor) > robot.sensors[sensor].timeout_in_s(robot.cycle_s) {
+                let scan = &mut self.scans[sensor];
+                scan.clear(scan.robot());
+            }
+        }
+    }
+
+    /// Since a beam of a sensor has said something \[s\]; infinite before that.
+    fn silent_s(&self, sensor: usize) -> f64 {
+        let said = self.times[sensor].said;
+        said.zip(self.now).map_or(f64::INFINITY, |(said, now)| now.since_s(said))
+    }
+
+    /// Takes in a scan, where the robot was when it was made: one of a sensor that the robot does
+    /// not have is left out, and so is one of which no beam says anything, one that is not newer
+    /// than the last, and one that is older than any pose that is still known.
+    fn take_in(&mut self, parts: &FittedStack, scan: &SensorScan<'_>) {
+        let Some(time) = Time::of_stamp(scan.stamp_s) else { return };
+        let Some(times) = self.times.get_mut(scan.sensor) else { return };
+        let Some(pose) = self.poses.at(time) else { return };
+        let says_nothing = scan.scan.says_nothing();
+        if says_nothing || times.scanned.is_some_and(|last| time <= last) {
+            return;
+        }
+        times.scanned = Some(time);
+        self.now = self.now.max(Some(time));
+        let (ranges_m, projected) = (&mut self.ranges_m[scan.sensor], &mut self.scans[scan.sensor]);
+        let velocity = self.told.map_or(Velocity::ZERO, |told| told.velocity);
+        let is_same =
+            ranges_m.iter().map(|m| m.to_bits()).eq(scan.scan.ranges_m.iter().map(|m| m.to_bits()));
+        let has_hits = scan.scan.ranges_m.iter().any(|range_m| range_m.is_finite());
+        if is_same && has_hits && Doubts::has_come_far(velocity, projected.robot(), pose) {
+            self.doubts.note_repeated(scan.sensor, time);
+        }
+        ranges_m.clone_from(&scan.scan.ranges_m);
+        projected.project(self.known.frame(), &parts.robot.footprint, pose, scan);
+        if !projected.is_silent() {
+            times.said = Some(time);
+        }
+        self.note(parts, scan.sensor, time);
+    }
+
+    /// Adds what the scan of a sensor shows to the movers and to the sensed layer, to every map
+    /// that follows from it, and to the ground that was seen.
+    fn note(&mut self, parts: &FittedStack, sensor: usize, time: Time) {
+        let scan = &self.scans[sensor];
+        // Ground to keep out of is no wall: what stands or walks there is seen.
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        // Of scans of the same time only the first finds time that has passed.
+        let elapsed_s = self.scanned.map_or(0.0, |last| time.since_s(last).max(0.0));
+        self.scanned = self.scanned.max(Some(time));
+        if let Some(tracker) = &mut self.tracker {
+            tracker.update_from(map, sensor, scan, elapsed_s);
+            if parts.stack.controller.go_around {
+                self.walked.note(tracker.movers(), elapsed_s);
+            }
+        }
+        let (changed, tracker) = (&mut self.changed, self.tracker.as_ref());
+        self.sensed.update_from(map, sensor, scan, tracker, changed);
+        self.keep_out();
+        self.spread_changes();
+        let scan = &self.scans[sensor];
+        if let Some(seen) = &mut self.seen {
+            let walls = walls(self.unmasked.as_deref(), &self.known, &self.router);
+            seen.update(self.known.frame(), scan, walls, elapsed_s);
+        }
+    }
+
+    /// Cells that have just become free stay ground to keep out of.
+    fn keep_out(&mut self) {
+        if self.unmasked.is_some() {
+            for edit in self.changed.iter_mut().filter(|it| it.state != CellState::Occupied) {
+                edit.state = self.known.state(edit.cell).unwrap_or(edit.state);
+            }
+        }
+    }
+
+    /// Brings all that follows from the map up to date with the cells that have just changed.
+    fn spread_changes(&mut self) {
+        let Self { router, obstacles, changed, edits, .. } = self;
+        router.layers.maps.iter_mut().for_each(|map| map.apply(changed));
+        let cells = changed.iter().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
+        if let Some(window) = cells.reduce(|all, cell| all.union(&cell)) {
+            obstacles.update(router.layers.obstacles().obstacles(), window);
+        }
+        let marked = changed.iter().filter(|edit| edit.state == CellState::Occupied);
+        edits.extend(marked);
+        if edits.len() > Self::MOST_EDITS {
+            edits.clear();
+            self.has_changed_much = true;
+        }
+    }
+
+    /// A decision has looked at them.
+    pub(super) fn forget_edits(&mut self) {
+        self.edits.clear();
+        self.has_changed_much = false;
+    }
+
+    /// The state that was observed last, if that can be true.
+    pub(super) fn told(&self) -> Result<Told, Blocked> {
+        match &self.refused {
+            Some(why) => Err(why.clone()),
+            None => self.told.ok_or(Blocked::NothingObserved),
+        }
+    }
+
+    /// The time of the latest observation.
+    pub(super) const fn now(&self) -> Option<Time> {
+        self.now
+    }
+
+    /// Brings what is known from the latest scan to the present.
+    pub(super) fn look_ahead(&mut self, robot: &Robot) {
+        // What one sensor has marked, another may have seen through.
+        let sensed = self.sensed.sensed();
+        let known = self.known.occupied();
+        self.edits.retain(|edit| sensed.get(edit.cell) || known.get(edit.cell));
+        let age_s = self.scan_age_s();
+        if let Some(tracker) = &self.tracker {
+            let ahead_s = robot.actuation_delay_s + age_s;
+            self.movers_then.clear();
+            self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(ahead_s)));
+        }
+        if let Some(seen) = self.seen.as_mut().filter(|_| age_s > 0.0) {
+            let walls = walls(self.unmasked.as_deref(), &self.known, &self.router);
+            seen.look_ahead(self.known.frame(), walls, age_s);
+        }
+    }
+
+    /// Age of the latest scan \[s\].
+    pub(super) fn scan_age_s(&self) -> f64 {
+        self.scanned.zip(self.now).map_or(0.0, |(scanned, now)| now.since_s(scanned))
+    }
+
+    /// The reason to stop, if the sensors have said nothing for too long: all of them, or one of
+    /// them where the robot need not stay within ground that it has seen. Before its first scan a
+    /// sensor has never seen anything.
+    pub(super) fn silence(&self, parts: &FittedStack) -> Option<Blocked> {
+        if !parts.stack.controller.stop_when_blind {
+            return None;
+        }
+        let Robot { sensors, cycle_s, .. } = &*parts.robot;
+        let silences = || (0..sensors.len()).map(|sensor| (sensor, self.silent_s(sensor)));
+        let mut timed_out = silences()
+            .filter(|&(sensor, silent_s)| {
+                silent_s > sensors[sensor].timeout_in_s(*cycle_s) * (1.0 + 1e-9)
+            })
+            .peekable();
+        let drives_by_sight = self.seen_cells().ahead.is_some();
+        let (sensor, silent_s) = if drives_by_sight {
+            let all = timed_out.count() == sensors.len();
+            silences().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|_| all)?
+        } else {
+            timed_out.peek().copied()?
+        };
+        Some(Blocked::SensorSilent { sensor, silent_s })
+    }
+
+    /// The view of a local planner of a robot with a task.
+    pub(super) fn scene<'a>(&'a self, task: &'a Task, pose: Pose, velocity: Velocity) -> Scene<'a> {
+        let (obstacles, sensed, movers) =
+            (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
+        let Guidance { point: guide, remaining_m } = task.guidance;
+        let (path, seen) = (&task.route.smoothed, self.seen_cells());
+        let walked = self.walked.avoided();
+        Scene { obstacles, sensed, seen, movers, walked, pose, velocity, guide, path, remaining_m }
+    }
+
+    /// Asks a question of the known map alone, without what was sensed.
+    pub(super) fn on_known<T>(&mut self, ask: impl FnOnce(&mut Router, &OccupancyGrid) -> T) -> T {
+        let (sensed, Self { router, known, .. }) = (self.sensed.cells(), self);
+        router.layers.unmark(&sensed, known);
+        let answer = ask(router, known);
+        router.layers.mark(&sensed, |_| CellState::Occupied);
+        answer
+    }
+
+    /// Adds the layer of a clearance \[m\] that a route was found on, unless it is there.
+    pub(super) fn add_layer(&mut self, clearance_m: Option<f64>) {
+        if clearance_m.is_none() || clearance_m == self.router.layers.inserted_m() {
+            return;
+        }
+        if let Some(clearance_m) = clearance_m {
+            self.router.layers.insert_again(&self.known, clearance_m);
+            self.router.layers.mark(&self.sensed.cells(), |_| CellState::Occupied);
+        }
+    }
+
+    /// A router on the known map alone.
+    pub(super) fn known_router(&self) -> Router {
+        let mut router = self.router.clone();
+        router.layers.unmark(&self.sensed.cells(), &self.known);
+        router
+    }
+
+    /// The ground that has been seen, and the latest scans.
+    pub(super) fn seen_cells(&self) -> SeenCells<'_> {
+        let cells = self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells);
+        SeenCells { scans: &self.scans, ..cells }
+    }
+}
+
+/// Walls through which nobody walks.
+fn walls<'a>(
+    unmasked: Option<&'a OccupancyGrid>,
+    known: &'a OccupancyGrid,
+    router: &'a Router,
+) -> Walls<'a> {
+    let map = unmasked.unwrap_or(known);
+    // Where ground to keep out of is among the obstacles, only what the map has is a wall.
+    let obstacles = match unmasked {
+        Some(map) => map.occupied(),
+        None => router.layers.obstacles().obstacles(),
+    };
+    Walls { obstacles, unknown: map.unknown() }
+}
+
+/// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
+fn unbelievable(robot: &Robot, pose: Pose, velocity: Velocity) -> Option<&'static str> {
+    let limits = &robot.limits;
+    let fastest_mps = limits.v_max_mps.max(-limits.v_min_mps);
+    let checks = [
+        ("pose.x", pose.x.is_finite()),
+        ("pose.y", pose.y.is_finite()),
+        ("pose.theta", pose.theta.is_finite()),
+        ("velocity.v", velocity.v.abs() <= 2.0 * fastest_mps),
+        ("velocity.omega", velocity.omega.abs() <= 2.0 * limits.omega_max_radps),
+    ];
+    checks.into_iter().find(|check| !check.1).map(|(field, _)| field)
+}

@@ -1,0 +1,129 @@
+//! Knowledge of a navigator, as it is stored and taken up again.
+
+use super::{SensorTimes, Told, World, unbelievable};
+use crate::geometry::Velocity;
+use crate::map::{CellState, Edit, OccupancyGrid};
+use crate::navigate::doubts::Doubts;
+use crate::navigate::masks::Masks;
+use crate::navigate::poses::Poses;
+use crate::navigate::recovery::Track;
+use crate::navigate::time::Time;
+use crate::navigate::walked_ground::WalkedGround;
+use crate::navigate::{Blocked, FittedStack, NavigateError, RestoreError};
+use crate::robot::Robot;
+use crate::sense::{ProjectedScan, SeenStored, SensedPlaces, Tracker};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// All of a [`World`] that does not follow from the rest.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(in crate::navigate) struct StoredWorld {
+    map: Arc<OccupancyGrid>,
+    masks: Masks,
+    inserted_m: Option<f64>,
+    sensed: SensedPlaces,
+    seen: Option<SeenStored>,
+    tracker: Option<Tracker>,
+    walked: WalkedGround,
+    track: Track,
+    under_way: Vec<(Time, Velocity)>,
+    edits: Vec<Edit>,
+    poses: Poses,
+    told: Option<Told>,
+    /// The last observation could not be true.
+    is_refused: bool,
+    has_changed_much: bool,
+    now: Option<Time>,
+    scans: Vec<ProjectedScan>,
+    times: Vec<SensorTimes>,
+    ranges_m: Vec<Vec<f64>>,
+    scanned: Option<Time>,
+    doubts: Doubts,
+}
+
+impl World {
+    /// All of it that is stored.
+    pub(in crate::navigate) fn stored(&self) -> StoredWorld {
+        StoredWorld {
+            map: Arc::clone(self.unmasked.as_ref().unwrap_or(&self.known)),
+            masks: self.masks.clone(),
+            inserted_m: self.router.layers.inserted_m(),
+            sensed: self.sensed.stored(),
+            seen: self.seen.as_ref().map(crate::sense::SeenGround::stored),
+            tracker: self.tracker.clone(),
+            walked: self.walked.clone(),
+            track: self.track.clone(),
+            under_way: self.under_way.commands(),
+            edits: self.edits.clone(),
+            poses: self.poses.clone(),
+            told: self.told,
+            is_refused: self.refused.is_some(),
+            has_changed_much: self.has_changed_much,
+            now: self.now,
+            scans: self.scans.clone(),
+            times: self.times.clone(),
+            ranges_m: self.ranges_m.clone(),
+            scanned: self.scanned,
+            doubts: self.doubts.clone(),
+        }
+    }
+
+    /// The world that was stored, with all that follows from it.
+    pub(in crate::navigate) fn restored(
+        stored: StoredWorld,
+        parts: &FittedStack,
+    ) -> Result<Self, RestoreError> {
+        let known = stored.masks.over(&stored.map);
+        let mut world = Self::new(&known, parts).map_err(NavigateError::into_restore)?;
+        world.check(&stored, &parts.robot)?;
+        world.unmasked = stored.masks.keep_out.is_some().then_some(stored.map);
+        world.masks = stored.masks;
+        let router = &mut world.router;
+        if let Some(clearance_m) = stored.inserted_m {
+            router.layers.insert_again(&known, clearance_m);
+        }
+        world.sensed = crate::sense::SensedLayer::restored(&known, &stored.sensed);
+        router.layers.mark(&world.sensed.cells(), |_| CellState::Occupied);
+        world.obstacles = router.distances(&parts.robot);
+        if let (Some(seen), Some(cells)) = (&mut world.seen, stored.seen)
+            && !seen.restore(cells)
+        {
+            return Err(RestoreError::Contradiction("seen"));
+        }
+        world.tracker = stored.tracker.filter(|_| world.tracker.is_some());
+        (world.walked, world.track) = (stored.walked, stored.track);
+        world.under_way.take_up(&stored.under_way);
+        (world.edits, world.poses) = (stored.edits, stored.poses);
+        world.has_changed_much = stored.has_changed_much;
+        world.refused = stored.is_refused.then_some(Blocked::NothingObserved);
+        (world.told, world.now, world.scanned) = (stored.told, stored.now, stored.scanned);
+        (world.scans, world.times) = (stored.scans, stored.times);
+        (world.ranges_m, world.doubts) = (stored.ranges_m, stored.doubts);
+        Ok(world)
+    }
+
+    /// Refuses what does not belong to the robot.
+    fn check(&self, stored: &StoredWorld, robot: &Robot) -> Result<(), RestoreError> {
+        let sensors = self.times.len();
+        let counts = [
+            ("scans", stored.scans.len()),
+            ("times", stored.times.len()),
+            ("ranges_m", stored.ranges_m.len()),
+            ("doubts", stored.doubts.sensors()),
+        ];
+        if let Some((part, _)) = counts.into_iter().find(|&(_, count)| count != sensors) {
+            return Err(RestoreError::Contradiction(part));
+        }
+        if stored.seen.is_some() != self.seen.is_some() {
+            return Err(RestoreError::Contradiction("seen"));
+        }
+        if !stored.tracker.as_ref().is_none_or(Tracker::is_sound) {
+            return Err(RestoreError::Contradiction("tracker"));
+        }
+        let is_true = |told: &Told| unbelievable(robot, told.pose, told.velocity).is_none();
+        if !(stored.told.as_ref().is_none_or(is_true) && stored.poses.is_finite()) {
+            return Err(RestoreError::Contradiction("told"));
+        }
+        Ok(())
+    }
+}

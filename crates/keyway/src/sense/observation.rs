@@ -1,0 +1,52 @@
+//! Measurements of a robot.
+
+use super::Scan;
+use crate::geometry::{Pose, Velocity};
+use crate::robot::{Mount, Robot};
+
+/// Measurements of a robot: its pose and velocity at a time, and the scans that have arrived since
+/// the last observation.
+///
+/// All stamps are by the same clock, which may have begun at any time. They say when something was
+/// measured, not when it arrived.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// Time at which the pose and the velocity were measured \[s\].
+    pub stamp_s: f64,
+    /// Pose in the world frame.
+    pub pose: Pose,
+    /// Velocity.
+    pub velocity: Velocity,
+    /// Scans, in the order in which they were made; empty where none has arrived.
+    pub scans: &'a [SensorScan<'a>],
+}
+
+/// A scan, and the sensor that made it.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorScan<'a> {
+    /// Time at which it was made \[s\].
+    pub stamp_s: f64,
+    /// Index of the sensor among those of the robot
+    /// ([`Robot::sensors`](crate::robot::Robot::sensors)).
+    pub sensor: usize,
+    /// Pose of the sensor in the robot's frame.
+    pub mount: Pose,
+    /// The scan.
+    pub scan: &'a Scan,
+}
+
+impl<'a> SensorScan<'a> {
+    /// A scan that the sensor of this index on a robot made at a time \[s\]; its last sensor where
+    /// it has not as many.
+    pub fn of(robot: &Robot, sensor: usize, stamp_s: f64, scan: &'a Scan) -> Self {
+        let sensor = sensor.min(robot.sensors.len().saturating_sub(1));
+        let mount = robot.sensors.get(sensor).map_or(Mount::CENTRE, |sensor| sensor.mount);
+        Self { stamp_s, sensor, mount: mount.pose(), scan }
+    }
+
+    /// A scan that the first sensor made at a time \[s\], at the centre of rotation and looking
+    /// ahead.
+    pub fn centred(stamp_s: f64, scan: &'a Scan) -> Self {
+        Self { stamp_s, sensor: 0, mount: Pose::default(), scan }
+    }
+}
