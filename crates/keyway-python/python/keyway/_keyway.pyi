@@ -172,11 +172,13 @@ class Map:
 @final
 class Navigator:
     """
-    Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a velocity in every cycle.
+    Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a
+    velocity in every cycle.
 
-    `robot` and `stack` are names of `keyway.names`, or files. `parameters` are laid over the stack, as a dictionary with the names
-    of the TOML files. With `as_published` the stack has the values of its paper. With `safe` only commands are issued after which
-    the robot can still stop before it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
+    `robot` and `stack` are names of `keyway.names`, or files. `parameters` are laid over the stack,
+    as a dictionary with the names of the TOML files. With `as_published` the stack has the values
+    of its paper. With `safe` only commands are issued after which the robot can still stop before
+    it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
     layers of the map are made, which are not counted: (0, None).
 
     It has no goal at first. Goals come and go while the robot drives; what was sensed stays.
@@ -222,7 +224,8 @@ class Navigator:
     @property
     def doubts(self, /) -> list[str]:
         """
-        Contradictions in what was observed lately, for people, such as a velocity that is always 0 although the pose moves.
+        Contradictions in what was observed lately, for people, such as a velocity that is always 0
+        although the pose moves.
         """
     def drive_on_heading(self, /, distance: float, allowance: float) -> None:
         """
@@ -236,22 +239,25 @@ class Navigator:
         """
     def edit_map(self, /, window: Map) -> None:
         """
-        Changes a part of the map to that of another one, cell by cell at the centres of the cells of `window`.
+        Changes a part of the map to that of another one, cell by cell at the centres of the cells
+        of `window`.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
         >>> navigator = keyway.Navigator(grid)
-        >>> navigator.edit_map(keyway.Map.from_array(np.ones((2, 5), dtype=bool), resolution=0.1, origin=(2, 1)))
+        >>> wall = np.ones((2, 5), dtype=bool)
+        >>> navigator.edit_map(keyway.Map.from_array(wall, resolution=0.1, origin=(2, 1)))
         >>> navigator.map
         <keyway.Map 40 x 40 cells of 0.1 m from (0, 0), 10 occupied, 0 unknown>
         """
     def follow(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> None:
         """
-        Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot, to its end, as closely as along a
-        route of its own. Where something is in the way, such a route to the end takes its place.
+        Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot,
+        to its end, as closely as along a route of its own. Where something is in the way, such a
+        route to the end takes its place.
 
-        Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError` for what is no path. Then it goes on
-        as before.
+        Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError`
+        for what is no path. Then it goes on as before.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -264,16 +270,19 @@ class Navigator:
     @property
     def goal(self, /) -> list[float] | None:
         """
-        The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` where there is none.
+        The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` where there is
+        none.
         """
     @property
     def guide_points(self, /) -> NDArray[float64]:
         """
-        The points that the guide hands out along the route, its end last: a read-only array of float64 of shape (n, 2) [m].
+        The points that the guide hands out along the route, its end last: a read-only array of
+        float64 of shape (n, 2) [m].
         """
     def is_path_valid(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> bool:
         """
-        True if the robot fits along all of a path among what is known and sensed, turning on the spot at its corners.
+        True if the robot fits along all of a path among what is known and sensed, turning on the
+        spot at its corners.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -289,23 +298,24 @@ class Navigator:
     @property
     def notice(self, /) -> str | None:
         """
-        That the robot was nearer to something than it can stand when it got its goal, until it has left it, for people; otherwise
-        `None`.
+        That the robot was nearer to something than it can stand when it got its goal, until it has
+        left it, for people; otherwise `None`.
         """
     def observe(self, /, stamp: float, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScans | None = None) -> None:
         """
-        Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how it moves (v, omega)
-        [m/s, rad/s], and what its sensors see. Stamps are by any clock, the same for all. They say when something was measured, not
-        when it arrived.
+        Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how
+        it moves (v, omega) [m/s, rad/s], and what its sensors see. Stamps are by any clock, the
+        same for all. They say when something was measured, not when it arrived.
 
         `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
         `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS,
-        `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a stamp was made when the pose was
-        measured. A robot with several sensors gives a list with one scan of each, in their order, `None` where a sensor has made
-        none. Without `scan` none has arrived.
+        `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a
+        stamp was made when the pose was measured. A robot with several sensors gives a list with
+        one scan of each, in their order, `None` where a sensor has made none. Without `scan` none
+        has arrived.
 
-        An observation that cannot be true, or is older than the last one, is not taken in; the next `step` then stops the robot and
-        says why.
+        An observation that cannot be true, or is older than the last one, is not taken in; the next
+        `step` then stops the robot and says why.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -319,8 +329,8 @@ class Navigator:
         """
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any]) -> NDArray[float64]:
         """
-        A route between two positions on what is known and sensed: a read-only array of float64 of shape (n, 2) [m]. Nothing changes
-        by it.
+        A route between two positions on what is known and sensed: a read-only array of float64 of
+        shape (n, 2) [m]. Nothing changes by it.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -334,8 +344,8 @@ class Navigator:
         """
     def relocate(self, /, pose: Sequence[float] | NDArray[Any]) -> None:
         """
-        Tells it where the robot is (x, y, theta) [m, m, rad]: before the first observation, or when the localisation has been
-        corrected.
+        Tells it where the robot is (x, y, theta) [m, m, rad]: before the first observation, or when
+        the localisation has been corrected.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -354,22 +364,26 @@ class Navigator:
     @property
     def route(self, /) -> NDArray[float64]:
         """
-        The route being followed: a read-only array of float64 of shape (n, 2) [m]; empty without a goal.
+        The route being followed: a read-only array of float64 of shape (n, 2) [m]; empty without a
+        goal.
         """
     @property
     def routes_planned(self, /) -> int:
         """
-        Number of searches for a route: at first for each goal, when a scan showed something on it, at way-points, after waits, and in recoveries.
+        Number of searches for a route: at first for each goal, when a scan showed something on it,
+        at way-points, after waits, and in recoveries.
         """
     def set_goal(self, /, goal: Sequence[float] | NDArray[Any], progress: Progress | None = None) -> None:
         """
-        Drives to a goal from now on, in the place of the last one: a position [m], or with a heading [m, m, rad].
+        Drives to a goal from now on, in the place of the last one: a position [m], or with a
+        heading [m, m, rad].
 
-        The robot may drive on in another thread while the route is searched. `progress(done, expected)` is called meanwhile;
-        nothing is counted: (0, None).
+        The robot may drive on in another thread while the route is searched. `progress(done,
+        expected)` is called meanwhile; nothing is counted: (0, None).
 
-        Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no way leads there, and `ValueError`
-        where nobody has said where the robot is. Then it goes on as before.
+        Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no
+        way leads there, and `ValueError` where nobody has said where the robot is. Then it goes on
+        as before.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -393,19 +407,22 @@ class Navigator:
         """
     def set_map(self, /, grid: Map) -> None:
         """
-        Drives on another map from now on: one that has grown, or whose origin has moved. What was sensed keeps its place in the world.
+        Drives on another map from now on: one that has grown, or whose origin has moved. What was
+        sensed keeps its place in the world.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
         >>> navigator = keyway.Navigator(grid)
         >>> navigator.relocate((1, 1, 0))
-        >>> navigator.set_map(keyway.Map.from_array(np.zeros((80, 80), dtype=bool), resolution=0.1, origin=(-2, -2)))
+        >>> free = np.zeros((80, 80), dtype=bool)
+        >>> navigator.set_map(keyway.Map.from_array(free, resolution=0.1, origin=(-2, -2)))
         >>> navigator.set_goal((-1, -1))
         """
     def set_masks(self, /, keep_out: Map | None = None, slow: tuple[Map, float] | None = None) -> None:
         """
-        Keeps out of the occupied cells of one map, and drives no faster than a speed [m/s] on those of another one, in the place of
-        what was given before. Their frames need not be that of the navigator's map.
+        Keeps out of the occupied cells of one map, and drives no faster than a speed [m/s] on those
+        of another one, in the place of what was given before. Their frames need not be that of the
+        navigator's map.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -424,8 +441,9 @@ class Navigator:
         """
     def spin(self, /, angle: float, allowance: float) -> None:
         """
-        Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot brakes first, and has arrived when it
-        stands again. Nothing is touched: where there is no room it waits, until its time is over.
+        Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
+        brakes first, and has arrived when it stands again. Nothing is touched: where there is no
+        room it waits, until its time is over.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -435,8 +453,8 @@ class Navigator:
         """
     def step(self, /) -> Step:
         """
-        One control cycle: what the robot is to do, from what was observed. It counts for the time that has passed by the stamps
-        since the last step; the first one for a cycle of the robot.
+        One control cycle: what the robot is to do, from what was observed. It counts for the time
+        that has passed by the stamps since the last step; the first one for a cycle of the robot.
         """
 
 @final
@@ -627,10 +645,11 @@ class Scan:
     """
     One turn of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
 
-    `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the beam says nothing. Beam i looks
-    at the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to the left: where the beams go
-    clockwise, `angle_increment` is negative. Sensors begin at the back, ahead or at a side; so neither angle has a default.
-    `stamp` is the time at which it was made [s]; without one it belongs to the pose with which it is given.
+    `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the
+    beam says nothing. Beam i looks at the bearing `angle_min + i * angle_increment` [rad], 0
+    straight ahead and positive to the left: where the beams go clockwise, `angle_increment` is
+    negative. Sensors begin at the back, ahead or at a side; so neither angle has a default. `stamp`
+    is the time at which it was made [s]; without one it belongs to the pose with which it is given.
 
     >>> import keyway, numpy as np
     >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
@@ -750,11 +769,13 @@ class Scene:
 @final
 class Simulation:
     """
-    The world of a scene, in which somebody else drives: one control cycle per call, as learning agents want it.
+    The world of a scene, in which somebody else drives: one control cycle per call, as learning
+    agents want it.
 
-    The goal is reached when the robot comes within its tolerance; it need not stand. The stack of the scene plans the first
-    route, by which the robot's heading at the start and the time limit are chosen, and drives nothing. `progress(done, expected)`
-    is called meanwhile, which is not counted: (0, None).
+    The goal is reached when the robot comes within its tolerance; it need not stand. The stack of
+    the scene plans the first route, by which the robot's heading at the start and the time limit
+    are chosen, and drives nothing. `progress(done, expected)` is called meanwhile, which is not
+    counted: (0, None).
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -779,7 +800,8 @@ class Simulation:
     @property
     def limits(self, /) -> tuple[tuple[float, float], tuple[float, float]]:
         """
-        The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s, rad/s].
+        The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s,
+        rad/s].
         """
     @property
     def outcome(self, /) -> str | None:
@@ -799,8 +821,8 @@ class Simulation:
     @property
     def scan(self, /) -> Scan:
         """
-        The present scan of the first sensor: ranges, and where their beams look. `Navigator.observe`
-        takes it as it is for a robot with a single sensor.
+        The present scan of the first sensor: ranges, and where their beams look.
+        `Navigator.observe` takes it as it is for a robot with a single sensor.
         """
     @property
     def scans(self, /) -> list[Scan | None]:
@@ -815,10 +837,12 @@ class Simulation:
         """
     def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
         """
-        One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as its limits allow. Gives the
-        outcome once the run has ended, and `None` before; a run that has ended stays as it is.
+        One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as
+        its limits allow. Gives the outcome once the run has ended, and `None` before; a run that
+        has ended stays as it is.
 
-        `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the straight line to the goal.
+        `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the
+        straight line to the goal.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -854,7 +878,8 @@ class Step:
     @property
     def notice(self, /) -> str | None:
         """
-        A notice for people: the robot began nearer to something than it can stand, and is leaving it. Otherwise `None`.
+        A notice for people: the robot began nearer to something than it can stand, and is leaving
+        it. Otherwise `None`.
         """
     @property
     def omega(self, /) -> float:
@@ -864,7 +889,8 @@ class Step:
     @property
     def status(self, /) -> str:
         """
-        `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`, or `idle` (there is no goal).
+        `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`,
+        or `idle` (there is no goal).
         """
     @property
     def v(self, /) -> float:
@@ -874,7 +900,7 @@ class Step:
     @property
     def why(self, /) -> str | None:
         """
-        Why the robot is blocked, for people; otherwise `None`.
+        The reason why the robot is blocked, for people; otherwise `None`.
         """
 
 def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
@@ -888,8 +914,9 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
     `disturbances` are names or files. `reached_by` is the pose by which a goal is reached,
     `"truth"` or `"belief"`. With `safe` the stop rule stands behind every stack. `parameters` are
-    laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are not made again, so a batch that was stopped goes on where it was.
-    `progress(done, expected)` is called meanwhile.
+    laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are
+    not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
+    called meanwhile.
 
     Gives the report `keyway.batch/1` of `docs/JSON.md`.
 
