@@ -33,9 +33,9 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
     let rules = RunRules { goal_tolerance_m, time_limit_s: 120.0, ..RunRules::default() };
     let start = Pose::new(START.x, START.y, 0.0);
     let mut decide = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
-        let scan = scans[0].scan;
-        let step = next_step(&mut navigator, pose, velocity, scan);
-        record.push((pose, velocity, scan.clone(), step.clone()));
+        let scan = scans[0].scan.owned();
+        let step = next_step(&mut navigator, pose, velocity, &scan);
+        record.push((pose, velocity, scan, step.clone()));
         let action = match step {
             Step::Arrived => Action::Arrived,
             step => Action::Drive(step.command()),

@@ -43,7 +43,7 @@ fn navigator(robot: &Robot, start: Point, goal: Point) -> Navigator {
 fn next_step(navigator: &mut Navigator, pose: Pose, scans: &[SensorScan<'_>]) -> Step {
     let stamp_s = next_stamp_s(navigator);
     let scans: Vec<_> = scans.iter().map(|&scan| SensorScan { stamp_s, ..scan }).collect();
-    navigator.observe(&Observation { stamp_s, pose, velocity: Velocity::ZERO, scans: &scans });
+    navigator.observe(&Observation::new(stamp_s, pose, Velocity::ZERO, &scans));
     navigator.step()
 }
 
@@ -65,7 +65,7 @@ fn a_hit_is_where_the_mount_says() {
         assert!((end.distance(post.centre) - 0.05).abs() < 1e-9, "{end:?}");
         // The navigator marks the post, and nothing else.
         let mut navigator = navigator(&robot, pose.point(), Point::new(12.0, 1.5));
-        let scans = [SensorScan { stamp_s: 0.0, sensor: sees, mount, scan: &scan }];
+        let scans = [SensorScan { stamp_s: 0.0, sensor: sees, mount, scan: scan.borrowed() }];
         next_step(&mut navigator, pose, &scans);
         let sensed = navigator.sensed();
         assert_eq!(sensed.count_ones(), 1);

@@ -232,7 +232,7 @@ fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) +
     let world = World::from_known(&hall(), unknown).unwrap();
     let mut decide = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
-        let mut scan = scan.clone();
+        let mut scan = scan.owned();
         change(&mut scan);
         let step = next_step(&mut navigator, pose, velocity, &scan);
         let action = match step {

@@ -18,7 +18,7 @@ fn cycle(navigator: &mut Navigator, robot: &Robot, hardware: &mut Hardware) -> b
     let Hardware { pose, velocity, stamp_s } = *hardware;
     let scan = Scan::of_nothing(&robot.sensors[0]);
     let scans = [SensorScan::of(robot, 0, stamp_s, &scan)];
-    navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+    navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
     let step = navigator.step();
     if let Step::Blocked { why, .. } = &step {
         println!("{stamp_s:.1} s: {why}");

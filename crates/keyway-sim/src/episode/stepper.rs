@@ -61,7 +61,7 @@ mod tests {
         while run.outcome().is_none() {
             let RobotState { stamp_s, pose, velocity } = run.told();
             let scans = run.scans();
-            navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+            navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
             let action = match navigator.step() {
                 Step::Arrived => Action::Arrived,
                 step => Action::Drive(step.command()),

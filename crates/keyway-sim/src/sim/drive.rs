@@ -117,7 +117,7 @@ impl Asked<'_, '_> {
     fn decide(&mut self, fleet: &Fleet<'_>) {
         let RobotState { stamp_s, pose, velocity } = fleet.told(self.index);
         let scans = fleet.scans(self.index);
-        let observation = Observation { stamp_s, pose, velocity, scans: &scans };
+        let observation = Observation::new(stamp_s, pose, velocity, &scans);
         self.control = Some((self.participant.controller)(&observation));
     }
 }

@@ -127,10 +127,10 @@ mod tests {
     fn wander(observation: &Observation<'_>) -> Control {
         let Observation { pose, velocity, scans, .. } = *observation;
         let scan = scans[0].scan;
-        let seen = |i: &usize| scan.ranges_m[*i].min(scan.range_max_m);
+        let seen = |i: &usize| scan.ranges_m.get(*i).unwrap().min(scan.range_max_m);
         let best = (0..scan.ranges_m.len()).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap();
         let turn = scan.bearing_rad(best);
-        let nearest_m = scan.ranges_m.iter().copied().fold(scan.range_max_m, f64::min);
+        let nearest_m = scan.ranges_m.iter().fold(scan.range_max_m, f64::min);
         let command = Velocity::new(0.2 * nearest_m + 0.1 * velocity.v.abs() + 0.01 * pose.x, turn);
         Control {
             action: Action::Drive(command),
@@ -162,7 +162,7 @@ mod tests {
         while run.outcome().is_none() {
             let RobotState { stamp_s, pose, velocity } = run.told();
             let scans = run.scans();
-            let control = wander(&Observation { stamp_s, pose, velocity, scans: &scans });
+            let control = wander(&Observation::new(stamp_s, pose, velocity, &scans));
             run.step(&control).unwrap();
         }
         assert!(expected.cycles > 20, "{:?}", expected.outcome);

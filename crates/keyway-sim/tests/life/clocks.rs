@@ -47,7 +47,7 @@ fn observations_may_come_in_pieces() {
     let whole = poses(begun(0.0), |life| drop(life.cycle()));
     let in_pieces = poses(begun(0.0), |life| {
         let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &[] });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &[]));
         let step = life.cycle();
         assert_ne!(step, Step::Idle);
     });
@@ -115,8 +115,7 @@ fn a_robot_that_is_not_told_where_it_is_stops() {
                 let is_new = told == "scans";
                 let stamp_s = if is_new { last_s + 0.1 * f64::from(cycle) } else { last_s };
                 let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
-                let observation =
-                    Observation { stamp_s: last_s, pose: last, velocity, scans: &scans };
+                let observation = Observation::new(last_s, last, velocity, &scans);
                 life.navigator.observe(&observation);
             }
             let step = life.navigator.step();
@@ -151,7 +150,7 @@ fn a_late_scan_is_put_where_it_was_made() {
                 .into_iter()
                 .collect();
             let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
-            life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+            life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
             life.navigator.step();
             life.obey(Velocity::new(0.3, 0.9));
         }

@@ -26,7 +26,7 @@ fn noticed(
         let stamp_s = life.stamp_s;
         let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
         let (pose, velocity) = told(life, cycle);
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
         if !life.navigator.doubts().is_empty() {
             return Some((cycle, life.navigator.doubts().to_vec()));
         }
@@ -92,7 +92,7 @@ fn a_scan_that_is_given_again_is_noticed() {
     for cycle in 0..4 {
         let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
         let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
         let expected: &[Doubt] =
             if cycle == 0 { &[] } else { &[Doubt::ScanRepeated { sensor: 0 }] };
         assert_eq!(life.navigator.doubts(), expected, "{cycle}");
@@ -120,7 +120,7 @@ fn a_jump_is_noticed_and_what_was_sensed_goes_with_it() {
     life.told = |pose| Pose::new(pose.x - 0.2, pose.y + 0.22, pose.theta + 0.17);
     // Without a scan, so that all that is sensed there is what was sensed before.
     let (stamp_s, velocity, pose) = (life.stamp_s, life.velocity, (life.told)(life.pose));
-    life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &[] });
+    life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &[]));
     let [Doubt::PoseJumped { by_m, by_rad }] = life.navigator.doubts() else { panic!() };
     assert!((by_m - 0.297).abs() < 0.01 && (by_rad - 0.17).abs() < 1e-9, "{by_m} {by_rad}");
     let moved = pose.world_from_body(life.pose.body_from_world(face));

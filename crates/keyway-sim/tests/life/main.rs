@@ -7,6 +7,7 @@ mod clocks;
 mod doubts;
 mod goals;
 mod mishaps;
+mod points;
 mod random_calls;
 mod robot_in_a_world;
 mod snapshots;

@@ -29,7 +29,7 @@ fn a_gap_is_no_jump() {
         (0..8).for_each(|_| life.obey(Velocity::ZERO));
         life.stamp_s += gap_s;
         let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &[] });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &[]));
         let is_jump = |doubt: &Doubt| matches!(doubt, Doubt::PoseJumped { .. });
         assert!(!life.navigator.doubts().iter().any(is_jump), "{gap_s}");
         assert_eq!(sensed_near(&life, Point::new(5.9, 4.6), 0.3), before, "{gap_s}");
@@ -59,12 +59,7 @@ fn one_lidar_does_not_erase_what_the_other_meets() {
             if high_is_first {
                 scans.reverse();
             }
-            navigator.observe(&Observation {
-                stamp_s,
-                pose,
-                velocity: Velocity::ZERO,
-                scans: &scans,
-            });
+            navigator.observe(&Observation::new(stamp_s, pose, Velocity::ZERO, &scans));
             let sensed = navigator.sensed().count_ones();
             assert!(cycle == 0 || sensed > 2, "{high_is_first} {cycle} {sensed}");
         }
@@ -72,12 +67,7 @@ fn one_lidar_does_not_erase_what_the_other_meets() {
         for cycle in 10..13 {
             let stamp_s = 0.1 * f64::from(cycle);
             let scans = [0, 1].map(|sensor| SensorScan::of(&robot, sensor, stamp_s, &high));
-            navigator.observe(&Observation {
-                stamp_s,
-                pose,
-                velocity: Velocity::ZERO,
-                scans: &scans,
-            });
+            navigator.observe(&Observation::new(stamp_s, pose, Velocity::ZERO, &scans));
         }
         assert_eq!(navigator.sensed().count_ones(), 0);
     }
@@ -103,7 +93,7 @@ fn ground_to_keep_out_of_hides_nobody() {
         let scan = world.at(life.stamp_s).cast(life.pose, &life.robot.sensors[0]);
         let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
         let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
         life.navigator.step();
         followed += life.navigator.movers().len();
         life.obey(Velocity::ZERO);
@@ -126,7 +116,7 @@ fn scans_from_the_future_are_none() {
         let stamp_s = 5.0;
         let scans = [SensorScan::of(&life.robot, 0, stamp_s + ahead_s, &scan)];
         let (pose, velocity) = (life.pose, life.velocity);
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
         let step = life.navigator.step();
         assert!(
             matches!(step, Step::Blocked { why: Blocked::SensorSilent { .. }, .. }),
@@ -197,7 +187,7 @@ fn who_only_observes_does_not_grow() {
         let stamp_s = 0.1 * cycle as f64;
         let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scans[cycle % 3])];
         let (pose, velocity) = (life.pose, life.velocity);
-        life.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
         if cycle % 500 == 499 {
             sizes.push(bytes(&life.navigator));
         }

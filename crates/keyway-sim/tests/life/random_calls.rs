@@ -4,7 +4,7 @@ use super::robot_in_a_world::RobotInAWorld;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::map::{Cell, CellState, Edit, GridFrame, OccupancyGrid};
 use keyway::navigate::{Masks, SpeedMask};
-use keyway::sense::{Observation, Scan, SensorScan};
+use keyway::sense::{FieldOfView, Observation, Scan, SensorPoints, SensorScan};
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ fn call(life: &mut RobotInAWorld, (which, x, y): Call) {
     let place = Point::new(6.0 * x, 4.0 * y);
     let navigator = &mut life.navigator;
     // Whatever is refused changes nothing.
-    match which % 17 {
+    match which % 18 {
         0..=2 => drop(navigator.set_goal(place)),
         3 => drop(navigator.set_goals(&[Point::new(4.0 * y, 4.0 * x)], place)),
         4 => drop(navigator.follow(Polyline::new(vec![life.pose.point(), place]))),
@@ -67,6 +67,7 @@ fn call(life: &mut RobotInAWorld, (which, x, y): Call) {
             }
         }
         15 => drop(navigator.plan(life.pose.point(), place)),
+        16 => navigator.forget_sensed(),
         _ => drop(navigator.explain()),
     }
 }
@@ -124,11 +125,19 @@ proptest! {
                 let scan = Scan { ranges_m, ..Scan::of_nothing(&life.robot.sensors[0]) };
                 let mount = Pose { x: v, y: theta, theta: y };
                 let sensor = cycle as usize % 3 / 2;
-                let scans = [SensorScan { stamp_s: stamp_s + ahead_s, sensor, mount, scan: &scan }];
+                let scans = [SensorScan { stamp_s: stamp_s + ahead_s, sensor, mount, scan: scan.borrowed() }];
                 stamp_s += 0.1;
                 let (pose, velocity) = (Pose { x, y, theta }, Velocity::new(v, theta));
-                let observation = Observation { stamp_s, pose, velocity, scans: &scans };
-                life.navigator.observe(&observation);
+                let clears = FieldOfView { from_rad: x, to_rad: y, range_min_m: v, range_max_m: range_m };
+                let points = [SensorPoints {
+                    stamp_s: stamp_s + ahead_s,
+                    sensor: cycle as usize * 3,
+                    mount,
+                    points: &[Point { x, y }, Point { x: v, y: theta }],
+                    clears: Some(clears).filter(|_| cycle % 2 == 0),
+                }];
+                let observation = Observation::new(stamp_s, pose, velocity, &scans);
+                life.navigator.observe(&observation.with_points(&points));
                 let Velocity { v, omega, .. } = life.navigator.step().command();
                 prop_assert!((limits.v_min_mps..=limits.v_max_mps).contains(&v), "{v}");
                 prop_assert!(omega.abs() <= limits.omega_max_radps, "{omega}");

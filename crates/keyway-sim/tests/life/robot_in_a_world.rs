@@ -4,7 +4,7 @@ use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{CellState, Clearance, GridFrame, OccupancyGrid};
 use keyway::navigate::{Navigator, Stack, Step, touches};
 use keyway::robot::Robot;
-use keyway::sense::{Observation, SensorScan};
+use keyway::sense::{FieldOfView, Observation, SensorPoints, SensorScan};
 use keyway_sim::sim::World;
 
 /// A hall of 12 m x 8 m in cells of 5 cm, with walls around and some more cells.
@@ -25,6 +25,9 @@ pub(crate) fn wall_with_doors(doors_m: &'static [f64]) -> impl Fn(Point) -> bool
     }
 }
 
+/// Place of a camera: at its front, looking ahead.
+pub(crate) const CAMERA: Pose = Pose { x: 0.15, y: 0.0, theta: 0.0 };
+
 pub(crate) struct RobotInAWorld {
     pub(crate) robot: Robot,
     pub(crate) navigator: Navigator,
@@ -34,6 +37,9 @@ pub(crate) struct RobotInAWorld {
     /// The true map.
     pub(crate) truth: OccupancyGrid,
     pub(crate) posts: Vec<Disc>,
+    /// Posts that only its camera sees, if it has one.
+    pub(crate) low_posts: Vec<Disc>,
+    pub(crate) camera: Option<FieldOfView>,
     /// The pose that it is told, from the true one.
     pub(crate) told: fn(Pose) -> Pose,
 }
@@ -47,7 +53,8 @@ impl RobotInAWorld {
         navigator.relocate(pose);
         let (truth, velocity) = (map.clone(), Velocity::ZERO);
         let told = |pose| pose;
-        Self { robot, navigator, pose, velocity, stamp_s: 0.0, truth, posts: Vec::new(), told }
+        let (posts, low_posts, camera, stamp_s) = (Vec::new(), Vec::new(), None, 0.0);
+        Self { robot, navigator, pose, velocity, stamp_s, truth, posts, low_posts, camera, told }
     }
 
     /// Measures, and tells the navigator.
@@ -57,7 +64,42 @@ impl RobotInAWorld {
         let (stamp_s, velocity) = (self.stamp_s, self.velocity);
         let scans = [SensorScan::of(&self.robot, 0, stamp_s, &scan)];
         let pose = (self.told)(self.pose);
-        self.navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+        let (seen, mount) = (self.seen_by_camera(), CAMERA);
+        let points = self.camera.map(|view| SensorPoints {
+            stamp_s,
+            sensor: 0,
+            mount,
+            points: &seen,
+            clears: Some(view),
+        });
+        let observation = Observation::new(stamp_s, pose, velocity, &scans);
+        self.navigator.observe(&observation.with_points(points.as_slice()));
+    }
+
+    /// Points of the low posts that the camera sees, in its frame.
+    pub(crate) fn seen_by_camera(&self) -> Vec<Point> {
+        let camera = self.pose.compose(CAMERA);
+        let Some(view) = self.camera else { return Vec::new() };
+        let around = |post: &Disc| {
+            let &Disc { centre, radius_m } = post;
+            (0..60).map(move |i| {
+                let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
+                centre + Point::new(cos, sin) * radius_m
+            })
+        };
+        // The near side of each.
+        let is_near = |post: &Disc, place: &Point| {
+            (*place - post.centre).dot(camera.point() - post.centre) > 0.0
+        };
+        let near = self
+            .low_posts
+            .iter()
+            .flat_map(|post| around(post).filter(move |place| is_near(post, place)));
+        let in_view = |point: &Point| {
+            (view.from_rad..=view.to_rad).contains(&point.heading())
+                && (view.range_min_m..=view.range_max_m).contains(&point.norm())
+        };
+        near.map(|place| camera.body_from_world(place)).filter(in_view).collect()
     }
 
     /// It drives for a cycle, and touches nothing.
@@ -71,7 +113,7 @@ impl RobotInAWorld {
         let radius_m = footprint.inscribed_radius_m();
         let is_clear =
             |post: &Disc| post.centre.distance(self.pose.point()) > post.radius_m + radius_m;
-        assert!(self.posts.iter().all(is_clear), "{:?}", self.pose);
+        assert!(self.posts.iter().chain(&self.low_posts).all(is_clear), "{:?}", self.pose);
     }
 
     /// One cycle.

@@ -28,7 +28,7 @@
 //! let mut stamp_s = 0.0;
 //! loop {
 //!     let scans = [SensorScan::centred(stamp_s, &nothing)];
-//!     navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+//!     navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
 //!     let step = navigator.step();
 //!     if step == Step::Arrived {
 //!         break;

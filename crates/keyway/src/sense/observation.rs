@@ -1,11 +1,11 @@
 //! Measurements of a robot.
 
-use super::Scan;
+use super::{Ranges, RangesRef, Scan, SensorPoints};
 use crate::geometry::{Pose, Velocity};
 use crate::robot::{Mount, Robot};
 
-/// Measurements of a robot: its pose and velocity at a time, and the scans that have arrived since
-/// the last observation.
+/// Measurements of a robot: its pose and velocity at a time, and the scans and points that have
+/// arrived since the last observation.
 ///
 /// All stamps are by the same clock, which may have begun at any time. They say when something was
 /// measured, not when it arrived.
@@ -19,6 +19,28 @@ pub struct Observation<'a> {
     pub velocity: Velocity,
     /// Scans, in the order in which they were made; empty where none has arrived.
     pub scans: &'a [SensorScan<'a>],
+    /// Points of other sensors, in the order in which they were measured; empty where none have
+    /// arrived.
+    pub points: &'a [SensorPoints<'a>],
+}
+
+impl<'a> Observation<'a> {
+    /// What a robot with lidars alone has measured: its pose and velocity at a time \[s\], and
+    /// scans.
+    pub const fn new(
+        stamp_s: f64,
+        pose: Pose,
+        velocity: Velocity,
+        scans: &'a [SensorScan<'a>],
+    ) -> Self {
+        Self { stamp_s, pose, velocity, scans, points: &[] }
+    }
+
+    /// The same, with points of other sensors.
+    #[must_use]
+    pub const fn with_points(self, points: &'a [SensorPoints<'a>]) -> Self {
+        Self { points, ..self }
+    }
 }
 
 /// A scan, and the sensor that made it.
@@ -32,21 +54,21 @@ pub struct SensorScan<'a> {
     /// Pose of the sensor in the robot's frame.
     pub mount: Pose,
     /// The scan.
-    pub scan: &'a Scan,
+    pub scan: Scan<RangesRef<'a>>,
 }
 
 impl<'a> SensorScan<'a> {
     /// A scan that the sensor of this index on a robot made at a time \[s\]; its last sensor where
     /// it has not as many.
-    pub fn of(robot: &Robot, sensor: usize, stamp_s: f64, scan: &'a Scan) -> Self {
+    pub fn of<R: Ranges>(robot: &Robot, sensor: usize, stamp_s: f64, scan: &'a Scan<R>) -> Self {
         let sensor = sensor.min(robot.sensors.len().saturating_sub(1));
         let mount = robot.sensors.get(sensor).map_or(Mount::CENTRE, |sensor| sensor.mount);
-        Self { stamp_s, sensor, mount: mount.pose(), scan }
+        Self { stamp_s, sensor, mount: mount.pose(), scan: scan.borrowed() }
     }
 
     /// A scan that the first sensor made at a time \[s\], at the centre of rotation and looking
     /// ahead.
-    pub fn centred(stamp_s: f64, scan: &'a Scan) -> Self {
-        Self { stamp_s, sensor: 0, mount: Pose::default(), scan }
+    pub fn centred<R: Ranges>(stamp_s: f64, scan: &'a Scan<R>) -> Self {
+        Self { stamp_s, sensor: 0, mount: Pose::default(), scan: scan.borrowed() }
     }
 }

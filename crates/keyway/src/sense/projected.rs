@@ -1,6 +1,6 @@
 //! A scan where it was made: what each beam says and where it ends, computed once per cycle.
 
-use super::{Reading, Scan, SensorScan};
+use super::{FieldOfView, Ranges, Reading, Scan, SensorScan};
 use crate::geometry::{Point, Pose, Shift, wrap_angle};
 use crate::map::{Cell, GridFrame};
 use crate::robot::Footprint;
@@ -55,7 +55,12 @@ const AT_PLACE_M: f64 = 1e-6;
 impl ProjectedScan {
     /// A scan made at `pose` (world frame) by a robot of this footprint, with a sensor at its
     /// centre of rotation.
-    pub fn new(frame: &GridFrame, footprint: &Footprint, pose: Pose, scan: &Scan) -> Self {
+    pub fn new<R: Ranges>(
+        frame: &GridFrame,
+        footprint: &Footprint,
+        pose: Pose,
+        scan: &Scan<R>,
+    ) -> Self {
         let mut projected = Self::default();
         projected.project(frame, footprint, pose, &SensorScan::centred(0.0, scan));
         projected
@@ -93,8 +98,8 @@ impl ProjectedScan {
         };
         let nothing = Beam { reading: None, hit: None };
         self.beams.clear();
-        self.beams.extend((0..scan.ranges_m.len()).map(|number| beam(number).unwrap_or(nothing)));
-        let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = *scan;
+        self.beams.extend((0..scan.beams()).map(|number| beam(number).unwrap_or(nothing)));
+        let Scan { angle_min_rad, angle_increment_rad, range_max_m, .. } = scan;
         (self.robot, self.pose, self.range_max_m) = (robot, pose, range_max_m);
         (self.angle_min_rad, self.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
     }
@@ -109,6 +114,34 @@ impl ProjectedScan {
             let length = end.distance(from);
             let share = if length > 0.0 { 1.0 + HIT_ADVANCE_CELLS / length } else { 1.0 };
             hit.cell = frame.cell_from_grid(from + (end - from) * share);
+        }
+    }
+
+    /// Becomes the view of a sensor at a pose (world frame) that has met points (its own frame):
+    /// beams of half a degree, each as far as to the nearest point. A point hides what is behind a
+    /// disc of a cell. Allocates nothing where it has not more beams than before.
+    pub(super) fn look_around(
+        &mut self,
+        pose: Pose,
+        view: &FieldOfView,
+        points: &[Point],
+        cell_m: f64,
+    ) {
+        const STEP_RAD: f64 = PI / 360.0;
+        let width_rad = view.to_rad - view.from_rad;
+        let steps = (width_rad / STEP_RAD).ceil();
+        let free = Reading::Free(view.range_max_m);
+        self.beams.clear();
+        self.beams.resize(steps as usize + 1, Beam { reading: Some(free), hit: None });
+        (self.robot, self.pose, self.range_max_m) = (pose, pose, view.range_max_m);
+        (self.angle_min_rad, self.angle_increment_rad) = (view.from_rad, width_rad / steps);
+        for &point in points.iter().filter(|point| point.is_finite()) {
+            let away_m = point.norm();
+            for beam in self.beams_towards(pose.world_from_body(point), 0.5 * cell_m) {
+                let Some(beam) = self.beams.get_mut(beam) else { continue };
+                let free_m = beam.reading.map_or(away_m, |before| before.free_m().min(away_m));
+                beam.reading = Some(Reading::Hit(free_m));
+            }
         }
     }
 

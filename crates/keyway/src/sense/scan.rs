@@ -1,5 +1,6 @@
 //! One turn of a range sensor.
 
+use super::{Ranges, RangesRef};
 use crate::robot::RangeSensor;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -9,8 +10,11 @@ use thiserror::Error;
 ///
 /// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 where the sensor looks,
 /// counter-clockwise): a sensor that turns clockwise has a negative increment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Scan {
+///
+/// The ranges are its own, or those that a driver keeps elsewhere, in either precision
+/// ([`Ranges`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scan<R = Vec<f64>> {
     /// Bearing of the first beam \[rad\].
     pub angle_min_rad: f64,
     /// Bearing from one beam to the next \[rad\], negative where they go clockwise.
@@ -24,7 +28,7 @@ pub struct Scan {
     /// [`Self::range_max_m`] is discarded, NaN and 0 as well; infinity means that nothing was met.
     /// A driver that writes another number where it met nothing (0, or one beyond the range) has to
     /// write infinity instead, or the sensor's free ground stays unknown.
-    pub ranges_m: Vec<f64>,
+    pub ranges_m: R,
 }
 
 /// The reason why the beams of a scan cannot be true.
@@ -93,6 +97,27 @@ impl Scan {
         let RangeSensor { range_min_m, range_m: range_max_m, .. } = *sensor;
         Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
+}
+
+impl<R: Ranges> Scan<R> {
+    /// The same scan, whose ranges stay where they are.
+    pub fn borrowed(&self) -> Scan<RangesRef<'_>> {
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
+        let ranges_m = self.ranges_m.as_ranges();
+        Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
+    }
+
+    /// The same scan with ranges of its own.
+    pub fn owned(&self) -> Scan {
+        let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
+        let ranges_m = self.ranges_m.as_ranges().iter().collect();
+        Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
+    }
+
+    /// Number of beams.
+    pub fn beams(&self) -> usize {
+        self.ranges_m.as_ranges().len()
+    }
 
     /// Refuses bearings that cannot be true, as of angles in degrees.
     ///
@@ -100,7 +125,7 @@ impl Scan {
     /// Without beams, and where the bearings are not finite, all the same or more than one turn.
     pub fn check(&self) -> Result<(), ScanError> {
         let (first_rad, increment_rad) = (self.angle_min_rad, self.angle_increment_rad);
-        let beams = self.ranges_m.len();
+        let beams = self.beams();
         if beams == 0 {
             return Err(ScanError::NoBeams);
         }
@@ -120,18 +145,18 @@ impl Scan {
     }
 
     /// Angle between two neighbouring beams \[rad\], whichever way they go.
-    pub(crate) const fn step_rad(&self) -> f64 {
+    const fn step_rad(&self) -> f64 {
         self.angle_increment_rad.abs()
     }
 
     /// True if no beam says anything.
     pub fn says_nothing(&self) -> bool {
-        (0..self.ranges_m.len()).all(|beam| self.reading(beam).is_none())
+        (0..self.beams()).all(|beam| self.reading(beam).is_none())
     }
 
     /// What a beam says; `None` when there is no such beam, or it says nothing.
     pub fn reading(&self, beam: usize) -> Option<Reading> {
-        let range_m = *self.ranges_m.get(beam)?;
+        let range_m = self.ranges_m.as_ranges().get(beam)?;
         if range_m == f64::INFINITY {
             let is_known = self.range_max_m > 0.0 && self.range_max_m.is_finite();
             return is_known.then_some(Reading::Free(self.range_max_m));

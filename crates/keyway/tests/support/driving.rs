@@ -34,6 +34,6 @@ pub(crate) fn next_step(
 ) -> Step {
     let stamp_s = next_stamp_s(navigator);
     let scans = [SensorScan::centred(stamp_s, scan)];
-    navigator.observe(&Observation { stamp_s, pose, velocity, scans: &scans });
+    navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
     navigator.step()
 }

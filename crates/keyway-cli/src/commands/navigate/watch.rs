@@ -6,7 +6,7 @@ use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{NavigateError, Navigator};
 use keyway::route::Route;
-use keyway::sense::{Mover, Observation, Reading, Scan};
+use keyway::sense::{Mover, Observation, Ranges, Reading, Scan};
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
 use std::sync::Arc;
@@ -109,7 +109,7 @@ impl Watcher {
             pose,
             velocity,
             guide: navigator.guidance().map_or(pose.point(), |guidance| guidance.point),
-            hits: scans.iter().flat_map(|one| hits(pose.compose(one.mount), one.scan)).collect(),
+            hits: scans.iter().flat_map(|one| hits(pose.compose(one.mount), &one.scan)).collect(),
             sensed: set_cells(navigator.sensed()),
             route: Arc::clone(route),
             movers: navigator.movers().to_vec(),
@@ -171,13 +171,13 @@ impl EpisodeObserver for Watcher {
 }
 
 /// The ends of the beams of a sensor that met something.
-fn hits(pose: Pose, scan: &Scan) -> Vec<Point> {
+fn hits<R: Ranges>(pose: Pose, scan: &Scan<R>) -> Vec<Point> {
     let end = |beam| {
         let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };
         let (sin, cos) = scan.bearing_rad(beam).sin_cos();
         Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
     };
-    (0..scan.ranges_m.len()).filter_map(end).collect()
+    (0..scan.beams()).filter_map(end).collect()
 }
 
 /// The set cells in ascending order.

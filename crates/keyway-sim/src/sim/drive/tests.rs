@@ -235,7 +235,7 @@ fn the_controller_sees_the_state_and_a_scan() {
         let Observation { pose, velocity: v, scans, .. } = *observation;
         let scan = scans[0].scan;
         // Beam 4 of 8 looks straight ahead.
-        assert!((scan.ranges_m[4] - (2.0 - pose.x)).abs() < 1e-9);
+        assert!((scan.ranges_m.get(4).unwrap() - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
         Control { action: Action::Drive(Velocity::new(0.5, 0.0)), remaining_m: 9.0, route: 1 }
     });
@@ -257,7 +257,7 @@ fn a_rerun_gives_the_same_bytes() {
             &limit(30.0),
             |&Observation { pose, scans, .. }| {
                 let scan = scans[0].scan;
-                let nearest = scan.ranges_m.iter().copied().fold(3.5, f64::min);
+                let nearest = scan.ranges_m.iter().fold(3.5, f64::min);
                 let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
                 Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
             },

@@ -151,7 +151,7 @@ impl<'a> Drive<'a> {
                 stamp_s: sensing.stamp_s(self.cycles),
                 sensor,
                 mount: beams.mount(),
-                scan,
+                scan: scan.borrowed(),
             })
             .collect()
     }

@@ -25,6 +25,13 @@ impl Navigator {
         }
     }
 
+    /// Forgets all that was sensed, standing and moving, such as points of a bumper that sees no
+    /// ground. The route is planned anew on the map alone.
+    pub fn forget_sensed(&mut self) {
+        self.world.forget_sensed(&self.parts);
+        self.plan_again();
+    }
+
     /// The clock of all stamps begins anew, such as that of a simulation: the next observation may
     /// have any stamp. The robot stands until it is told its pose by the new clock, and its sensors
     /// have said something by it where the stack asks for that. Then the route is planned anew.

@@ -5,6 +5,7 @@ use crate::geometry::{Pose, Shift};
 use crate::map::{Cell, CellState, Edit, OccupancyGrid};
 use crate::navigate::doubts::Doubts;
 use crate::navigate::masks::Masks;
+use crate::navigate::walked_ground::WalkedGround;
 use crate::navigate::{FittedStack, NavigateError};
 use std::sync::Arc;
 
@@ -34,10 +35,25 @@ impl World {
         shift
     }
 
+    /// Nothing was ever sensed.
+    pub(in crate::navigate) fn forget_sensed(&mut self, parts: &FittedStack) {
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        self.sensed.forget(map, &mut self.changed);
+        self.keep_out();
+        self.spread_changes();
+        self.tracker.clone_from(&parts.tracker);
+        self.walked = WalkedGround::default();
+        self.scans.iter_mut().for_each(|scan| scan.clear(scan.robot()));
+        if let Some(seen) = &mut self.seen {
+            seen.clear();
+        }
+    }
+
     /// The clock begins anew.
     pub(in crate::navigate) fn restart_clock(&mut self) {
         (self.told, self.now, self.scanned, self.refused) = (None, None, None, None);
         self.times.fill(super::SensorTimes::default());
+        self.points_at.fill(None);
         self.poses.clear();
         self.under_way.clear();
         self.doubts = Doubts::new(self.times.len());

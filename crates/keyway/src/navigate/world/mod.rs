@@ -21,8 +21,8 @@ use crate::local::Scene;
 use crate::map::{CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::{
-    Mover, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer, SensorScan, Tracker,
-    Walls,
+    Mover, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer, SensorPoints,
+    SensorScan, Tracker, Walls,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -65,6 +65,8 @@ pub(super) struct World {
     /// The last scan of each sensor; without beams before the first one, and where it is silent.
     scans: Vec<ProjectedScan>,
     times: Vec<SensorTimes>,
+    /// Time of the last points of each sensor that gives some.
+    points_at: [Option<Time>; SensorPoints::MOST_SENSORS],
     /// The ranges of each sensor's last scan \[m\].
     ranges_m: Vec<Vec<f64>>,
     /// Time of the latest scan of any sensor.
@@ -120,6 +122,7 @@ impl World {
             refused: None,
             scans: vec![ProjectedScan::default(); robot.sensors.len()],
             times: vec![SensorTimes::default(); robot.sensors.len()],
+            points_at: [None; SensorPoints::MOST_SENSORS],
             ranges_m: vec![Vec::new(); robot.sensors.len()],
             scanned: None,
             doubts: Doubts::new(robot.sensors.len()),
@@ -158,6 +161,7 @@ impl World {
             self.track.note(pose.point());
             self.forget_silent(&parts.robot);
             observation.scans.iter().for_each(|scan| self.take_in(parts, scan));
+            observation.points.iter().for_each(|points| self.take_in_points(parts, points));
         }
         self.doubts.look(time);
         shift
@@ -222,18 +226,36 @@ impl World {
         self.now = self.now.max(Some(time));
         let (ranges_m, projected) = (&mut self.ranges_m[scan.sensor], &mut self.scans[scan.sensor]);
         let velocity = self.told.map_or(Velocity::ZERO, |told| told.velocity);
-        let is_same =
-            ranges_m.iter().map(|m| m.to_bits()).eq(scan.scan.ranges_m.iter().map(|m| m.to_bits()));
-        let has_hits = scan.scan.ranges_m.iter().any(|range_m| range_m.is_finite());
+        let given = scan.scan.ranges_m;
+        let is_same = ranges_m.iter().map(|m| m.to_bits()).eq(given.iter().map(f64::to_bits));
+        let has_hits = given.iter().any(f64::is_finite);
         if is_same && has_hits && Doubts::has_come_far(velocity, projected.robot(), pose) {
             self.doubts.note_repeated(scan.sensor, time);
         }
-        ranges_m.clone_from(&scan.scan.ranges_m);
+        ranges_m.clear();
+        ranges_m.extend(given.iter());
         projected.project(self.known.frame(), &parts.robot.footprint, pose, scan);
         if !projected.is_silent() {
             times.said = Some(time);
         }
         self.note(parts, scan.sensor, time);
+    }
+
+    /// Takes in points, where the robot was when they were measured, by the rules for scans.
+    fn take_in_points(&mut self, parts: &FittedStack, points: &SensorPoints<'_>) {
+        let Some(time) = Time::of_stamp(points.stamp_s) else { return };
+        let Some(last) = self.points_at.get_mut(points.sensor) else { return };
+        let Some(robot) = self.poses.at(time) else { return };
+        if last.is_some_and(|last| time <= last) {
+            return;
+        }
+        *last = Some(time);
+        self.now = self.now.max(Some(time));
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        let (footprint, tracker) = (&parts.robot.footprint, self.tracker.as_ref());
+        self.sensed.update_points(map, footprint, robot, points, tracker, &mut self.changed);
+        self.keep_out();
+        self.spread_changes();
     }
 
     /// Adds what the scan of a sensor shows to the movers and to the sensed layer, to every map

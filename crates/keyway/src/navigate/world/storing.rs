@@ -11,7 +11,7 @@ use crate::navigate::time::Time;
 use crate::navigate::walked_ground::WalkedGround;
 use crate::navigate::{Blocked, FittedStack, NavigateError, RestoreError};
 use crate::robot::Robot;
-use crate::sense::{ProjectedScan, SeenStored, SensedPlaces, Tracker};
+use crate::sense::{ProjectedScan, SeenStored, SensedPlaces, SensorPoints, Tracker};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -36,6 +36,7 @@ pub(in crate::navigate) struct StoredWorld {
     now: Option<Time>,
     scans: Vec<ProjectedScan>,
     times: Vec<SensorTimes>,
+    points_at: [Option<Time>; SensorPoints::MOST_SENSORS],
     ranges_m: Vec<Vec<f64>>,
     scanned: Option<Time>,
     doubts: Doubts,
@@ -62,6 +63,7 @@ impl World {
             now: self.now,
             scans: self.scans.clone(),
             times: self.times.clone(),
+            points_at: self.points_at,
             ranges_m: self.ranges_m.clone(),
             scanned: self.scanned,
             doubts: self.doubts.clone(),
@@ -98,7 +100,8 @@ impl World {
         world.refused = stored.is_refused.then_some(Blocked::NothingObserved);
         (world.told, world.now, world.scanned) = (stored.told, stored.now, stored.scanned);
         (world.scans, world.times) = (stored.scans, stored.times);
-        (world.ranges_m, world.doubts) = (stored.ranges_m, stored.doubts);
+        (world.points_at, world.ranges_m) = (stored.points_at, stored.ranges_m);
+        world.doubts = stored.doubts;
         Ok(world)
     }
 

@@ -185,6 +185,11 @@ impl Tracker {
         if let Some(Owner::Track(track)) = self.hits.owner(beam) {
             return self.tracks.get(track as usize).is_some_and(|track| track.is_mover);
         }
+        self.may_be_mover(place)
+    }
+
+    /// True if a mover in view may cover a place.
+    pub(super) fn may_be_mover(&self, place: Point) -> bool {
         let may_be = |mover: &Mover| place.distance(mover.centre) <= mover.now().radius_m;
         self.movers().iter().any(|mover| mover.unseen_s == 0.0 && may_be(mover))
     }

@@ -20,7 +20,7 @@ fn driven(
     let (mut cycle, mut told) = (0, vec![]);
     let mut controller = |&Observation { pose, velocity, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
-        told.push((pose, velocity, scan.ranges_m.clone()));
+        told.push((pose, velocity, scan.owned().ranges_m));
         cycle += 1;
         let action = Action::Drive(command(cycle - 1));
         Control { action, remaining_m: 1e6 - cycle as f64, route: 1 }

@@ -132,7 +132,7 @@ fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
         let scan = observation.scans[0].scan;
         // Beam 4 of 8 looks straight ahead.
         let range_m = 2.75 - 0.5 * 0.1 * f64::from(cycle);
-        assert!((scan.ranges_m[4] - range_m).abs() < 1e-9);
+        assert!((scan.ranges_m.get(4).unwrap() - range_m).abs() < 1e-9);
         cycle += 1;
         Control { action: Action::Stop, remaining_m: 9.0, route: 1 }
     })

@@ -78,13 +78,13 @@ fn robots_see_each_other_where_they_are() {
     let mut look = |&Observation { pose, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
         // Beam 4 of 8 looks straight ahead, beam 6 to the left.
-        gaps.push((pose.x, scan.ranges_m[4], scan.ranges_m[6]));
+        gaps.push((pose.x, scan.ranges_m.get(4).unwrap(), scan.ranges_m.get(6).unwrap()));
         Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
     };
     let mut positions = Vec::new();
     let mut back = |&Observation { pose, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
-        positions.push((pose.x, scan.ranges_m[4]));
+        positions.push((pose.x, scan.ranges_m.get(4).unwrap()));
         Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
     };
     let mut stand =

@@ -1,0 +1,305 @@
+//! What scans have shown that the known map does not.
+
+mod points;
+#[cfg(test)]
+mod tests;
+
+use super::{Hit, Mover, ProjectedScan, SensorPoints, Tracker};
+use crate::geometry::{Point, Square};
+use crate::map::{BitGrid, Cell, CellState, CellWindow, Edit, GridFrame, OccupancyGrid};
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// Cells in which scans have met something that the known map does not have.
+///
+/// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
+/// a sensed cell that is cleared goes back to what the known map says, unknown included.
+///
+/// A cell is cleared when the place in it that a beam has met is seen through: when the beams to
+/// both sides of that place go on beyond it. A beam through another part of the cell says nothing:
+/// a cell may be larger than what stands in it, and is seldom filled by it.
+///
+/// Memory: one bit per cell, and a place for each sensed cell. An update costs a look-up per hit,
+/// and one per sensed cell within the sensor's range.
+#[derive(Clone, Debug)]
+pub struct SensedLayer {
+    sensed: BitGrid,
+    count: u64,
+    /// For each sensed cell the last place in it that a beam has met, and in which scan.
+    places: HashMap<Cell, Place>,
+    /// Number of scans and points so far, and of the last ones of each sensor.
+    cycle: u64,
+    looked: [u64; SENSORS],
+    /// Scratch of [`Self::update`], without meaning between calls.
+    cleared: Vec<Cell>,
+    marked: Vec<Cell>,
+    view: ProjectedScan,
+}
+
+/// Sensors that are told apart: those that scan, and after them those that give points.
+const SENSORS: usize = Robot::MOST_SENSORS + SensorPoints::MOST_SENSORS;
+
+/// A layer in few words.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct SensedPlaces {
+    cycle: u64,
+    looked: [u64; SENSORS],
+    /// In the order of [`Cell`].
+    places: Vec<(Cell, Place)>,
+}
+
+/// A place that a beam has met.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Place {
+    /// In the world frame \[m\].
+    point: Point,
+    /// Number of the scan.
+    cycle: u64,
+    sensor: usize,
+}
+
+impl Place {
+    /// True if a scan has met it.
+    const fn is_scanned(&self) -> bool {
+        self.sensor < Robot::MOST_SENSORS
+    }
+}
+
+/// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
+const USUAL_COUNT: usize = 4096;
+
+impl SensedLayer {
+    /// Nothing sensed, on a grid of `frame`'s size.
+    pub fn new(frame: &GridFrame) -> Self {
+        let sensed = BitGrid::new(frame.width(), frame.height(), false);
+        let places = HashMap::with_capacity(USUAL_COUNT);
+        let [cleared, marked] = [(); 2].map(|()| Vec::with_capacity(USUAL_COUNT));
+        let (looked, view) = ([0; SENSORS], ProjectedScan::default());
+        Self { sensed, count: 0, places, cycle: 0, looked, cleared, marked, view }
+    }
+
+    /// Cells in which something was met that the known map does not have.
+    pub const fn sensed(&self) -> &BitGrid {
+        &self.sensed
+    }
+
+    /// Number of sensed cells.
+    pub const fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The layer in few words.
+    pub(crate) fn stored(&self) -> SensedPlaces {
+        let places = self.cells().into_iter().map(|cell| (cell, self.places[&cell]));
+        let (cycle, looked) = (self.cycle, self.looked);
+        SensedPlaces { cycle, looked, places: places.collect() }
+    }
+
+    /// The layer that was stored, on a map of this size; cells outside it are left out, and places
+    /// that no sensor can have met.
+    pub(crate) fn restored(known: &OccupancyGrid, stored: &SensedPlaces) -> Self {
+        let (cycle, looked) = (stored.cycle, stored.looked);
+        let mut layer = Self { cycle, looked, ..Self::new(known.frame()) };
+        let is_inside = |cell: Cell| known.frame().contains(cell) && !known.occupied().get(cell);
+        let inside =
+            stored.places.iter().filter(|(cell, place)| is_inside(*cell) && place.sensor < SENSORS);
+        for &(cell, place) in inside {
+            layer.places.insert(cell, place);
+            layer.count += u64::from(layer.sensed.set(cell, true));
+        }
+        layer
+    }
+
+    /// The sensed cells, in the order of [`Cell`].
+    pub(crate) fn cells(&self) -> Vec<Cell> {
+        let mut cells: Vec<Cell> = self.places.keys().copied().collect();
+        cells.sort_unstable();
+        cells
+    }
+
+    /// Takes in a scan on the `known` map, whose frame is the one given to [`Self::new`].
+    ///
+    /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by
+    /// a beam without a hit); then every hit marks its cell, unless the known map already has it as
+    /// occupied or it lies outside the map. So within one scan marks win over clears. A beam that
+    /// says nothing ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a
+    /// pose that is not finite.
+    ///
+    /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked,
+    /// so movers leave no trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the
+    /// cells under a mover that is seen are cleared, and so are those that were marked before it
+    /// was known to move. Where one is only expected, nothing is cleared. Without one everything
+    /// counts as standing.
+    ///
+    /// `edits` is emptied and receives exactly the cells that changed, each once: first those
+    /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
+    /// in the order of the beams. Applied to a map of the known obstacles and the sensed cells so
+    /// far, they keep it up to date.
+    pub fn update(
+        &mut self,
+        known: &OccupancyGrid,
+        scan: &ProjectedScan,
+        tracker: Option<&Tracker>,
+        edits: &mut Vec<Edit>,
+    ) {
+        self.update_from(known, 0, scan, tracker, edits);
+    }
+
+    /// The same of the sensor of this index. What one sensor has met stands, whatever another one
+    /// has seen through, until the first one has scanned again without meeting it.
+    pub fn update_from(
+        &mut self,
+        known: &OccupancyGrid,
+        sensor: usize,
+        scan: &ProjectedScan,
+        tracker: Option<&Tracker>,
+        edits: &mut Vec<Edit>,
+    ) {
+        let sensor = sensor.min(Robot::MOST_SENSORS - 1);
+        self.begin(sensor, edits);
+        let frame = known.frame();
+        self.clear_seen_through(scan);
+        if let Some(tracker) = tracker {
+            tracker.left().iter().for_each(|&cell| self.clear(cell));
+            let seen = tracker.movers().iter().filter(|mover| mover.unseen_s == 0.0);
+            seen.for_each(|mover| self.clear_under(mover, frame));
+        }
+        self.cleared.sort_unstable();
+        let moves = |beam: usize, hit: &Hit| {
+            tracker.is_some_and(|tracker| tracker.hits_mover(beam, hit.point))
+        };
+        for (_, hit) in scan.hits().filter(|(beam, hit)| !moves(*beam, hit)) {
+            self.mark(known, sensor, &hit);
+        }
+        self.list_changes(known, edits);
+    }
+
+    fn begin(&mut self, sensor: usize, edits: &mut Vec<Edit>) {
+        self.cycle += 1;
+        self.looked[sensor] = self.cycle;
+        edits.clear();
+        self.cleared.clear();
+        self.marked.clear();
+    }
+
+    /// Lists what was cleared, which is in order, and what was marked. Marked again is unchanged.
+    fn list_changes(&mut self, known: &OccupancyGrid, edits: &mut Vec<Edit>) {
+        self.count = self.count + self.marked.len() as u64 - self.cleared.len() as u64;
+        let after_clears = self.cleared.iter().filter(|&&cell| !self.sensed.get(cell));
+        edits.extend(after_clears.filter_map(|&cell| {
+            let state = known.state(cell)?;
+            Some(Edit { cell, state })
+        }));
+        let fresh = self.marked.iter().filter(|cell| self.cleared.binary_search(cell).is_err());
+        edits.extend(fresh.map(|&cell| Edit { cell, state: CellState::Occupied }));
+    }
+
+    /// Moves what was sensed, such as with the robot that has sensed it, on a map that may be
+    /// another one. `edits` is emptied and receives the cells that changed, as those of the map:
+    /// first the cells of before, with the state that is known of them now.
+    pub(crate) fn shift(
+        &mut self,
+        known: &OccupancyGrid,
+        shift: impl Fn(Point) -> Point,
+        edits: &mut Vec<Edit>,
+    ) {
+        let frame = known.frame();
+        let before = {
+            let (cycle, looked) = (self.cycle, self.looked);
+            std::mem::replace(self, Self { cycle, looked, ..Self::new(frame) })
+        };
+        edits.clear();
+        let free = |cell| Some(Edit { cell, state: known.state(cell)? });
+        edits.extend(before.cells().into_iter().filter_map(free));
+        let mut places: Vec<(Cell, Place)> = before.places.into_iter().collect();
+        places.sort_unstable_by_key(|(cell, _)| *cell);
+        for (_, place) in places {
+            let point = shift(place.point);
+            let cell = frame.cell_from_world(point);
+            let Some(cell) = cell.filter(|&cell| !known.occupied().get(cell)) else { continue };
+            self.places.insert(cell, Place { point, ..place });
+            if self.sensed.set(cell, true) {
+                self.count += 1;
+                edits.push(Edit { cell, state: CellState::Occupied });
+            }
+        }
+    }
+
+    /// Forgets everything. `edits` is emptied and receives the cells that changed.
+    pub(crate) fn forget(&mut self, known: &OccupancyGrid, edits: &mut Vec<Edit>) {
+        edits.clear();
+        let free = |cell| Some(Edit { cell, state: known.state(cell)? });
+        edits.extend(self.cells().into_iter().filter_map(free));
+        *self = Self { cycle: self.cycle, looked: self.looked, ..Self::new(known.frame()) };
+    }
+
+    /// Takes in changes of the known map. What stands on it is sensed no longer; a cell that was
+    /// sensed stays so where the map now says that it is free. `changes` is emptied and receives
+    /// those that follow for the map of known and sensed cells.
+    pub(crate) fn learn(&mut self, known: &OccupancyGrid, edits: &[Edit], changes: &mut Vec<Edit>) {
+        changes.clear();
+        for edit in edits {
+            if known.occupied().get(edit.cell) && self.sensed.set(edit.cell, false) {
+                self.places.remove(&edit.cell);
+                self.count -= 1;
+            }
+            if !self.sensed.get(edit.cell) {
+                changes.push(*edit);
+            }
+        }
+    }
+
+    fn clear(&mut self, cell: Cell) {
+        if self.sensed.set(cell, false) {
+            self.places.remove(&cell);
+            self.cleared.push(cell);
+        }
+    }
+
+    /// Clears the cells that a mover touches where it is estimated to be.
+    fn clear_under(&mut self, mover: &Mover, frame: &GridFrame) {
+        if self.count == self.cleared.len() as u64 {
+            return;
+        }
+        let centre = frame.grid_from_world(mover.centre);
+        let reach = mover.radius_m / frame.resolution_m();
+        for cell in CellWindow::around(frame, mover.centre, mover.radius_m).cells() {
+            let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
+            if square.distance_sq_to_point(centre) <= reach * reach {
+                self.clear(cell);
+            }
+        }
+    }
+
+    /// Clears the cells whose places are seen through.
+    fn clear_seen_through(&mut self, scan: &ProjectedScan) {
+        // The sensor that has met it has looked again since, or does so now.
+        let is_old = |place: &Place| self.looked[place.sensor] > place.cycle;
+        let is_gone =
+            |place: &Place| place.is_scanned() && is_old(place) && scan.sees_through(place.point);
+        let through = self.places.iter().filter(|(_, place)| is_gone(place));
+        self.cleared.extend(through.map(|(&cell, _)| cell));
+        self.remove_cleared();
+    }
+
+    fn remove_cleared(&mut self) {
+        for cell in &self.cleared {
+            self.sensed.set(*cell, false);
+            self.places.remove(cell);
+        }
+    }
+
+    fn mark(&mut self, known: &OccupancyGrid, sensor: usize, hit: &Hit) {
+        let Some(cell) = hit.cell.filter(|&cell| !known.occupied().get(cell)) else { return };
+        let place = Place { point: hit.point, cycle: self.cycle, sensor };
+        // A scan sees what other sensors have met as little as that it has gone.
+        let is_known = |before: &Place| place.is_scanned() && !before.is_scanned();
+        if !self.places.get(&cell).is_some_and(is_known) {
+            self.places.insert(cell, place);
+        }
+        if self.sensed.set(cell, true) {
+            self.marked.push(cell);
+        }
+    }
+}

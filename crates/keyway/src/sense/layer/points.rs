@@ -1,0 +1,143 @@
+//! Points in the sensed layer.
+
+use super::{Place, SensedLayer};
+use crate::geometry::{Point, Pose};
+use crate::map::{Edit, OccupancyGrid};
+use crate::robot::{Footprint, Robot};
+use crate::sense::{FieldOfView, Hit, SensorPoints, Tracker};
+
+impl SensedLayer {
+    /// Takes in points that a sensor of a robot of this footprint at `robot` (world frame) has met.
+    /// Each marks its cell as the hit of a beam does; those within the footprint are the robot's
+    /// own, and those on a mover in view are the mover.
+    ///
+    /// What such a sensor has met is cleared by itself alone: where it says that it sees
+    /// everything ([`SensorPoints::clears`]), and meets nothing there or before it any more.
+    ///
+    /// `edits` is emptied and receives the cells that changed, as by [`Self::update`].
+    pub fn update_points(
+        &mut self,
+        known: &OccupancyGrid,
+        footprint: &Footprint,
+        robot: Pose,
+        points: &SensorPoints<'_>,
+        tracker: Option<&Tracker>,
+        edits: &mut Vec<Edit>,
+    ) {
+        let sensor = Robot::MOST_SENSORS + points.sensor.min(SensorPoints::MOST_SENSORS - 1);
+        self.begin(sensor, edits);
+        let pose = robot.compose(points.mount);
+        if pose.point().is_finite() && pose.theta.is_finite() {
+            self.clear_in_view(known, sensor, pose, points);
+            let met = points.points.iter().filter(|point| point.is_finite());
+            let is_own = |point: Point| footprint.covers(points.mount.world_from_body(point));
+            for &point in met.filter(|point| !is_own(**point)) {
+                let point = pose.world_from_body(point);
+                if !tracker.is_some_and(|tracker| tracker.may_be_mover(point)) {
+                    let cell = known.frame().cell_from_world(point);
+                    self.mark(known, sensor, &Hit { point, cell });
+                }
+            }
+        }
+        self.list_changes(known, edits);
+    }
+
+    /// Clears what the sensor has met where it meets nothing any more.
+    fn clear_in_view(
+        &mut self,
+        known: &OccupancyGrid,
+        sensor: usize,
+        pose: Pose,
+        points: &SensorPoints<'_>,
+    ) {
+        let Some(view) = points.clears.filter(FieldOfView::is_usable) else { return };
+        self.view.look_around(pose, &view, points.points, known.frame().resolution_m());
+        let is_gone = |place: &Place| {
+            place.sensor == sensor
+                && place.point.distance(pose.point()) >= view.range_min_m
+                && self.view.sees_through(place.point)
+        };
+        let gone = self.places.iter().filter(|(_, place)| is_gone(place));
+        self.cleared.extend(gone.map(|(&cell, _)| cell));
+        self.cleared.sort_unstable();
+        self.remove_cleared();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{Cell, CellState};
+
+    /// A row of cells of 1 m, and a sensor that sees 90 degrees to either side of its middle.
+    struct Case {
+        known: OccupancyGrid,
+        layer: SensedLayer,
+    }
+
+    const VIEW: FieldOfView =
+        FieldOfView { from_rad: -0.3, to_rad: 0.3, range_min_m: 0.0, range_max_m: 4.0 };
+
+    impl Case {
+        fn new() -> Self {
+            let known = OccupancyGrid::from_ascii(&["......#"]);
+            let layer = SensedLayer::new(known.frame());
+            Self { known, layer }
+        }
+
+        /// Looks along the row from the middle of its first cell.
+        fn look(
+            &mut self,
+            (sensor, clears): (usize, Option<FieldOfView>),
+            at_m: &[f64],
+        ) -> Vec<(i32, CellState)> {
+            let points: Vec<Point> = at_m.iter().map(|&x| Point::new(x, 0.0)).collect();
+            let mount = Pose::default();
+            let points = SensorPoints { stamp_s: 0.0, sensor, mount, points: &points, clears };
+            let (pose, mut edits) = (Pose::new(0.5, 0.5, 0.0), Vec::new());
+            let disc = Footprint::circle(0.2).unwrap();
+            self.layer.update_points(&self.known, &disc, pose, &points, None, &mut edits);
+            assert_eq!(self.layer.count(), self.layer.sensed().count_ones());
+            edits.iter().map(|edit| (edit.cell.x, edit.state)).collect()
+        }
+    }
+
+    use CellState::{Free, Occupied};
+
+    #[test]
+    fn points_mark_and_their_own_sensor_clears() {
+        let mut case = Case::new();
+        let (sees, marks) = ((0, Some(VIEW)), (1, None));
+        // Its own body, beyond the map, what the map has, and nothing.
+        assert_eq!(case.look(sees, &[0.1, 7.0, 6.0, f64::NAN]), []);
+        assert_eq!(case.look(sees, &[3.0, 2.0]), [(3, Occupied), (2, Occupied)]);
+        assert_eq!(case.look(marks, &[1.0]), [(1, Occupied)]);
+        assert_eq!(case.look(sees, &[3.2]), [(2, Free)], "still met, elsewhere in the cell");
+        assert_eq!(case.look(sees, &[1.6]), [(2, Occupied)], "it hides what is behind it");
+        assert_eq!(case.look(sees, &[]), [(2, Free), (3, Free)]);
+        assert_eq!(case.look(marks, &[]), [], "it sees no ground");
+        assert!(case.layer.sensed().get(Cell::new(1, 0)));
+        assert_eq!(case.look((1, Some(VIEW)), &[]), [(1, Free)]);
+    }
+
+    #[test]
+    fn no_more_is_cleared_than_is_seen() {
+        let mut case = Case::new();
+        case.look((0, None), &[2.0, 5.0]);
+        let views = [
+            FieldOfView { from_rad: 0.1, ..VIEW },
+            FieldOfView { from_rad: f64::NAN, ..VIEW },
+            FieldOfView { to_rad: -0.3, ..VIEW },
+            FieldOfView { range_min_m: 2.5, ..VIEW },
+            FieldOfView { range_max_m: 1.5, ..VIEW },
+            FieldOfView { range_max_m: f64::INFINITY, ..VIEW },
+            FieldOfView { to_rad: 100.0, ..VIEW },
+        ];
+        for view in views {
+            assert_eq!(case.look((0, Some(view)), &[]), [], "{view:?}");
+        }
+        // All around, and only as far as it sees.
+        let turn = FieldOfView { from_rad: -4.0, to_rad: -4.0 + std::f64::consts::TAU, ..VIEW };
+        assert_eq!(case.look((0, Some(turn)), &[]), [(2, Free)]);
+    }
+}
