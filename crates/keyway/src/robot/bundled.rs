@@ -5,7 +5,18 @@ use crate::geometry::Point;
 
 impl Robot {
     /// Names of the bundled robots, for [`Self::by_name`].
-    pub const NAMES: [&'static str; 5] = ["small", "jackal", "paper", "burger", "waffle"];
+    pub const NAMES: [&'static str; 10] = [
+        "small",
+        "jackal",
+        "paper",
+        "burger",
+        "waffle",
+        "turtlebot4",
+        "husky",
+        "mir100",
+        "wheelchair",
+        "pallet-truck",
+    ];
 
     /// A bundled robot.
     pub fn by_name(name: &str) -> Option<Self> {
@@ -15,6 +26,11 @@ impl Robot {
             "paper" => Some(Self::paper()),
             "burger" => Some(Self::burger()),
             "waffle" => Some(Self::waffle()),
+            "turtlebot4" => Some(Self::turtlebot4()),
+            "husky" => Some(Self::husky()),
+            "mir100" => Some(Self::mir100()),
+            "wheelchair" => Some(Self::wheelchair()),
+            "pallet-truck" => Some(Self::pallet_truck()),
             _ => None,
         }
     }
@@ -104,6 +120,164 @@ impl Robot {
     pub fn waffle() -> Self {
         let footprint = box_around(-0.064, 0.281, 0.306);
         Self::turtlebot3(footprint, -0.064, (0.26, 1.82))
+    }
+
+    /// `TurtleBot` 4: radius 0.175 m, up to 0.306 m/s with its safety features on, which do not let
+    /// it back up; lidar RPLIDAR A1M8 of 12 m, which scans about eight times a second.
+    ///
+    /// # Source
+    /// Radius: Nav2's parameters of `turtlebot4_navigation`. Speeds and accelerations: iRobot Create
+    /// 3, documentation and simulation. Place and beams of the lidar: `turtlebot4_description`; its
+    /// shortest range and its period: scans of real ones.
+    pub fn turtlebot4() -> Self {
+        let lidar = RangeSensor {
+            mount: Mount { x_m: -0.04, y_m: 0.0, yaw_deg: 90.0 },
+            range_min_m: 0.15,
+            period_s: Some(0.13),
+            ..RangeSensor::new(640, 360.0, 12.0)
+        };
+        Self {
+            footprint: bundled(Footprint::circle(0.175)),
+            cycle_s: 0.05,
+            actuation_delay_s: 0.0,
+            safety_margin_m: None,
+            limits: Limits {
+                v_min_mps: 0.0,
+                v_max_mps: 0.306,
+                omega_max_radps: 1.9,
+                acceleration_mps2: 0.9,
+                deceleration_mps2: 0.9,
+                angular_acceleration_radps2: 7.725,
+                angular_deceleration_radps2: 7.725,
+            },
+            sensors: vec![lidar],
+        }
+    }
+
+    /// Clearpath Husky A200: 0.99 m x 0.67 m, up to 1 m/s, with a lidar SICK LMS1xx of 270 degrees
+    /// and 30 m on its front. It backs up at 0.1 m/s, as its lidar looks ahead.
+    ///
+    /// # Source
+    /// Size and speed: its user manual. Limits: `clearpath_control` (ROS 2); the speed back: those
+    /// of `husky_navigation`. Place and beams of the lidar: `husky_description`, `lms1xx`.
+    pub fn husky() -> Self {
+        let lidar = RangeSensor {
+            mount: Mount { x_m: 0.337, ..Mount::CENTRE },
+            range_min_m: 0.1,
+            ..RangeSensor::new(720, 270.0, 30.0)
+        };
+        Self {
+            footprint: bundled(Footprint::rectangle(0.99, 0.67)),
+            cycle_s: 0.05,
+            actuation_delay_s: 0.0,
+            safety_margin_m: None,
+            limits: Limits {
+                v_min_mps: -0.1,
+                v_max_mps: 1.0,
+                omega_max_radps: 1.0,
+                acceleration_mps2: 1.0,
+                deceleration_mps2: 1.0,
+                angular_acceleration_radps2: 1.0,
+                angular_deceleration_radps2: 1.0,
+            },
+            sensors: vec![lidar],
+        }
+    }
+
+    /// `MiR100`, a transport robot: 0.9 m x 0.586 m, up to 0.8 m/s, with two safety scanners SICK
+    /// S300 at opposite corners, of 270 degrees and 29 m each.
+    ///
+    /// # Source
+    /// `mir_robot` (DFKI): footprint and limits of `mir_navigation`, places and beams of the
+    /// scanners of `mir_description`.
+    pub fn mir100() -> Self {
+        let scanner = |x_m, y_m, yaw_deg| RangeSensor {
+            mount: Mount { x_m, y_m, yaw_deg },
+            range_min_m: 0.05,
+            period_s: Some(0.08),
+            ..RangeSensor::new(541, 270.0, 29.0)
+        };
+        Self {
+            footprint: box_around(0.038, 0.9, 0.586),
+            cycle_s: 0.05,
+            actuation_delay_s: 0.0,
+            safety_margin_m: None,
+            limits: Limits {
+                v_min_mps: -0.2,
+                v_max_mps: 0.8,
+                omega_max_radps: 1.0,
+                acceleration_mps2: 1.5,
+                deceleration_mps2: 1.5,
+                angular_acceleration_radps2: 2.0,
+                angular_deceleration_radps2: 2.0,
+            },
+            sensors: vec![scanner(0.43, 0.236, 45.0), scanner(-0.354, -0.236, -135.0)],
+        }
+    }
+
+    /// A wheelchair that turns about its rear axle, like WHILL Model C: 0.878 m x 0.54 m, up to
+    /// 0.567 m/s, with a lidar of 200 degrees and 30 m at its feet. It backs up at 0.2 m/s, as its
+    /// lidar looks ahead.
+    ///
+    /// # Source
+    /// Size, and place and beams of the lidar: URDF of `ros_whill` and `ros2_whill`; what overhangs
+    /// behind the wheels is not in it. Limits: the indoor speed profile of `ros_whill`, but for
+    /// the speed back.
+    pub fn wheelchair() -> Self {
+        let lidar = RangeSensor {
+            mount: Mount { x_m: 0.5, ..Mount::CENTRE },
+            range_min_m: 0.1,
+            ..RangeSensor::new(720, 200.0, 30.0)
+        };
+        Self {
+            footprint: box_around(0.306, 0.878, 0.54),
+            cycle_s: 0.1,
+            actuation_delay_s: 0.0,
+            safety_margin_m: None,
+            limits: Limits {
+                v_min_mps: -0.2,
+                v_max_mps: 0.567,
+                omega_max_radps: 0.8,
+                acceleration_mps2: 0.23,
+                deceleration_mps2: 1.25,
+                angular_acceleration_radps2: 0.79,
+                angular_deceleration_radps2: 1.8,
+            },
+            sensors: vec![lidar],
+        }
+    }
+
+    /// A pallet truck that turns about the wheels of its forks, like HR-Recycler of Robotnik:
+    /// 1.95 m x 0.8 m, up to 0.6 m/s, with a safety scanner SICK S300 of 270 degrees and 30 m on its
+    /// front. Its steered wheel turns by a quarter to either side, so it turns on the spot.
+    ///
+    /// # Source
+    /// `pallet_truck` (Robotnik): footprint, speeds and accelerations of its navigation,
+    /// decelerations of its controller, place of the scanner of its description; the turn rate is
+    /// that at which the wheel drives at 1 m/s.
+    pub fn pallet_truck() -> Self {
+        let scanner = RangeSensor {
+            mount: Mount { x_m: 1.689, ..Mount::CENTRE },
+            range_min_m: 0.1,
+            period_s: Some(0.08),
+            ..RangeSensor::new(541, 270.0, 30.0)
+        };
+        Self {
+            footprint: box_around(0.775, 1.95, 0.8),
+            cycle_s: 0.1,
+            actuation_delay_s: 0.0,
+            safety_margin_m: None,
+            limits: Limits {
+                v_min_mps: -0.15,
+                v_max_mps: 0.6,
+                omega_max_radps: 0.73,
+                acceleration_mps2: 0.2,
+                deceleration_mps2: 1.0,
+                angular_acceleration_radps2: 0.2,
+                angular_deceleration_radps2: 2.0,
+            },
+            sensors: vec![scanner],
+        }
     }
 
     fn turtlebot3(
