@@ -6,6 +6,7 @@
 mod from_bytes;
 #[cfg(feature = "files")]
 mod read;
+mod robot_in_scene;
 mod scene;
 mod scene_error;
 mod scene_robots;

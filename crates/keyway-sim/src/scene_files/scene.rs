@@ -1,5 +1,8 @@
 //! The scene file, version 2.
 
+use super::robot_in_scene::name_or_table;
+#[cfg(feature = "schema")]
+use super::robot_in_scene::robot_schema;
 use super::scene_error::SceneError;
 use super::scene_robots::SceneRobot;
 use super::scene_rules::SceneRules;
@@ -71,8 +74,9 @@ pub struct SceneFile {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub seed: u64,
     /// Name of a bundled robot, or a robot file, absolute or relative to the folder of the scene
-    /// file.
-    #[serde(default = "default_robot")]
+    /// file; or a table with the fields of a robot file, which is kept as its text.
+    #[serde(default = "default_robot", deserialize_with = "name_or_table")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "robot_schema"))]
     pub robot: String,
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]

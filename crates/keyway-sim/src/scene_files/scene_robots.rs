@@ -1,5 +1,8 @@
 //! Robots of a scene.
 
+#[cfg(feature = "schema")]
+use super::robot_in_scene::robot_schema;
+use super::robot_in_scene::some_name_or_table;
 use crate::episode::Start;
 use keyway::geometry::Point;
 use keyway::navigate::Goal;
@@ -17,8 +20,11 @@ pub struct SceneRobot {
     pub via: Vec<Point>,
     /// Where it is to go.
     pub goal: Goal,
-    /// Name of a bundled robot, or a robot file; `None`: that of the scene.
+    /// Name of a bundled robot, or a robot file, or a table with the fields of one; `None`: that of
+    /// the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(deserialize_with = "some_name_or_table")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "robot_schema"))]
     pub robot: Option<String>,
     /// Name of a stack, or a stack file; `None`: that of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -14,7 +14,8 @@ const NAME: &str = "name";
 /// names that there are.
 pub type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static str>>;
 
-/// A value of type `T` as a tree, in which fields can be changed by their path.
+/// A value of type `T` as a tree, in which fields can be changed by their path, such as
+/// `limits.v_max_mps`, or `sensors[0].range_m` in an item of a list.
 ///
 /// A change may only replace what is there, or give a value to a field that has none. Every change
 /// is tried at once, so that an error names its field. A table with a `name` is one of several
@@ -222,16 +223,37 @@ fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, Overla
     let mut walked = String::new();
     for key in path.split('.').filter(|_| !path.is_empty()) {
         let here = joined(&walked, key);
-        if !table.contains_key(key) {
+        let (name, index) = item(key);
+        if !table.contains_key(name) {
             return Err(unknown(&here, &walked, table));
         }
-        table = match table.get_mut(key) {
-            Some(Value::Table(inner)) => inner,
+        table = match (table.get_mut(name), index) {
+            (Some(Value::Table(inner)), None) => inner,
+            (Some(Value::Array(items)), Some(index)) => {
+                let count = items.len();
+                match items.get_mut(index) {
+                    Some(Value::Table(inner)) => inner,
+                    Some(_) => return Err(rejected(&here, "has no fields of its own")),
+                    None => {
+                        return Err(rejected(&here, &format!("there are {count}, from [0] on")));
+                    }
+                }
+            }
+            (Some(Value::Array(_)), None) => {
+                return Err(rejected(&here, &format!("is a list; say which, such as `{here}[0]`")));
+            }
             _ => return Err(rejected(&here, "has no fields of its own")),
         };
         walked = here;
     }
     Ok(table)
+}
+
+/// A key, and which of its items is meant, as in `sensors[0]`.
+fn item(key: &str) -> (&str, Option<usize>) {
+    let parts = key.strip_suffix(']').and_then(|key| key.split_once('['));
+    let numbered = parts.and_then(|(name, index)| Some((name, index.parse().ok()?)));
+    numbered.map_or((key, None), |(name, index)| (name, Some(index)))
 }
 
 fn joined(path: &str, key: &str) -> String {

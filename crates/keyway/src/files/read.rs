@@ -1,19 +1,23 @@
 //! Files of robots, stacks and parameters, and other text files.
 
 use super::{ConfigFileError, MAX_TOML_BYTES, ParameterFile, TextFileError};
-use super::{file_text, parameters_from_bytes, robot_from_bytes, stack_from_bytes};
+use super::{file_text, parameters_from_bytes, robot_from_bytes, robot_in_place, stack_from_bytes};
 use crate::file_system::read_file;
 use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::{Path, PathBuf};
 
-/// A bundled robot, or one from a file (anything that looks like one), relative to `folder`.
+/// A bundled robot, one from a file (anything that looks like one) relative to `folder`, or one
+/// that is described in place of a name, as in a robot file: `{ like = "jackal", cycle_s = 0.1 }`.
 ///
 /// # Errors
 /// When there is no such robot; as for [`read_robot`].
 pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, ConfigFileError> {
     if let Some(robot) = Robot::by_name(name) {
         return Ok(robot);
+    }
+    if name.trim_start().starts_with('{') {
+        return robot_in_place(name);
     }
     match file_of(name, folder) {
         Some(path) => read_robot(&path),
@@ -92,10 +96,10 @@ mod tests {
         let file = find_robot("mine.toml", folder).unwrap_err();
         assert!(file.to_string().contains("/nowhere/mine.toml: there is no such file"), "{file}");
         let name = find_robot("hal", folder).unwrap_err().to_string();
-        assert_eq!(
-            name,
-            "there is no robot `hal`, expected one of small, jackal, paper, burger, waffle, or a file"
-        );
+        let names = "small, jackal, paper, burger, waffle, turtlebot4, husky, mir100, wheelchair, pallet-truck";
+        assert_eq!(name, format!("there is no robot `hal`, expected one of {names}, or a file"));
+        let in_place = "{ like = \"jackal\", cycle_s = 0.1 }";
+        assert_eq!(find_robot(in_place, folder).unwrap().cycle_s, 0.1);
     }
 
     #[test]

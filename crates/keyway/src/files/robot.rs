@@ -1,7 +1,8 @@
 //! Robots from memory.
 
-use super::{ConfigFileError, MAX_TOML_BYTES, RobotFile, file_text, from_toml};
+use super::{ConfigFileError, MAX_TOML_BYTES, RobotFile, TomlError, file_text, from_toml};
 use crate::robot::Robot;
+use serde::Deserialize;
 use std::path::Path;
 
 /// Reads and checks a robot from memory; errors call the file `name`.
@@ -23,9 +24,45 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileEr
     file.robot().map_err(|reason| ConfigFileError::Value { path: path(), reason })
 }
 
+/// Reads and checks a robot that is described in place of a name: an inline table of TOML with the
+/// fields of a robot file.
+///
+/// # Errors
+/// If the text does not describe a robot that can be.
+pub fn robot_in_place(text: &str) -> Result<Robot, ConfigFileError> {
+    #[derive(Deserialize)]
+    struct InPlace {
+        robot: RobotFile,
+    }
+    let path = || "robot".into();
+    let InPlace { robot } = from_toml(&format!("robot = {text}")).map_err(|error| {
+        // Columns would count what was put before the text.
+        let field = error.field.strip_prefix("robot").unwrap_or(&error.field);
+        let field = field.trim_start_matches('.').to_owned();
+        let reason = TomlError { line: None, column: None, field, ..error };
+        ConfigFileError::Toml { path: path(), reason }
+    })?;
+    robot.robot().map_err(|reason| ConfigFileError::Value { path: path(), reason })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn robots_in_place_of_a_name() {
+        let fast = robot_in_place("{ like = \"small\", limits = { v_max_mps = 0.7 } }").unwrap();
+        assert_eq!((fast.limits.v_max_mps, fast.cycle_s), (0.7, Robot::small().cycle_s));
+        let error = |text| robot_in_place(text).unwrap_err().to_string();
+        assert_eq!(
+            error("{ like = \"small\", cycle_s = -1 }"),
+            "robot: cycle_s must be a time from 0.001 to 10 s, got -1"
+        );
+        assert!(error("{ cycle_s = \"fast\" }").starts_with("robot: `cycle_s`: invalid type"));
+        assert!(error("{ speed = 1 }").contains("unknown field `speed`"));
+        assert!(error("{ like = ").starts_with("robot: "));
+        assert!(error("{ v_max_mps = 1 }").contains("needs `footprint`"));
+    }
 
     #[test]
     fn errors_name_the_source() {

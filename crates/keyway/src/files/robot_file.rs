@@ -245,9 +245,19 @@ mod tests {
         let slow = change("limits.v_max_mps=0.3").unwrap();
         assert_eq!(slow.limits.v_max_mps, 0.3);
         assert_eq!(change("safety_margin_m=0.1").unwrap().safety_margin_m, Some(0.1));
+        let near = change("sensors[0].range_m=2").unwrap();
+        assert_eq!(near.sensors, [RangeSensor::new(360, 360.0, 2.0)]);
+        let ahead = change("sensors[0].mount.x_m=0.1").unwrap();
+        assert_eq!((ahead.sensors[0].mount.x_m, ahead.sensors[0].period_s), (0.1, None));
+        assert_eq!(change("sensors[0].period_s=0.2").unwrap().sensors[0].period_s, Some(0.2));
         let error = |text: &str| change(text).unwrap_err().to_string();
         assert!(error("limits.v_max=0.3").contains("there is no field `limits.v_max`"));
         assert!(error("limits.v_max_mps=fast").contains("`limits.v_max_mps`: "));
+        assert_eq!(error("sensors[1].range_m=2"), "`sensors[1]`: there are 1, from [0] on");
+        assert!(error("sensors.range_m=2").contains("is a list; say which, such as `sensors[0]`"));
+        assert!(error("sensors[0].range=2").contains("there is no field `sensors[0].range`"));
+        assert!(error("sensors[0].range_m=0").starts_with("sensors[0].range_m must be a length"));
+        assert!(error("limits[0].v_max_mps=1").contains("`limits[0]`"));
         assert!(error("cycle_s=0").starts_with("cycle_s must be a time"), "{}", error("cycle_s=0"));
     }
 }
