@@ -2,7 +2,7 @@
 
 use crate::arrays::{Json, json};
 use crate::errors::bad_value;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, RobotName};
 use crate::values::Listed;
 use crate::watched::{Progress, Watch, watched_to_its_end};
 use keyway::files::Assignment;
@@ -43,7 +43,7 @@ pub(crate) fn batch(
     jobs: Option<usize>,
     shard: Option<(usize, usize)>,
     keep: Option<String>,
-    robot: Option<String>,
+    robot: Option<RobotName>,
     disturbances: Option<PathBuf>,
     reached_by: Option<String>,
     safe: bool,
@@ -60,7 +60,7 @@ pub(crate) fn batch(
         jobs,
         shard: shard.map_err(bad_value)?,
         keep: keep.map_or(Ok(Keep::None), |keep| choice(&keep))?,
-        robot,
+        robot: robot.map(|RobotName(name)| name),
         disturbances,
         reached_by: reached_by.map(|pose| reached(&pose)).transpose()?,
         safe,

@@ -3,7 +3,7 @@
 use crate::arrays::{Json, JsonRows, json};
 use crate::errors::{bad_value, why_without_path};
 use crate::map::Map;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, RobotName};
 use crate::values::Listed;
 use crate::watched::{Progress, Watch, watched};
 use keyway::files::{Assignment, ParameterLayers, StartingValues};
@@ -108,7 +108,7 @@ pub(crate) fn compare(
     seed: u64,
     repeat: u64,
     radius: Option<f64>,
-    robot: Option<String>,
+    robot: Option<RobotName>,
     parameters: Option<Parameters>,
     as_published: bool,
     columns: Option<Listed<String>>,
@@ -127,7 +127,7 @@ pub(crate) fn compare(
         queries: QueryChoice::Random { count, seed },
         repeat,
         radius_m: radius,
-        robot,
+        robot: robot.map(|RobotName(name)| name),
         parameters,
         values: StartingValues::published_if(as_published),
         has_times: times,

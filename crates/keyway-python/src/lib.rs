@@ -11,11 +11,13 @@ mod batch;
 mod comparison;
 mod errors;
 mod map;
+mod measured;
 mod navigator;
 mod parameters;
 mod pictures;
 mod plan;
 mod planner;
+mod points;
 mod program;
 mod ready;
 mod run;
@@ -43,6 +45,8 @@ mod _keyway {
     use crate::plan::Plan;
     #[pymodule_export]
     use crate::planner::{Planner, plan, plan_many};
+    #[pymodule_export]
+    use crate::points::Points;
     #[pymodule_export]
     use crate::program::{names, program};
     #[pymodule_export]

@@ -3,7 +3,9 @@
 use crate::arrays::{Floats2, Json, json, of_points};
 use crate::errors::{bad_value, config_file_error, navigate_error};
 use crate::map::{Map, map_of_array};
-use crate::parameters::{Parameters, robot};
+use crate::measured::Measured;
+use crate::parameters::{Parameters, RobotName, robot};
+use crate::points::AllPoints;
 use crate::scan::LaserScans;
 use crate::step::Step;
 use crate::values::{Numbers, Positions};
@@ -13,7 +15,7 @@ use keyway::geometry::{Point, Polyline, Pose, Velocity};
 use keyway::map::Edit;
 use keyway::navigate::{Goal, Masks, SpeedMask, Stack};
 use keyway::robot::RangeSensor;
-use keyway::sense::{Observation, Scan, SensorScan};
+use keyway::sense::Scan;
 use pyo3::prelude::*;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,8 +23,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a
 /// velocity in every cycle.
 ///
-/// `robot` and `stack` are names of `keyway.names`, or files. `parameters` are laid over the stack,
-/// as a dictionary with the names of the TOML files. With `as_published` the stack has the values
+/// `robot` and `stack` are names of `keyway.names`, or files; a robot may also be a dictionary with
+/// the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`, and is the
+/// `small` one unless given. `parameters` are laid over the stack, as a dictionary with the names
+/// of the TOML files. With `as_published` the stack has the values
 /// of its paper. With `safe` only commands are issued after which the robot can still stop before
 /// it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
 /// layers of the map are made, which are not counted: (0, None).
@@ -78,12 +82,12 @@ impl Navigator {
 #[pymethods]
 impl Navigator {
     #[new]
-    #[pyo3(signature = (grid, robot="small", stack="keyway", parameters=None, as_published=false, radius=None, safe=false, progress=None))]
+    #[pyo3(signature = (grid, robot=None, stack="keyway", parameters=None, as_published=false, radius=None, safe=false, progress=None))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
         grid: &Map,
-        robot: &str,
+        robot: Option<RobotName>,
         stack: &str,
         parameters: Option<Parameters>,
         as_published: bool,
@@ -91,7 +95,8 @@ impl Navigator {
         safe: bool,
         progress: Option<Progress>,
     ) -> PyResult<Self> {
-        let robot = self::robot(robot, radius)?;
+        let name = robot.as_ref().map_or("small", |RobotName(name)| name);
+        let robot = self::robot(name, radius)?;
         let base = if as_published {
             let unknown = || bad_value(format!("nobody has published the stack `{stack}`"));
             Stack::published_by_name(stack).ok_or_else(unknown)?
@@ -306,6 +311,11 @@ impl Navigator {
         Ok(())
     }
 
+    /// Forgets all that was sensed, standing and moving.
+    fn forget_sensed(&self, py: Python<'_>) {
+        py.detach(|| self.lock().navigator.forget_sensed());
+    }
+
     /// The clock of all stamps begins anew: the next observation may have any stamp.
     fn restart_clock(&self, py: Python<'_>) {
         py.detach(|| self.lock().navigator.restart_clock());
@@ -360,7 +370,7 @@ impl Navigator {
     /// `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a
     /// stamp was made when the pose was measured. A robot with several sensors gives a list with
     /// one scan of each, in their order, `None` where a sensor has made none. Without `scan` none
-    /// has arrived.
+    /// has arrived. `points` are those of other sensors: a `keyway.Points`, or a list of them.
     ///
     /// An observation that cannot be true, or is older than the last one, is not taken in; the next
     /// `step` then stops the robot and says why.
@@ -374,7 +384,7 @@ impl Navigator {
     /// >>> step = navigator.step()
     /// >>> step.v > 0.2, step.status
     /// (True, 'drive')
-    #[pyo3(signature = (stamp, pose, velocity, scan=None))]
+    #[pyo3(signature = (stamp, pose, velocity, scan=None, points=None))]
     fn observe(
         &self,
         py: Python<'_>,
@@ -382,6 +392,7 @@ impl Navigator {
         pose: Numbers,
         velocity: Numbers,
         scan: Option<LaserScans>,
+        points: Option<AllPoints>,
     ) -> PyResult<()> {
         let pose = told_pose(&pose)?;
         let [v, omega] = velocity.exactly("velocity", "(v, omega)")?;
@@ -390,22 +401,11 @@ impl Navigator {
             let (given, sensors) = (given.len(), self.sensors.len());
             return Err(bad_value(format!("scan: got {given} scans for {sensors} sensors")));
         }
+        let points = points.map_or_else(Vec::new, |AllPoints(points)| points);
+        let measured = Measured { stamp_s: stamp, pose, velocity: Velocity::new(v, omega) };
         py.detach(|| {
-            let mut inner = self.lock();
-            let Inner { navigator, scans: own } = &mut *inner;
-            let mut stamps = vec![None; given.len()];
-            for ((scan, own), stamp_s) in given.into_iter().zip(&mut *own).zip(&mut stamps) {
-                *stamp_s = scan.map(|scan| scan.move_to(own).unwrap_or(stamp));
-            }
-            let scan = |(sensor, scan): (usize, _)| {
-                let mount = self.sensors[sensor].mount.pose();
-                Some(SensorScan { stamp_s: stamps[sensor]?, sensor, mount, scan })
-            };
-            let own = own.iter().take(stamps.len()).enumerate();
-            let scans: Vec<SensorScan<'_>> = own.filter_map(scan).collect();
-            let velocity = Velocity::new(v, omega);
-            let observation = Observation { stamp_s: stamp, pose, velocity, scans: &scans };
-            navigator.observe(&observation);
+            let Inner { navigator, scans } = &mut *self.lock();
+            measured.observe(navigator, (&self.sensors, scans), given, &points);
         });
         Ok(())
     }

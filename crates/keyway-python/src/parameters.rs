@@ -98,6 +98,41 @@ impl Parameters {
     }
 }
 
+/// A robot: its name, its file, or a dictionary with the fields of one, as the text by which it is
+/// found.
+pub(crate) struct RobotName(pub(crate) String);
+
+impl<'py> FromPyObject<'_, 'py> for RobotName {
+    type Error = PyErr;
+    #[cfg(feature = "stubs")]
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
+        pyo3::type_hint_identifier!("builtins", "str"),
+        pyo3::type_hint_subscript!(
+            pyo3::type_hint_identifier!("os", "PathLike"),
+            pyo3::type_hint_identifier!("builtins", "str")
+        ),
+        Parameters::INPUT_TYPE
+    );
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if object.is_instance_of::<PyDict>() {
+            let Parameters(table) = object.extract()?;
+            return Ok(Self(Value::Table(table).to_string()));
+        }
+        if let Ok(name) = object.cast::<PyString>() {
+            return Ok(Self(name.to_str()?.to_owned()));
+        }
+        let expected = |_: PyErr| {
+            let got = described(&object);
+            PyTypeError::new_err(format!(
+                "expected the name of a robot, its file, or a dictionary of its values, got {got}"
+            ))
+        };
+        let path: std::path::PathBuf = object.extract().map_err(expected)?;
+        Ok(Self(path.to_string_lossy().into_owned()))
+    }
+}
+
 /// A robot by its name, or from a file; as a disc of another radius where one is given.
 pub(crate) fn robot(name: &str, radius_m: Option<f64>) -> PyResult<Robot> {
     let robot = find_robot(name, Path::new("")).map_err(|error| config_file_error(&error))?;

@@ -2,7 +2,7 @@
 
 use crate::arrays::{Cells, Floats2, Json, Lazy, Records, json, of_points, of_rows, records};
 use crate::errors::bad_value;
-use crate::parameters::robot;
+use crate::parameters::{RobotName, robot};
 use crate::pictures;
 use crate::ready::Ready;
 use keyway::route::Route;
@@ -118,7 +118,7 @@ impl Plan {
     }
 
     /// The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
-    /// or a file).
+    /// a file, or a dictionary of its values).
     ///
     /// A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
     /// and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
@@ -129,9 +129,9 @@ impl Plan {
     /// >>> curve["s_m"].tolist()
     /// [0.0, 1.0, 2.0, 3.0, 4.0]
     #[pyo3(signature = (spacing=0.05, robot=None))]
-    fn curve(&self, py: Python<'_>, spacing: f64, robot: Option<&str>) -> PyResult<Records> {
+    fn curve(&self, py: Python<'_>, spacing: f64, robot: Option<RobotName>) -> PyResult<Records> {
         let robot = match robot {
-            Some(name) => self::robot(name, None)?,
+            Some(RobotName(name)) => self::robot(&name, None)?,
             None => self.ready.robot.clone(),
         };
         let config = SpeedProfileConfig { spacing_m: spacing, ..SpeedProfileConfig::default() };

@@ -2,7 +2,7 @@
 
 use crate::errors::bad_value;
 use crate::map::Map;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, RobotName};
 use crate::plan::Plan;
 use crate::ready::{ChoiceRef, Ready};
 use crate::values::{Numbers, Positions};
@@ -42,13 +42,13 @@ impl Planner {
         radius: Option<f64>,
         planner: &str,
         smoother: &str,
-        robot: Option<&str>,
+        robot: Option<RobotName>,
         parameters: Option<Parameters>,
         as_published: bool,
         progress: Option<Progress>,
     ) -> PyResult<Self> {
         let parameters = parameters.as_ref();
-        let radius_m = radius;
+        let (radius_m, robot) = (radius, robot.as_ref().map(|RobotName(name)| &**name));
         let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
         Ok(Self { ready: grid.planners().get(grid.parts(), &choice, py, progress.as_ref())? })
     }
@@ -271,7 +271,7 @@ pub(crate) fn plan(
     radius: Option<f64>,
     planner: &str,
     smoother: &str,
-    robot: Option<&str>,
+    robot: Option<RobotName>,
     parameters: Option<Parameters>,
     as_published: bool,
     budget: Option<u64>,
@@ -280,6 +280,7 @@ pub(crate) fn plan(
 ) -> PyResult<Plan> {
     let query = query((&start, &goal), budget, nearest_reachable)?;
     let (radius_m, parameters) = (radius, parameters.as_ref());
+    let robot = robot.as_ref().map(|RobotName(name)| &**name);
     let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
     let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
     planned(py, &ready, query, progress.as_ref())
@@ -308,13 +309,14 @@ pub(crate) fn plan_many(
     radius: Option<f64>,
     planner: &str,
     smoother: &str,
-    robot: Option<&str>,
+    robot: Option<RobotName>,
     parameters: Option<Parameters>,
     as_published: bool,
     jobs: Option<usize>,
     progress: Option<Progress>,
 ) -> PyResult<Plans> {
     let (radius_m, parameters) = (radius, parameters.as_ref());
+    let robot = robot.as_ref().map(|RobotName(name)| &**name);
     let choice = ChoiceRef { planner, smoother, radius_m, robot, parameters, as_published };
     let ready = grid.planners().get(grid.parts(), &choice, py, progress.as_ref())?;
     planned_many(py, &ready, (&starts, &goals), jobs, progress.as_ref())

@@ -2,7 +2,7 @@
 
 use crate::errors::{bad_value, config_file_error, map_error, scene_error, scene_file_error};
 use crate::map::Map;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, RobotName};
 use crate::values::Numbers;
 use keyway::files::{TomlError, find_robot, find_stack};
 use keyway::map::OccupancyGrid;
@@ -161,14 +161,14 @@ impl Scene {
     fn replace(
         &self,
         seed: Option<u64>,
-        robot: Option<String>,
+        robot: Option<RobotName>,
         stack: Option<String>,
         safe: Option<bool>,
     ) -> Self {
         let own = &self.file;
         let file = SceneFile {
             seed: seed.unwrap_or(own.seed),
-            robot: robot.unwrap_or_else(|| own.robot.clone()),
+            robot: robot.map_or_else(|| own.robot.clone(), |RobotName(name)| name),
             stack: stack.unwrap_or_else(|| own.stack.clone()),
             safe: safe.unwrap_or(own.safe),
             ..own.clone()

@@ -148,7 +148,7 @@ impl Simulation {
         let stepper = self.lock();
         let mut scans: Vec<Option<Scan>> = (0..self.sensors).map(|_| None).collect();
         for one in stepper.scans() {
-            scans[one.sensor] = Some(Scan::new(one.scan.clone(), Some(one.stamp_s)));
+            scans[one.sensor] = Some(Scan::new(one.scan.owned(), Some(one.stamp_s)));
         }
         scans
     }
