@@ -47,6 +47,7 @@ fn every_member_of_every_report_is_documented() {
     keyway(folder.path(), "batch small_house.toml --keep all --out kept").expect_code(0);
     let record = read(&folder, "kept/records/small_house.keyway.0.json");
     let record = record.parse::<Value>().unwrap();
+    keyway(folder.path(), "navigate --scene small_house.toml --record run.mcap").expect_code(0);
     let mut reports = vec![(curve, "the curve"), (cycle, "a cycle"), (record, "a record")];
     write(&folder, "wrong.scen", "version 1\n0\twalled.map\t7\t5\t1\t4\t5\t4\t9.5\n");
     for line in [
@@ -64,6 +65,7 @@ fn every_member_of_every_report_is_documented() {
         "batch small_house.toml --out batch",
         "batch merge batch --out merged",
         "replay kept/records/small_house.keyway.0.json",
+        "replay run.mcap",
         "scene barn barn.csv --out barn",
         "reproduce S0-1 S0-4 --maps 2 --out reproduced",
         "reproduce S2-2 --ablations --maps 2 --no-times --out parts",

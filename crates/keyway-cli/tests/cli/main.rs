@@ -32,6 +32,7 @@ mod papers;
 mod plan;
 mod prepare;
 mod readers;
+mod recording;
 mod replay;
 mod reproduce;
 mod scene_schema;

@@ -35,6 +35,8 @@ pub(crate) struct Drive {
     pub(crate) walked: Vec<Disc>,
     /// For an animation.
     pub(crate) moments: Vec<Moment>,
+    /// An MCAP file.
+    pub(crate) recording: Option<Vec<u8>>,
 }
 
 pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliError> {
@@ -43,6 +45,7 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
     let options = RunOptions { clock: Some(&clock), ..RunOptions::default() };
     let report = watch_episode(episode, options, std::slice::from_mut(&mut watcher));
     let mut report = report.map_err(|error| bad_input(&error.why))?.first();
+    let recording = watcher.recorded().map_err(|error| CliError::new(Kind::Input, error))?;
     let Watcher { route, sensed, why, explanations, fan, film, walked, .. } = watcher;
     if why.is_some() {
         report.plan.why.clone_from(&why);
@@ -56,6 +59,7 @@ pub(crate) fn drive(episode: &Episode, wanted: Wanted) -> Result<Driven, CliErro
         fan,
         walked,
         moments,
+        recording,
     });
     let run = report.run.as_ref();
     let movers = run.map_or_else(|| episode.movers.clone(), |run| run.movers(&episode.movers));

@@ -2,6 +2,7 @@
 
 mod drive;
 mod episode;
+mod recording;
 mod result_files;
 pub(super) mod team;
 mod watch;

@@ -18,6 +18,7 @@ use std::path::PathBuf;
 
 const EXPLAIN: &str = "--explain";
 const ANIMATE: &str = "--animate";
+const RECORD: &str = "--record";
 
 /// Names of all files that [`write_files`] may write.
 pub(crate) const FILES: [&str; 8] = [
@@ -46,7 +47,12 @@ pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
 
 /// What of a run is to be kept for the files that were asked for.
 pub(crate) const fn wanted(args: &DriveFileArgs) -> Wanted {
-    Wanted { explanations: args.explain.is_some(), fan_s: args.fan, film: args.animate.is_some() }
+    Wanted {
+        explanations: args.explain.is_some(),
+        fan_s: args.fan,
+        film: args.animate.is_some(),
+        recording: args.record.is_some(),
+    }
 }
 
 /// The folder of results, if one was asked for. Refuses outputs that would replace a file that is
@@ -57,7 +63,8 @@ pub(crate) fn prepared(
 ) -> Result<Option<OutDir>, CliError> {
     let explain = args.explain.as_ref().map(|path| (path, EXPLAIN));
     let animate = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
-    for (path, field) in explain.into_iter().chain(animate) {
+    let record = args.record.as_ref().map(|path| (path, RECORD));
+    for (path, field) in explain.into_iter().chain(animate).chain(record) {
         refuse_to_replace_a_source(sources, path, field)?;
         // The folder of results, and those that it lies in, may be made by this run.
         let folder = path.parent().filter(|folder| !folder.exists());
@@ -104,7 +111,8 @@ fn warn_without_a_fan(args: &DriveFileArgs, driven: &Driven) {
 /// Paths of the files that [`write_own_files`] will write.
 fn own_files(args: &DriveFileArgs, driven: &Driven) -> Vec<String> {
     let animate = args.animate.iter().map(|file| &file.path);
-    let files = args.explain.iter().chain(animate).filter(|_| driven.drive.is_some());
+    let files = args.explain.iter().chain(animate).chain(&args.record);
+    let files = files.filter(|_| driven.drive.is_some());
     files.map(|path| path.display().to_string()).collect()
 }
 
@@ -125,6 +133,9 @@ fn write_own_files(
         write_animation(file, ANIMATE, |progress| {
             stage.animation(&drive.moments, &points, progress)
         })?;
+    }
+    if let (Some(path), Some(bytes)) = (&args.record, &drive.recording) {
+        write_file(path, bytes, RECORD)?;
     }
     Ok(())
 }

@@ -70,7 +70,11 @@ pub(crate) fn write_all(
 
 /// What shows the decisions of one robot.
 pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliError> {
-    let given = [("--fan", args.fan.is_some()), ("--explain", args.explain.is_some())];
+    let given = [
+        ("--fan", args.fan.is_some()),
+        ("--explain", args.explain.is_some()),
+        ("--record", args.record.is_some()),
+    ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
             let message = format!(

@@ -1,5 +1,6 @@
 //! What is kept of a run while it is driven: for pictures, animations and explanations.
 
+use super::recording::Recording;
 use crate::commands::why;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use keyway::local::Explanation;
@@ -7,6 +8,7 @@ use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{NavigateError, Navigator};
 use keyway::route::Route;
 use keyway::sense::{Mover, Observation, Ranges, Reading, Scan};
+use keyway_lab::recording::RecordingError;
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
 use std::sync::Arc;
@@ -20,6 +22,8 @@ pub(crate) struct Wanted {
     pub(crate) fan_s: Option<f64>,
     /// Moments for an animation.
     pub(crate) film: bool,
+    /// Everything that was observed and decided.
+    pub(crate) recording: bool,
 }
 
 /// One moment of a run.
@@ -54,6 +58,7 @@ pub(crate) struct Watcher {
     pub(crate) film: Film,
     /// All that was gone around at some time.
     pub(crate) walked: Vec<Disc>,
+    recording: Option<Recording>,
     /// The route of this number as a line: it is the same for many moments.
     path: Option<(u32, Arc<Polyline>)>,
 }
@@ -93,7 +98,16 @@ impl Film {
 
 impl Watcher {
     pub(crate) fn new(wanted: Wanted) -> Self {
-        Self { wanted, ..Self::default() }
+        let recording = wanted.recording.then(Recording::default);
+        Self { wanted, recording, ..Self::default() }
+    }
+
+    /// The recording as a file, if one was wanted.
+    ///
+    /// # Errors
+    /// When it could not be made.
+    pub(crate) fn recorded(&mut self) -> Result<Option<Vec<u8>>, RecordingError> {
+        self.recording.take().map(Recording::finish).transpose()
     }
 
     fn moment(&mut self, cycle: &Cycle<'_>, explanation: Explanation) -> Moment {
@@ -136,10 +150,19 @@ impl EpisodeObserver for Watcher {
 
     fn started(&mut self, navigator: &Navigator) {
         self.route = navigator.route().cloned();
+        if let Some(recording) = &mut self.recording {
+            recording.note(|recorder| recorder.begin(0.0, navigator));
+        }
     }
 
     fn decided(&mut self, cycle: &Cycle<'_>) {
         self.note_walked(cycle.navigator);
+        if let Some(recording) = &mut self.recording {
+            recording.note(|recorder| {
+                recorder.observed(cycle.observation)?;
+                recorder.stepped(cycle.step, cycle.navigator)
+            });
+        }
         let is_fan_due =
             self.fan.is_none() && self.wanted.fan_s.is_some_and(|fan_s| cycle.t_s >= fan_s - 1e-9);
         let is_frame_due = self.wanted.film && self.film.is_due(cycle.index);

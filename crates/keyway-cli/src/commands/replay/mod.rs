@@ -1,5 +1,6 @@
 //! `keyway replay`: records of runs -> the same runs, made again, as `keyway navigate` shows them.
 
+mod flight;
 mod refused;
 
 use super::navigate::{drive, prepared, table, team, wanted, write_all};
@@ -18,7 +19,7 @@ use std::path::Path;
 #[derive(Serialize)]
 struct ReplayReport {
     schema: &'static str,
-    /// [`Replayed`], in the order of the records.
+    /// [`Replayed`] or [`flight::Redecided`], in the order of the records.
     runs: Vec<Value>,
 }
 
@@ -35,7 +36,9 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
     refuse_one_file_for_several(args)?;
     let mut runs = Vec::new();
     for path in &args.records {
-        runs.extend(replay(args, path)?);
+        let is_recording = ReplayArgs::is_recording(path);
+        let run = if is_recording { flight::replay(args, path) } else { replay(args, path) };
+        runs.extend(run?);
     }
     if args.format == Format::Json {
         crate::json::print(&ReplayReport { schema: "keyway.replay/1", runs })?;
@@ -85,16 +88,24 @@ fn shown<R: Serialize>(
         // Plain data with string keys: this cannot fail.
         return Ok(serde_json::to_value(replayed).ok());
     }
-    let gap = if args.records.first().is_some_and(|first| first == path) { "" } else { "\n" };
-    print(&format!("{gap}{}, the same run again:\n", path.display()))?;
+    print(&format!("{}{}, the same run again:\n", gap(args, path), path.display()))?;
     print(&table())?;
     print_files(report.files)?;
     Ok(None)
 }
 
+/// An empty line between records.
+fn gap(args: &ReplayArgs, path: &Path) -> &'static str {
+    if args.records.first().is_some_and(|first| first == path) { "" } else { "\n" }
+}
+
 fn refuse_one_file_for_several(args: &ReplayArgs) -> Result<(), CliError> {
-    let DriveFileArgs { explain, animate, .. } = &args.files;
-    let given = [(explain.is_some(), "--explain"), (animate.is_some(), "--animate")];
+    let DriveFileArgs { explain, animate, record, .. } = &args.files;
+    let given = [
+        (explain.is_some(), "--explain"),
+        (animate.is_some(), "--animate"),
+        (record.is_some(), "--record"),
+    ];
     let Some((_, flag)) = given.into_iter().find(|(is_given, _)| *is_given) else { return Ok(()) };
     if args.records.len() == 1 {
         return Ok(());

@@ -1,0 +1,81 @@
+//! Errors of recordings.
+
+use super::flight::RecordedStep;
+use keyway::file_error::ReadError;
+use keyway::navigate::RestoreError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Reason why a recording cannot be written, read, or decided again.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// It cannot be written.
+    #[error("the recording cannot be written: {0}")]
+    Write(#[from] mcap::McapError),
+    /// A message cannot be encoded.
+    #[error("a message of {topic} cannot be encoded: {reason}")]
+    Encode {
+        /// Its topic.
+        topic: String,
+        /// Error of the encoder.
+        reason: String,
+    },
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The file is no MCAP file.
+    #[error("{}: this is no MCAP file: {reason}", path.display())]
+    NoMcap {
+        /// The file.
+        path: PathBuf,
+        /// Error of the reader.
+        reason: mcap::McapError,
+    },
+    /// The file holds no flight.
+    #[error(
+        "{}: there is no navigator in it (topic {}); `keyway navigate --record` makes recordings that can be decided again",
+        path.display(), super::flight::SNAPSHOT
+    )]
+    NoFlight {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A message says nothing that can be used.
+    #[error("{}: message {index} of {topic}: {reason}", path.display())]
+    Message {
+        /// The file.
+        path: PathBuf,
+        /// Topic of the message.
+        topic: &'static str,
+        /// Number of the message among those of its topic, from 0.
+        index: u64,
+        /// The fault.
+        reason: String,
+    },
+    /// The navigator cannot be taken up again.
+    #[error("{}: its navigator cannot be taken up again: {reason}", path.display())]
+    Restore {
+        /// The file.
+        path: PathBuf,
+        /// The fault.
+        reason: RestoreError,
+    },
+    /// A decision is another one now.
+    #[error(
+        "{}: at {stamp_s} s (cycle {cycle}) it decided otherwise: {recorded} in the recording, {made} now",
+        path.display()
+    )]
+    Differs {
+        /// The file.
+        path: PathBuf,
+        /// Stamp of the last observation before it \[s\].
+        stamp_s: f64,
+        /// Number of the cycle, from 0.
+        cycle: u64,
+        /// The decision in the recording.
+        recorded: RecordedStep,
+        /// The decision of this program.
+        made: RecordedStep,
+    },
+}
