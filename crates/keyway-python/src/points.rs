@@ -27,7 +27,7 @@ use pyo3::types::{PyList, PyTuple};
 /// <keyway.Points 1 of sensor 1, which only marks>
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Points {
-    points: Vec<Point>,
+    positions: Vec<Point>,
     mount: Pose,
     sensor: usize,
     stamp_s: Option<f64>,
@@ -70,17 +70,17 @@ impl Points {
                  nearest and the farthest, all finite",
             ));
         }
-        let points = positions.0.iter().map(|&[x, y]| Point::new(x, y)).collect();
+        let positions = positions.0.iter().map(|&[x, y]| Point::new(x, y)).collect();
         let mount = Pose::new(x, y, theta);
-        Ok(Self { points, mount, sensor, stamp_s: stamp, clears })
+        Ok(Self { positions, mount, sensor, stamp_s: stamp, clears })
     }
 
     fn __len__(&self) -> usize {
-        self.points.len()
+        self.positions.len()
     }
 
     fn __repr__(&self) -> String {
-        let (count, sensor) = (self.points.len(), self.sensor);
+        let (count, sensor) = (self.positions.len(), self.sensor);
         let sees = match self.clears {
             Some(view) => format!("sees from {} to {} m", view.range_min_m, view.range_max_m),
             None => "only marks".to_owned(),
@@ -92,7 +92,7 @@ impl Points {
 impl Points {
     /// The same, measured at a time \[s\] unless they say when.
     pub(crate) fn at(&self, stamp_s: f64) -> SensorPoints<'_> {
-        let Self { points, mount, sensor, clears, .. } = self;
+        let Self { positions: points, mount, sensor, clears, .. } = self;
         let stamp_s = self.stamp_s.unwrap_or(stamp_s);
         SensorPoints { stamp_s, sensor: *sensor, mount: *mount, points, clears: *clears }
     }

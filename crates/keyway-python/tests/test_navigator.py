@@ -235,3 +235,70 @@ def test_the_example_drives() -> None:
 def test_wrong_arguments_are_refused(call: Callable[[keyway.Navigator], object]) -> None:
     with pytest.raises((TypeError, ValueError)):
         call(keyway.Navigator(keyway.Map.from_array(wall(4), resolution=0.1)))
+
+
+def test_a_robot_may_be_a_dictionary(tmp_path: pathlib.Path) -> None:
+    slow: dict[str, object] = {"like": "small", "cycle_s": 0.2, "limits": {"v_max_mps": 0.3}}
+    file = tmp_path / "slow.toml"
+    file.write_text('like = "small"\ncycle_s = 0.2\nlimits = { v_max_mps = 0.3 }\n')
+    grid = keyway.Map.from_array(np.zeros((60, 60), dtype=bool), resolution=0.1)
+    robots: list[dict[str, object] | str | pathlib.Path] = [slow, str(file), file]
+    navigators = [keyway.Navigator(grid, robot=robot) for robot in robots]
+    assert [navigator.cycle for navigator in navigators] == [0.2] * 3
+    runs = [keyway.simulate(keyway.Scene(grid, (1, 1), (5, 4)).replace(robot=robot)) for robot in robots]
+    assert runs[0].outcome == "reached" and runs[0].metrics["time_s"] > 15
+    for run in runs[1:]:
+        np.testing.assert_array_equal(run.trajectory, runs[0].trajectory)
+    in_scene = keyway.simulate(keyway.Scene(grid, (1, 1), (5, 4), robot=slow))
+    np.testing.assert_array_equal(in_scene.trajectory, runs[0].trajectory)
+    with pytest.raises(TypeError, match="the name of a robot, its file, or a dictionary"):
+        keyway.Navigator(grid, robot=3)  # type: ignore[arg-type]
+
+
+def test_points_mark_and_their_sensor_clears() -> None:
+    robot = Robot(np.zeros((80, 100), dtype=bool), (2.0, 4.0, 0.0))
+    navigator = robot.navigator
+    navigator.set_goal((8, 4))
+    view = {"bearings": (-0.7, 0.7), "ranges": (0.2, 3.0)}
+
+    def sees(*positions: tuple[float, float], **more: object) -> None:
+        navigator.observe(robot.stamp, robot.pose, (0, 0), navigator.clear_scan, points=keyway.Points(positions, **{**view, **more}))  # type: ignore[arg-type]
+        robot.stamp += CYCLE
+
+    def is_straight() -> bool:
+        navigator.step()
+        return bool(np.ptp(navigator.route[:, 1]) < 0.1)
+
+    box = [(1.5, 0.05 * i) for i in range(-8, 9)]
+    sees(*box)
+    assert not is_straight()
+    # The lidar sees nothing there; a sensor of another number is not asked, and one that looks aside sees nothing.
+    sees(sensor=1)
+    sees(bearings=(1.0, 2.0))
+    navigator.set_goal((8, 4))
+    assert not is_straight()
+    sees()
+    navigator.set_goal((8, 4))
+    assert is_straight()
+    sees(*box, bearings=None, ranges=None)
+    sees(bearings=None, ranges=None)
+    navigator.set_goal((8, 4))
+    assert not is_straight()
+    navigator.forget_sensed()
+    assert is_straight()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"sensor": 8}, "sensor: expected a number from 0 to 7, got 8"),
+        ({"bearings": (0.0, 1.0)}, "expected both of them, or none"),
+        ({"bearings": (1.0, 0.0), "ranges": (0.1, 2.0)}, "the right and the left edge"),
+        ({"bearings": (0.0, 1.0), "ranges": (2.0, 1.0)}, "the nearest and the farthest"),
+        ({"mount": (0.0, math.nan, 0.0)}, "mount: expected three finite numbers"),
+        ({"mount": (0.0, 1.0)}, "mount: expected \\(x, y, theta\\), got 2 numbers"),
+    ],
+)
+def test_points_that_cannot_be_are_refused(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        keyway.Points([(1.0, 0.0)], **arguments)  # type: ignore[arg-type]

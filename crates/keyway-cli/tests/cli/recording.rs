@@ -6,10 +6,12 @@ use std::fs;
 use tempfile::TempDir;
 
 /// Around a post that no map shows, with late motors, noise and lost scans.
-const SCENE: &str = "version = 2\nmap = \"../rooms.map\"\nstart = [1.5, 1.5]\ngoal = [6.5, 3.5]\nseed = 3\n\
-    [[unknown]]\ncentre = [3.5, 2.5]\nradius_m = 0.3\n\
+const SCENE: &str = "version = 2\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]\nseed = 3\n\
+    [world]\nwidth_m = 6\nheight_m = 4\nresolution_m = 0.05\n\
+    [world.obstacles.clutter]\nshare = 0.03\nradius_m = [0.1, 0.2]\n\
+    [[unknown]]\nposition = [3.0, 2.0]\nradius_m = 0.2\n\
     [disturbances.actuation]\ndelay_s = 0.2\nv_relative = 0.05\n\
-    [disturbances.sensing]\nrange_m = 0.02\nlost_beams = 0.05\nlost_scans = 0.1\n";
+    [disturbances.sensor]\nrange_m = 0.02\ndropped_scans = 0.1\n";
 
 fn recorded(options: &str) -> TempDir {
     let folder = folder();
@@ -23,7 +25,7 @@ fn recorded(options: &str) -> TempDir {
 #[test]
 fn every_decision_of_a_recording_is_made_again() {
     let folder = recorded("--explain while.jsonl --format json");
-    // The scene and its map are not needed.
+    // The scene is not needed.
     fs::remove_file(folder.path().join("scenes/post.toml")).unwrap();
     let line = "replay run.mcap --explain again.jsonl --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
@@ -76,7 +78,7 @@ fn a_decision_that_is_another_one_is_said() {
     let error = keyway(folder.path(), "replay other.mcap --format json").expect_code(2).json();
     let text = error["message"].as_str().unwrap();
     assert!(
-        text.starts_with("other.mcap: at 1.9 s (cycle 19) it decided otherwise: drive with"),
+        text.starts_with("other.mcap: at 1.900 s (cycle 19) it decided otherwise: drive with"),
         "{text}"
     );
 }

@@ -63,7 +63,7 @@ pub enum RecordingError {
     },
     /// A decision is another one now.
     #[error(
-        "{}: at {stamp_s} s (cycle {cycle}) it decided otherwise: {recorded} in the recording, {made} now",
+        "{}: at {stamp_s:.3} s (cycle {cycle}) it decided otherwise: {recorded} in the recording, {made} now",
         path.display()
     )]
     Differs {

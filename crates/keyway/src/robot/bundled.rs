@@ -154,7 +154,7 @@ impl Robot {
         }
     }
 
-    /// Clearpath Husky A200: 0.99 m x 0.67 m, up to 1 m/s, with a lidar SICK LMS1xx of 270 degrees
+    /// Clearpath Husky A200: 0.99 m x 0.67 m, up to 1 m/s, with a lidar of 270 degrees
     /// and 30 m on its front. It backs up at 0.1 m/s, as its lidar looks ahead.
     ///
     /// # Source
