@@ -1,7 +1,9 @@
 """The life of a navigator: goals, maps, limits and clocks change while the robot drives."""
 
+import copy
 import math
 import pathlib
+import pickle
 import subprocess
 import sys
 import types
@@ -235,6 +237,37 @@ def test_the_example_drives() -> None:
 def test_wrong_arguments_are_refused(call: Callable[[keyway.Navigator], object]) -> None:
     with pytest.raises((TypeError, ValueError)):
         call(keyway.Navigator(keyway.Map.from_array(wall(4), resolution=0.1)))
+
+
+def test_a_life_goes_on_from_a_snapshot() -> None:
+    robot = Robot(wall(4.0), (2.0, 2.0, 0.0))
+    robot.navigator.set_goals([(4, 6)], (8, 2))
+    robot.navigator.set_speed_limit(0.4)
+    robot.drive(3.0)
+    twins = [keyway.Navigator.restore(robot.navigator.snapshot()), copy.deepcopy(robot.navigator), pickle.loads(pickle.dumps(robot.navigator))]
+    for _ in range(100):
+        robot.observe()
+        scan = robot.navigator.clear_scan
+        for twin in twins:
+            twin.observe(robot.stamp, robot.pose, robot.velocity, scan)
+        steps = [twin.step() for twin in twins]
+        step = robot.cycle()
+        assert all((it.v, it.omega, it.status, it.kind) == (step.v, step.omega, step.status, step.kind) for it in steps)
+    for broken in (b"", robot.navigator.snapshot()[:-1], b"\x00" * 100):
+        with pytest.raises(ValueError, match="snapshot: "):
+            keyway.Navigator.restore(broken)
+
+
+def test_ways_are_smoothed_and_goals_that_cannot_be_reached_replaced() -> None:
+    navigator = keyway.Navigator(keyway.Map.from_array(wall(4.0), resolution=0.1))
+    steps = [(2.0, 2.0), (3.0, 3.5), (5.05, 4.0), (6.0, 4.0), (8.0, 6.0)]
+    smoothed = navigator.smooth(steps)
+    length = np.hypot(*np.diff(smoothed, axis=0).T).sum()
+    assert length < np.hypot(*np.diff(steps, axis=0).T).sum() and navigator.is_path_valid(smoothed)
+    assert navigator.nearest_reachable((2, 2), (8, 6)) == (8, 6)
+    closed = keyway.Navigator(keyway.Map.from_array(wall(), resolution=0.1))
+    nearest = closed.nearest_reachable((2, 2), (8, 6))
+    assert nearest is not None and 4.5 < nearest[0] < 5.0 and nearest[1] == pytest.approx(6, abs=0.2)
 
 
 def test_a_robot_may_be_a_dictionary(tmp_path: pathlib.Path) -> None:

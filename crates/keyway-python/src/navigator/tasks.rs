@@ -1,0 +1,197 @@
+//! Goals, paths from elsewhere, single acts; and questions about ways.
+
+use super::Navigator;
+use crate::arrays::{Floats2, of_points};
+use crate::errors::{bad_value, navigate_error};
+use crate::values::{Numbers, Positions};
+use crate::watched::{Progress, watched};
+use keyway::geometry::{PlannedLine, Point, Polyline};
+use keyway::navigate::Goal;
+use pyo3::prelude::*;
+
+impl Navigator {
+    /// Searches without holding the navigator, and takes the goal only if nothing is raised
+    /// meanwhile.
+    fn set(
+        &self,
+        py: Python<'_>,
+        via: &[Point],
+        goal: &Numbers,
+        progress: Option<&Progress>,
+    ) -> PyResult<()> {
+        let (position, heading_rad) = goal.place("goal")?;
+        let goal = Goal { position, heading_rad };
+        let job = py.detach(|| self.lock().navigator.plan_job(via, goal));
+        let job = job.map_err(|error| navigate_error(&error))?;
+        let planned = watched(py, progress, move |_| job.run())?;
+        py.detach(|| self.lock().navigator.accept(planned)).map_err(|error| navigate_error(&error))
+    }
+}
+
+#[pymethods]
+impl Navigator {
+    /// Drives to a goal from now on, in the place of the last one: a position [m], or with a
+    /// heading [m, m, rad].
+    ///
+    /// The robot may drive on in another thread while the route is searched. `progress(done,
+    /// expected)` is called meanwhile; nothing is counted: (0, None).
+    ///
+    /// Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no
+    /// way leads there, and `ValueError` where nobody has said where the robot is. Then it goes on
+    /// as before.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.set_goal((3, 1))
+    /// >>> navigator.goal
+    /// [3.0, 1.0]
+    #[pyo3(signature = (goal, progress=None))]
+    fn set_goal(&self, py: Python<'_>, goal: Numbers, progress: Option<Progress>) -> PyResult<()> {
+        self.set(py, &[], &goal, progress.as_ref())
+    }
+
+    /// The same by way of some positions, in their order [m].
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.set_goals([(3, 1)], (3, 3))
+    /// >>> round(navigator.remaining, 3)
+    /// 4.0
+    #[pyo3(signature = (via, goal, progress=None))]
+    fn set_goals(
+        &self,
+        py: Python<'_>,
+        via: Positions,
+        goal: Numbers,
+        progress: Option<Progress>,
+    ) -> PyResult<()> {
+        self.set(py, &via.points("via")?, &goal, progress.as_ref())
+    }
+
+    /// Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot,
+    /// to its end, as closely as along a route of its own. Where something is in the way, such a
+    /// route to the end takes its place.
+    ///
+    /// Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError`
+    /// for what is no path. Then it goes on as before.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.follow([(1, 1), (1, 3), (3, 3)])
+    /// >>> round(navigator.remaining, 3)
+    /// 4.0
+    fn follow(&self, py: Python<'_>, path: Positions) -> PyResult<()> {
+        let path = Polyline::new(path.points("path")?);
+        py.detach(|| self.lock().navigator.follow(path)).map_err(|error| navigate_error(&error))
+    }
+
+    /// Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
+    /// brakes first, and has arrived when it stands again. Nothing is touched: where there is no
+    /// room it waits, until its time is over.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.spin(1.5, allowance=20)
+    fn spin(&self, py: Python<'_>, angle: f64, allowance: f64) -> PyResult<()> {
+        py.detach(|| self.lock().navigator.spin(angle, allowance)).map_err(bad_value)
+    }
+
+    /// Drives straight back by a distance [m] in the same way.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.back_up(0.5, allowance=20)
+    /// Traceback (most recent call last):
+    /// ValueError: distance_m cannot be driven: the robot does not drive backwards (`v_min_mps`)
+    fn back_up(&self, py: Python<'_>, distance: f64, allowance: f64) -> PyResult<()> {
+        py.detach(|| self.lock().navigator.back_up(distance, allowance)).map_err(bad_value)
+    }
+
+    /// Drives straight ahead by a distance [m] in the same way.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.relocate((1, 1, 0))
+    /// >>> navigator.drive_on_heading(0.5, allowance=20)
+    fn drive_on_heading(&self, py: Python<'_>, distance: f64, allowance: f64) -> PyResult<()> {
+        py.detach(|| self.lock().navigator.drive_on_heading(distance, allowance)).map_err(bad_value)
+    }
+
+    /// Gives up what it was asked to do: the robot brakes, and stands.
+    fn cancel(&self, py: Python<'_>) {
+        py.detach(|| self.lock().navigator.cancel());
+    }
+
+    /// A route between two positions on what is known and sensed: a read-only array of float64 of
+    /// shape (n, 2) [m]. Nothing changes by it.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.plan((1, 1), (3, 1)).tolist()
+    /// [[1.0, 1.0], [3.0, 1.0]]
+    fn plan(&self, py: Python<'_>, start: Numbers, goal: Numbers) -> PyResult<Floats2> {
+        let (start, goal) = (start.position("start")?, goal.position("goal")?);
+        let route = py.detach(|| self.lock().navigator.plan(start, goal));
+        let route = route.map_err(|error| navigate_error(&error))?;
+        Ok(Floats2(of_points(py, route.smoothed.points())))
+    }
+
+    /// True if the robot fits along all of a path among what is known and sensed, turning on the
+    /// spot at its corners.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.is_path_valid([(1, 1), (3, 1)]), navigator.is_path_valid([(1, 1), (9, 1)])
+    /// (True, False)
+    fn is_path_valid(&self, py: Python<'_>, path: Positions) -> PyResult<bool> {
+        let path = Polyline::new(path.points("path")?);
+        Ok(py.detach(|| self.lock().navigator.is_path_valid(&path)))
+    }
+
+    /// A line of positions, smoothed as its routes are, with the same clearance among what is known
+    /// and sensed where it is clear: a read-only array of float64 of shape (n, 2) [m].
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.smooth([(1, 1), (2, 1.5), (3, 1)]).tolist()
+    /// [[1.0, 1.0], [3.0, 1.0]]
+    fn smooth(&self, py: Python<'_>, path: Positions) -> PyResult<Floats2> {
+        let line = PlannedLine::from(Polyline::new(path.points("path")?));
+        let smoothed = py.detach(|| self.lock().navigator.smooth(&line));
+        Ok(Floats2(of_points(py, smoothed.points())))
+    }
+
+    /// The place nearest to a goal that can be reached from a start, on what is known and sensed
+    /// [m]; `None` where nothing can be reached.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> walls = np.zeros((40, 40), dtype=bool)
+    /// >>> walls[:, 20] = True
+    /// >>> navigator = keyway.Navigator(keyway.Map.from_array(walls, resolution=0.1))
+    /// >>> navigator.nearest_reachable((1, 1), (3, 1))[0] < 2
+    /// True
+    fn nearest_reachable(
+        &self,
+        py: Python<'_>,
+        start: Numbers,
+        goal: Numbers,
+    ) -> PyResult<Option<(f64, f64)>> {
+        let (start, goal) = (start.position("start")?, goal.position("goal")?);
+        let nearest = py.detach(|| self.lock().navigator.nearest_reachable(start, goal));
+        Ok(nearest.map(|Point { x, y }| (x, y)))
+    }
+}
