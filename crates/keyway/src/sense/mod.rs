@@ -1,6 +1,7 @@
 //! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]),
 //! and those that move, as a list ([`Tracker`]). Each looks at the scan of a cycle as it was
-//! projected once ([`ProjectedScan`]).
+//! projected once ([`ProjectedScan`]). Points of other sensors ([`SensorPoints`]) are obstacles that
+//! stand.
 
 mod layer;
 mod mover;

@@ -293,9 +293,9 @@ impl SensedLayer {
     fn mark(&mut self, known: &OccupancyGrid, sensor: usize, hit: &Hit) {
         let Some(cell) = hit.cell.filter(|&cell| !known.occupied().get(cell)) else { return };
         let place = Place { point: hit.point, cycle: self.cycle, sensor };
-        // A scan sees what other sensors have met as little as that it has gone.
-        let is_known = |before: &Place| place.is_scanned() && !before.is_scanned();
-        if !self.places.get(&cell).is_some_and(is_known) {
+        // What was met by another kind of sensor is cleared by that alone.
+        let stays = |before: &Place| place.is_scanned() && !before.is_scanned();
+        if !self.places.get(&cell).is_some_and(stays) {
             self.places.insert(cell, place);
         }
         if self.sensed.set(cell, true) {
