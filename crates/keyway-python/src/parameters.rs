@@ -7,6 +7,8 @@ use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Robot};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+#[cfg(feature = "stubs")]
+use pyo3::type_hint_union;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::Path;
 use toml::{Table, Value};
@@ -105,7 +107,7 @@ pub(crate) struct RobotName(pub(crate) String);
 impl<'py> FromPyObject<'_, 'py> for RobotName {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
-    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = type_hint_union!(
         pyo3::type_hint_identifier!("builtins", "str"),
         pyo3::type_hint_subscript!(
             pyo3::type_hint_identifier!("os", "PathLike"),

@@ -6,6 +6,8 @@ use keyway::geometry::{Point, Pose};
 use keyway::sense::{FieldOfView, SensorPoints};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+#[cfg(feature = "stubs")]
+use pyo3::type_hint_union;
 use pyo3::types::{PyList, PyTuple};
 
 /// Places at which a depth camera, a sonar or a bumper has met something, as points on the ground.
@@ -104,11 +106,11 @@ pub(crate) struct AllPoints(pub(crate) Vec<Py<Points>>);
 impl<'py> FromPyObject<'_, 'py> for AllPoints {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
-    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = pyo3::type_hint_union!(
-        Points::TYPE_HINT,
+    const INPUT_TYPE: pyo3::inspect::PyStaticExpr = type_hint_union!(
+        <Points as pyo3::PyTypeInfo>::TYPE_HINT,
         pyo3::type_hint_subscript!(
             pyo3::type_hint_identifier!("collections.abc", "Sequence"),
-            Points::TYPE_HINT
+            <Points as pyo3::PyTypeInfo>::TYPE_HINT
         )
     );
 

@@ -962,8 +962,8 @@ def names(kind: str) -> list[str]:
     command of the program, says what each of them is and what parameters it has.
 
     >>> import keyway
-    >>> keyway.names("robots")
-    ['small', 'jackal', 'paper', 'burger', 'waffle']
+    >>> keyway.names("robots")[:3]
+    ['small', 'jackal', 'paper']
     """
 
 def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
