@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, final
 
-__all__ = ["Comparison", "Map", "Navigator", "Plan", "Planner", "Run", "Scan", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
+__all__ = ["Comparison", "Map", "Navigator", "Plan", "Planner", "Points", "Run", "Scan", "Scene", "Simulation", "Step", "batch", "compare", "merge", "names", "plan", "plan_many", "program", "simulate", "simulate_team"]
 
 @final
 class Comparison:
@@ -175,8 +175,10 @@ class Navigator:
     Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a
     velocity in every cycle.
 
-    `robot` and `stack` are names of `keyway.names`, or files. `parameters` are laid over the stack,
-    as a dictionary with the names of the TOML files. With `as_published` the stack has the values
+    `robot` and `stack` are names of `keyway.names`, or files; a robot may also be a dictionary with
+    the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`, and is the
+    `small` one unless given. `parameters` are laid over the stack, as a dictionary with the names
+    of the TOML files. With `as_published` the stack has the values
     of its paper. With `safe` only commands are issued after which the robot can still stop before
     it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
     layers of the map are made, which are not counted: (0, None).
@@ -193,7 +195,8 @@ class Navigator:
     >>> navigator
     <keyway.Navigator keyway: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, robot: str = "small", stack: str = "keyway", parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Navigator: ...
+    def __new__(cls, /, grid: Map, robot: str | PathLike[str] | dict[str, Any] | None = None, stack: str = "keyway", parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Navigator: ...
+    def __reduce__(self, /) -> tuple[Any, tuple[bytes]]: ...
     def __repr__(self, /) -> str: ...
     def back_up(self, /, distance: float, allowance: float) -> None:
         """
@@ -267,6 +270,10 @@ class Navigator:
         >>> round(navigator.remaining, 3)
         4.0
         """
+    def forget_sensed(self, /) -> None:
+        """
+        Forgets all that was sensed, standing and moving.
+        """
     @property
     def goal(self, /) -> list[float] | None:
         """
@@ -295,13 +302,25 @@ class Navigator:
         """
         The map, as it was given and edited.
         """
+    def nearest_reachable(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any]) -> tuple[float, float] | None:
+        """
+        The place nearest to a goal that can be reached from a start, on what is known and sensed
+        [m]; `None` where nothing can be reached.
+
+        >>> import keyway, numpy as np
+        >>> walls = np.zeros((40, 40), dtype=bool)
+        >>> walls[:, 20] = True
+        >>> navigator = keyway.Navigator(keyway.Map.from_array(walls, resolution=0.1))
+        >>> navigator.nearest_reachable((1, 1), (3, 1))[0] < 2
+        True
+        """
     @property
     def notice(self, /) -> str | None:
         """
         That the robot was nearer to something than it can stand when it got its goal, until it has
         left it, for people; otherwise `None`.
         """
-    def observe(self, /, stamp: float, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScans | None = None) -> None:
+    def observe(self, /, stamp: float, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScans | None = None, points: Points | Sequence[Points] | None = None) -> None:
         """
         Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how
         it moves (v, omega) [m/s, rad/s], and what its sensors see. Stamps are by any clock, the
@@ -312,7 +331,7 @@ class Navigator:
         `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a
         stamp was made when the pose was measured. A robot with several sensors gives a list with
         one scan of each, in their order, `None` where a sensor has made none. Without `scan` none
-        has arrived.
+        has arrived. `points` are those of other sensors: a `keyway.Points`, or a list of them.
 
         An observation that cannot be true, or is older than the last one, is not taken in; the next
         `step` then stops the robot and says why.
@@ -360,6 +379,18 @@ class Navigator:
     def restart_clock(self, /) -> None:
         """
         The clock of all stamps begins anew: the next observation may have any stamp.
+        """
+    @staticmethod
+    def restore(snapshot: bytes) -> Navigator:
+        """
+        The navigator of a snapshot.
+
+        Raises `ValueError` for bytes that are none, or of another version of Keyway.
+
+        >>> import keyway
+        >>> keyway.Navigator.restore(b"nonsense")
+        Traceback (most recent call last):
+        ValueError: snapshot: ...
         """
     @property
     def route(self, /) -> NDArray[float64]:
@@ -439,6 +470,30 @@ class Navigator:
         >>> navigator = keyway.Navigator(grid)
         >>> navigator.set_speed_limit(0.2)
         """
+    def smooth(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[float64]:
+        """
+        A line of positions, smoothed as its routes are, with the same clearance among what is known
+        and sensed where it is clear: a read-only array of float64 of shape (n, 2) [m].
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.smooth([(1, 1), (2, 1.5), (3, 1)]).tolist()
+        [[1.0, 1.0], [3.0, 1.0]]
+        """
+    def snapshot(self, /) -> bytes:
+        """
+        All that it knows, wants and does, as bytes: `Navigator.restore` makes the same navigator of
+        them, which gives the same steps from here on. Navigators are copied and pickled so.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.relocate((1, 1, 0))
+        >>> navigator.set_goal((3, 1))
+        >>> keyway.Navigator.restore(navigator.snapshot())
+        <keyway.Navigator keyway: 2.000 m to go, 360 beams>
+        """
     def spin(self, /, angle: float, allowance: float) -> None:
         """
         Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
@@ -481,10 +536,10 @@ class Plan:
         """
         Cost of the planner's path [cells]: for the planners of the grid an exact number of straight and diagonal steps.
         """
-    def curve(self, /, spacing: float = 0.05, robot: str | None = None) -> NDArray[void]:
+    def curve(self, /, spacing: float = 0.05, robot: str | PathLike[str] | dict[str, Any] | None = None) -> NDArray[void]:
         """
         The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
-        or a file).
+        a file, or a dictionary of its values).
 
         A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
         and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
@@ -560,7 +615,7 @@ class Planner:
     >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
     4.0
     """
-    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, progress: Progress | None = None) -> Planner: ...
+    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, progress: Progress | None = None) -> Planner: ...
     def __repr__(self, /) -> str: ...
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
         """
@@ -591,6 +646,31 @@ class Planner:
         >>> index, plan.cost
         (1, 3.0)
         """
+
+@final
+class Points:
+    """
+    Places at which a depth camera, a sonar or a bumper has met something, as points on the ground.
+
+    `positions` is an array of shape (n, 2), in the frame of the sensor [m]; points that are not
+    finite say nothing. `mount` is the pose of the sensor on the robot (x, y, theta) [m, m, rad].
+    Robots with several such sensors number them by `sensor`, from 0 to 7. `stamp` is the time at
+    which they were measured [s]; without one it is that of the pose with which they are given.
+
+    They mark obstacles, which stay until the same sensor says that it sees nothing there. It does
+    where it has `bearings`, those of its right and left edge [rad] (0 where it looks, positive to
+    the left), and `ranges`, the nearest and the farthest at which it sees [m]: within these
+    everything that stands, unless something hides it.
+
+    >>> import keyway
+    >>> keyway.Points([(1.0, 0.2), (1.0, 0.3)], bearings=(-0.7, 0.7), ranges=(0.3, 3.0))
+    <keyway.Points 2 of sensor 0, which sees from 0.3 to 3 m>
+    >>> keyway.Points([(0.2, 0.0)], sensor=1)
+    <keyway.Points 1 of sensor 1, which only marks>
+    """
+    def __len__(self, /) -> int: ...
+    def __new__(cls, /, positions: Sequence[Sequence[float]] | NDArray[Any], mount: Sequence[float] | NDArray[Any] | None = None, sensor: int = 0, stamp: float | None = None, bearings: tuple[float, float] | None = None, ranges: tuple[float, float] | None = None) -> Points: ...
+    def __repr__(self, /) -> str: ...
 
 @final
 class Run:
@@ -732,7 +812,7 @@ class Scene:
         Traceback (most recent call last):
         FileNotFoundError: cannot read nowhere.toml: there is no such file or folder
         """
-    def replace(self, /, seed: int | None = None, robot: str | None = None, stack: str | None = None, safe: bool | None = None) -> Scene:
+    def replace(self, /, seed: int | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, stack: str | None = None, safe: bool | None = None) -> Scene:
         """
         The same scene with another seed, robot or stack, with the stop rule or without it.
 
@@ -903,7 +983,7 @@ class Step:
         The reason why the robot is blocked, for people; otherwise `None`.
         """
 
-def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
+def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
     """
     Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
     for byte, into the folder `out`.
@@ -926,7 +1006,7 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     ValueError: cannot read nowhere.toml: there is no such file or folder
     """
 
-def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
+def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
     """
     Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
     does.
@@ -966,7 +1046,7 @@ def names(kind: str) -> list[str]:
     ['small', 'jackal', 'paper']
     """
 
-def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
+def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
     """
     Plans a path on a map, from one position to another [m], and smooths it.
 
@@ -997,7 +1077,7 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
     10.0
     """
 
-def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, jobs: int | None = None, progress: Progress | None = None) -> Plans:
+def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, jobs: int | None = None, progress: Progress | None = None) -> Plans:
     """
     Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 
