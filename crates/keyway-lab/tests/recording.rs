@@ -125,3 +125,20 @@ fn an_untold_change_is_a_difference() {
         other => panic!("{other:?}"),
     }
 }
+
+/// The power fails: nobody finishes the file.
+#[test]
+fn what_is_more_than_a_second_old_is_in_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, copy) = (folder.path().join("life.mcap"), folder.path().join("copy.mcap"));
+    let mut drive = Drive::new(&path);
+    for cycle in 0..100 {
+        drive.cycle();
+        if cycle % 7 == 0 {
+            std::fs::copy(&path, &copy).unwrap();
+            let flight = decide_again(&copy, &mut |_| {}).unwrap();
+            assert!(!flight.is_complete && flight.cycles <= cycle + 1);
+            assert!(flight.cycles + 21 >= cycle, "{flight:?} in cycle {cycle}");
+        }
+    }
+}

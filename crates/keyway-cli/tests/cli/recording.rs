@@ -48,7 +48,7 @@ fn every_decision_of_a_recording_is_made_again() {
         }
     }
     let text = keyway(folder.path(), "replay run.mcap").expect_code(0).out;
-    assert_eq!(text, format!("run.mcap: {cycles} decisions, each the same again\n"));
+    assert_eq!(text, format!("run.mcap: {cycles} decisions, all the same again\n"));
 }
 
 #[test]

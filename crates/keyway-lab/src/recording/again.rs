@@ -2,12 +2,12 @@
 
 use super::RecordingError;
 use super::flight::{OBSERVATION, RecordedObservation, RecordedStep, SNAPSHOT, STEP};
-use enumset::enum_set;
+use enumset::{EnumSet, enum_set};
 use keyway::file_system::read_file;
 use keyway::navigate::{Navigator, Snapshot};
 use keyway_sim::episode::Cycle;
-use mcap::MessageStream;
 use mcap::read::Options;
+use mcap::{McapError, MessageStream};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -19,9 +19,11 @@ pub struct Flight {
     pub cycles: u64,
     /// Times that the navigator was taken up from a snapshot: at the beginning, and after changes.
     pub snapshots: u64,
-    /// False where the recording ends in the middle of a message, as after a loss of power.
+    /// False where the recording was not finished, or is cut off.
     pub is_complete: bool,
 }
+
+const OPTIONS: EnumSet<Options> = enum_set!(Options::IgnoreEndMagic | Options::ValidateChunkCrcs);
 
 /// More than a recording of a day has.
 const MAX_BYTES: u64 = 1 << 36;
@@ -38,16 +40,16 @@ pub fn decide_again(
     let bytes = read_file(path, MAX_BYTES)?;
     let no_mcap = |reason| RecordingError::NoMcap { path: path.to_owned(), reason };
     if !bytes.starts_with(mcap::MAGIC) {
-        return Err(no_mcap(mcap::McapError::BadMagic));
+        return Err(no_mcap(McapError::BadMagic));
     }
-    let stream = MessageStream::new_with_options(&bytes, enum_set!(Options::IgnoreEndMagic));
+    let stream = MessageStream::new_with_options(&bytes, OPTIONS);
     let mut pilot = Pilot::new(path);
     let is_complete = bytes.ends_with(mcap::MAGIC);
     for message in stream.map_err(no_mcap)? {
         let message = match message {
             Ok(message) => message,
             // What was written before a loss of power is read.
-            Err(_) if !is_complete => break,
+            Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) if !is_complete => break,
             Err(reason) => return Err(no_mcap(reason)),
         };
         match message.channel.topic.as_str() {

@@ -4,7 +4,7 @@
 //!
 //! | topic | message |
 //! |---|---|
-//! | `/map` | `nav_msgs/msg/OccupancyGrid`, the known map |
+//! | `/map` | `nav_msgs/msg/OccupancyGrid`, the known map, whenever it is another one |
 //! | `/tf_static`, `/tf` | `tf2_msgs/msg/TFMessage`: sensors on the robot, and the robot in `map` |
 //! | `/odom` | `nav_msgs/msg/Odometry`: pose and velocity as observed |
 //! | `/scan`, `/scan_1`, ... | `sensor_msgs/msg/LaserScan` of each sensor |

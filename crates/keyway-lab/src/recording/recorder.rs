@@ -7,6 +7,7 @@ use super::ros::{
     ScanMessage, TransformMessage, encoded, sensor_frame,
 };
 use keyway::geometry::Pose;
+use keyway::map::OccupancyGrid;
 use keyway::navigate::{Goal, Navigator, Step};
 use keyway::sense::Observation;
 use mcap::records::MessageHeader;
@@ -20,13 +21,18 @@ use std::io::{Seek, Write};
 /// It is told of the navigator before its first observation ([`Self::begin`]), of each observation
 /// and each step, and of every other change ([`Self::changed`]): goals, maps, limits.
 ///
-/// A file that was not finished, as after a loss of power, is read as far as it goes.
+/// What is more than about a second old is in the file, whatever happens then: one that was not
+/// finished, as after a loss of power, is read as far as it goes. Stamps before 0 are those of
+/// viewers as 0.
 pub struct FlightRecorder<W: Write + Seek> {
     writer: Writer<W>,
     channels: BTreeMap<String, u16>,
     sequence: u32,
     /// Time of the last observation \[s\].
     stamp_s: f64,
+    /// Time of the last message that is in the file \[s\].
+    written_s: f64,
+    map: Option<OccupancyGrid>,
     route: Option<(u32, u32)>,
     goal: Option<Goal>,
 }
@@ -42,8 +48,16 @@ impl<W: Write + Seek> FlightRecorder<W> {
             .library(concat!("keyway ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Lz4));
         let writer = options.create(file)?;
-        let (channels, sequence, stamp_s) = (BTreeMap::new(), 0, 0.0);
-        Ok(Self { writer, channels, sequence, stamp_s, route: None, goal: None })
+        Ok(Self {
+            writer,
+            channels: BTreeMap::new(),
+            sequence: 0,
+            stamp_s: 0.0,
+            written_s: f64::NEG_INFINITY,
+            map: None,
+            route: None,
+            goal: None,
+        })
     }
 
     /// Records the map, the places of the sensors, and the navigator as it is at this time \[s\].
@@ -52,7 +66,6 @@ impl<W: Write + Seek> FlightRecorder<W> {
     /// When it cannot be written.
     pub fn begin(&mut self, stamp_s: f64, navigator: &Navigator) -> Result<(), RecordingError> {
         self.stamp_s = stamp_s;
-        self.ros("/map", &GridMessage::new(stamp_s, navigator.map()))?;
         let sensors = navigator.stack().robot().sensors.iter().enumerate();
         let frames = sensors.map(|(sensor, it)| (sensor_frame(sensor), it.mount.pose()));
         self.ros("/tf_static", &TransformMessage::new(stamp_s, BASE, frames))?;
@@ -65,10 +78,15 @@ impl<W: Write + Seek> FlightRecorder<W> {
     /// When it cannot be written.
     pub fn changed(&mut self, navigator: &Navigator) -> Result<(), RecordingError> {
         self.cbor(SNAPSHOT, &navigator.snapshot())?;
-        self.show_route(navigator)
+        if self.map.as_ref() != Some(navigator.map()) {
+            self.map = Some(navigator.map().clone());
+            self.ros("/map", &GridMessage::new(self.stamp_s, navigator.map()))?;
+        }
+        self.show_route(navigator)?;
+        self.flush()
     }
 
-    /// Records an observation that the navigator has taken in.
+    /// Records an observation that the navigator was given, also one that it refuses.
     ///
     /// # Errors
     /// When it cannot be written.
@@ -101,7 +119,18 @@ impl<W: Write + Seek> FlightRecorder<W> {
         let text = serde_json::to_vec(&step).unwrap_or_default();
         let schema = || (RecordedStep::SCHEMA, "jsonschema", STEP_SCHEMA);
         let channel = self.channel(STEP, "json", Some(schema()))?;
-        self.write(channel, &text)
+        self.write(channel, &text)?;
+        let is_due = !(self.stamp_s - self.written_s).abs().lt(&1.0);
+        if is_due { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes all that was recorded so far into the file.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn flush(&mut self) -> Result<(), RecordingError> {
+        self.written_s = self.stamp_s;
+        Ok(self.writer.flush()?)
     }
 
     /// Completes the recording, and gives the file back.

@@ -293,3 +293,50 @@ fn a_clock_that_begins_anew_begins_anew() {
     assert!(begin.distance(Point::new(2.0, 6.5)) < 0.01, "{begin:?}");
     life.arrive();
 }
+
+#[test]
+fn a_place_that_is_none_moves_nothing() {
+    let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
+    life.posts = vec![Disc::new(Point::new(4.0, 4.6), 0.2)];
+    life.observe();
+    let before = life.navigator.sensed().clone();
+    assert!(before.count_ones() > 2);
+    life.navigator.relocate(Pose { x: f64::NAN, ..life.pose });
+    life.navigator.relocate(life.pose);
+    assert_eq!(*life.navigator.sensed(), before);
+    assert!(Navigator::restore(life.navigator.snapshot()).is_ok());
+}
+
+/// A navigator that has refused an observation says the same after it was restored.
+#[test]
+fn a_refusal_is_restored() {
+    let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
+    life.navigator.set_goal(Point::new(8.0, 4.0)).unwrap();
+    life.drive_for(0.5);
+    let pose = life.pose;
+    let past = Observation::new(-3.0, pose, Velocity::ZERO, &[]);
+    let nowhere = Pose { theta: f64::INFINITY, ..pose };
+    let nowhere = Observation::new(life.stamp_s, nowhere, Velocity::ZERO, &[]);
+    for refused in [past, nowhere] {
+        life.navigator.observe(&refused);
+        let mut twin = Navigator::restore(life.navigator.snapshot()).unwrap();
+        let step = life.navigator.step();
+        assert!(matches!(step, Step::Blocked { .. }));
+        assert_eq!(twin.step(), step);
+    }
+}
+
+/// Ground to keep out of is no wall: what was sensed on it is known when it is open again.
+#[test]
+fn what_was_sensed_on_forbidden_ground_is_restored() {
+    let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
+    life.posts = vec![Disc::new(Point::new(4.0, 4.0), 0.2)];
+    let frame = GridFrame::new(1, 1, 1.0, Pose::new(3.5, 3.5, 0.0)).unwrap();
+    let keep_out = Some(Arc::new(OccupancyGrid::from_fn(frame, |_| CellState::Occupied)));
+    life.navigator.set_masks(Masks { keep_out, speed: None });
+    life.observe();
+    let before = life.navigator.sensed().clone();
+    assert!(before.count_ones() > 2);
+    let twin = Navigator::restore(life.navigator.snapshot()).unwrap();
+    assert_eq!(*twin.sensed(), before);
+}

@@ -235,13 +235,17 @@ fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, Overla
                     Some(Value::Table(inner)) => inner,
                     Some(_) => return Err(rejected(&here, "has no fields of its own")),
                     None => {
-                        return Err(rejected(&here, &format!("there are {count}, from [0] on")));
+                        return Err(rejected(
+                            &here,
+                            &format!("there are {count}, numbered from 0"),
+                        ));
                     }
                 }
             }
             (Some(Value::Array(_)), None) => {
                 return Err(rejected(&here, &format!("is a list; say which, such as `{here}[0]`")));
             }
+            (Some(Value::Table(_)), Some(_)) => return Err(rejected(&here, "is no list")),
             _ => return Err(rejected(&here, "has no fields of its own")),
         };
         walked = here;

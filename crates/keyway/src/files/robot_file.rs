@@ -253,11 +253,11 @@ mod tests {
         let error = |text: &str| change(text).unwrap_err().to_string();
         assert!(error("limits.v_max=0.3").contains("there is no field `limits.v_max`"));
         assert!(error("limits.v_max_mps=fast").contains("`limits.v_max_mps`: "));
-        assert_eq!(error("sensors[1].range_m=2"), "`sensors[1]`: there are 1, from [0] on");
+        assert_eq!(error("sensors[1].range_m=2"), "`sensors[1]`: there are 1, numbered from 0");
         assert!(error("sensors.range_m=2").contains("is a list; say which, such as `sensors[0]`"));
         assert!(error("sensors[0].range=2").contains("there is no field `sensors[0].range`"));
         assert!(error("sensors[0].range_m=0").starts_with("sensors[0].range_m must be a length"));
-        assert!(error("limits[0].v_max_mps=1").contains("`limits[0]`"));
+        assert!(error("limits[0].v_max_mps=1").contains("`limits[0]`: is no list"));
         assert!(error("cycle_s=0").starts_with("cycle_s must be a time"), "{}", error("cycle_s=0"));
     }
 }

@@ -18,7 +18,8 @@ pub struct SensorPoints<'a> {
     pub sensor: usize,
     /// Pose of the sensor in the robot's frame.
     pub mount: Pose,
-    /// Places that it has met, in its own frame \[m\]; those that are not finite say nothing.
+    /// Places that it has met, in its own frame \[m\]. Those that are not finite say nothing, nor
+    /// does the origin, which is what many drivers write where they have met nothing.
     pub points: &'a [Point],
     /// The ground in which it sees everything that stands, if there is such ground: what it had met
     /// there and meets no more has gone.
@@ -49,6 +50,7 @@ impl FieldOfView {
     pub fn is_usable(&self) -> bool {
         let width_rad = self.to_rad - self.from_rad;
         let is_angle = self.from_rad.is_finite() && width_rad > 0.0 && width_rad <= TAU * 1.001;
-        is_angle && self.range_max_m.is_finite() && self.range_max_m > self.range_min_m.max(0.0)
+        let is_range = self.range_min_m.is_finite() && self.range_max_m.is_finite();
+        is_angle && is_range && self.range_max_m > self.range_min_m.max(0.0)
     }
 }

@@ -1,5 +1,6 @@
 //! A scan where it was made: what each beam says and where it ends, computed once per cycle.
 
+use super::layer::says_something;
 use super::{FieldOfView, Ranges, Reading, Scan, SensorScan};
 use crate::geometry::{Point, Pose, Shift, wrap_angle};
 use crate::map::{Cell, GridFrame};
@@ -135,9 +136,11 @@ impl ProjectedScan {
         self.beams.resize(steps as usize + 1, Beam { reading: Some(free), hit: None });
         (self.robot, self.pose, self.range_max_m) = (pose, pose, view.range_max_m);
         (self.angle_min_rad, self.angle_increment_rad) = (view.from_rad, width_rad / steps);
-        for &point in points.iter().filter(|point| point.is_finite()) {
-            let away_m = point.norm();
-            for beam in self.beams_towards(pose.world_from_body(point), 0.5 * cell_m) {
+        for &point in points.iter().filter(|&&point| says_something(point)) {
+            let (away_m, place) = (point.norm(), pose.world_from_body(point));
+            // At least the two beams beside it, however far away it is.
+            let half_m = (0.5 * cell_m).max(away_m * self.step_rad());
+            for beam in self.beams_towards(place, half_m) {
                 let Some(beam) = self.beams.get_mut(beam) else { continue };
                 let free_m = beam.reading.map_or(away_m, |before| before.free_m().min(away_m));
                 beam.reading = Some(Reading::Hit(free_m));

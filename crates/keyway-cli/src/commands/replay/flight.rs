@@ -40,10 +40,12 @@ pub(super) fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, Cl
             explanations.push('\n');
         }
     };
-    let flight = decide_again(path, &mut watch)?;
+    let flight = decide_again(path, &mut watch);
+    // They are wanted most where a decision differs.
     if let Some(explain) = explain {
         write_file(explain, explanations.as_bytes(), "--explain")?;
     }
+    let flight = flight?;
     let files: Vec<String> = explain.iter().map(|path| path.display().to_string()).collect();
     let record = path.display().to_string();
     if args.format == Format::Json {
@@ -51,8 +53,8 @@ pub(super) fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, Cl
         return Ok(serde_json::to_value(Redecided { record, flight, files }).ok());
     }
     let Flight { cycles, is_complete, .. } = flight;
-    let end = if is_complete { "" } else { "; the recording ends in the middle of a message" };
-    print(&format!("{}{record}: {cycles} decisions, each the same again{end}", gap(args, path)))?;
+    let end = if is_complete { "" } else { "; the recording was not finished" };
+    print(&format!("{}{record}: {cycles} decisions, all the same again{end}", gap(args, path)))?;
     crate::stdout::print_files(&files)?;
     Ok(None)
 }

@@ -16,9 +16,11 @@ impl Navigator {
     /// The pose is that at the time of the last observation. A pose that is not finite moves
     /// nothing.
     pub fn relocate(&mut self, pose: Pose) {
+        if !(pose.point().is_finite() && pose.theta.is_finite()) {
+            return;
+        }
         let before = self.place.replace(pose).filter(|&before| before != pose);
-        if let Some(before) = before.filter(|_| pose.point().is_finite() && pose.theta.is_finite())
-        {
+        if let Some(before) = before {
             let shift = self.world.relocate(before, pose);
             self.shift_errand(&shift);
             self.plan_again();

@@ -30,8 +30,8 @@ pub(in crate::navigate) struct StoredWorld {
     edits: Vec<Edit>,
     poses: Poses,
     told: Option<Told>,
-    /// The last observation could not be true.
-    is_refused: bool,
+    /// The reason why the last observation was not taken in.
+    refused: Option<Refused>,
     has_changed_much: bool,
     now: Option<Time>,
     scans: Vec<ProjectedScan>,
@@ -41,6 +41,39 @@ pub(in crate::navigate) struct StoredWorld {
     scanned: Option<Time>,
     doubts: Doubts,
 }
+
+/// The reason why an observation was not taken in.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum Refused {
+    BadInput(String),
+    TimeRunsBack { stamp_s: f64, last_s: f64 },
+}
+
+impl Refused {
+    fn of(why: &Blocked) -> Self {
+        match *why {
+            Blocked::TimeRunsBack { stamp_s, last_s } => Self::TimeRunsBack { stamp_s, last_s },
+            Blocked::BadInput(field) => Self::BadInput(field.to_owned()),
+            // Nothing else is a reason.
+            _ => Self::BadInput(OBSERVED[0].to_owned()),
+        }
+    }
+}
+
+impl From<Refused> for Blocked {
+    fn from(refused: Refused) -> Self {
+        match refused {
+            Refused::TimeRunsBack { stamp_s, last_s } => Self::TimeRunsBack { stamp_s, last_s },
+            Refused::BadInput(field) => Self::BadInput(
+                OBSERVED.into_iter().find(|one| *one == field).unwrap_or(OBSERVED[0]),
+            ),
+        }
+    }
+}
+
+/// Fields of an observation that may be refused.
+const OBSERVED: [&str; 6] =
+    ["stamp_s", "pose.x", "pose.y", "pose.theta", "velocity.v", "velocity.omega"];
 
 impl World {
     /// All of it that is stored.
@@ -58,7 +91,7 @@ impl World {
             edits: self.edits.clone(),
             poses: self.poses.clone(),
             told: self.told,
-            is_refused: self.refused.is_some(),
+            refused: self.refused.as_ref().map(Refused::of),
             has_changed_much: self.has_changed_much,
             now: self.now,
             scans: self.scans.clone(),
@@ -78,13 +111,14 @@ impl World {
         let known = stored.masks.over(&stored.map);
         let mut world = Self::new(&known, parts).map_err(NavigateError::into_restore)?;
         world.check(&stored, &parts.robot)?;
+        // Ground to keep out of is no wall: what was sensed there is known.
+        world.sensed = crate::sense::SensedLayer::restored(&stored.map, &stored.sensed);
         world.unmasked = stored.masks.keep_out.is_some().then_some(stored.map);
         world.masks = stored.masks;
         let router = &mut world.router;
         if let Some(clearance_m) = stored.inserted_m {
             router.layers.insert_again(&known, clearance_m);
         }
-        world.sensed = crate::sense::SensedLayer::restored(&known, &stored.sensed);
         router.layers.mark(&world.sensed.cells(), |_| CellState::Occupied);
         world.obstacles = router.distances(&parts.robot);
         if let (Some(seen), Some(cells)) = (&mut world.seen, stored.seen)
@@ -97,7 +131,7 @@ impl World {
         world.under_way.take_up(&stored.under_way);
         (world.edits, world.poses) = (stored.edits, stored.poses);
         world.has_changed_much = stored.has_changed_much;
-        world.refused = stored.is_refused.then_some(Blocked::NothingObserved);
+        world.refused = stored.refused.map(Blocked::from);
         (world.told, world.now, world.scanned) = (stored.told, stored.now, stored.scanned);
         (world.scans, world.times) = (stored.scans, stored.times);
         (world.points_at, world.ranges_m) = (stored.points_at, stored.ranges_m);

@@ -1,6 +1,7 @@
 //! What scans have shown that the known map does not.
 
 mod points;
+pub(super) use points::says_something;
 #[cfg(test)]
 mod tests;
 
@@ -11,7 +12,7 @@ use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Cells in which scans have met something that the known map does not have.
+/// Cells in which scans and points have met something that the known map does not have.
 ///
 /// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
 /// a sensed cell that is cleared goes back to what the known map says, unknown included.
@@ -26,27 +27,27 @@ use std::collections::HashMap;
 pub struct SensedLayer {
     sensed: BitGrid,
     count: u64,
-    /// For each sensed cell the last place in it that a beam has met, and in which scan.
+    /// For each cell the last place in it that a beam has met, and in which scan.
     places: HashMap<Cell, Place>,
-    /// Number of scans and points so far, and of the last ones of each sensor.
+    /// For each cell the last place in it that each of the sensors that give points has met.
+    met: HashMap<(Cell, usize), Point>,
+    /// Number of scans so far, and of the last one of each sensor.
     cycle: u64,
-    looked: [u64; SENSORS],
+    scanned: [u64; Robot::MOST_SENSORS],
     /// Scratch of [`Self::update`], without meaning between calls.
     cleared: Vec<Cell>,
     marked: Vec<Cell>,
     view: ProjectedScan,
 }
 
-/// Sensors that are told apart: those that scan, and after them those that give points.
-const SENSORS: usize = Robot::MOST_SENSORS + SensorPoints::MOST_SENSORS;
-
 /// A layer in few words.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SensedPlaces {
     cycle: u64,
-    looked: [u64; SENSORS],
+    scanned: [u64; Robot::MOST_SENSORS],
     /// In the order of [`Cell`].
     places: Vec<(Cell, Place)>,
+    met: Vec<((Cell, usize), Point)>,
 }
 
 /// A place that a beam has met.
@@ -59,13 +60,6 @@ struct Place {
     sensor: usize,
 }
 
-impl Place {
-    /// True if a scan has met it.
-    const fn is_scanned(&self) -> bool {
-        self.sensor < Robot::MOST_SENSORS
-    }
-}
-
 /// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
 const USUAL_COUNT: usize = 4096;
 
@@ -75,8 +69,9 @@ impl SensedLayer {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
         let places = HashMap::with_capacity(USUAL_COUNT);
         let [cleared, marked] = [(); 2].map(|()| Vec::with_capacity(USUAL_COUNT));
-        let (looked, view) = ([0; SENSORS], ProjectedScan::default());
-        Self { sensed, count: 0, places, cycle: 0, looked, cleared, marked, view }
+        let (scanned, view) = ([0; Robot::MOST_SENSORS], ProjectedScan::default());
+        let met = HashMap::new();
+        Self { sensed, count: 0, places, met, cycle: 0, scanned, cleared, marked, view }
     }
 
     /// Cells in which something was met that the known map does not have.
@@ -91,30 +86,38 @@ impl SensedLayer {
 
     /// The layer in few words.
     pub(crate) fn stored(&self) -> SensedPlaces {
-        let places = self.cells().into_iter().map(|cell| (cell, self.places[&cell]));
-        let (cycle, looked) = (self.cycle, self.looked);
-        SensedPlaces { cycle, looked, places: places.collect() }
+        let (cycle, scanned) = (self.cycle, self.scanned);
+        SensedPlaces { cycle, scanned, places: in_order(&self.places), met: in_order(&self.met) }
     }
 
     /// The layer that was stored, on a map of this size; cells outside it are left out, and places
     /// that no sensor can have met.
     pub(crate) fn restored(known: &OccupancyGrid, stored: &SensedPlaces) -> Self {
-        let (cycle, looked) = (stored.cycle, stored.looked);
-        let mut layer = Self { cycle, looked, ..Self::new(known.frame()) };
+        let (cycle, scanned) = (stored.cycle, stored.scanned);
+        let mut layer = Self { cycle, scanned, ..Self::new(known.frame()) };
         let is_inside = |cell: Cell| known.frame().contains(cell) && !known.occupied().get(cell);
-        let inside =
-            stored.places.iter().filter(|(cell, place)| is_inside(*cell) && place.sensor < SENSORS);
-        for &(cell, place) in inside {
-            layer.places.insert(cell, place);
-            layer.count += u64::from(layer.sensed.set(cell, true));
+        let is_place = |place: &Place| place.sensor < Robot::MOST_SENSORS;
+        for &(cell, place) in &stored.places {
+            if is_inside(cell) && is_place(&place) {
+                layer.places.insert(cell, place);
+                layer.count += u64::from(layer.sensed.set(cell, true));
+            }
+        }
+        for &((cell, sensor), point) in &stored.met {
+            if is_inside(cell) && sensor < SensorPoints::MOST_SENSORS {
+                layer.met.insert((cell, sensor), point);
+                layer.count += u64::from(layer.sensed.set(cell, true));
+            }
         }
         layer
     }
 
     /// The sensed cells, in the order of [`Cell`].
     pub(crate) fn cells(&self) -> Vec<Cell> {
-        let mut cells: Vec<Cell> = self.places.keys().copied().collect();
+        let met = self.met.keys().map(|&(cell, _)| cell);
+        let mut cells: Vec<Cell> = self.places.keys().copied().chain(met).collect();
         cells.sort_unstable();
+        cells.dedup();
         cells
     }
 
@@ -157,7 +160,9 @@ impl SensedLayer {
         edits: &mut Vec<Edit>,
     ) {
         let sensor = sensor.min(Robot::MOST_SENSORS - 1);
-        self.begin(sensor, edits);
+        self.begin(edits);
+        self.cycle = self.cycle.saturating_add(1);
+        self.scanned[sensor] = self.cycle;
         let frame = known.frame();
         self.clear_seen_through(scan);
         if let Some(tracker) = tracker {
@@ -175,9 +180,7 @@ impl SensedLayer {
         self.list_changes(known, edits);
     }
 
-    fn begin(&mut self, sensor: usize, edits: &mut Vec<Edit>) {
-        self.cycle += 1;
-        self.looked[sensor] = self.cycle;
+    fn begin(&mut self, edits: &mut Vec<Edit>) {
         edits.clear();
         self.cleared.clear();
         self.marked.clear();
@@ -206,23 +209,33 @@ impl SensedLayer {
     ) {
         let frame = known.frame();
         let before = {
-            let (cycle, looked) = (self.cycle, self.looked);
-            std::mem::replace(self, Self { cycle, looked, ..Self::new(frame) })
+            let (cycle, scanned) = (self.cycle, self.scanned);
+            std::mem::replace(self, Self { cycle, scanned, ..Self::new(frame) })
         };
         edits.clear();
         let free = |cell| Some(Edit { cell, state: known.state(cell)? });
         edits.extend(before.cells().into_iter().filter_map(free));
-        let mut places: Vec<(Cell, Place)> = before.places.into_iter().collect();
-        places.sort_unstable_by_key(|(cell, _)| *cell);
-        for (_, place) in places {
-            let point = shift(place.point);
-            let cell = frame.cell_from_world(point);
-            let Some(cell) = cell.filter(|&cell| !known.occupied().get(cell)) else { continue };
-            self.places.insert(cell, Place { point, ..place });
-            if self.sensed.set(cell, true) {
-                self.count += 1;
+        let mut mark = |layer: &mut Self, cell| {
+            if layer.sensed.set(cell, true) {
+                layer.count += 1;
                 edits.push(Edit { cell, state: CellState::Occupied });
             }
+        };
+        let free_cell = |point| {
+            let cell = frame.cell_from_world(point);
+            cell.filter(|&cell| !known.occupied().get(cell))
+        };
+        for (_, place) in in_order(&before.places) {
+            let point = shift(place.point);
+            let Some(cell) = free_cell(point) else { continue };
+            self.places.insert(cell, Place { point, ..place });
+            mark(self, cell);
+        }
+        for ((_, sensor), point) in in_order(&before.met) {
+            let point = shift(point);
+            let Some(cell) = free_cell(point) else { continue };
+            self.met.insert((cell, sensor), point);
+            mark(self, cell);
         }
     }
 
@@ -231,7 +244,7 @@ impl SensedLayer {
         edits.clear();
         let free = |cell| Some(Edit { cell, state: known.state(cell)? });
         edits.extend(self.cells().into_iter().filter_map(free));
-        *self = Self { cycle: self.cycle, looked: self.looked, ..Self::new(known.frame()) };
+        *self = Self { cycle: self.cycle, scanned: self.scanned, ..Self::new(known.frame()) };
     }
 
     /// Takes in changes of the known map. What stands on it is sensed no longer; a cell that was
@@ -242,6 +255,7 @@ impl SensedLayer {
         for edit in edits {
             if known.occupied().get(edit.cell) && self.sensed.set(edit.cell, false) {
                 self.places.remove(&edit.cell);
+                self.met.retain(|(cell, _), _| *cell != edit.cell);
                 self.count -= 1;
             }
             if !self.sensed.get(edit.cell) {
@@ -250,11 +264,18 @@ impl SensedLayer {
         }
     }
 
+    /// Clears what a beam has met in a cell.
     fn clear(&mut self, cell: Cell) {
-        if self.sensed.set(cell, false) {
-            self.places.remove(&cell);
+        if self.places.remove(&cell).is_some() && !self.has_met(cell) {
+            self.sensed.set(cell, false);
             self.cleared.push(cell);
         }
+    }
+
+    /// True if a sensor that gives points has met something in a cell.
+    fn has_met(&self, cell: Cell) -> bool {
+        let has = |sensor| self.met.contains_key(&(cell, sensor));
+        !self.met.is_empty() && (0..SensorPoints::MOST_SENSORS).any(has)
     }
 
     /// Clears the cells that a mover touches where it is estimated to be.
@@ -275,31 +296,35 @@ impl SensedLayer {
     /// Clears the cells whose places are seen through.
     fn clear_seen_through(&mut self, scan: &ProjectedScan) {
         // The sensor that has met it has looked again since, or does so now.
-        let is_old = |place: &Place| self.looked[place.sensor] > place.cycle;
-        let is_gone =
-            |place: &Place| place.is_scanned() && is_old(place) && scan.sees_through(place.point);
-        let through = self.places.iter().filter(|(_, place)| is_gone(place));
-        self.cleared.extend(through.map(|(&cell, _)| cell));
-        self.remove_cleared();
-    }
-
-    fn remove_cleared(&mut self) {
-        for cell in &self.cleared {
-            self.sensed.set(*cell, false);
-            self.places.remove(cell);
-        }
+        let is_old = |place: &Place| self.scanned[place.sensor] > place.cycle;
+        let is_gone = |place: &Place| is_old(place) && scan.sees_through(place.point);
+        let gone = self.places.iter().filter(|(_, place)| is_gone(place)).map(|(&cell, _)| cell);
+        self.cleared.extend(gone);
+        let mut cleared = std::mem::take(&mut self.cleared);
+        cleared.retain(|&cell| {
+            self.places.remove(&cell);
+            let is_free = !self.has_met(cell);
+            is_free && self.sensed.set(cell, false)
+        });
+        self.cleared = cleared;
     }
 
     fn mark(&mut self, known: &OccupancyGrid, sensor: usize, hit: &Hit) {
         let Some(cell) = hit.cell.filter(|&cell| !known.occupied().get(cell)) else { return };
-        let place = Place { point: hit.point, cycle: self.cycle, sensor };
-        // What was met by another kind of sensor is cleared by that alone.
-        let stays = |before: &Place| place.is_scanned() && !before.is_scanned();
-        if !self.places.get(&cell).is_some_and(stays) {
-            self.places.insert(cell, place);
-        }
+        self.places.insert(cell, Place { point: hit.point, cycle: self.cycle, sensor });
+        self.mark_cell(cell);
+    }
+
+    fn mark_cell(&mut self, cell: Cell) {
         if self.sensed.set(cell, true) {
             self.marked.push(cell);
         }
     }
+}
+
+/// The entries of a map in the order of their keys: that of a map is not the same in every run.
+fn in_order<K: Ord + Copy, V: Copy>(map: &HashMap<K, V>) -> Vec<(K, V)> {
+    let mut entries: Vec<(K, V)> = map.iter().map(|(&key, &value)| (key, value)).collect();
+    entries.sort_unstable_by_key(|(key, _)| *key);
+    entries
 }

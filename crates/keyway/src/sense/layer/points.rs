@@ -1,17 +1,17 @@
 //! Points in the sensed layer.
 
-use super::{Place, SensedLayer};
+use super::SensedLayer;
 use crate::geometry::{Point, Pose};
 use crate::map::{Edit, OccupancyGrid};
-use crate::robot::{Footprint, Robot};
-use crate::sense::{FieldOfView, Hit, SensorPoints, Tracker};
+use crate::robot::Footprint;
+use crate::sense::{FieldOfView, SensorPoints, Tracker};
 
 impl SensedLayer {
     /// Takes in points that a sensor of a robot of this footprint at `robot` (world frame) has met.
     /// Each marks its cell as the hit of a beam does; those within the footprint are the robot's
     /// own, and those on a mover in view are the mover.
     ///
-    /// What such a sensor has met is cleared by itself alone: where it says that it sees
+    /// What such a sensor has met is cleared by itself alone, and clears nothing else: where it says that it sees
     /// everything ([`SensorPoints::clears`]), and meets nothing there or before it any more.
     ///
     /// `edits` is emptied and receives the cells that changed, as by [`Self::update`].
@@ -24,18 +24,17 @@ impl SensedLayer {
         tracker: Option<&Tracker>,
         edits: &mut Vec<Edit>,
     ) {
-        let sensor = Robot::MOST_SENSORS + points.sensor.min(SensorPoints::MOST_SENSORS - 1);
-        self.begin(sensor, edits);
+        let sensor = points.sensor.min(SensorPoints::MOST_SENSORS - 1);
+        self.begin(edits);
         let pose = robot.compose(points.mount);
         if pose.point().is_finite() && pose.theta.is_finite() {
             self.clear_in_view(known, sensor, pose, points);
-            let met = points.points.iter().filter(|point| point.is_finite());
+            let met = points.points.iter().filter(|&&point| says_something(point));
             let is_own = |point: Point| footprint.covers(points.mount.world_from_body(point));
             for &point in met.filter(|point| !is_own(**point)) {
                 let point = pose.world_from_body(point);
                 if !tracker.is_some_and(|tracker| tracker.may_be_mover(point)) {
-                    let cell = known.frame().cell_from_world(point);
-                    self.mark(known, sensor, &Hit { point, cell });
+                    self.mark_point(known, sensor, point);
                 }
             }
         }
@@ -52,16 +51,33 @@ impl SensedLayer {
     ) {
         let Some(view) = points.clears.filter(FieldOfView::is_usable) else { return };
         self.view.look_around(pose, &view, points.points, known.frame().resolution_m());
-        let is_gone = |place: &Place| {
-            place.sensor == sensor
-                && place.point.distance(pose.point()) >= view.range_min_m
-                && self.view.sees_through(place.point)
+        let is_gone = |place: Point| {
+            place.distance(pose.point()) >= view.range_min_m && self.view.sees_through(place)
         };
-        let gone = self.places.iter().filter(|(_, place)| is_gone(place));
-        self.cleared.extend(gone.map(|(&cell, _)| cell));
+        let own = self.met.iter().filter(|((_, of), _)| *of == sensor);
+        let gone = own.filter(|(_, place)| is_gone(**place)).map(|((cell, _), _)| *cell);
+        for cell in gone.collect::<Vec<_>>() {
+            self.met.remove(&(cell, sensor));
+            if !self.places.contains_key(&cell) && !self.has_met(cell) {
+                self.sensed.set(cell, false);
+                self.cleared.push(cell);
+            }
+        }
         self.cleared.sort_unstable();
-        self.remove_cleared();
     }
+
+    fn mark_point(&mut self, known: &OccupancyGrid, sensor: usize, point: Point) {
+        let cell = known.frame().cell_from_world(point);
+        if let Some(cell) = cell.filter(|&cell| !known.occupied().get(cell)) {
+            self.met.insert((cell, sensor), point);
+            self.mark_cell(cell);
+        }
+    }
+}
+
+/// True for a place at which something was met.
+pub(in crate::sense) fn says_something(point: Point) -> bool {
+    point.is_finite() && point != Point::new(0.0, 0.0)
 }
 
 #[cfg(test)]
@@ -118,6 +134,44 @@ mod tests {
         assert_eq!(case.look(marks, &[]), [], "it sees no ground");
         assert!(case.layer.sensed().get(Cell::new(1, 0)));
         assert_eq!(case.look((1, Some(VIEW)), &[]), [(1, Free)]);
+    }
+
+    /// A lidar and two cameras see something in the same cell.
+    #[test]
+    fn a_cell_is_free_when_nobody_meets_anything_in_it() {
+        let mut case = Case::new();
+        let scan = |range_m: f64| {
+            let scan = crate::sense::Scan {
+                angle_increment_rad: 0.1,
+                range_max_m: 5.0,
+                ranges_m: vec![range_m; 1],
+                ..crate::sense::Scan::default()
+            };
+            crate::sense::test_scan::projected(
+                &crate::map::GridFrame::new(7, 1, 1.0, Pose::default()).unwrap(),
+                Pose::new(0.5, 0.5, 0.0),
+                &scan,
+            )
+        };
+        let mut edits = Vec::new();
+        let is_sensed = |case: &Case| case.layer.sensed().get(Cell::new(2, 0));
+        for order in 0..2 {
+            if order == 0 {
+                case.look((0, Some(VIEW)), &[2.0]);
+            }
+            case.layer.update(&case.known, &scan(2.0), None, &mut edits);
+            case.look((0, Some(VIEW)), &[2.0]);
+            case.look((1, Some(VIEW)), &[2.1]);
+            assert_eq!(case.look((0, Some(VIEW)), &[]), [], "the lidar and the other one meet it");
+            assert_eq!(case.look((1, Some(VIEW)), &[]), [], "the lidar meets it");
+            assert!(is_sensed(&case));
+            case.layer.update(&case.known, &scan(f64::INFINITY), None, &mut edits);
+            assert!(!is_sensed(&case) && edits.len() == 1);
+        }
+        case.look((0, Some(VIEW)), &[2.0]);
+        case.layer.update(&case.known, &scan(2.0), None, &mut edits);
+        case.layer.update(&case.known, &scan(f64::INFINITY), None, &mut edits);
+        assert!(is_sensed(&case) && edits.is_empty(), "the camera meets it");
     }
 
     #[test]
