@@ -14,13 +14,14 @@ impl Navigator {
     /// fast; the route is planned anew.
     ///
     /// The pose is that at the time of the last observation. A pose that is not finite moves
-    /// nothing.
+    /// nothing; as the first one it is none from which a goal can be reached.
     pub fn relocate(&mut self, pose: Pose) {
-        if !(pose.point().is_finite() && pose.theta.is_finite()) {
+        let is_place = |pose: &Pose| pose.point().is_finite() && pose.theta.is_finite();
+        if self.place.is_some() && !is_place(&pose) {
             return;
         }
-        let before = self.place.replace(pose).filter(|&before| before != pose);
-        if let Some(before) = before {
+        let before = self.place.replace(pose).filter(|before| *before != pose);
+        if let Some(before) = before.filter(is_place) {
             let shift = self.world.relocate(before, pose);
             self.shift_errand(&shift);
             self.plan_again();

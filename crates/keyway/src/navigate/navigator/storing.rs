@@ -25,7 +25,8 @@ impl Navigator {
             errand: errand.clone(),
             record,
             speed_limit_mps: self.speed_limit_mps,
-            place: self.place,
+            // A place that is none is not known.
+            place: self.place.filter(|it| it.point().is_finite() && it.theta.is_finite()),
             stepped: self.stepped,
             unobserved: self.unobserved,
             issued: self.issued,
