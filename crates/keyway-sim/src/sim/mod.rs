@@ -30,7 +30,7 @@
 //! let mut nearest_m = f64::INFINITY;
 //! let mut straight_on = |&Observation { pose, scans, .. }: &Observation<'_>| {
 //!     // There is none in a cycle without a scan.
-//!     let ranges_m = scans.iter().flat_map(|one| one.scan.ranges_m.iter().copied());
+//!     let ranges_m = scans.iter().flat_map(|one| one.scan.ranges_m.iter());
 //!     nearest_m = ranges_m.fold(nearest_m, f64::min);
 //!     // Whatever is seen.
 //!     let action = Action::Drive(Velocity::new(0.3, 0.0));
