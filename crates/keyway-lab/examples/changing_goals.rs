@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 const EVERY_S: f64 = 3.0;
 const CHANGES: u32 = 5;
 
-/// How a run ended, its time, and that of the run that it is compared with \[s\].
+/// Outcome of a run, its time, and that of the run that it is compared with \[s\].
 struct Measured {
     outcome: Outcome,
     took_s: f64,

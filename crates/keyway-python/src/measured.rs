@@ -1,4 +1,4 @@
-//! What was measured, on its way to a navigator.
+//! Measurements on their way to a navigator.
 
 use crate::points::Points;
 use crate::scan::LaserScan;

@@ -42,15 +42,8 @@ impl Step {
 
 impl Step {
     pub(crate) fn new(step: keyway::navigate::Step, notice: Option<String>) -> Self {
-        use keyway::navigate::Step;
         let Velocity { v, omega, .. } = step.command();
-        let (status, why) = match step {
-            Step::Drive(_) => ("drive", None),
-            Step::Arrived => ("arrived", None),
-            Step::Idle => ("idle", None),
-            Step::Blocked { why, .. } => ("blocked", Some(why)),
-        };
-        let kind = why.as_ref().map(Blocked::kind);
-        Self { v, omega, status, why: why.map(|why| why.to_string()), kind, notice }
+        let (why, kind) = (step.why().map(ToString::to_string), step.why().map(Blocked::kind));
+        Self { v, omega, status: step.name(), why, kind, notice }
     }
 }

@@ -1,4 +1,4 @@
-//! What of a flight is kept in full precision.
+//! Observations and steps in full precision.
 
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::navigate::{Blocked, Step};
@@ -142,15 +142,10 @@ impl RecordedStep {
 
     pub(super) fn of(step: &Step) -> Self {
         let Velocity { v, omega, .. } = step.command();
-        let (status, why) = match step {
-            Step::Drive(_) => ("drive", None),
-            Step::Arrived => ("arrived", None),
-            Step::Idle => ("idle", None),
-            Step::Blocked { why, .. } => ("blocked", Some(why)),
-        };
+        let why = step.why();
         Self {
             schema: Self::SCHEMA.to_owned(),
-            status: status.to_owned(),
+            status: step.name().to_owned(),
             v_mps: v,
             omega_radps: omega,
             kind: why.map(Blocked::kind),

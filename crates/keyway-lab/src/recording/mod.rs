@@ -8,7 +8,8 @@
 //! | `/tf_static`, `/tf` | `tf2_msgs/msg/TFMessage`: sensors on the robot, and the robot in `map` |
 //! | `/odom` | `nav_msgs/msg/Odometry`: pose and velocity as observed |
 //! | `/scan`, `/scan_1`, ... | `sensor_msgs/msg/LaserScan` of each sensor |
-//! | `/goal_pose`, `/plan` | `geometry_msgs/msg/PoseStamped`, `nav_msgs/msg/Path`, whenever they change |
+//! | `/goal_pose` | `geometry_msgs/msg/PoseStamped`, whenever it is another one |
+//! | `/plan` | `nav_msgs/msg/Path`, whenever it is another one |
 //! | `/cmd_vel` | `geometry_msgs/msg/TwistStamped`: the command |
 //! | `/keyway/step` | `keyway.step/1` (JSON): the command in full precision, and the reason |
 //! | `/keyway/observation` | what was observed in full precision (CBOR) |

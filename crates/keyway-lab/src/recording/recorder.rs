@@ -21,9 +21,8 @@ use std::io::{Seek, Write};
 /// It is told of the navigator before its first observation ([`Self::begin`]), of each observation
 /// and each step, and of every other change ([`Self::changed`]): goals, maps, limits.
 ///
-/// What is more than about a second old is in the file, whatever happens then: one that was not
-/// finished, as after a loss of power, is read as far as it goes. Stamps before 0 are those of
-/// viewers as 0.
+/// All but about the last second is in the file, whatever happens then: one that was not finished,
+/// as after a loss of power, is read as far as it goes. Viewers show stamps before 0 as 0.
 pub struct FlightRecorder<W: Write + Seek> {
     writer: Writer<W>,
     channels: BTreeMap<String, u16>,
@@ -38,6 +37,9 @@ pub struct FlightRecorder<W: Write + Seek> {
 }
 
 impl<W: Write + Seek> FlightRecorder<W> {
+    /// Time between two writes \[s\].
+    const FLUSH_S: f64 = 1.0;
+
     /// Records into a new file, or into memory.
     ///
     /// # Errors
@@ -120,7 +122,7 @@ impl<W: Write + Seek> FlightRecorder<W> {
         let schema = || (RecordedStep::SCHEMA, "jsonschema", STEP_SCHEMA);
         let channel = self.channel(STEP, "json", Some(schema()))?;
         self.write(channel, &text)?;
-        let is_due = !(self.stamp_s - self.written_s).abs().lt(&1.0);
+        let is_due = (self.stamp_s - self.written_s).abs() >= Self::FLUSH_S;
         if is_due { self.flush() } else { Ok(()) }
     }
 

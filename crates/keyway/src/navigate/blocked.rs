@@ -34,6 +34,24 @@ impl Step {
         }
     }
 
+    /// Its name: `drive`, `arrived`, `idle` or `blocked`.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Drive(_) => "drive",
+            Self::Arrived => "arrived",
+            Self::Idle => "idle",
+            Self::Blocked { .. } => "blocked",
+        }
+    }
+
+    /// The reason of a robot that is blocked; otherwise `None`.
+    pub const fn why(&self) -> Option<&Blocked> {
+        match self {
+            Self::Blocked { why, .. } => Some(why),
+            Self::Drive(_) | Self::Arrived | Self::Idle => None,
+        }
+    }
+
     /// The same with another command; a robot that has arrived, or has no goal, is not given any.
     pub(super) fn commanding(self, command: Velocity) -> Self {
         match self {

@@ -25,8 +25,7 @@ pub struct Observation<'a> {
 }
 
 impl<'a> Observation<'a> {
-    /// What a robot with lidars alone has measured: its pose and velocity at a time \[s\], and
-    /// scans.
+    /// Measurements of a robot with lidars alone: its pose and velocity at a time \[s\], and scans.
     pub const fn new(
         stamp_s: f64,
         pose: Pose,

@@ -1,4 +1,4 @@
-//! What scans have shown that the known map does not.
+//! Obstacles that sensors have met and the known map does not have.
 
 mod points;
 pub(super) use points::says_something;

@@ -11,7 +11,7 @@ impl SensedLayer {
     /// Each marks its cell as the hit of a beam does; those within the footprint are the robot's
     /// own, and those on a mover in view are the mover.
     ///
-    /// What such a sensor has met is cleared by itself alone, and clears nothing else: where it says that it sees
+    /// Such a sensor clears what it has met itself, and nothing else: where it says that it sees
     /// everything ([`SensorPoints::clears`]), and meets nothing there or before it any more.
     ///
     /// `edits` is emptied and receives the cells that changed, as by [`Self::update`].
