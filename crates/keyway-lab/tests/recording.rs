@@ -102,6 +102,10 @@ fn a_life_with_changes_is_decided_again() {
     let flight = flight.unwrap();
     assert_eq!((flight.cycles, flight.snapshots, flight.is_complete), (decided, 3, true));
     assert!(decided > 200 && scans == 2 * decided as usize && points > 100, "{decided} {points}");
+    let bytes = std::fs::read(&path).unwrap();
+    let shown = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    let clouds = shown.filter(|message| message.channel.topic == "/points_2").count();
+    assert_eq!(clouds as u64, decided);
 }
 
 /// A change of which the recorder was not told is noticed.

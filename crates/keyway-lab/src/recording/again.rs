@@ -2,12 +2,10 @@
 
 use super::RecordingError;
 use super::flight::{OBSERVATION, RecordedObservation, RecordedStep, SNAPSHOT, STEP};
-use enumset::{EnumSet, enum_set};
+use super::messages::for_each_message;
 use keyway::file_system::read_file;
 use keyway::navigate::{Navigator, Snapshot};
 use keyway_sim::episode::Cycle;
-use mcap::read::Options;
-use mcap::{McapError, MessageStream};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -23,8 +21,6 @@ pub struct Flight {
     pub is_complete: bool,
 }
 
-const OPTIONS: EnumSet<Options> = enum_set!(Options::IgnoreEndMagic | Options::ValidateChunkCrcs);
-
 /// More than a recording of a day has.
 const MAX_BYTES: u64 = 1 << 36;
 
@@ -39,26 +35,13 @@ pub fn decide_again(
 ) -> Result<Flight, RecordingError> {
     let bytes = read_file(path, MAX_BYTES)?;
     let no_mcap = |reason| RecordingError::NoMcap { path: path.to_owned(), reason };
-    if !bytes.starts_with(mcap::MAGIC) {
-        return Err(no_mcap(McapError::BadMagic));
-    }
-    let stream = MessageStream::new_with_options(&bytes, OPTIONS);
     let mut pilot = Pilot::new(path);
-    let is_complete = bytes.ends_with(mcap::MAGIC);
-    for message in stream.map_err(no_mcap)? {
-        let message = match message {
-            Ok(message) => message,
-            // What was written before a loss of power is read.
-            Err(McapError::UnexpectedEof | McapError::UnexpectedEoc) if !is_complete => break,
-            Err(reason) => return Err(no_mcap(reason)),
-        };
-        match message.channel.topic.as_str() {
-            SNAPSHOT => pilot.take_up(&message.data)?,
-            OBSERVATION => pilot.observe(&message.data)?,
-            STEP => pilot.step(&message.data, watch)?,
-            _ => {}
-        }
-    }
+    let is_complete = for_each_message(&bytes, no_mcap, |topic, data| match topic {
+        SNAPSHOT => pilot.take_up(data),
+        OBSERVATION => pilot.observe(data),
+        STEP => pilot.step(data, watch),
+        _ => Ok(()),
+    })?;
     if pilot.navigator.is_none() {
         return Err(RecordingError::NoFlight { path: path.to_owned() });
     }

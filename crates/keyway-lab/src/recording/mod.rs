@@ -8,6 +8,7 @@
 //! | `/tf_static`, `/tf` | `tf2_msgs/msg/TFMessage`: sensors on the robot, and the robot in `map` |
 //! | `/odom` | `nav_msgs/msg/Odometry`: pose and velocity as observed |
 //! | `/scan`, `/scan_1`, ... | `sensor_msgs/msg/LaserScan` of each sensor |
+//! | `/points`, `/points_1`, ... | `sensor_msgs/msg/PointCloud2` of each camera or bumper |
 //! | `/goal_pose` | `geometry_msgs/msg/PoseStamped`, whenever it is another one |
 //! | `/plan` | `nav_msgs/msg/Path`, whenever it is another one |
 //! | `/cmd_vel` | `geometry_msgs/msg/TwistStamped`: the command |
@@ -18,8 +19,10 @@
 //! From the last three [`decide_again`] makes every decision again.
 
 mod again;
+mod definitions;
 mod error;
 mod flight;
+mod messages;
 mod recorder;
 mod ros;
 

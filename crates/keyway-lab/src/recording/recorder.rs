@@ -3,8 +3,8 @@
 use super::RecordingError;
 use super::flight::{OBSERVATION, RecordedObservation, RecordedStep, SNAPSHOT, STEP};
 use super::ros::{
-    BASE, CommandMessage, GridMessage, MAP, OdometryMessage, PathMessage, PoseMessage, RosMessage,
-    ScanMessage, TransformMessage, encoded, sensor_frame,
+    BASE, CommandMessage, GridMessage, MAP, OdometryMessage, PathMessage, PointsMessage,
+    PoseMessage, RosMessage, ScanMessage, TransformMessage, encoded, sensor_frame,
 };
 use keyway::geometry::Pose;
 use keyway::map::OccupancyGrid;
@@ -93,18 +93,17 @@ impl<W: Write + Seek> FlightRecorder<W> {
     /// # Errors
     /// When it cannot be written.
     pub fn observed(&mut self, observation: &Observation<'_>) -> Result<(), RecordingError> {
-        let Observation { stamp_s, pose, velocity, scans, .. } = *observation;
+        let Observation { stamp_s, pose, velocity, scans, points } = *observation;
         self.stamp_s = stamp_s;
         self.cbor(OBSERVATION, &RecordedObservation::of(observation))?;
         let robot = [(BASE.to_owned(), pose)];
         self.ros("/tf", &TransformMessage::new(stamp_s, MAP, robot))?;
         self.ros("/odom", &OdometryMessage::new(stamp_s, pose, velocity))?;
         for one in scans {
-            let topic = match one.sensor {
-                0 => "/scan".to_owned(),
-                sensor => format!("/scan_{sensor}"),
-            };
-            self.ros(&topic, &ScanMessage::from(one))?;
+            self.ros(&topic_of("/scan", one.sensor), &ScanMessage::from(one))?;
+        }
+        for one in points {
+            self.ros(&topic_of("/points", one.sensor), &PointsMessage::from(one))?;
         }
         Ok(())
     }
@@ -203,6 +202,11 @@ impl<W: Write + Seek> FlightRecorder<W> {
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         Ok(self.writer.write_to_known_channel(&header, bytes)?)
     }
+}
+
+/// Topic of a sensor; the first one has no number.
+fn topic_of(kind: &str, sensor: usize) -> String {
+    if sensor == 0 { kind.to_owned() } else { format!("{kind}_{sensor}") }
 }
 
 /// Of `keyway.step/1`.

@@ -1,10 +1,11 @@
 //! Messages of ROS 2, as far as recordings have them: their fields in the order of their
 //! definitions, which is their encoding, and the definitions themselves.
 
+use super::definitions::{header, pose, quaternion, separator, twist, vector3};
 use cdr_encoding::to_vec;
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::map::{CellState, OccupancyGrid};
-use keyway::sense::SensorScan;
+use keyway::sense::{SensorPoints, SensorScan};
 use serde::Serialize;
 
 /// A message that has a definition.
@@ -28,60 +29,6 @@ pub(super) const BASE: &str = "base_link";
 
 pub(super) fn sensor_frame(sensor: usize) -> String {
     if sensor == 0 { "base_scan".to_owned() } else { format!("base_scan_{sensor}") }
-}
-
-macro_rules! separator {
-    () => {
-        "\n================================================================================\nMSG: "
-    };
-}
-
-macro_rules! header {
-    () => {
-        concat!(
-            separator!(),
-            "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id",
-            separator!(),
-            "builtin_interfaces/Time\nint32 sec\nuint32 nanosec"
-        )
-    };
-}
-
-macro_rules! vector3 {
-    () => {
-        concat!(separator!(), "geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z")
-    };
-}
-
-macro_rules! quaternion {
-    () => {
-        concat!(
-            separator!(),
-            "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w"
-        )
-    };
-}
-
-macro_rules! pose {
-    () => {
-        concat!(
-            separator!(),
-            "geometry_msgs/Pose\ngeometry_msgs/Point position\ngeometry_msgs/Quaternion orientation",
-            separator!(),
-            "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z",
-            quaternion!()
-        )
-    };
-}
-
-macro_rules! twist {
-    () => {
-        concat!(
-            separator!(),
-            "geometry_msgs/Twist\ngeometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular",
-            vector3!()
-        )
-    };
 }
 
 /// `builtin_interfaces/msg/Time`.
@@ -289,6 +236,63 @@ impl From<&SensorScan<'_>> for ScanMessage {
 }
 
 #[derive(Debug, Serialize)]
+pub(super) struct PointsMessage {
+    header: Header,
+    height: u32,
+    width: u32,
+    fields: Vec<PointField>,
+    is_bigendian: bool,
+    point_step: u32,
+    row_step: u32,
+    data: Vec<u8>,
+    is_dense: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct PointField {
+    name: &'static str,
+    offset: u32,
+    datatype: u8,
+    count: u32,
+}
+
+impl RosMessage for PointsMessage {
+    const NAME: &'static str = "sensor_msgs/msg/PointCloud2";
+    const DEFINITION: &'static str = concat!(
+        "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n",
+        "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense",
+        header!(),
+        separator!(),
+        "sensor_msgs/PointField\nstring name\nuint32 offset\nuint8 datatype\nuint32 count"
+    );
+}
+
+impl From<&SensorPoints<'_>> for PointsMessage {
+    /// In the frame of the robot, on the ground.
+    fn from(one: &SensorPoints<'_>) -> Self {
+        /// `sensor_msgs/PointField.FLOAT32`, and its size \[bytes\].
+        const FLOAT32: (u8, u32) = (7, 4);
+        let (datatype, size) = FLOAT32;
+        let names = ["x", "y", "z"].into_iter().zip(0..);
+        let field = |(name, index)| PointField { name, offset: index * size, datatype, count: 1 };
+        let places = one.points.iter().map(|&point| one.mount.world_from_body(point));
+        let numbers = places.flat_map(|place| [place.x as f32, place.y as f32, 0.0]);
+        let (width, point_step) = (one.points.len() as u32, 3 * size);
+        Self {
+            header: Header::new(one.stamp_s, BASE),
+            height: 1,
+            width,
+            fields: names.map(field).collect(),
+            is_bigendian: false,
+            point_step,
+            row_step: width * point_step,
+            data: numbers.flat_map(f32::to_le_bytes).collect(),
+            is_dense: one.points.iter().all(|point| point.is_finite()),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
 pub(super) struct PoseMessage {
     header: Header,
     pose: RosPose,
@@ -407,6 +411,7 @@ impl TransformMessage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn stamps_are_those_of_ros() {
@@ -429,5 +434,18 @@ mod tests {
             bytes.extend(number.to_le_bytes());
         }
         assert_eq!(encoded(&message).unwrap(), bytes);
+    }
+
+    /// A camera 1 m ahead that looks to the left, and meets something 2 m before it.
+    #[test]
+    fn points_lie_in_the_frame_of_the_robot() {
+        let (mount, points) = (Pose::new(1.0, 0.0, FRAC_PI_2), [Point::new(2.0, 0.0)]);
+        let points = SensorPoints { stamp_s: 0.0, sensor: 1, mount, points: &points, clears: None };
+        let message = PointsMessage::from(&points);
+        let number = |at: usize| f32::from_le_bytes(message.data[at..at + 4].try_into().unwrap());
+        let offsets: Vec<u32> = message.fields.iter().map(|field| field.offset).collect();
+        assert_eq!((message.data.len(), message.row_step, offsets), (12, 12, vec![0, 4, 8]));
+        assert!((number(0) - 1.0).abs() < 1e-6 && (number(4) - 2.0).abs() < 1e-6);
+        assert_eq!(number(8), 0.0);
     }
 }

@@ -1,6 +1,7 @@
 //! One bit per cell, in padded rows of 64-bit words.
 
-use super::{Cell, MAX_CELLS};
+use super::Cell;
+use super::frame::is_size;
 use serde::{Deserialize, Serialize};
 
 /// A bit for every cell of a `width` x `height` grid, and a border of one padding cell around it.
@@ -56,10 +57,9 @@ impl TryFrom<BitRuns> for BitGrid {
 
     fn try_from(given: BitRuns) -> Result<Self, String> {
         let BitRuns { width, height, padding, runs } = given;
-        let cells = u64::from(width) * u64::from(height);
-        let padded = (u64::from(width) + 2).saturating_mul(u64::from(height) + 2);
+        let (columns, rows) = (u64::from(width), u64::from(height));
         let sum = runs.iter().try_fold(0u64, |sum, &run| sum.checked_add(run));
-        if padded > 2 * MAX_CELLS || cells == 0 || sum != Some(cells) {
+        if !is_size(columns, rows) || sum != Some(columns * rows) {
             return Err(format!("the runs of a grid of {width} x {height} cells do not fill it"));
         }
         let mut grid = Self::new(width, height, padding);

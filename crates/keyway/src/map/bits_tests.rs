@@ -102,3 +102,19 @@ proptest! {
         prop_assert_eq!(grid.count_ones(), ones.sum::<u64>());
     }
 }
+
+/// A row takes a whole word: narrow grids of few cells could take much memory.
+#[test]
+fn only_sizes_of_maps_are_taken_up() {
+    let stored = |width: u64, height: u64| {
+        serde_json::json!({
+            "width": width, "height": height, "padding": false, "runs": [width * height]
+        })
+    };
+    for (width, height) in [(3, 2), (1000, 900)] {
+        assert!(serde_json::from_value::<BitGrid>(stored(width, height)).is_ok());
+    }
+    for (width, height) in [(0, 5), (1, 500_000_000), (500_000_000, 1 << 31), (1 << 31, 2)] {
+        assert!(serde_json::from_value::<BitGrid>(stored(width, height)).is_err());
+    }
+}

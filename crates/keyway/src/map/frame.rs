@@ -10,6 +10,14 @@ use thiserror::Error;
 /// The largest number of cells that a grid may have (2^31: padded cell indices fit 32 bits).
 pub const MAX_CELLS: u64 = 1 << 31;
 
+/// True if a grid may have this many columns and rows.
+pub(super) fn is_size(width: u64, height: u64) -> bool {
+    // Padding included, so that a thin map cannot overflow the padded index either.
+    let padded = (u128::from(width) + 130) * (u128::from(height) + 2);
+    let cells = u128::from(width) * u128::from(height);
+    (1..=u128::from(MAX_CELLS)).contains(&cells) && padded <= 1 << 32
+}
+
 /// Size, resolution and origin of a grid.
 ///
 /// Three coordinates are used: *world* (metres), *grid* (continuous, in cells: cell (i, j) is the
@@ -105,10 +113,7 @@ impl GridFrame {
         if width == 0 || height == 0 {
             return Err(FrameError::Empty { width, height });
         }
-        // Padding included, so that a thin map cannot overflow the padded index either.
-        let padded = (u128::from(width) + 130) * (u128::from(height) + 2);
-        let cells = u128::from(width) * u128::from(height);
-        if cells > u128::from(MAX_CELLS) || padded > 1 << 32 {
+        if !is_size(width, height) {
             return Err(FrameError::TooLarge { width, height });
         }
         if !Self::RESOLUTIONS_M.contains(&resolution_m) {
