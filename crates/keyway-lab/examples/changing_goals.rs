@@ -65,7 +65,8 @@ impl Drive {
         let guidance = self.navigator.guidance();
         let remaining_m = guidance.map_or(f64::INFINITY, |guidance| guidance.remaining_m);
         let route = self.navigator.ways_taken() + 1000 * self.changes;
-        self.world.step(&Control { action, remaining_m, route })?;
+        let turn_left_rad = self.navigator.turn_left_rad();
+        self.world.step(&Control { action, remaining_m, turn_left_rad, route })?;
         Ok(self.world.outcome())
     }
 

@@ -101,7 +101,7 @@ impl Simulation {
             let straight_m = stepper.state().pose.point().distance(self.goal);
             let remaining_m = remaining.unwrap_or(straight_m);
             let action = Action::Drive(Velocity::new(v, omega));
-            stepper.step(&Control { action, remaining_m, route: 0 })
+            stepper.step(&Control { action, remaining_m, route: 0, turn_left_rad: 0.0 })
         });
         Ok(ended.map_err(bad_value)?.map(name))
     }

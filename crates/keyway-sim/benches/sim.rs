@@ -90,7 +90,7 @@ fn minute(world: &World, robot: &Robot) -> Run {
         black_box(scan);
         left_m -= 1.0;
         let action = Action::Drive(Velocity::new(0.5, 0.4));
-        Control { action, remaining_m: left_m, route: 1 }
+        Control { action, remaining_m: left_m, route: 1, turn_left_rad: 0.0 }
     };
     let (start, goal) = (Pose::new(15.0, 14.0, 0.0), Point::new(29.0, 29.0));
     let one = Participant {

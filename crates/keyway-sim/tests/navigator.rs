@@ -41,7 +41,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
             step => Action::Drive(step.command()),
         };
         let remaining_m = navigator.guidance().unwrap().remaining_m;
-        Control { action, remaining_m, route: navigator.routes_planned() }
+        Control { action, remaining_m, route: navigator.routes_planned(), turn_left_rad: 0.0 }
     };
     let participant = Participant {
         robot: &robot,

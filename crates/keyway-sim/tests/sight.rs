@@ -240,7 +240,7 @@ fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) +
             step => Action::Drive(step.command()),
         };
         let remaining_m = navigator.guidance().unwrap().remaining_m;
-        Control { action, remaining_m, route: navigator.ways_taken() }
+        Control { action, remaining_m, route: navigator.ways_taken(), turn_left_rad: 0.0 }
     };
     let goal_tolerance_m = stack.controller.goal_tolerance_m;
     let participant = Participant {

@@ -198,9 +198,12 @@ impl<'a> Ready<'a> {
     fn controller(&mut self) -> Box<Decide<'_>> {
         match self {
             Self::Drives(driver) => Box::new(|observation| driver.decide(observation)),
-            Self::Stands { .. } => {
-                Box::new(|_| Control { action: Action::Stop, remaining_m: f64::INFINITY, route: 0 })
-            }
+            Self::Stands { .. } => Box::new(|_| Control {
+                action: Action::Stop,
+                remaining_m: f64::INFINITY,
+                route: 0,
+                turn_left_rad: 0.0,
+            }),
         }
     }
 
@@ -265,7 +268,8 @@ impl Driver<'_> {
                 Action::Drive(command)
             }
         };
-        Control { action, remaining_m, route: navigator.ways_taken() }
+        let turn_left_rad = navigator.turn_left_rad();
+        Control { action, remaining_m, turn_left_rad, route: navigator.ways_taken() }
     }
 
     /// Returns the report of the run.

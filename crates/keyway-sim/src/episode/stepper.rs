@@ -67,7 +67,8 @@ mod tests {
                 step => Action::Drive(step.command()),
             };
             let (remaining_m, route) = (remaining_m(&navigator), navigator.ways_taken());
-            run.step(&Control { action, remaining_m, route }).unwrap();
+            let turn_left_rad = navigator.turn_left_rad();
+            run.step(&Control { action, remaining_m, turn_left_rad, route }).unwrap();
         }
         let samples = run.into_run().unwrap().samples;
         let expected = run_episode(&episode).unwrap().first().trajectory.unwrap();

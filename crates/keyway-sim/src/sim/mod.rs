@@ -34,7 +34,8 @@
 //!     nearest_m = ranges_m.fold(nearest_m, f64::min);
 //!     // Whatever is seen.
 //!     let action = Action::Drive(Velocity::new(0.3, 0.0));
-//!     Control { action, remaining_m: pose.point().distance(goal), route: 0 }
+//!     let remaining_m = pose.point().distance(goal);
+//!     Control { action, remaining_m, turn_left_rad: 0.0, route: 0 }
 //! };
 //! // An ideal robot.
 //! let ideal = Disturbances::default;
@@ -56,6 +57,7 @@
 //! let mut stay = |_: &Observation<'_>| Control {
 //!     action: Action::Stop,
 //!     remaining_m: 4.0,
+//!     turn_left_rad: 0.0,
 //!     route: 0,
 //! };
 //! let there = Pose::new(3.0, 1.0, 0.0);

@@ -1,7 +1,8 @@
 //! Rules that end a run without contact.
 
+use super::Control;
 use keyway::ConfigError;
-use keyway::navigate::WayProgress;
+use keyway::navigate::{WayLeft, WayProgress};
 use serde::{Deserialize, Serialize};
 
 /// Rules that end a run.
@@ -114,13 +115,15 @@ impl StuckWatch {
         }
     }
 
-    /// True if a robot with `remaining_m` to go on the route of this number is stuck.
-    pub(super) fn is_stuck(&mut self, remaining_m: f64, route: u32, cycle: u64) -> bool {
+    /// True if a robot with this answer is stuck.
+    pub(super) fn is_stuck(&mut self, control: &Control, cycle: u64) -> bool {
+        let &Control { remaining_m, turn_left_rad, route, .. } = control;
         if remaining_m.is_finite() {
             if self.route.replace(route).is_some_and(|before| before != route) {
                 self.progress.begin_another_way(remaining_m);
             }
-            if self.progress.has_progressed(remaining_m, self.step_m) {
+            let left = WayLeft { way_m: remaining_m, turn_rad: turn_left_rad };
+            if self.progress.has_progressed(left, self.step_m) {
                 self.since_cycle = cycle;
             }
         }

@@ -27,7 +27,8 @@ use std::borrow::Cow;
 /// while run.outcome().is_none() {
 ///     let pose = run.told().pose;
 ///     let action = Action::Drive(Velocity::new(0.5, 0.0));
-///     run.step(&Control { action, remaining_m: pose.point().distance(goal), route: 0 })?;
+///     let remaining_m = pose.point().distance(goal);
+///     run.step(&Control { action, remaining_m, turn_left_rad: 0.0, route: 0 })?;
 /// }
 /// assert_eq!(run.outcome(), Some(Outcome::Reached));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -135,6 +136,7 @@ mod tests {
         Control {
             action: Action::Drive(command),
             remaining_m: -pose.x - 10.0 * pose.theta,
+            turn_left_rad: 0.0,
             route: 0,
         }
     }
@@ -179,7 +181,7 @@ mod tests {
         let mut run =
             Stepper::new(world.unwrap(), robot, (start, goal), Disturbances::default(), rules)
                 .unwrap();
-        let control = |action| Control { action, remaining_m: 1.0, route: 0 };
+        let control = |action| Control { action, remaining_m: 1.0, route: 0, turn_left_rad: 0.0 };
         let nan = Velocity::new(f64::NAN, 0.0);
         assert!(run.step(&control(Action::Drive(nan))).is_err());
         let given_up = run.step(&control(Action::GiveUp)).unwrap_err();

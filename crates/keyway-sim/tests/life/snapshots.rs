@@ -51,7 +51,7 @@ fn drive(case: &Case, map: &OccupancyGrid, is_stored: bool) -> Run {
             step => Action::Drive(step.command()),
         };
         let remaining_m = navigator.guidance().unwrap().remaining_m;
-        Control { action, remaining_m, route: navigator.ways_taken() }
+        Control { action, remaining_m, route: navigator.ways_taken(), turn_left_rad: 0.0 }
     };
     let participant = Participant {
         robot,

@@ -80,7 +80,7 @@ pub use masks::{Masks, SpeedMask};
 pub use misfit::Misfit;
 pub use navigator::Navigator;
 pub use plan_job::{PlanJob, Planned};
-pub use progress::WayProgress;
+pub use progress::{WayLeft, WayProgress};
 pub use recovery::{RecoveryCounts, RecoveryKind};
 pub use restore_error::RestoreError;
 pub use snapshot::Snapshot;

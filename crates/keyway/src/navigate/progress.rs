@@ -1,18 +1,29 @@
-//! Progress along a way: what is left of it becomes shorter. Controllers and simulated runs ask for
-//! the same steps.
+//! Progress along a way: what is left of it becomes shorter, or what is left of a turn smaller.
+//! Controllers and simulated runs ask for the same steps.
 
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// The shortest remaining way so far.
+/// What a robot has left to do before it is where it should be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WayLeft {
+    /// The rest of its way \[m\]; NaN or infinity: unknown.
+    pub way_m: f64,
+    /// How far it has to turn, to either side, to face that way \[rad\].
+    pub turn_rad: f64,
+}
+
+/// The least that is left so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayProgress {
     shortest_m: f64,
+    /// The smallest turn left since the way became shorter \[rad\].
+    smallest_rad: f64,
 }
 
 impl WayProgress {
     /// Nothing is known of the way yet: whatever comes first is progress.
-    pub const NEW: Self = Self { shortest_m: f64::INFINITY };
+    pub const NEW: Self = Self { shortest_m: f64::INFINITY, smallest_rad: f64::INFINITY };
 
     /// The largest step that is asked for \[m\].
     const LARGEST_STEP_M: f64 = 0.05;
@@ -20,19 +31,29 @@ impl WayProgress {
     /// The part of what a slow robot drives in the time by which it has to get closer.
     const SLOW_PART: f64 = 0.1;
 
+    /// The step of a turn \[rad\]. Turns are no progress for ever: between two steps of the way
+    /// there are at most as many of them as half a circle has.
+    const TURN_STEP_RAD: f64 = 0.1;
+
     /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or a tenth of what a
     /// slow robot drives in that time.
     pub fn step_m(robot: &Robot, within_s: f64) -> f64 {
         (Self::SLOW_PART * robot.limits.v_max_mps * within_s).min(Self::LARGEST_STEP_M)
     }
 
-    /// True if the way has become shorter by the step since the last time that this was true.
-    pub fn has_progressed(&mut self, remaining_m: f64, step_m: f64) -> bool {
-        let has_progressed = remaining_m <= self.shortest_m - step_m;
-        if has_progressed {
-            self.shortest_m = remaining_m;
+    /// True if the way has become shorter by the step since the last time that this was true, or
+    /// the robot has turned towards it by 0.1 rad.
+    pub fn has_progressed(&mut self, left: WayLeft, step_m: f64) -> bool {
+        let WayLeft { way_m, turn_rad } = left;
+        if way_m <= self.shortest_m - step_m {
+            *self = Self { shortest_m: way_m, smallest_rad: turn_rad };
+            return true;
         }
-        has_progressed
+        let has_turned = turn_rad <= self.smallest_rad - Self::TURN_STEP_RAD;
+        if has_turned {
+            self.smallest_rad = turn_rad;
+        }
+        has_turned
     }
 
     /// The robot takes another way. Where that is longer, progress is measured on it.
@@ -57,12 +78,29 @@ mod tests {
     #[test]
     fn progress_is_a_way_that_becomes_shorter() {
         let mut progress = WayProgress::NEW;
+        let left = |way_m| WayLeft { way_m, turn_rad: 0.0 };
         let progressed =
-            [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_progressed(m, 0.05));
+            [5.0, 4.96, 4.95, 4.91, 5.5, 4.9].map(|m| progress.has_progressed(left(m), 0.05));
         assert_eq!(progressed, [true, false, true, false, false, true]);
         progress.begin_another_way(3.0);
-        assert!(!progress.has_progressed(4.88, 0.05), "a shorter way is none by itself");
+        assert!(!progress.has_progressed(left(4.88), 0.05), "a shorter way is none by itself");
         progress.begin_another_way(7.0);
-        assert!(progress.has_progressed(6.95, 0.05) && !progress.has_progressed(6.95, 0.05));
+        assert!(
+            progress.has_progressed(left(6.95), 0.05) && !progress.has_progressed(left(6.95), 0.05)
+        );
+    }
+
+    /// A robot that turns to and fro gets nowhere; one that turns towards its way does.
+    #[test]
+    fn a_turn_towards_the_way_is_progress_once() {
+        let mut progress = WayProgress::NEW;
+        let mut turned = |turn_rad| progress.has_progressed(WayLeft { way_m: 5.0, turn_rad }, 0.05);
+        let expected = [(3.0, true), (2.95, false), (2.9, true), (3.1, false), (2.85, false)];
+        for (turn_rad, is_progress) in expected {
+            assert_eq!(turned(turn_rad), is_progress, "{turn_rad}");
+        }
+        assert!(turned(1.0) && !turned(3.0) && !turned(1.0));
+        assert!(progress.has_progressed(WayLeft { way_m: 4.9, turn_rad: 2.0 }, 0.05));
+        assert!(progress.has_progressed(WayLeft { way_m: 4.9, turn_rad: 1.9 }, 0.05));
     }
 }

@@ -1,6 +1,6 @@
 //! What is watched while a robot drives: its progress, and the rest of its route.
 
-use super::WayProgress;
+use super::{WayLeft, WayProgress};
 use crate::geometry::{Point, Polyline, Segment, Square};
 use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
 use serde::{Deserialize, Serialize};
@@ -33,13 +33,13 @@ impl Watch {
     /// otherwise.
     pub(super) fn note_cycle(
         &mut self,
-        [remaining_m, progress_m]: [f64; 2],
+        (left, progress_m): (WayLeft, f64),
         is_blocked: bool,
         waits_s: f64,
         cycle_s: f64,
     ) {
         self.route_s += cycle_s;
-        let has_come_on = self.progress.has_progressed(remaining_m, progress_m);
+        let has_come_on = self.progress.has_progressed(left, progress_m);
         if self.mover_s < waits_s && !has_come_on {
             self.mover_s += cycle_s;
             return;
@@ -149,6 +149,10 @@ mod tests {
     use super::*;
     use crate::map::{Cell, OccupancyGrid};
 
+    fn left(way_m: f64) -> WayLeft {
+        WayLeft { way_m, turn_rad: 0.0 }
+    }
+
     fn corner() -> Polyline {
         Polyline::new([[0.5, 0.5], [6.5, 0.5], [6.5, 4.5]].iter().map(|&p| p.into()).collect())
     }
@@ -205,10 +209,10 @@ mod tests {
     #[test]
     fn progress_is_a_shorter_way() {
         let mut watch = Watch::NEW;
-        watch.note_cycle([5.0, 0.05], false, 0.0, 0.1);
-        watch.note_cycle([4.96, 0.05], true, 0.0, 0.1);
+        watch.note_cycle((left(5.0), 0.05), false, 0.0, 0.1);
+        watch.note_cycle((left(4.96), 0.05), true, 0.0, 0.1);
         assert!(watch.no_progress_s > 0.0 && watch.blocked_s > 0.0);
-        watch.note_cycle([4.9, 0.05], false, 0.0, 0.1);
+        watch.note_cycle((left(4.9), 0.05), false, 0.0, 0.1);
         assert_eq!((watch.no_progress_s, watch.blocked_s), (0.0, 0.0));
         assert!((watch.route_s - 0.3).abs() < 1e-12);
     }
@@ -216,13 +220,13 @@ mod tests {
     #[test]
     fn waiting_for_a_mover_counts_only_when_it_takes_long() {
         let mut watch = Watch::NEW;
-        watch.note_cycle([5.0, 0.05], false, 0.5, 0.1);
-        (0..5).for_each(|_| watch.note_cycle([5.0, 0.05], true, 0.5, 0.1));
+        watch.note_cycle((left(5.0), 0.05), false, 0.5, 0.1);
+        (0..5).for_each(|_| watch.note_cycle((left(5.0), 0.05), true, 0.5, 0.1));
         assert_eq!((watch.blocked_s, watch.no_progress_s), (0.0, 0.0));
-        watch.note_cycle([5.0, 0.05], true, 0.5, 0.1);
+        watch.note_cycle((left(5.0), 0.05), true, 0.5, 0.1);
         assert_eq!((watch.blocked_s, watch.no_progress_s), (0.1, 0.1));
-        watch.note_cycle([4.9, 0.05], false, 0.5, 0.1);
-        watch.note_cycle([4.9, 0.05], true, 0.5, 0.1);
+        watch.note_cycle((left(4.9), 0.05), false, 0.5, 0.1);
+        watch.note_cycle((left(4.9), 0.05), true, 0.5, 0.1);
         assert_eq!(watch.blocked_s, 0.0, "it has come on in between");
     }
 }

@@ -58,7 +58,7 @@ fn drive(world: &World, robot: &Robot, goal: Point, rules: &RunRules, command: V
     let mut left = 1e6;
     alone(world, robot, Pose::default(), goal, rules, |_| {
         left -= 1.0;
-        Control { action: Action::Drive(command), remaining_m: left, route: 1 }
+        Control { action: Action::Drive(command), remaining_m: left, route: 1, turn_left_rad: 0.0 }
     })
     .unwrap()
 }
@@ -186,7 +186,7 @@ fn stuck_at_the_exact_time() {
             let remaining_m = remaining(cycle - 1);
             // A path longer than 20 m is a second route.
             let route = if remaining_m > 20.0 { 2 } else { 1 };
-            Control { action: Action::Stop, remaining_m, route }
+            Control { action: Action::Stop, remaining_m, route, turn_left_rad: 0.0 }
         });
         let run = run.unwrap();
         (run.outcome, run.cycles)
@@ -219,7 +219,7 @@ fn stop_and_arrived_brake() {
             11..=15 => Action::Stop,
             _ => Action::Arrived,
         };
-        Control { action, remaining_m: 1.0, route: 1 }
+        Control { action, remaining_m: 1.0, route: 1, turn_left_rad: 0.0 }
     });
     let run = run.unwrap();
     // 0.25 m to speed up in 1 s, as much to brake.
@@ -237,7 +237,12 @@ fn the_controller_sees_the_state_and_a_scan() {
         // Beam 4 of 8 looks straight ahead.
         assert!((scan.ranges_m.get(4).unwrap() - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
-        Control { action: Action::Drive(Velocity::new(0.5, 0.0)), remaining_m: 9.0, route: 1 }
+        Control {
+            action: Action::Drive(Velocity::new(0.5, 0.0)),
+            remaining_m: 9.0,
+            route: 1,
+            turn_left_rad: 0.0,
+        }
     });
     let run = run.unwrap();
     let driven: Vec<_> = run.samples[..10].iter().map(|s| (s.pose, s.velocity)).collect();
@@ -259,7 +264,12 @@ fn a_rerun_gives_the_same_bytes() {
                 let scan = scans[0].scan;
                 let nearest = scan.ranges_m.iter().fold(3.5, f64::min);
                 let command = Velocity::new(0.2 * nearest, libm::sin(3.0 * pose.x + pose.y));
-                Control { action: Action::Drive(command), remaining_m: f64::NAN, route: 1 }
+                Control {
+                    action: Action::Drive(command),
+                    remaining_m: f64::NAN,
+                    route: 1,
+                    turn_left_rad: 0.0,
+                }
             },
         );
         serde_json::to_vec(&run.unwrap()).unwrap()
@@ -275,7 +285,12 @@ fn refuses_what_cannot_be() {
     let world = world(&[]);
     let run = |robot: &Robot, start: Pose, rules: &RunRules, v: f64| {
         let action = Action::Drive(Velocity::new(v, 0.0));
-        alone(&world, robot, start, FAR, rules, |_| Control { action, remaining_m: 1.0, route: 1 })
+        alone(&world, robot, start, FAR, rules, |_| Control {
+            action,
+            remaining_m: 1.0,
+            route: 1,
+            turn_left_rad: 0.0,
+        })
     };
     let (start, rules) = (Pose::default(), limit(1.0));
     let bad_robot = Robot { cycle_s: 0.0, ..robot() };

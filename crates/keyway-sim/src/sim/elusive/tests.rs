@@ -44,7 +44,12 @@ fn driven(elusive: ElusiveObstacle, v_mps: f64) -> (Run, Vec<usize>) {
         let scan = scans[0].scan;
         hits.push(scan.ranges_m.iter().filter(|range_m| range_m.is_finite()).count());
         let action = Action::Drive(Velocity::new(v_mps, 0.0));
-        Control { action, remaining_m: -pose.x - 100.0 * hits.len() as f64, route: 0 }
+        Control {
+            action,
+            remaining_m: -pose.x - 100.0 * hits.len() as f64,
+            route: 0,
+            turn_left_rad: 0.0,
+        }
     };
     let participant = Participant {
         robot: &robot,

@@ -146,7 +146,7 @@ impl<'a> Fleet<'a> {
             drive.end(Outcome::Reached, self.cycle_s);
             return false;
         }
-        let is_stuck = drive.progress.is_stuck(control.remaining_m, control.route, drive.cycles);
+        let is_stuck = drive.progress.is_stuck(control, drive.cycles);
         if is_stuck {
             drive.end(Outcome::Stuck, self.cycle_s);
         }

@@ -4,14 +4,15 @@ use super::{Asked, Deciding};
 use crate::geometry::{Point, Polyline, Segment, Velocity};
 use crate::guide::{Guidance, GuideView};
 use crate::local::NoCommand;
-use crate::navigate::WayProgress;
+use crate::navigate::{WayLeft, WayProgress};
 
 impl Deciding<'_> {
     /// The local planner's command towards the current guide point.
     pub(super) fn drive(&mut self) -> Result<Velocity, NoCommand> {
         let (pose, velocity) = (self.pose, self.velocity);
         self.find_guide_point();
-        let remaining_m = self.task.guidance.remaining_m;
+        let Guidance { point, remaining_m } = self.task.guidance;
+        let left = WayLeft { way_m: remaining_m, turn_rad: pose.bearing_to(point).abs() };
         let mut memory = self.task.memory.clone();
         let asked = Asked { pose, velocity, memory: memory.clone() };
         let scene = self.world.scene(self.task, pose, velocity);
@@ -28,8 +29,7 @@ impl Deciding<'_> {
         let config = &self.stack.controller;
         let waits_s = if self.waits_for_mover() { config.longest_wait_s } else { 0.0 };
         let progress_m = WayProgress::step_m(self.robot, config.no_progress_s);
-        let progress = [remaining_m, progress_m];
-        self.task.watch.note_cycle(progress, is_blocked, waits_s, self.elapsed_s);
+        self.task.watch.note_cycle((left, progress_m), is_blocked, waits_s, self.elapsed_s);
         self.task.order.note_progress(remaining_m);
         Ok(decision?.command)
     }

@@ -5,6 +5,7 @@ use crate::geometry::{Disc, Point};
 use crate::guide::Guidance;
 use crate::local::{Evaluation, Explanation, Refusal, RefusalCounts};
 use crate::map::{BitGrid, OccupancyGrid};
+use crate::navigate::mode::Mode;
 use crate::navigate::start::StartTooNear;
 use crate::navigate::time::Time;
 use crate::navigate::{Doubt, FittedStack, Goal, Misfit, RecoveryCounts};
@@ -49,6 +50,17 @@ impl Navigator {
     /// first step the end of the route, and all of the way. `None` without a goal.
     pub fn guidance(&self) -> Option<Guidance> {
         self.task().map(|task| task.guidance)
+    }
+
+    /// How far the robot has to turn, to either side, to face the place to which it drives, or at
+    /// its goal to be turned as it should \[rad\]; 0 without a goal.
+    pub fn turn_left_rad(&self) -> f64 {
+        let (Some(task), Some(pose)) = (self.task(), self.place) else { return 0.0 };
+        let left_rad = match task.mode {
+            Mode::Arriving(_) => task.goal.turn_left_rad(pose).unwrap_or_default(),
+            _ => pose.bearing_to(task.guidance.point),
+        };
+        left_rad.abs()
     }
 
     /// The stack that drives, fitted to its robot.

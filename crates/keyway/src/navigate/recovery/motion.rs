@@ -55,7 +55,7 @@ pub(in crate::navigate) struct MotionUnderWay {
     from: Option<Pose>,
 }
 
-/// How fast motions of recoveries are, as a share of the robot's limits.
+/// How fast motions of recoveries are near obstacles, as a share of the robot's limits.
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
 impl MotionUnderWay {
@@ -94,7 +94,7 @@ impl MotionUnderWay {
                 if !footprint.is_free_turn(pose.point(), pose.theta, left_rad, obstacles) {
                     return MotionStep::Refused;
                 }
-                let most = SPEED_SHARE * limits.omega_max_radps;
+                let most = turn_share(robot, pose, obstacles) * limits.omega_max_radps;
                 let stops = limits.stoppable_radps(velocity.omega, left_rad.abs(), cycle_s);
                 Velocity::new(0.0, stops.min(most).copysign(left_rad))
             }
@@ -110,6 +110,14 @@ impl MotionUnderWay {
         };
         MotionStep::Moving(command)
     }
+}
+
+/// How fast a robot turns on the spot, as a share of its limit: as fast as it can where nothing is
+/// within reach of any part of it.
+fn turn_share(robot: &Robot, pose: Pose, obstacles: &DistanceField) -> f64 {
+    let room_m = robot.footprint.circumscribed_radius_m() + robot.safety_margin_m();
+    let is_wide = obstacles.clearance().is_clear_point(pose.point(), room_m);
+    if is_wide { 1.0 } else { SPEED_SHARE }
 }
 
 impl Motion {

@@ -23,7 +23,7 @@ fn driven(
         told.push((pose, velocity, scan.owned().ranges_m));
         cycle += 1;
         let action = Action::Drive(command(cycle - 1));
-        Control { action, remaining_m: 1e6 - cycle as f64, route: 1 }
+        Control { action, remaining_m: 1e6 - cycle as f64, route: 1, turn_left_rad: 0.0 }
     };
     let start = Pose::new(0.5, -0.25, 0.3);
     let participant = Participant {
@@ -166,7 +166,7 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
             let is_first = cycle == 1;
             let drive = Action::Drive(Velocity::new(0.05, 0.0));
             let action = if is_first { drive } else { Action::Arrived };
-            Control { action, remaining_m: 1.0, route: 1 }
+            Control { action, remaining_m: 1.0, route: 1, turn_left_rad: 0.0 }
         };
         let participant = Participant {
             robot: &robot(),
@@ -201,7 +201,7 @@ fn a_robot_that_turns_back_has_not_arrived() {
             2 => Action::Drive(Velocity::new(1.0, 0.0)),
             _ => Action::Arrived,
         };
-        Control { action, remaining_m: 1.0, route: 1 }
+        Control { action, remaining_m: 1.0, route: 1, turn_left_rad: 0.0 }
     };
     let participant = Participant {
         robot: &robot,
@@ -290,7 +290,7 @@ fn without_disturbances_truth_and_belief_are_the_same_run() {
     let run = |reached_by| {
         let mut ahead = |&Observation { pose, .. }: &Observation<'_>| {
             let action = Action::Drive(Velocity::new(0.4, 0.0));
-            Control { action, remaining_m: -pose.x, route: 1 }
+            Control { action, remaining_m: -pose.x, route: 1, turn_left_rad: 0.0 }
         };
         let participant = Participant {
             robot: &robot,
@@ -330,7 +330,7 @@ fn a_goal_is_reached_by_truth_or_by_belief() {
             let is_there = to_goal.norm() < 0.05;
             let velocity = Velocity::new(if heading.abs() < 0.1 { 0.3 } else { 0.0 }, heading);
             let action = if is_there { Action::Arrived } else { Action::Drive(velocity) };
-            Control { action, remaining_m: -(all_told.len() as f64), route: 1 }
+            Control { action, remaining_m: -(all_told.len() as f64), route: 1, turn_left_rad: 0.0 }
         };
         let rules = RunRules { arrival, reached_by, goal_tolerance_m: 0.2, ..limit(60.0) };
         let participant = Participant {
@@ -410,7 +410,7 @@ fn every_robot_has_its_own_numbers() {
             move |_: &Observation<'_>| {
                 left -= 1.0;
                 let action = Action::Drive(Velocity::new(0.3, 0.0));
-                Control { action, remaining_m: left, route: 1 }
+                Control { action, remaining_m: left, route: 1, turn_left_rad: 0.0 }
             }
         });
         let mut participants: Vec<Participant<'_>> = starts

@@ -14,7 +14,7 @@ fn among(movers: Vec<MovingObstacle>, start: Pose, command: Velocity, time_limit
     let mut left = 1e6;
     let controller = move |_: &Observation<'_>| {
         left -= 1.0;
-        Control { action: Action::Drive(command), remaining_m: left, route: 1 }
+        Control { action: Action::Drive(command), remaining_m: left, route: 1, turn_left_rad: 0.0 }
     };
     let world = world(&[]).with_movers(movers);
     alone(&world, &robot(), start, FAR, &limit(time_limit_s), controller).unwrap()

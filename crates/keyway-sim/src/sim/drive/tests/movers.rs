@@ -134,7 +134,7 @@ fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
         let range_m = 2.75 - 0.5 * 0.1 * f64::from(cycle);
         assert!((scan.ranges_m.get(4).unwrap() - range_m).abs() < 1e-9);
         cycle += 1;
-        Control { action: Action::Stop, remaining_m: 9.0, route: 1 }
+        Control { action: Action::Stop, remaining_m: 9.0, route: 1, turn_left_rad: 0.0 }
     })
     .unwrap();
     assert_eq!(cycle, 20);

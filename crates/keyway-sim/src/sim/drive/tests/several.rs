@@ -12,7 +12,12 @@ fn drive_all(world: &World, rules: &RunRules, tasks: &[Task<'_>]) -> Vec<Run> {
         let mut left = 1e6;
         move |_: &Observation<'_>| {
             left -= 1.0;
-            Control { action: Action::Drive(command), remaining_m: left, route: 1 }
+            Control {
+                action: Action::Drive(command),
+                remaining_m: left,
+                route: 1,
+                turn_left_rad: 0.0,
+            }
         }
     };
     let mut controllers: Vec<_> = tasks.iter().map(|task| controller(task.3)).collect();
@@ -79,16 +84,30 @@ fn robots_see_each_other_where_they_are() {
         let scan = scans[0].scan;
         // Beam 4 of 8 looks straight ahead, beam 6 to the left.
         gaps.push((pose.x, scan.ranges_m.get(4).unwrap(), scan.ranges_m.get(6).unwrap()));
-        Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
+        Control {
+            action: Action::Drive(ahead(0.5)),
+            remaining_m: 9.0,
+            route: 1,
+            turn_left_rad: 0.0,
+        }
     };
     let mut positions = Vec::new();
     let mut back = |&Observation { pose, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
         positions.push((pose.x, scan.ranges_m.get(4).unwrap()));
-        Control { action: Action::Drive(ahead(0.5)), remaining_m: 9.0, route: 1 }
+        Control {
+            action: Action::Drive(ahead(0.5)),
+            remaining_m: 9.0,
+            route: 1,
+            turn_left_rad: 0.0,
+        }
     };
-    let mut stand =
-        |_: &Observation<'_>| Control { action: Action::Stop, remaining_m: 9.0, route: 1 };
+    let mut stand = |_: &Observation<'_>| Control {
+        action: Action::Stop,
+        remaining_m: 9.0,
+        route: 1,
+        turn_left_rad: 0.0,
+    };
     let mut participants = [
         Participant {
             robot: &round,
@@ -191,12 +210,13 @@ fn who_has_ended_stands_in_the_way() {
     let mut cycles = 0;
     let mut stays = |_: &Observation<'_>| {
         cycles += 1;
-        Control { action: Action::Stop, remaining_m: 5.0, route: 1 }
+        Control { action: Action::Stop, remaining_m: 5.0, route: 1, turn_left_rad: 0.0 }
     };
     let mut waits = |&Observation { pose, .. }: &Observation<'_>| Control {
         action: Action::Drive(ahead(0.05)),
         remaining_m: 9.0 - pose.x,
         route: 1,
+        turn_left_rad: 0.0,
     };
     let mut participants = [
         Participant {
@@ -298,12 +318,17 @@ fn robots_in_one_place_are_in_contact_at_the_start() {
 fn what_is_wrong_with_whom() {
     let (good, slow) = (robot(), Robot { cycle_s: 0.2, ..robot() });
     let error = |robots: [&Robot; 2], start: Pose, v: f64| {
-        let mut stop =
-            |_: &Observation<'_>| Control { action: Action::Stop, remaining_m: 1.0, route: 1 };
+        let mut stop = |_: &Observation<'_>| Control {
+            action: Action::Stop,
+            remaining_m: 1.0,
+            route: 1,
+            turn_left_rad: 0.0,
+        };
         let mut drive = |_: &Observation<'_>| Control {
             action: Action::Drive(ahead(v)),
             remaining_m: 1.0,
             route: 1,
+            turn_left_rad: 0.0,
         };
         let [robot, other] = robots;
         let mut participants = [
