@@ -3,7 +3,7 @@
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
-use super::room::{Outline, Room};
+use super::room::{Exact, Outline, Room};
 use crate::geometry::{Point, Velocity};
 use crate::local::rear::Seen;
 use crate::robot::Limits;
@@ -46,6 +46,7 @@ pub(super) struct Judge<'a> {
     pub(super) limits: &'a Limits,
     pub(super) outline: &'a Outline,
     pub(super) room: &'a Room,
+    pub(super) exact: Exact<'a>,
     /// Where it may drive backwards; everywhere, when it sees all around.
     pub(super) seen: Option<Seen<'a>>,
     pub(super) cost_to_go: &'a CostToGo,
@@ -57,6 +58,9 @@ pub(super) struct Judge<'a> {
     /// With less than this it touches something: the margin, or what it has now, where that is less
     /// \[m\].
     pub(super) least_m: f64,
+    /// What is missing in a tight place in which it is now, squared: it has to get out of there, and
+    /// does not get out by standing.
+    pub(super) tight_now_sq: f64,
     pub(super) discomfort: f64,
     pub(super) steering: f64,
     /// The duration of a stretch \[s\].
@@ -113,7 +117,7 @@ impl Judge<'_> {
         for step in 0..steps {
             let v = self.step(&mut state, (from.velocity, to), (step, steps));
             let bounds_m = (least_m, self.comfortable_m);
-            let room_m = self.outline.room_m(self.room, (state.at, state.ahead), bounds_m);
+            let room_m = self.room_m(&state, bounds_m);
             if room_m < least_m || moves && self.is_blind(&state, v) {
                 return None;
             }
@@ -124,6 +128,17 @@ impl Judge<'_> {
         state.end_stretch(to);
         cost.steering_s += self.steering_s(from.velocity, to);
         Some((state, cost))
+    }
+
+    /// Room around the robot in a state \[m\]; see [`Outline::room_m`].
+    fn room_m(&self, state: &State, bounds_m: (f64, f64)) -> f64 {
+        let (least_m, enough_m) = bounds_m;
+        let posed = (state.at, state.ahead);
+        if least_m.is_finite() {
+            self.outline.exact_room_m((self.room, self.exact), posed, (least_m, enough_m))
+        } else {
+            self.outline.room_m(self.room, posed, bounds_m)
+        }
     }
 
     /// One of the steps of a stretch between two velocities; the speed in it \[m/s\].
@@ -182,7 +197,7 @@ impl Judge<'_> {
             state.at = state.at + along * (way_m / steps);
             state.ahead = turned(along, half);
             let bounds_m = (least_m, self.least_m);
-            let room_m = self.outline.room_m(self.room, (state.at, state.ahead), bounds_m);
+            let room_m = self.room_m(&state, bounds_m);
             if room_m < least_m || self.is_blind(&state, v) {
                 return false;
             }
@@ -193,8 +208,15 @@ impl Judge<'_> {
     /// What a metre counts as in addition, for a discomfort of 1.
     fn missing(&self, room_m: f64) -> f64 {
         let part = |of_m: f64| (1.0 - room_m / of_m).clamp(0.0, 1.0);
-        let (room, tight) = (part(self.comfortable_m), part(Self::TIGHT * self.comfortable_m));
-        room * room + Self::TIGHTER * tight * tight
+        let room = part(self.comfortable_m);
+        let tighter_sq = (Self::tight_sq(room_m, self.comfortable_m) - self.tight_now_sq).max(0.0);
+        room * room + Self::TIGHTER * tighter_sq
+    }
+
+    /// The part that is missing in a tight place, squared; 0 where a place is not tight.
+    pub(super) fn tight_sq(room_m: f64, comfortable_m: f64) -> f64 {
+        let missing = (1.0 - room_m / (Self::TIGHT * comfortable_m)).clamp(0.0, 1.0);
+        missing * missing
     }
 
     /// With less than this part of the comfortable room, a place is tight.
@@ -293,6 +315,7 @@ fn turned(direction: Point, by: Point) -> Point {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
+    use crate::map::{DistanceField, FieldConfig, OccupancyGrid};
     use crate::robot::Robot;
     use proptest::prelude::*;
 
@@ -332,10 +355,14 @@ mod tests {
             let robot = Robot::jackal();
             let (room, cost_to_go) = (Room::open(), CostToGo::default());
             let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0, horizon_s: 1.0 };
+            // Nothing is near: it is not asked.
+            let map = OccupancyGrid::from_ascii(&["."]);
+            let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+            let exact = Exact { footprint: &robot.footprint, obstacles: &obstacles };
             let judge = Judge {
-                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, seen: None, cost_to_go: &cost_to_go,
-                meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, discomfort: 0.5, steering: 0.0,
-                stretch_s: 0.34,
+                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, exact, seen: None, cost_to_go: &cost_to_go,
+                meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, tight_now_sq: 0.0, discomfort: 0.5,
+                steering: 0.0, stretch_s: 0.34,
             };
             let (from, to) = (Velocity::new(from.0, from.1), Velocity::new(to.0, to.1));
             let start = State { at: Point::new(0.5, 0.5), ahead: direction(theta), velocity: from, after_s: 0.0 };

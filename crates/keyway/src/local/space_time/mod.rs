@@ -101,7 +101,7 @@ use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
 use polish::{FINEST, STEPS, Total, can_stop, polish};
-use room::{Outline, Room};
+use room::{Exact, Outline, Room};
 use search::{Beam, Extent, Tally};
 use std::sync::Arc;
 
@@ -343,19 +343,22 @@ impl SpaceTime {
         let (at, ahead) = (local(frame, scene.pose.point()), Point::new(cos, sin));
         let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
         let SpaceTimeConfig { comfortable_m, discomfort, steering, .. } = self.config;
-        let bounds_m = (f64::NEG_INFINITY, comfortable_m);
-        let now_m = self.outline.room_m(&around.room, (at, ahead), bounds_m);
+        let exact = Exact { footprint: &self.robot.footprint, obstacles: scene.obstacles };
+        let (margin_m, around_m) = (self.robot.safety_margin_m(), (&around.room, exact));
+        let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
         let mut judge = Judge {
             limits: &self.robot.limits,
             outline: &self.outline,
             room: &around.room,
+            exact,
             seen: scene.seen.behind.map(|cells| self.rear.over(cells, frame)),
             cost_to_go: &around.cost_to_go,
             meeting,
             beyond_m,
             comfortable_m,
             // Who stands nearer may stay as near.
-            least_m: self.robot.safety_margin_m().min(now_m - 1e-6),
+            least_m: margin_m.min(now_m - 1e-6),
+            tight_now_sq: Judge::tight_sq(now_m, comfortable_m),
             discomfort,
             steering,
             stretch_s: self.config.stretch_s(),

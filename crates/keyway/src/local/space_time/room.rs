@@ -1,10 +1,10 @@
 //! How much room a footprint has: nearly, and fast.
 
 use super::lattice::Lattice;
-use crate::geometry::Point;
+use crate::geometry::{Point, Pose};
 use crate::local::rear::{outline_points, spacing_m};
 use crate::map::{Cell, DistanceField};
-use crate::robot::Robot;
+use crate::robot::{Footprint, Robot};
 use std::f64::consts::SQRT_2;
 
 /// Distances to what stands around the robot, and to the border of the map.
@@ -87,6 +87,13 @@ impl Room {
         self.distances_m.extend((end..lattice.side).map(outside));
     }
 
+    /// By how much distances between the points may be too small \[m\]: in the middle of four of
+    /// them, on a narrow way.
+    fn too_small_by_m(&self) -> f64 {
+        let reduced = if self.lattice.is_of_centres() { 0.0 } else { Self::EXCESS };
+        (0.5 * SQRT_2 + reduced) * self.lattice.spacing_m
+    }
+
     /// Distance of the points \[m\].
     pub(super) const fn spacing_m(&self) -> f64 {
         self.lattice.spacing_m
@@ -131,6 +138,28 @@ fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
     let border_m = at.x.min(at.y).min(width_m - at.x).min(height_m - at.y);
     let world = frame.world_from_grid(at * (1.0 / cell_m));
     obstacles.clearance().of_point(world, enough_m).min(border_m)
+}
+
+/// The footprint itself, where points and what is between them are too rough: in the middle of a
+/// narrow way, whose sides are nearer to the points beside it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exact<'a> {
+    pub(super) footprint: &'a Footprint,
+    pub(super) obstacles: &'a DistanceField,
+}
+
+impl Exact<'_> {
+    /// Room between the footprint and what stands \[m\], up to `enough_m`; 0 where it touches. What
+    /// rounding adds is taken away again: it must not decide between two courses.
+    fn room_m(&self, (at, ahead): (Point, Point), enough_m: f64) -> f64 {
+        let (frame, clearance) = (self.obstacles.frame(), self.obstacles.clearance());
+        let world = frame.world_from_grid(at * frame.resolution_m().recip());
+        let theta = libm::atan2(ahead.y, ahead.x) + frame.origin().theta;
+        let pose = Pose { x: world.x, y: world.y, theta };
+        let border_m = self.footprint.to_border_m(pose, &clearance);
+        let room_m = self.footprint.distance_m(pose, &clearance, enough_m).min(border_m);
+        f64::from(room_m as f32)
+    }
 }
 
 /// A footprint as points on its outline.
@@ -200,6 +229,25 @@ impl Outline {
             self.along_m(bounds_m, at_point_m)
         } else {
             self.along_m(bounds_m, |point| lattice.value_at(&room.distances_m, on_lattice(point)))
+        }
+    }
+
+    /// The same, exact where the footprint is nearly too near to something: where less than
+    /// `least_m` would be found, or not much more.
+    pub(super) fn exact_room_m(
+        &self,
+        (room, exact): (&Room, Exact<'_>),
+        posed: (Point, Point),
+        (least_m, enough_m): (f64, f64),
+    ) -> f64 {
+        let off_m = room.too_small_by_m();
+        let roughly_m = self.room_m(room, posed, (least_m - off_m, enough_m));
+        if (roughly_m - least_m).abs() > off_m {
+            return roughly_m;
+        }
+        match exact.room_m(posed, enough_m) {
+            exact_m if exact_m > 0.0 => exact_m,
+            _ => roughly_m.min(0.0),
         }
     }
 
@@ -275,6 +323,29 @@ mod tests {
             } else {
                 prop_assert!(found_m < 0.6, "{found_m}");
             }
+        }
+
+        /// In a lane hardly wider than the robot, whose middle is between the points or on one.
+        #[test]
+        fn on_a_narrow_way_room_is_exact(
+            (low, rows, stride) in (3..8i32, 9..14i32, 1..5i32), x in 18.0..22.0f64, is_round in any::<bool>(),
+            theta in -0.02..0.02f64,
+        ) {
+            let walls = |x: i32| (0..low).chain(low + rows..40).map(move |y| (x, y));
+            let map = map(&(0..40).flat_map(walls).collect::<Vec<_>>());
+            let half = 0.5 * f64::from(rows) - 0.3;
+            let mut robot = Robot::jackal();
+            robot.footprint = if is_round { Footprint::circle(half).unwrap() } else { Footprint::rectangle(7.0, 2.0 * half).unwrap() };
+            let outline = Outline::of(&robot);
+            let field = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+            let at = Point::new(x, f64::from(low) + 0.5 * f64::from(rows));
+            let mut room = Room::default();
+            room.fill(Lattice::around(map.frame(), at, 14.0, f64::from(stride)), &field, 20.0);
+            let exact = Exact { footprint: &robot.footprint, obstacles: &field };
+            let (sin, cos) = libm::sincos(theta);
+            let found_m = outline.exact_room_m((&room, exact), (at, Point::new(cos, sin)), (0.05, 2.0));
+            let exact_m = robot.footprint.distance_m(Pose::new(at.x, at.y, theta), &field.clearance(), 2.0);
+            prop_assert!((found_m - exact_m).abs() < 1e-6, "{found_m} {exact_m}");
         }
 
         /// For robots that are small beside the cells.

@@ -1,6 +1,7 @@
 //! Decisions and whole drives.
 
 mod counting;
+mod narrow;
 
 use super::*;
 use crate::geometry::{Polyline, Pose};
