@@ -22,7 +22,7 @@ pub struct SpaceTimeConfig {
     /// m: room that the robot likes to have around its footprint \[m\]; positive.
     pub comfortable_m: f64,
     /// q: with a fifth of the room that it likes, a metre counts as 0.64 q more, beside something
-    /// that it nearly touches as 9 q more.
+    /// that it nearly touches as 9 q more; what it has to bear where it is now is left out.
     pub discomfort: f64,
     /// u: a second in which the velocity changes as fast as it can counts as so many more.
     pub steering: f64,

@@ -30,7 +30,7 @@
 //! | H, K, W | horizon, stretches, courses that are followed (W / 2 where nothing moves) | `horizon_s`, `stretches`, `width` | s |
 //! | T | time of the course, and the time to go from its end | | s |
 //! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
-//! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
+//! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 and only by how much it is more than where the robot is now | `discomfort` | |
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
@@ -50,14 +50,18 @@
 //! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop
 //!   within what it has seen free. On open ground that is [`Robot::sight_mps`]; where that is below
 //!   the robot's top speed, it is the top speed.
+//! - It does not stand in or before a narrow way because of how narrow it is: where it is, that
+//!   costs nothing, and what it costs on the way is part of the cost to go (of discs; other
+//!   footprints pay for ground on which they cannot turn).
 //! - It waits, makes way, backs up, turns around and passes behind something that moves where that
 //!   is the fastest way on; none of it is a rule of its own.
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
 //!
 //! # Where it is not exact
 //! Room is that of points on the outline between the points of a grid (`room.rs`): exact at flat
-//! sides, to less than half a cell beside corners. Only the first cycle, and how the robot would
-//! stop after it, are judged exactly, by the stop rule.
+//! sides, to less than half a cell beside corners, and where the footprint is nearly too near to
+//! something its true distance. Only the first cycle, and how the robot would stop after it, are
+//! always judged exactly, by the stop rule.
 //!
 //! # Errors / cost
 //! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H
@@ -101,7 +105,7 @@ use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
 use polish::{FINEST, STEPS, Total, can_stop, polish};
-use room::{Exact, Outline, Room};
+use room::{Exact, Outline, Room, tight_sq};
 use search::{Beam, Extent, Tally};
 use std::sync::Arc;
 
@@ -209,6 +213,8 @@ impl SpaceTime {
         let margin_m = self.robot.safety_margin_m();
         let turning_m = self.outline.circumscribed_m + margin_m;
         Weighing {
+            body_m: self.outline.circumscribed_m,
+            liked_m: self.config.comfortable_m,
             blocked_m: self.outline.inscribed_m + margin_m,
             turning_m,
             comfortable_m: turning_m + self.config.comfortable_m,
@@ -358,7 +364,7 @@ impl SpaceTime {
             comfortable_m,
             // Who stands nearer may stay as near.
             least_m: margin_m.min(now_m - 1e-6),
-            tight_now_sq: Judge::tight_sq(now_m, comfortable_m),
+            tight_now_sq: tight_sq(now_m, comfortable_m),
             discomfort,
             steering,
             stretch_s: self.config.stretch_s(),
