@@ -94,6 +94,9 @@ fn check_chunk(chunk: &[u8]) -> McapResult<()> {
     Ok(())
 }
 
+/// Takes kind and content of a record.
+type Take<'a, E> = dyn FnMut(u8, &[u8]) -> Result<(), E> + 'a;
+
 /// Records of a file, or of one of its chunks.
 struct Records<R> {
     source: R,
@@ -121,7 +124,7 @@ impl<R: Read> Records<R> {
     fn for_each<E>(
         mut self,
         fault: &impl Fn(McapError) -> E,
-        take: &mut dyn FnMut(u8, &[u8]) -> Result<(), E>,
+        take: &mut Take<'_, E>,
     ) -> Result<bool, E> {
         loop {
             let wanted = match self.reader.next_event().transpose() {

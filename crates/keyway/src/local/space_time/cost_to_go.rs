@@ -21,7 +21,6 @@
 
 use super::buckets::Buckets;
 use super::lattice::Lattice;
-use super::room::{TIGHTER, tight_sq};
 use crate::geometry::{Disc, Point};
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -45,9 +44,6 @@ pub(super) struct CostToGo {
 /// What a metre counts as, by the room from the centre of rotation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weighing {
-    /// The circumscribed radius of the robot, and the room that it likes to have around it \[m\].
-    pub(super) body_m: f64,
-    pub(super) liked_m: f64,
     /// Less room than this blocks \[m\].
     pub(super) blocked_m: f64,
     /// With less than this the robot cannot turn around \[m\].
@@ -79,17 +75,13 @@ impl Weighing {
         }
         let missing = (self.comfortable_m - room_m) / (self.comfortable_m - self.turning_m);
         let missing = missing.clamp(0.0, 1.0);
-        let tight = if room_m < self.turning_m {
-            Self::TIGHT
-        } else {
-            self.discomfort * TIGHTER * tight_sq(room_m - self.body_m, self.liked_m)
-        };
+        let tight = if room_m < self.turning_m { Self::TIGHT } else { 0.0 };
         1.0 + self.discomfort * missing * missing + tight
     }
 
     /// That of the tightest ground that is not blocked.
     fn largest(&self) -> f64 {
-        1.0 + self.discomfort + Self::TIGHT.max(self.discomfort * TIGHTER)
+        1.0 + self.discomfort + Self::TIGHT
     }
 }
 
@@ -323,14 +315,8 @@ mod tests {
     ) -> CostToGo {
         let frame = GridFrame::new(200, 200, 0.1, Pose::default()).unwrap();
         let lattice = Lattice::around(&frame, Point::new(10.0, 10.0), 8.0, 0.1);
-        let weighing = Weighing {
-            body_m: 0.38,
-            liked_m: 0.22,
-            blocked_m: 0.3,
-            turning_m: 0.4,
-            comfortable_m: 0.6,
-            discomfort: 0.5,
-        };
+        let weighing =
+            Weighing { blocked_m: 0.3, turning_m: 0.4, comfortable_m: 0.6, discomfort: 0.5 };
         let mut cost_to_go = CostToGo::default();
         cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route, walked }, 100.0);
         cost_to_go
@@ -421,6 +407,6 @@ mod tests {
         let room = |at: Point| if (9.0..10.0).contains(&at.x) { 0.0 } else { 9.0 };
         let route = [Point::new(8.0, 10.0), Point::new(13.0, 10.0)];
         let through = filled(room, route[0], &route).at(route[0]);
-        assert!(through < 5.0 + 1.2 * 4.5, "{through}");
+        assert!(through < 5.0 + 1.2 * 3.5, "{through}");
     }
 }

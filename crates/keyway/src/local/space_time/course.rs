@@ -3,7 +3,7 @@
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
-use super::room::{Exact, Outline, Room, TIGHTER, tight_sq};
+use super::room::{Exact, Outline, Room};
 use crate::geometry::{Point, Velocity};
 use crate::local::rear::Seen;
 use crate::robot::Limits;
@@ -209,9 +209,21 @@ impl Judge<'_> {
     fn missing(&self, room_m: f64) -> f64 {
         let part = |of_m: f64| (1.0 - room_m / of_m).clamp(0.0, 1.0);
         let room = part(self.comfortable_m);
-        let tighter_sq = (tight_sq(room_m, self.comfortable_m) - self.tight_now_sq).max(0.0);
-        room * room + TIGHTER * tighter_sq
+        let tighter_sq = (Self::tight_sq(room_m, self.comfortable_m) - self.tight_now_sq).max(0.0);
+        room * room + Self::TIGHTER * tighter_sq
     }
+
+    /// The part that is missing in a tight place, squared; 0 where a place is not tight.
+    pub(super) fn tight_sq(room_m: f64, comfortable_m: f64) -> f64 {
+        let missing = (1.0 - room_m / (Self::TIGHT * comfortable_m)).clamp(0.0, 1.0);
+        missing * missing
+    }
+
+    /// With less than this part of the comfortable room, a place is tight.
+    const TIGHT: f64 = 0.2;
+
+    /// So much more a metre counts as where there is no room at all.
+    const TIGHTER: f64 = 8.0;
 
     /// What the change of a velocity in a stretch costs \[s\].
     fn steering_s(&self, from: Velocity, to: Velocity) -> f64 {

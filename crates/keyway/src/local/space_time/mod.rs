@@ -50,9 +50,8 @@
 //! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop
 //!   within what it has seen free. On open ground that is [`Robot::sight_mps`]; where that is below
 //!   the robot's top speed, it is the top speed.
-//! - It does not stand in or before a narrow way because of how narrow it is: where it is, that
-//!   costs nothing, and what it costs on the way is part of the cost to go (of discs; other
-//!   footprints pay for ground on which they cannot turn).
+//! - It does not stand in a narrow way because of how narrow it is: that of where it is costs
+//!   nothing.
 //! - It waits, makes way, backs up, turns around and passes behind something that moves where that
 //!   is the fastest way on; none of it is a rule of its own.
 //! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
@@ -105,7 +104,7 @@ use course::{Judge, State};
 use lattice::Lattice;
 use meeting::{Foreseen, Meeting};
 use polish::{FINEST, STEPS, Total, can_stop, polish};
-use room::{Exact, Outline, Room, tight_sq};
+use room::{Exact, Outline, Room};
 use search::{Beam, Extent, Tally};
 use std::sync::Arc;
 
@@ -213,8 +212,6 @@ impl SpaceTime {
         let margin_m = self.robot.safety_margin_m();
         let turning_m = self.outline.circumscribed_m + margin_m;
         Weighing {
-            body_m: self.outline.circumscribed_m,
-            liked_m: self.config.comfortable_m,
             blocked_m: self.outline.inscribed_m + margin_m,
             turning_m,
             comfortable_m: turning_m + self.config.comfortable_m,
@@ -364,7 +361,7 @@ impl SpaceTime {
             comfortable_m,
             // Who stands nearer may stay as near.
             least_m: margin_m.min(now_m - 1e-6),
-            tight_now_sq: tight_sq(now_m, comfortable_m),
+            tight_now_sq: Judge::tight_sq(now_m, comfortable_m),
             discomfort,
             steering,
             stretch_s: self.config.stretch_s(),

@@ -140,17 +140,6 @@ fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
     obstacles.clearance().of_point(world, enough_m).min(border_m)
 }
 
-/// So much more a metre counts as where there is no room at all.
-pub(super) const TIGHTER: f64 = 8.0;
-
-/// The part that is missing in a tight place, squared; 0 where a place is not tight.
-pub(super) fn tight_sq(room_m: f64, comfortable_m: f64) -> f64 {
-    /// With less than this part of the comfortable room, a place is tight.
-    const TIGHT: f64 = 0.2;
-    let missing = (1.0 - room_m / (TIGHT * comfortable_m)).clamp(0.0, 1.0);
-    missing * missing
-}
-
 /// The footprint itself, where points and what is between them are too rough: in the middle of a
 /// narrow way, whose sides are nearer to the points beside it.
 #[derive(Clone, Copy, Debug)]
