@@ -245,6 +245,32 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
     }
 }
 
+/// Turning towards the way, or to the heading at the goal, is progress. Neither takes a recovery.
+#[test]
+fn who_turns_slowly_is_not_stuck() {
+    let slow = |omega_max_radps: f64| {
+        let mut robot = Robot::small();
+        robot.limits.omega_max_radps = omega_max_radps;
+        robot
+    };
+    let room = || drawn(&["#########", "#.......#", "#.......#", "#.......#", "#########"], 10);
+    let (start, goal) = (Point::new(2.0, 2.5), Point::new(7.0, 2.5));
+    let away = Start { position: start, heading_rad: Some(PI) };
+    // Half a circle at 0.1 rad/s takes 31 s, and a run is stuck after 20 s without progress.
+    let report = run_episode(&facing(Episode::new(room(), slow(0.1), start, goal), away));
+    let report = report.unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert_eq!(tried(&report).total(), 0);
+    let turned = Start { position: start, heading_rad: Some(0.0) };
+    let goal = Goal { position: start, heading_rad: Some(PI) };
+    let report = run_episode(&facing(Episode::new(room(), slow(0.5), start, goal), turned));
+    let report = report.unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    // 6.3 s at full rate, and what it takes to begin and to end.
+    let time_s = report.run.as_ref().unwrap().time_s;
+    assert!(time_s < 1.2 * 6.4, "{time_s}");
+}
+
 #[test]
 fn a_goal_without_room_for_its_heading_is_not_reached() {
     // At the foot of the slot only the heading along it fits. No map shows the slot.

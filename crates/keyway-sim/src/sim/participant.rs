@@ -27,8 +27,8 @@ pub struct Control {
     /// Length of the remaining path \[m\], which measures progress. NaN or infinity: unknown, and
     /// no progress.
     pub remaining_m: f64,
-    /// How far the robot has to turn, to either side, to face that path \[rad\]: turning towards it
-    /// is progress, too. 0 where that is not to count.
+    /// Angle to that path, to either side \[rad\]: turning towards it is progress, too. 0 where that
+    /// is not to count.
     pub turn_left_rad: f64,
     /// Number of the current route; a new one may be longer than the last.
     pub route: u32,

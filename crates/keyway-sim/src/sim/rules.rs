@@ -18,7 +18,8 @@ pub struct RunRules {
     /// Simulated time after which a run is given up \[s\].
     pub time_limit_s: f64,
     /// Time \[s\] after which the robot is stuck if the remaining path has not become
-    /// [`Self::stuck_progress_m`] shorter; after a longer new route, shorter than that route.
+    /// [`Self::stuck_progress_m`] shorter, after a longer new route shorter than that route, nor the
+    /// robot has turned towards it by 0.1 rad ([`Control::turn_left_rad`]).
     pub stuck_window_s: f64,
     /// Decrease of the remaining path that counts as progress \[m\].
     pub stuck_progress_m: f64,

@@ -4,12 +4,12 @@
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// What a robot has left to do before it is where it should be.
+/// The rest of a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayLeft {
-    /// The rest of its way \[m\]; NaN or infinity: unknown.
+    /// Its length \[m\]; NaN or infinity: unknown.
     pub way_m: f64,
-    /// How far it has to turn, to either side, to face that way \[rad\].
+    /// Angle by which the robot has to turn, to either side, to face it \[rad\].
     pub turn_rad: f64,
 }
 

@@ -61,8 +61,8 @@ pub struct ControllerConfig {
     pub go_around: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
-    /// A recovery begins when the remaining way has not become shorter for this long \[s\]: by 5
-    /// cm, or by a tenth of what a slow robot drives in that time.
+    /// A recovery begins when the remaining way has not become shorter for this long \[s\], by 5 cm
+    /// or by a tenth of what a slow robot drives in that time, nor the robot has turned towards it.
     pub no_progress_s: f64,
     /// What is tried when the robot gets no farther, one kind after the other until it does; then
     /// from the beginning. Where `turn` is among them, a robot that is not round also turns before

@@ -12,7 +12,7 @@ pub(super) struct Watch {
     pub(super) route_s: f64,
     /// How long nothing has let the robot drive \[s\].
     pub(super) blocked_s: f64,
-    /// How long the remaining way has not become shorter \[s\].
+    /// Time without progress along the remaining way \[s\].
     pub(super) no_progress_s: f64,
     /// How long the robot has waited for something that moves \[s\].
     mover_s: f64,

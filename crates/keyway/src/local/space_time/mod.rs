@@ -30,9 +30,12 @@
 //! | H, K, W | horizon, stretches, courses that are followed (W / 2 where nothing moves) | `horizon_s`, `stretches`, `width` | s |
 //! | T | time of the course, and the time to go from its end | | s |
 //! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
-//! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 and only by how much it is more than where the robot is now | `discomfort` | |
+//! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
+//!
+//! The second term of q counts only as far as it is more than where the robot is now: a tight place
+//! does not become wider because the robot stays in it.
 //!
 //! So there are no weights of heading, speed and distance to balance: what turns away from the way,
 //! drives slowly or takes a detour takes longer, and everything else is given as the time that it

@@ -52,8 +52,8 @@ impl Navigator {
         self.task().map(|task| task.guidance)
     }
 
-    /// How far the robot has to turn, to either side, to face the place to which it drives, or at
-    /// its goal to be turned as it should \[rad\]; 0 without a goal.
+    /// Angle by which the robot has to turn, to either side, to face the place to which it drives,
+    /// or at its goal to face as it should \[rad\]; 0 without a goal.
     pub fn turn_left_rad(&self) -> f64 {
         let (Some(task), Some(pose)) = (self.task(), self.place) else { return 0.0 };
         let left_rad = match task.mode {

@@ -55,7 +55,7 @@ pub(in crate::navigate) struct MotionUnderWay {
     from: Option<Pose>,
 }
 
-/// How fast motions of recoveries are near obstacles, as a share of the robot's limits.
+/// Speed of recoveries near obstacles, as a share of the robot's limits.
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
 impl MotionUnderWay {
@@ -112,8 +112,8 @@ impl MotionUnderWay {
     }
 }
 
-/// How fast a robot turns on the spot, as a share of its limit: as fast as it can where nothing is
-/// within reach of any part of it.
+/// Rate of a turn on the spot, as a share of the robot's limit: all of it where nothing is within
+/// reach of any part of the robot.
 fn turn_share(robot: &Robot, pose: Pose, obstacles: &DistanceField) -> f64 {
     let room_m = robot.footprint.circumscribed_radius_m() + robot.safety_margin_m();
     let is_wide = obstacles.clearance().is_clear_point(pose.point(), room_m);
@@ -188,6 +188,32 @@ mod tests {
         assert_eq!((pose, ended), (start.0, MotionStep::Done));
         let outside = obey(Motion::Drive(9.0), &robot, start);
         assert_eq!((outside.0, outside.1), (start.0, MotionStep::Refused));
+    }
+
+    /// At the limit in the open; at a quarter of it where a wall is within reach of a corner.
+    #[test]
+    fn turns_are_as_fast_as_there_is_room() {
+        let map = OccupancyGrid::from_ascii(&["........", "........", "........", "########"]);
+        let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+        let robot = Robot::jackal();
+        let fastest_radps = |y: f64| {
+            let (mut pose, mut velocity) = (Pose::new(4.0, y, 0.0), Velocity::ZERO);
+            let (mut turn, mut fastest_radps) = (MotionUnderWay::new(Motion::Turn(3.0)), 0.0f64);
+            loop {
+                let elapsed_s = robot.cycle_s;
+                let moment = Moment { robot: &robot, pose, velocity, elapsed_s };
+                let MotionStep::Moving(command) = turn.step(&moment, &obstacles) else {
+                    return fastest_radps;
+                };
+                fastest_radps = fastest_radps.max(command.omega.abs());
+                velocity = robot.limits.reached(velocity, command, elapsed_s);
+                pose.theta += velocity.omega * elapsed_s;
+            }
+        };
+        let most_radps = robot.limits.omega_max_radps;
+        let reach_m = robot.footprint.circumscribed_radius_m();
+        assert_eq!(fastest_radps(2.5), most_radps);
+        assert_eq!(fastest_radps(1.0 + reach_m + 0.5 * robot.safety_margin_m()), 0.25 * most_radps);
     }
 
     proptest! {
