@@ -215,4 +215,21 @@ mod tests {
             assert!(refused > 1000, "{refused}");
         }
     }
+
+    /// A record of a chunk reaches beyond what the chunk calls its records, into what is behind.
+    #[test]
+    fn records_end_with_their_chunk() {
+        let records = |length: u64| {
+            let record = [&[op::MESSAGE][..], &5u64.to_le_bytes(), &[0; 5]].concat();
+            // Two times, the length of the records, no checksum, no compression, the length again.
+            let head = [&[0; 16][..], &length.to_le_bytes(), &[0; 8], &length.to_le_bytes()];
+            [head.concat(), record, vec![0; 20]].concat()
+        };
+        assert!(check_chunk(&records(14)).is_ok());
+        for length in [1, 10, 13, 15, 99] {
+            let chunk = records(length);
+            let parts = [mcap::MAGIC, &[op::CHUNK], &(chunk.len() as u64).to_le_bytes(), &chunk];
+            assert!(messages(&parts.concat()).is_err(), "{length}");
+        }
+    }
 }
