@@ -25,6 +25,8 @@ pub fn episode_table(report: &RobotReport, targets: Option<SmoothingTargets>) ->
         rows.extend(smoothed_facts(smoothed, targets));
     }
     rows.extend(report.misfit.map(|misfit| ("on the route", format!("the robot {misfit}"))));
+    let noticed = report.noticed.iter().flatten();
+    rows.extend(noticed.map(|doubt| ("noticed", doubt.clone())));
     if let Some(run) = &report.run {
         rows.extend(run_facts(run));
         rows.extend(run.way_points.as_ref().map(|it| ("way-points passed", passed(it))));

@@ -15,9 +15,10 @@ use crate::sim::{
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use keyway::map::{BitGrid, OccupancyGrid, UnknownPolicy};
-use keyway::navigate::{Blocked, FittedStack, Goal, Misfit, NavigateError, Navigator, Step};
+use keyway::navigate::{Blocked, Doubt, FittedStack, Goal, Misfit, NavigateError, Navigator, Step};
 use keyway::route::Route;
 use keyway::sense::Observation;
+use std::mem::discriminant;
 
 /// A robot about to drive.
 pub(super) struct Entry<'a> {
@@ -176,6 +177,7 @@ impl<'a> Ready<'a> {
             decisions_s: 0.0,
             passed_s: Vec::new(),
             blocked: None,
+            noticed: Vec::new(),
         })))
     }
 
@@ -217,6 +219,16 @@ impl<'a> Ready<'a> {
     }
 }
 
+/// Adds doubts to those of a run; of each kind the last one is kept.
+fn note_doubts(noticed: &mut Vec<Doubt>, doubts: &[Doubt]) {
+    for &doubt in doubts {
+        match noticed.iter_mut().find(|known| discriminant(*known) == discriminant(&doubt)) {
+            Some(known) => *known = doubt,
+            None => noticed.push(doubt),
+        }
+    }
+}
+
 /// A robot under way.
 struct Driver<'a> {
     task: Task<'a>,
@@ -236,6 +248,8 @@ struct Driver<'a> {
     passed_s: Vec<f64>,
     /// The last reason why the robot was blocked, if any.
     blocked: Option<Blocked>,
+    /// What was noticed, each kind once.
+    noticed: Vec<Doubt>,
 }
 
 impl Driver<'_> {
@@ -248,6 +262,7 @@ impl Driver<'_> {
         });
         self.decisions_s += step_s.unwrap_or_default();
         let navigator = &self.navigator;
+        note_doubts(&mut self.noticed, navigator.doubts());
         let index = self.cycles;
         let t_s = index as f64 * self.task.robot.robot.cycle_s;
         let cycle = Cycle { index, t_s, observation, step: &step, navigator };
@@ -294,6 +309,7 @@ impl Driver<'_> {
             smoothed: Some(SmoothedPart::of(route, &map, None)),
             key_points_m: Some(self.key_points),
             misfit: self.misfit,
+            noticed: Some(self.noticed.iter().map(Doubt::to_string).collect()),
             run: Some(RunPart::of(run, mrpb, controlled)),
             trajectory: Some(run.samples.iter().map(trajectory_row).collect()),
             inputs: task.inputs(Some(rules.time_limit_s)),

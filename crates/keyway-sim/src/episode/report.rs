@@ -23,6 +23,10 @@ pub struct RobotReport {
     /// Place on the first route where the footprint does not fit; `None` where it fits, or without
     /// a route.
     pub misfit: Option<Misfit>,
+    /// Contradictions that the navigator noticed while it drove
+    /// ([`Navigator::doubts`](keyway::navigate::Navigator::doubts)), each kind once with its last
+    /// words, for people; `None` without a run.
+    pub noticed: Option<Vec<String>>,
     /// Metrics of the run.
     pub run: Option<RunPart>,
     /// The start, the end of every cycle, and the contact if there was one:

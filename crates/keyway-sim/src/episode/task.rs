@@ -149,6 +149,7 @@ impl Task<'_> {
             smoothed: None,
             key_points_m: None,
             misfit: None,
+            noticed: None,
             run: None,
             trajectory: None,
             inputs: self.inputs(self.episode.rules.time_limit_s),

@@ -1,5 +1,6 @@
 //! Inputs that contradict each other.
 
+use super::motors::Motors;
 use super::time::Time;
 use crate::geometry::{Pose, Velocity, wrap_angle};
 use crate::robot::Robot;
@@ -23,6 +24,22 @@ pub enum Doubt {
     },
     /// The velocity has been told as 0 for 2 s, while the pose moved by more than 0.1 m or 0.1 rad.
     VelocityAlwaysZero,
+    /// The motors act later than the robot's description says
+    /// ([`Robot::actuation_delay_s`]), by so much that it was seen in what the robot did. What was
+    /// learned is used in its place.
+    ActsLate {
+        /// The time from a command to its effect \[s\].
+        learned_s: f64,
+        /// The same as described \[s\].
+        described_s: f64,
+    },
+    /// Small commands do not move the robot. None are given any more that are not larger.
+    DeadBand {
+        /// The largest speed that has not moved it \[m/s\]; 0 where none is known.
+        v_mps: f64,
+        /// The largest turn rate that has not moved it \[rad/s\]; 0 where none is known.
+        omega_radps: f64,
+    },
     /// The robot has been told to move for 2 s, and its pose has moved by less than a fifth of
     /// that.
     DoesNotMove,
@@ -48,6 +65,14 @@ impl Display for Doubt {
             Self::VelocityAlwaysZero => {
                 f.write_str("the velocity is always 0 although the pose moves: check the odometry")
             }
+            Self::ActsLate { learned_s, described_s } => write!(
+                f,
+                "the robot does what it is told {learned_s:.2} s later, not {described_s:.2} s: set actuation_delay_s = {learned_s:.2} in its file"
+            ),
+            Self::DeadBand { v_mps, omega_radps } => write!(
+                f,
+                "commands of up to {v_mps:.3} m/s and {omega_radps:.3} rad/s do not move the robot: check its motors"
+            ),
             Self::DoesNotMove => f.write_str(
                 "the robot does not move although it is told to: check its motors, or it is stuck",
             ),
@@ -105,7 +130,7 @@ impl Doubts {
             usual_rad: Self::AT_FIRST_RAD,
             jump: None,
             repeated: vec![None; sensors],
-            found: Vec::with_capacity(5 + sensors),
+            found: Vec::with_capacity(7 + sensors),
         }
     }
 
@@ -189,9 +214,17 @@ impl Doubts {
         &self.found
     }
 
-    /// Looks at the last 2 s.
-    pub(super) fn look(&mut self, now: Time) {
+    /// Looks at the last 2 s, and at what the motors do.
+    pub(super) fn look(&mut self, now: Time, motors: &Motors) {
         self.found.clear();
+        if let Some(learned_s) = motors.learned_s() {
+            let described_s = motors.described_s();
+            self.found.push(Doubt::ActsLate { learned_s, described_s });
+        }
+        let Velocity { v: v_mps, omega: omega_radps } = motors.too_small();
+        if v_mps > 0.0 || omega_radps > 0.0 {
+            self.found.push(Doubt::DeadBand { v_mps, omega_radps });
+        }
         let is_recent = |time: &Time| now.since_s(*time) <= Self::WINDOW_S;
         if let Some((_, [by_m, by_rad])) = self.jump.filter(|(time, _)| is_recent(time)) {
             self.found.push(Doubt::PoseJumped { by_m, by_rad });

@@ -53,9 +53,15 @@ impl Robot {
 
     /// True if it stands: what its odometry shows then is noise.
     pub(crate) fn stands(&self, velocity: Velocity) -> bool {
+        let standing = self.standing();
+        velocity.v.abs() <= standing.v && velocity.omega.abs() <= standing.omega
+    }
+
+    /// The largest speed and turn rate that odometry shows of a robot that stands.
+    pub(crate) fn standing(&self) -> Velocity {
         let (limits, cycle_s) = (&self.limits, self.cycle_s);
         let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
-        velocity.v.abs() <= limits.standing_mps(cycle_s) && velocity.omega.abs() <= standing_radps
+        Velocity::new(limits.standing_mps(cycle_s), standing_radps)
     }
 
     /// The longest time from a scan to rest, if the robot backs up at full speed for one more

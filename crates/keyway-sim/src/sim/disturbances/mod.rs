@@ -77,6 +77,9 @@ pub struct SensorFaults {
     /// Share of the scans in whose place the scan before is given again as if it were new, from 0
     /// to 1, chosen independently. It shows obstacles where they were in relation to the robot.
     pub repeated_scans: f64,
+    /// True if the last scan is given again in every cycle until there is a new one, as if it were
+    /// new: by a driver that publishes faster than the sensor turns.
+    pub held_scans: bool,
     /// Time from a scan to the first cycle in which the controller can get it \[s\], from 0 to 10.
     /// The controller gets the latest scan that has arrived, once, with the time at which it was
     /// made. Until the first one arrives it gets none.

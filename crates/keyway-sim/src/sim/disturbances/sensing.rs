@@ -112,6 +112,7 @@ impl Faults {
         if is_new {
             self.repeat(scan, is_made);
         }
+        let is_made = is_made || !is_lost && self.hold(scan);
         if self.late == 0 {
             if !is_made {
                 scan.ranges_m.fill(f64::NAN);
@@ -135,7 +136,7 @@ impl Faults {
     /// Puts the scan before in the place of the new one, or remembers that; a lost scan stays lost.
     fn repeat(&mut self, scan: &mut Scan, is_made: bool) {
         let share = self.sensor.repeated_scans;
-        if share == 0.0 {
+        if share == 0.0 && !self.sensor.held_scans {
             return;
         }
         let is_repeated = self.repeats.is_chosen(share) && !self.last_m.is_empty();
@@ -147,6 +148,15 @@ impl Faults {
         } else {
             self.last_m.clone_from(&scan.ranges_m);
         }
+    }
+
+    /// Gives the last scan again where scans are held; false where there is none.
+    fn hold(&self, scan: &mut Scan) -> bool {
+        let is_held = self.sensor.held_scans && !self.last_m.is_empty();
+        if is_held {
+            scan.ranges_m.clone_from(&self.last_m);
+        }
+        is_held
     }
 
     /// Turns an exact scan into a measured one. False if it is lost: then every beam is NaN.

@@ -33,9 +33,10 @@ pub(super) struct Deciding<'a> {
 }
 
 impl<'a> Deciding<'a> {
-    pub(super) const fn moment(&self) -> Moment<'a> {
+    pub(super) fn moment(&self) -> Moment<'a> {
         let Self { robot, pose, velocity, elapsed_s, .. } = *self;
-        Moment { robot, pose, velocity, elapsed_s }
+        let least = self.world.motors.least();
+        Moment { robot, pose, velocity, elapsed_s, least }
     }
 
     /// Notes that the robot has left what it was too near to, once it is told so.

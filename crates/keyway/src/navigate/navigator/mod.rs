@@ -197,7 +197,7 @@ impl Navigator {
         let step = self.stepped(&told, now, staleness);
         // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
         let command = self.parts.robot.limits.clamped(step.command());
-        self.world.under_way.give(told.time, now, command);
+        self.world.motors.give(told.time, now, command);
         let step = step.commanding(command);
         (self.issued, self.last) = (command, Some(step.clone()));
         step
@@ -210,7 +210,7 @@ impl Navigator {
         self.stepped = None;
         self.issued = Velocity::ZERO;
         if let Some(now) = self.world.now() {
-            self.world.under_way.give(now, now, Velocity::ZERO);
+            self.world.motors.give(now, now, Velocity::ZERO);
         }
         Step::Blocked { command: Velocity::ZERO, why }
     }
@@ -222,8 +222,7 @@ impl Navigator {
     fn stepped(&mut self, told: &Told, now: Time, staleness: Option<Blocked>) -> Step {
         let &Told { time, pose, velocity } = told;
         let Robot { limits, cycle_s, .. } = &*self.parts.robot;
-        let (pose_then, velocity_then) =
-            self.world.under_way.predicted(time, now, (pose, velocity));
+        let (pose_then, velocity_then) = self.world.motors.predicted(time, now, (pose, velocity));
         let braked = limits.braked(velocity_then, *cycle_s);
         let outside =
             |pose: &Pose| self.world.known.frame().cell_from_world(pose.point()).is_none();
@@ -240,16 +239,18 @@ impl Navigator {
         let elapsed_s = since.map_or(*cycle_s, |last| now.since_s(last).min(longest_s));
         self.stepped = Some(now);
         let robot = Arc::clone(&self.parts.robot);
-        self.world.look_ahead(&robot);
+        self.world.look_ahead();
         self.slow_down(pose.point(), velocity_then);
         let silence = self.world.silence(&self.parts);
-        let is_at_rest = self.world.under_way.is_at_rest(time, now, (&robot, velocity));
-        let moment = Moment { robot: &robot, pose: pose_then, velocity: velocity_then, elapsed_s };
+        let is_at_rest = self.world.motors.is_at_rest(time, now, (&robot, velocity));
+        let least = self.world.motors.least();
+        let (robot, pose_now, velocity) = (&*robot, pose, velocity_then);
+        let moment = Moment { robot, pose: pose_then, velocity, elapsed_s, least };
         let step = match &mut self.errand {
             None if is_at_rest => Step::Idle,
             None => Step::Drive(braked),
             Some(Errand::Act(_)) => self.act(&moment, silence, braked),
-            Some(Errand::Drive(_)) => self.drive(pose, &moment, silence, braked),
+            Some(Errand::Drive(_)) => self.drive(pose_now, &moment, silence, braked),
         };
         if matches!(self.errand, None | Some(Errand::Act(_))) {
             // No route looks at them.
@@ -276,7 +277,7 @@ impl Navigator {
             return Step::Blocked { command: braked, why };
         }
         let step = deciding.decided();
-        let step = deciding.slowed(step);
+        let step = deciding.world.within_reach(moment.velocity, deciding.slowed(step));
         deciding.guarded(step)
     }
 
@@ -292,6 +293,7 @@ impl Navigator {
             step => step,
         };
         let step = slowing::slowed(self.slow.as_ref(), step);
+        let step = self.world.within_reach(moment.velocity, step);
         self.record.guarded(&self.world, moment, step)
     }
 
@@ -334,7 +336,8 @@ impl Navigator {
         self.forget_last();
         let Some(pose) = self.place.filter(|pose| pose.point().is_finite()) else { return };
         let robot = Arc::clone(&self.parts.robot);
-        let moment = Moment { robot: &robot, pose, velocity: Velocity::ZERO, elapsed_s: 0.0 };
+        let (velocity, least) = (Velocity::ZERO, self.world.motors.least());
+        let moment = Moment { robot: &robot, pose, velocity, elapsed_s: 0.0, least };
         if let Some(mut deciding) = self.deciding(&moment) {
             deciding.replan();
         }

@@ -44,6 +44,8 @@ pub(in crate::navigate) struct Moment<'a> {
     pub(in crate::navigate) velocity: Velocity,
     /// Since the last decision \[s\].
     pub(in crate::navigate) elapsed_s: f64,
+    /// The least speed and turn rate that its motors do.
+    pub(in crate::navigate) least: Velocity,
 }
 
 /// A motion under way.
@@ -59,9 +61,6 @@ pub(in crate::navigate) struct MotionUnderWay {
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
 impl MotionUnderWay {
-    /// What is left is nothing \[m\], \[rad\].
-    const NOTHING: f64 = 2e-3;
-
     pub(in crate::navigate) const fn new(motion: Motion) -> Self {
         Self { left: motion, from: None }
     }
@@ -74,7 +73,7 @@ impl MotionUnderWay {
     /// The next cycle. `obstacles` are all that are known and sensed.
     pub(in crate::navigate) fn step(
         &mut self,
-        &Moment { robot, pose, velocity, elapsed_s }: &Moment<'_>,
+        &Moment { robot, pose, velocity, elapsed_s, least }: &Moment<'_>,
         obstacles: &DistanceField,
     ) -> MotionStep {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
@@ -84,7 +83,7 @@ impl MotionUnderWay {
         }
         let from = self.from.replace(pose).unwrap_or(pose);
         self.left = self.left.after(from, pose, elapsed_s);
-        if is_standing && self.left.size() <= Self::NOTHING {
+        if is_standing && self.left.size() <= self.left.nothing(least, cycle_s) {
             return MotionStep::Done;
         }
         let footprint = &robot.footprint;
@@ -139,6 +138,18 @@ impl Motion {
             Self::Turn(left) | Self::Drive(left) | Self::Wait(left) => left.abs(),
         }
     }
+
+    /// What is left is nothing: 2 mm, or 2 mrad, or half of what motors that do nothing less than
+    /// this in a cycle do.
+    fn nothing(self, least: Velocity, cycle_s: f64) -> f64 {
+        const NOTHING: f64 = 2e-3;
+        let least = match self {
+            Self::Turn(_) => least.omega,
+            Self::Drive(_) => least.v,
+            Self::Wait(_) => 0.0,
+        };
+        NOTHING.max(0.6 * least * cycle_s)
+    }
 }
 
 #[cfg(test)]
@@ -154,7 +165,8 @@ mod tests {
         let (mut pose, mut velocity) = start;
         let (mut under_way, mut fastest) = (MotionUnderWay::new(motion), 0.0f64);
         for _ in 0..2000 {
-            let moment = Moment { robot, pose, velocity, elapsed_s: robot.cycle_s };
+            let (elapsed_s, least) = (robot.cycle_s, Velocity::ZERO);
+            let moment = Moment { robot, pose, velocity, elapsed_s, least };
             match under_way.step(&moment, &obstacles) {
                 MotionStep::Moving(command) => {
                     let reached = robot.limits.reached(velocity, command, robot.cycle_s);
@@ -201,7 +213,8 @@ mod tests {
             let (mut turn, mut fastest_radps) = (MotionUnderWay::new(Motion::Turn(3.0)), 0.0f64);
             loop {
                 let elapsed_s = robot.cycle_s;
-                let moment = Moment { robot: &robot, pose, velocity, elapsed_s };
+                let moment =
+                    Moment { robot: &robot, pose, velocity, elapsed_s, least: Velocity::ZERO };
                 let MotionStep::Moving(command) = turn.step(&moment, &obstacles) else {
                     return fastest_radps;
                 };

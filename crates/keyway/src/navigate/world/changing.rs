@@ -55,7 +55,7 @@ impl World {
         self.times.fill(super::SensorTimes::default());
         self.points_at.fill(None);
         self.poses.clear();
-        self.under_way.clear();
+        self.motors.restart_clock();
         self.doubts = Doubts::new(self.times.len());
     }
 

@@ -7,18 +7,18 @@ pub(super) use storing::StoredWorld;
 
 use super::doubts::{Doubt, Doubts};
 use super::masks::Masks;
+use super::motors::Motors;
 use super::poses::Poses;
 use super::recovery::Track;
 use super::route::Router;
 use super::task::Task;
 use super::time::Time;
-use super::under_way::UnderWay;
 use super::walked_ground::WalkedGround;
-use super::{Blocked, FittedStack, NavigateError};
+use super::{Blocked, FittedStack, NavigateError, Step};
 use crate::geometry::{Pose, Shift, Velocity};
 use crate::guide::Guidance;
 use crate::local::Scene;
-use crate::map::{CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
+use crate::map::{Cell, CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::{
     Mover, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer, SensorPoints,
@@ -48,7 +48,7 @@ pub(super) struct World {
     pub(super) walked: WalkedGround,
     /// The last places of the robot.
     pub(super) track: Track,
-    pub(super) under_way: UnderWay,
+    pub(super) motors: Motors,
     /// Moving obstacles as they will be when the next command acts.
     pub(super) movers_then: Vec<Mover>,
     /// Cells that have become occupied since the last decision.
@@ -71,6 +71,8 @@ pub(super) struct World {
     ranges_m: Vec<Vec<f64>>,
     /// Time of the latest scan of any sensor.
     scanned: Option<Time>,
+    /// A scan that is given again, where the robot is now; without meaning between scans.
+    again: ProjectedScan,
     doubts: Doubts,
     /// Changes of the map by the last scan.
     changed: Vec<Edit>,
@@ -112,7 +114,7 @@ impl World {
             tracker: tracker.clone(),
             walked: WalkedGround::default(),
             track: Track::new(frame.resolution_m()),
-            under_way: UnderWay::new(robot),
+            motors: Motors::new(robot),
             movers_then: Vec::new(),
             edits: Vec::new(),
             has_changed_much: false,
@@ -125,6 +127,7 @@ impl World {
             points_at: [None; SensorPoints::MOST_SENSORS],
             ranges_m: vec![Vec::new(); robot.sensors.len()],
             scanned: None,
+            again: ProjectedScan::default(),
             doubts: Doubts::new(robot.sensors.len()),
             changed: Vec::new(),
             known: Arc::clone(known),
@@ -142,7 +145,7 @@ impl World {
         parts: &FittedStack,
         observation: &Observation<'_>,
     ) -> Option<Shift> {
-        let Observation { pose, velocity, .. } = *observation;
+        let Observation { pose, velocity: told, .. } = *observation;
         let time = match self.believe(&parts.robot, observation) {
             Ok(time) => time,
             Err(why) => {
@@ -151,11 +154,12 @@ impl World {
             }
         };
         self.refused = None;
+        let command = self.motors.acts_at(time).unwrap_or(told);
+        let velocity = self.motors.observe(time, pose, told);
         let shift = self.follow_jump(&parts.robot, time, (pose, velocity));
         self.told = Some(Told { time, pose, velocity });
         self.poses.note(time, pose, velocity);
-        let command = self.under_way.acts_at(time).unwrap_or(velocity);
-        self.doubts.note(time, (pose, velocity), command);
+        self.doubts.note(time, (pose, told), command);
         self.now = self.now.max(Some(time));
         if self.known.frame().cell_from_world(pose.point()).is_some() {
             self.track.note(pose.point());
@@ -163,7 +167,7 @@ impl World {
             observation.scans.iter().for_each(|scan| self.take_in(parts, scan));
             observation.points.iter().for_each(|points| self.take_in_points(parts, points));
         }
-        self.doubts.look(time);
+        self.doubts.look(time, &self.motors);
         shift
     }
 
@@ -213,28 +217,39 @@ impl World {
 
     /// Takes in a scan, where the robot was when it was made: one of a sensor that the robot does
     /// not have is left out, and so is one of which no beam says anything, one that is not newer
-    /// than the last, and one that is older than any pose that is still known.
+    /// than the last, one that is older than any pose that is still known, and the same ranges as
+    /// before from elsewhere, unless they show nothing new: whatever the stamp, that is no new look.
     fn take_in(&mut self, parts: &FittedStack, scan: &SensorScan<'_>) {
         let Some(time) = Time::of_stamp(scan.stamp_s) else { return };
         let Some(times) = self.times.get_mut(scan.sensor) else { return };
-        let Some(pose) = self.poses.at(time) else { return };
+        let Some(mut pose) = self.poses.at(time) else { return };
         let says_nothing = scan.scan.says_nothing();
         if says_nothing || times.scanned.is_some_and(|last| time <= last) {
             return;
         }
-        times.scanned = Some(time);
         self.now = self.now.max(Some(time));
         let (ranges_m, projected) = (&mut self.ranges_m[scan.sensor], &mut self.scans[scan.sensor]);
         let velocity = self.told.map_or(Velocity::ZERO, |told| told.velocity);
         let given = scan.scan.ranges_m;
         let is_same = ranges_m.iter().map(|m| m.to_bits()).eq(given.iter().map(f64::to_bits));
         let has_hits = given.iter().any(f64::is_finite);
-        if is_same && has_hits && Doubts::has_come_far(velocity, projected.robot(), pose) {
-            self.doubts.note_repeated(scan.sensor, time);
+        let (frame, footprint) = (self.known.frame(), &parts.robot.footprint);
+        if is_same && has_hits {
+            if Doubts::has_come_far(velocity, projected.robot(), pose) {
+                self.doubts.note_repeated(scan.sensor, time);
+                self.again.project(frame, footprint, pose, scan);
+                if !is_known(&self.again, &self.obstacles) {
+                    return;
+                }
+            } else {
+                // It is that of where it was first given.
+                pose = projected.robot();
+            }
         }
+        times.scanned = Some(time);
         ranges_m.clear();
         ranges_m.extend(given.iter());
-        projected.project(self.known.frame(), &parts.robot.footprint, pose, scan);
+        projected.project(frame, footprint, pose, scan);
         if !projected.is_silent() {
             times.said = Some(time);
         }
@@ -329,14 +344,14 @@ impl World {
     }
 
     /// Brings what is known from the latest scan to the present.
-    pub(super) fn look_ahead(&mut self, robot: &Robot) {
+    pub(super) fn look_ahead(&mut self) {
         // What one sensor has marked, another may have seen through.
         let sensed = self.sensed.sensed();
         let known = self.known.occupied();
         self.edits.retain(|edit| sensed.get(edit.cell) || known.get(edit.cell));
         let age_s = self.scan_age_s();
         if let Some(tracker) = &self.tracker {
-            let ahead_s = robot.actuation_delay_s + age_s;
+            let ahead_s = self.motors.delay_s() + age_s;
             self.movers_then.clear();
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(ahead_s)));
         }
@@ -344,6 +359,13 @@ impl World {
             let walls = walls(self.unmasked.as_deref(), &self.known, &self.router);
             seen.look_ahead(self.known.frame(), walls, age_s);
         }
+    }
+
+    /// The same step with a command that the motors can do.
+    pub(super) fn within_reach(&self, velocity: Velocity, step: Step) -> Step {
+        let command = step.command();
+        let given = self.motors.within_reach(velocity, command);
+        if given == command { step } else { step.commanding(given) }
     }
 
     /// Age of the latest scan \[s\].
@@ -417,6 +439,15 @@ impl World {
         let cells = self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells);
         SeenCells { scans: &self.scans, ..cells }
     }
+}
+
+/// Whether nearly all that a scan has met is known to stand there: along a wall that is all alike,
+/// the next scan may be the same as the one before.
+fn is_known(scan: &ProjectedScan, obstacles: &DistanceField) -> bool {
+    const NEARLY_ALL: f64 = 0.98;
+    let is_known = |cell: Cell| obstacles.half_cells_sq(cell) == Some(0);
+    let known = scan.hits().filter(|(_, hit)| hit.cell.is_some_and(is_known)).count();
+    known as f64 >= NEARLY_ALL * scan.hits().count() as f64
 }
 
 /// Walls through which nobody walks.

@@ -1,10 +1,10 @@
 //! Knowledge of a navigator, as it is stored and taken up again.
 
 use super::{SensorTimes, Told, World, unbelievable};
-use crate::geometry::Velocity;
 use crate::map::{CellState, Edit, OccupancyGrid};
 use crate::navigate::doubts::Doubts;
 use crate::navigate::masks::Masks;
+use crate::navigate::motors::StoredMotors;
 use crate::navigate::poses::Poses;
 use crate::navigate::recovery::Track;
 use crate::navigate::time::Time;
@@ -26,7 +26,7 @@ pub(in crate::navigate) struct StoredWorld {
     tracker: Option<Tracker>,
     walked: WalkedGround,
     track: Track,
-    under_way: Vec<(Time, Velocity)>,
+    motors: StoredMotors,
     edits: Vec<Edit>,
     poses: Poses,
     told: Option<Told>,
@@ -87,7 +87,7 @@ impl World {
             tracker: self.tracker.clone(),
             walked: self.walked.clone(),
             track: self.track.clone(),
-            under_way: self.under_way.commands(),
+            motors: self.motors.stored(),
             edits: self.edits.clone(),
             poses: self.poses.clone(),
             told: self.told,
@@ -128,7 +128,9 @@ impl World {
         }
         world.tracker = stored.tracker.filter(|_| world.tracker.is_some());
         (world.walked, world.track) = (stored.walked, stored.track);
-        world.under_way.take_up(&stored.under_way);
+        if !world.motors.take_up(stored.motors) {
+            return Err(RestoreError::Contradiction("motors"));
+        }
         (world.edits, world.poses) = (stored.edits, stored.poses);
         world.has_changed_much = stored.has_changed_much;
         world.refused = stored.refused.map(Blocked::from);

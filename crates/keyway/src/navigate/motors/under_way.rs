@@ -1,12 +1,11 @@
 //! Commands that were given and have no effect yet.
 
-use super::time::Time;
 use crate::geometry::{Pose, Velocity};
+use crate::navigate::time::Time;
 use crate::robot::{Limits, Robot};
 use std::collections::VecDeque;
 
-/// The commands that are on their way to the motors, for a robot with a known delay
-/// ([`Robot::actuation_delay_s`]).
+/// The last commands, which act after a delay.
 ///
 /// What a robot does before its next command acts is decided already. So that command is chosen for
 /// the pose and the velocity which the robot then has: those that follow from the last ones that
@@ -17,9 +16,12 @@ use std::collections::VecDeque;
 pub(super) struct UnderWay {
     limits: Limits,
     cycle_s: f64,
-    delay_s: f64,
+    /// The longest delay that is asked for.
+    longest_s: f64,
     most: usize,
-    /// Each with the time at which it begins to act, the oldest first.
+    /// Speed and turn rate that do not move it.
+    pub(super) too_small: Velocity,
+    /// Each with the time at which it was given, the oldest first.
     commands: VecDeque<(Time, Velocity)>,
 }
 
@@ -27,22 +29,24 @@ impl UnderWay {
     /// Commands that are kept beyond those of the delay.
     const MORE: usize = 256;
 
-    pub(super) fn new(robot: &Robot) -> Self {
-        let Robot { ref limits, cycle_s, actuation_delay_s, .. } = *robot;
-        let most = (actuation_delay_s / cycle_s).ceil() as usize + Self::MORE;
+    pub(super) fn new(robot: &Robot, longest_s: f64) -> Self {
+        let Robot { ref limits, cycle_s, .. } = *robot;
+        let most = (longest_s / cycle_s).ceil() as usize + Self::MORE;
         let commands = VecDeque::with_capacity(most);
-        Self { limits: limits.clone(), cycle_s, delay_s: actuation_delay_s, most, commands }
+        let (limits, too_small) = (limits.clone(), Velocity::ZERO);
+        Self { limits, cycle_s, longest_s, most, too_small, commands }
     }
 
-    /// Pose and velocity at the instant at which a command that is given `now` acts, for a robot
-    /// that was observed at a time. Before the first command it has been told to go on as it does.
+    /// Pose and velocity at the instant at which a command that is given at the second time acts,
+    /// for a robot that was observed at the first. Before the first command it has been told to go
+    /// on as it does.
     pub(super) fn predicted(
         &self,
-        observed: Time,
-        now: Time,
+        (observed, now): (Time, Time),
+        delay_s: f64,
         (mut pose, mut velocity): (Pose, Velocity),
     ) -> (Pose, Velocity) {
-        for (command, duration_s) in self.acting(observed, now.after_s(self.delay_s)) {
+        for (command, duration_s) in self.acting(observed, now.after_s(delay_s), delay_s) {
             let command = command.unwrap_or(velocity);
             let mut left_s = duration_s;
             while left_s > 0.0 {
@@ -55,28 +59,48 @@ impl UnderWay {
         (pose, velocity)
     }
 
+    /// The velocity at the second of two times of a robot that has one at the first. Before the
+    /// first command it stands.
+    pub(super) fn velocity_after(
+        &self,
+        (from, to): (Time, Time),
+        delay_s: f64,
+        velocity: Velocity,
+    ) -> Velocity {
+        self.acting(from, to, delay_s).fold(velocity, |velocity, (command, duration_s)| {
+            self.limits.reached(velocity, command.unwrap_or(Velocity::ZERO), duration_s)
+        })
+    }
+
+    /// Full speed and full turn rate.
+    pub(super) fn full(&self) -> Velocity {
+        let Limits { v_max_mps, v_min_mps, omega_max_radps, .. } = self.limits;
+        Velocity::new(v_max_mps.max(-v_min_mps), omega_max_radps)
+    }
+
     /// Notes a command that is given now, and forgets those that have long acted. Allocates
     /// nothing.
     pub(super) fn give(&mut self, observed: Time, now: Time, command: Velocity) {
-        let acts = now.after_s(self.delay_s);
-        while self.commands.back().is_some_and(|last| last.0 >= acts) {
+        while self.commands.back().is_some_and(|last| last.0 >= now) {
             self.commands.pop_back();
         }
-        while self.commands.get(1).is_some_and(|second| second.0 <= observed)
+        let acted = observed.after_s(-self.longest_s);
+        while self.commands.get(1).is_some_and(|second| second.0 <= acted)
             || self.commands.len() >= self.most
         {
             self.commands.pop_front();
         }
-        self.commands.push_back((acts, command));
+        self.commands.push_back((now, command));
     }
 
     /// The command that acts at a time; `None` before the first.
-    pub(super) fn acts_at(&self, time: Time) -> Option<Velocity> {
-        let begun = self.commands.partition_point(|command| command.0 <= time);
+    pub(super) fn acts_at(&self, time: Time, delay_s: f64) -> Option<Velocity> {
+        let given = time.after_s(-delay_s);
+        let begun = self.commands.partition_point(|command| command.0 <= given);
         Some(self.commands.get(begun.checked_sub(1)?)?.1)
     }
 
-    /// The commands that are under way, each with the time at which it begins to act.
+    /// The commands, each with the time at which it was given.
     pub(super) fn commands(&self) -> Vec<(Time, Velocity)> {
         self.commands.iter().copied().collect()
     }
@@ -95,23 +119,39 @@ impl UnderWay {
     /// Whether a robot stands, and no command under way moves it.
     pub(super) fn is_at_rest(
         &self,
-        observed: Time,
-        now: Time,
+        (observed, now): (Time, Time),
+        delay_s: f64,
         (robot, velocity): (&Robot, Velocity),
     ) -> bool {
-        let mut acting = self.acting(observed, now.after_s(self.delay_s));
+        let mut acting = self.acting(observed, now.after_s(delay_s), delay_s);
         robot.stands(velocity) && acting.all(|(it, _)| it.is_none_or(|it| robot.stands(it)))
     }
 
-    /// The commands that act between two times, and for how long \[s\]; `None` before the first.
-    fn acting(&self, from: Time, to: Time) -> impl Iterator<Item = (Option<Velocity>, f64)> {
+    /// The part of a command that moves the robot.
+    fn done(&self, command: Velocity) -> Velocity {
+        let beyond =
+            |asked: f64, too_small: f64| if asked.abs() <= too_small { 0.0 } else { asked };
+        let Velocity { v, omega } = self.too_small;
+        Velocity::new(beyond(command.v, v), beyond(command.omega, omega))
+    }
+
+    /// The commands that act between two times after a delay, and for how long \[s\]; `None`
+    /// before the first.
+    fn acting(
+        &self,
+        from: Time,
+        to: Time,
+        delay_s: f64,
+    ) -> impl Iterator<Item = (Option<Velocity>, f64)> {
+        let (from, to) = (from.after_s(-delay_s), to.after_s(-delay_s));
+        let first = self.commands.partition_point(|command| command.0 <= from);
         let begins = move |index: usize| self.commands.get(index).map_or(to, |command| command.0);
-        let spans = (0..=self.commands.len()).map(move |index| {
+        let spans = (first..=self.commands.len()).map(move |index| {
             let command = index.checked_sub(1).map(|before| self.commands[before]);
             let begun = command.map_or(from, |command| command.0.max(from));
-            (command.map(|command| command.1), begins(index).min(to).since_s(begun))
+            (command.map(|command| self.done(command.1)), begins(index).min(to).since_s(begun))
         });
-        spans.filter(|&(_, duration_s)| duration_s > 0.0)
+        spans.take_while(|&(_, duration_s)| duration_s >= 0.0).filter(|&(_, it)| it > 0.0)
     }
 }
 
@@ -174,12 +214,13 @@ mod tests {
         ];
         for (name, whole, part) in cases {
             let late = LateRobot::new(name, (whole, part));
-            let mut under_way = UnderWay::new(&late.robot);
+            let delay_s = late.robot.actuation_delay_s;
+            let mut under_way = UnderWay::new(&late.robot, delay_s);
             // A ramp in two parts is integrated differently, by a few micrometres.
             let off_m = if part == 0.0 { 1e-9 } else { 1e-5 };
             for (cycle, &command) in late.commands.iter().enumerate() {
                 let now = Time::of_stamp(cycle as f64 * late.robot.cycle_s).unwrap();
-                let (pose, velocity) = under_way.predicted(now, now, late.told(cycle));
+                let (pose, velocity) = under_way.predicted((now, now), delay_s, late.told(cycle));
                 let (at, reached) = late.after(cycle, 0.0);
                 assert!(
                     pose.point().distance(at.point()) < off_m,

@@ -1,0 +1,147 @@
+//! Commands that are too small for the motors.
+//!
+//! A wheel that stands needs more than friction holds: below some speed nothing moves. A command
+//! that follows from the velocity that was measured, and from what the robot can reach within a
+//! cycle, may stay below that for ever. So commands that have not moved the robot for a while are
+//! known to be too small, and smaller ones are not given any more: one of more than half of the
+//! least that moves it becomes that, others become 0.
+
+use crate::geometry::Velocity;
+use crate::navigate::time::Time;
+use crate::robot::Robot;
+use serde::{Deserialize, Serialize};
+
+/// The largest commands that have not moved a robot, along with how it was found.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct DeadBand {
+    v: Axis,
+    omega: Axis,
+}
+
+/// Speed or turn rate.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Axis {
+    full: f64,
+    /// What is measured of one that stands is no more than this.
+    standing: f64,
+    /// The largest command that has not moved it; 0 where none is known.
+    too_small: f64,
+    stands: bool,
+    /// Since when it stands although it is told to move, and the largest command since.
+    asked: Option<(Time, f64)>,
+}
+
+impl DeadBand {
+    pub(super) fn new(robot: &Robot) -> Self {
+        let (limits, standing) = (&robot.limits, robot.standing());
+        let full_mps = limits.v_max_mps.max(-limits.v_min_mps);
+        let v = Axis::new(full_mps, standing.v);
+        Self { v, omega: Axis::new(limits.omega_max_radps, standing.omega) }
+    }
+
+    /// Notes the velocity that the robot has, and the command that acts. A command is too small
+    /// that has acted for so long without any motion \[s\].
+    pub(super) fn note(&mut self, time: Time, now: Velocity, command: Velocity, patience_s: f64) {
+        self.v.note(time, (now.v, command.v), patience_s);
+        self.omega.note(time, (now.omega, command.omega), patience_s);
+    }
+
+    /// The largest speed and turn rate that have not moved the robot; 0 where none is known.
+    pub(super) const fn too_small(&self) -> Velocity {
+        Velocity { v: self.v.too_small, omega: self.omega.too_small }
+    }
+
+    /// The least speed and turn rate that are given; 0 where all are.
+    pub(super) fn least(&self) -> Velocity {
+        Velocity::new(self.v.least(), self.omega.least())
+    }
+
+    /// The command that moves a robot with a velocity as nearly as its motors can.
+    pub(super) fn given(&self, now: Velocity, asked: Velocity) -> Velocity {
+        let parts = [self.v.part(asked.v), self.omega.part(asked.omega)];
+        let given =
+            Velocity::new(self.v.given(now.v, asked.v), self.omega.given(now.omega, asked.omega));
+        // Who is asked to creep does not stand for ever.
+        let stands = self.v.is_standing(now.v) && self.omega.is_standing(now.omega);
+        if given != Velocity::ZERO || parts == [0.0; 2] || !stands {
+            return given;
+        }
+        match parts[0] >= parts[1] {
+            true => Velocity::new(self.v.least().copysign(asked.v), 0.0),
+            false => Velocity::new(0.0, self.omega.least().copysign(asked.omega)),
+        }
+    }
+
+    /// Forgets what is under way, and not what was learned.
+    pub(super) const fn pause(&mut self) {
+        (self.v.asked, self.omega.asked) = (None, None);
+    }
+
+    /// Forgets everything.
+    pub(super) const fn forget(&mut self) {
+        (self.v.too_small, self.omega.too_small) = (0.0, 0.0);
+        self.pause();
+    }
+}
+
+impl Axis {
+    /// The next larger one of two commands of which the first has not moved a robot, as a part of
+    /// it.
+    const LARGER: f64 = 1.25;
+
+    /// Who does not move at this part of full speed is held by something else.
+    const MOST: f64 = 0.2;
+
+    const fn new(full: f64, standing: f64) -> Self {
+        Self { full, standing, too_small: 0.0, stands: true, asked: None }
+    }
+
+    fn note(&mut self, time: Time, (now, command): (f64, f64), patience_s: f64) {
+        let stands = self.is_standing(now);
+        let stood = std::mem::replace(&mut self.stands, stands);
+        let asked = command.abs();
+        if !self.stands {
+            self.asked = None;
+            // Something smaller has begun to move it.
+            if stood && asked > self.standing && asked <= self.too_small {
+                self.too_small = 0.0;
+            }
+            return;
+        }
+        // What is measured may be noise where no more is asked for.
+        if asked <= 2.0 * self.standing || asked > Self::MOST * self.full {
+            self.asked = None;
+            return;
+        }
+        let (since, most) = self.asked.unwrap_or((time, 0.0));
+        let most = asked.max(most);
+        self.asked = Some((since, most));
+        if time.since_s(since) >= patience_s {
+            self.too_small = most.max(self.too_small);
+            self.asked = None;
+        }
+    }
+
+    fn least(&self) -> f64 {
+        Self::LARGER * self.too_small
+    }
+
+    /// A command as a part of the least that moves.
+    fn part(&self, asked: f64) -> f64 {
+        if self.too_small > 0.0 { asked.abs() / self.least() } else { asked.abs() / self.full }
+    }
+
+    fn is_standing(&self, now: f64) -> bool {
+        now.abs() <= self.standing
+    }
+
+    /// Who slows down is not made faster than asked.
+    fn given(&self, now: f64, asked: f64) -> f64 {
+        let least = self.least();
+        if asked.abs() >= least {
+            return asked;
+        }
+        let slows_down = now * asked > 0.0 && asked.abs() < now.abs();
+        if asked.abs() >= 0.5 * least && !slows_down { least.copysign(asked) } else { 0.0 }
+    }
+}
