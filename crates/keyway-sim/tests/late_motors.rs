@@ -1,4 +1,4 @@
-//! Robots whose commands act late, and that know it.
+//! Robots whose commands act late, whether they know it or not.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Disc, Point, Pose};
@@ -6,6 +6,7 @@ use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
+use keyway_sim::sim::Disturbances;
 
 /// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
 fn hall() -> OccupancyGrid {
@@ -60,10 +61,10 @@ fn the_same_run_later() {
     }
 }
 
-/// A delay that is no whole number of cycles, and obstacles that are seen on the way. The same
-/// delay, of which the robot does not know, is what makes it touch one. Those behind a corner are
-/// more than 1.95 m from it: 0.8 m on which `jackal` at 2 m/s does not act yet, 0.7 m to stop, and
-/// 0.45 m of the robot and the obstacle.
+/// A delay that is no whole number of cycles, and obstacles that are seen on the way; and the same
+/// delay, of which nobody has told the robot. Those behind a corner are more than 1.95 m from it:
+/// 0.8 m on which `jackal` at 2 m/s does not act yet, 0.7 m to stop, and 0.45 m of the robot and
+/// the obstacle.
 #[test]
 fn what_is_seen_on_the_way_is_not_touched() {
     let outcome = |known_s: f64, unknown_s: f64, name: &str| {
@@ -77,10 +78,12 @@ fn what_is_seen_on_the_way_is_not_touched() {
     };
     for name in ["small", "jackal"] {
         for delay_s in [0.0, 0.07, 0.1, 0.23, 0.4] {
-            assert_eq!(outcome(delay_s, 0.0, name), EpisodeOutcome::Reached, "{name} {delay_s}");
+            for (known_s, unknown_s) in [(delay_s, 0.0), (0.0, delay_s)] {
+                let outcome = outcome(known_s, unknown_s, name);
+                assert_eq!(outcome, EpisodeOutcome::Reached, "{name} {known_s} {unknown_s}");
+            }
         }
     }
-    assert_eq!(outcome(0.0, 0.4, "jackal"), EpisodeOutcome::Collided);
 }
 
 /// What is known and what is not add up.
@@ -98,5 +101,53 @@ fn a_part_of_the_delay_may_be_known() {
     };
     for (known_s, unknown_s) in [(0.3, 0.0), (0.1, 0.2), (0.0, 0.3)] {
         assert!((first_motion_s(run(known_s, unknown_s)) - 0.3).abs() < 1e-9);
+    }
+}
+
+/// A report names what was learned, so that somebody can write it into the robot's file.
+#[test]
+fn what_was_learned_is_reported() {
+    let noticed = |known_s: f64, unknown_s: f64| {
+        let mut episode = episode(Robot { actuation_delay_s: known_s, ..Robot::jackal() });
+        episode.robots[0].disturbances.actuation.delay_s = unknown_s;
+        driven(&episode).noticed.unwrap()
+    };
+    assert_eq!(noticed(0.0, 0.0), Vec::<String>::new());
+    assert_eq!(noticed(0.25, 0.0), Vec::<String>::new());
+    let said = noticed(0.1, 0.15);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("0.25 s later, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
+}
+
+/// Of the same hall with motors, odometry and scans that are not as they should be.
+#[test]
+fn what_is_wrong_with_a_robot_costs_it_little() {
+    let run = |spoil: &dyn Fn(&mut Disturbances)| {
+        let mut episode = episode(Robot::small());
+        episode.obstacles = vec![Disc::new(Point::new(6.2, 4.4), 0.2)];
+        spoil(&mut episode.robots[0].disturbances);
+        driven(&episode)
+    };
+    let time_s = |report: &RobotReport| report.run.as_ref().unwrap().time_s;
+    let good_s = time_s(&run(&|_| {}));
+    type Spoil<'a> = (&'a str, &'a dyn Fn(&mut Disturbances));
+    let all: [Spoil<'_>; 4] = [
+        ("do not move", &|it| {
+            it.actuation.dead_band_mps = 0.06;
+            it.actuation.dead_band_radps = 0.24;
+        }),
+        ("always 0", &|it| it.localisation.velocity_is_zero = true),
+        ("later", &|it| it.actuation.lag_s = 0.2),
+        ("same scan", &|it| {
+            it.sensor.period_s = 0.2;
+            it.sensor.held_scans = true;
+        }),
+    ];
+    for (said, spoil) in all {
+        let report = run(spoil);
+        assert_eq!(report.outcome, EpisodeOutcome::Reached, "{said}: {:?}", report.reason);
+        assert!(time_s(&report) < 1.3 * good_s, "{said}: {} {good_s}", time_s(&report));
+        let noticed = report.noticed.unwrap();
+        assert!(noticed.iter().any(|doubt| doubt.contains(said)), "{said}: {noticed:?}");
     }
 }

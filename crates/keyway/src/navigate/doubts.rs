@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::fmt::{self, Display, Formatter};
 
-/// Something that cannot be true of what a robot is told: its pose, its velocity, its scans and its
-/// own commands contradict each other. It drives on as if all were true; whoever looks after it
-/// should know.
+/// Something that cannot be true of what a robot is told: its pose, its velocity, its scans, its
+/// own commands and its description contradict each other. It drives on, with what it has learned
+/// in the place of what is wrong, where it can; whoever looks after it should know.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Doubt {
@@ -23,6 +23,7 @@ pub enum Doubt {
         by_rad: f64,
     },
     /// The velocity has been told as 0 for 2 s, while the pose moved by more than 0.1 m or 0.1 rad.
+    /// What follows from the commands is used in its place.
     VelocityAlwaysZero,
     /// The motors act later than the robot's description says
     /// ([`Robot::actuation_delay_s`]), by so much that it was seen in what the robot did. What was
@@ -47,7 +48,8 @@ pub enum Doubt {
     /// or 0.1 rad.
     MovesUntold,
     /// A scan within the last 2 s had the same ranges as the one before, to the last bit, while the
-    /// robot drove or turned, by more than 2 cm or 1 degree.
+    /// robot drove or turned, by more than 2 cm or 1 degree. It counts as no new look, unless
+    /// nearly all that it shows is known.
     ScanRepeated {
         /// Index of the sensor.
         sensor: usize,

@@ -58,7 +58,7 @@ fn every_field_is_there_disturbs_and_is_checked() {
     names.sort();
     assert_eq!(names, ["actuation", "localisation", "seed", "sensor"]);
     let parts = ["sensor", "actuation", "localisation"].map(|part| all[part].as_object().unwrap());
-    assert_eq!(parts.map(serde_json::Map::len).iter().sum::<usize>(), FIELDS.len() + 3);
+    assert_eq!(parts.map(serde_json::Map::len).iter().sum::<usize>(), FIELDS.len() + 4);
     let silent = ["correlation_s", "jump_every_s", "jump_for_s"];
     for (part, field, usable, unusable) in FIELDS {
         let disturbances = with(part, field, usable);
@@ -89,6 +89,8 @@ fn sectors_flags_and_jumps_are_checked() {
     );
     let lost = read(r#"{"sensor": {"lost": [1]}}"#);
     assert!(!lost.is_none() && lost.validate().is_ok());
+    let held = read(r#"{"sensor": {"held_scans": true}}"#);
+    assert!(!held.is_none() && held.validate().is_ok());
     let zero = read(r#"{"localisation": {"velocity_is_zero": true}}"#);
     assert!(!zero.is_none() && zero.validate().is_ok());
     assert_eq!(

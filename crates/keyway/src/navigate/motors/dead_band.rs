@@ -26,6 +26,8 @@ struct Axis {
     standing: f64,
     /// The largest command that has not moved it; 0 where none is known.
     too_small: f64,
+    /// Something larger has moved it.
+    is_sure: bool,
     stands: bool,
     /// Since when it stands although it is told to move, and the largest command since.
     asked: Option<(Time, f64)>,
@@ -49,6 +51,12 @@ impl DeadBand {
     /// The largest speed and turn rate that have not moved the robot; 0 where none is known.
     pub(super) const fn too_small(&self) -> Velocity {
         Velocity { v: self.v.too_small, omega: self.omega.too_small }
+    }
+
+    /// The same where something larger has moved the robot; 0 where nothing has.
+    pub(super) fn surely_too_small(&self) -> Velocity {
+        let sure = |axis: &Axis| if axis.is_sure { axis.too_small } else { 0.0 };
+        Velocity { v: sure(&self.v), omega: sure(&self.omega) }
     }
 
     /// The least speed and turn rate that are given; 0 where all are.
@@ -80,6 +88,7 @@ impl DeadBand {
     /// Forgets everything.
     pub(super) const fn forget(&mut self) {
         (self.v.too_small, self.omega.too_small) = (0.0, 0.0);
+        (self.v.is_sure, self.omega.is_sure) = (false, false);
         self.pause();
     }
 }
@@ -93,7 +102,7 @@ impl Axis {
     const MOST: f64 = 0.2;
 
     const fn new(full: f64, standing: f64) -> Self {
-        Self { full, standing, too_small: 0.0, stands: true, asked: None }
+        Self { full, standing, too_small: 0.0, is_sure: false, stands: true, asked: None }
     }
 
     fn note(&mut self, time: Time, (now, command): (f64, f64), patience_s: f64) {
@@ -106,6 +115,7 @@ impl Axis {
             if stood && asked > self.standing && asked <= self.too_small {
                 self.too_small = 0.0;
             }
+            self.is_sure = self.too_small > 0.0;
             return;
         }
         // What is measured may be noise where no more is asked for.
@@ -118,6 +128,7 @@ impl Axis {
         self.asked = Some((since, most));
         if time.since_s(since) >= patience_s {
             self.too_small = most.max(self.too_small);
+            self.is_sure = false;
             self.asked = None;
         }
     }

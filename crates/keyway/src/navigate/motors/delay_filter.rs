@@ -210,8 +210,7 @@ impl DelayFilter {
             (0..=last).find(is_possible).unwrap_or(best),
             (0..=last).rev().find(is_possible).unwrap_or(best),
         );
-        let is_wide = (high - low) as f64 * self.step_s > 0.1_f64.max(4.0 * self.step_s);
-        if is_possible(&self.described) || high == last || is_wide {
+        if is_possible(&self.described) || high == last {
             return;
         }
         let is_alone = low == best && high == best;

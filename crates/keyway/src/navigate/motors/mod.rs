@@ -102,9 +102,10 @@ impl Motors {
         self.dead_band.least()
     }
 
-    /// The largest speed and turn rate that have not moved the robot; 0 where none is known.
-    pub(super) const fn too_small(&self) -> Velocity {
-        self.dead_band.too_small()
+    /// The largest speed and turn rate that have not moved the robot, where something larger has;
+    /// otherwise 0.
+    pub(super) fn too_small(&self) -> Velocity {
+        self.dead_band.surely_too_small()
     }
 
     /// Pose and velocity at the instant at which a command that is given `now` acts, for a robot

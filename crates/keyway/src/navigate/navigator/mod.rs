@@ -179,7 +179,9 @@ impl Navigator {
     ///
     /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot
     /// will be when it acts. It is taken to be given: whoever gives another one makes that
-    /// prediction wrong. Whatever velocity is told, the command is within the robot's limits of
+    /// prediction wrong, and teaches the navigator motors that the robot does not have. It learns
+    /// delays that are not as described, and what is too little to move the robot
+    /// ([`Self::doubts`]). Whatever velocity is told, the command is within the robot's limits of
     /// speed.
     pub fn step(&mut self) -> Step {
         self.unobserved = self.unobserved.saturating_add(1);

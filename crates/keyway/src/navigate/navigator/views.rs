@@ -74,7 +74,7 @@ impl Navigator {
     }
 
     /// Contradictions in what was observed lately, such as a velocity that is always 0 although the
-    /// pose moves. None is proof of an error, and none changes what the robot does.
+    /// pose moves, and what was learned of the motors. None is proof of an error.
     pub fn doubts(&self) -> &[Doubt] {
         self.world.doubts()
     }
