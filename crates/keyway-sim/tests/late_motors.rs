@@ -119,7 +119,10 @@ fn what_was_learned_is_reported() {
     assert!(said[0].contains("0.25 s later, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
 }
 
-/// Of the same hall with motors, odometry and scans that are not as they should be.
+/// What is said of a robot, and what makes that true.
+type Spoil<'a> = (&'a str, &'a dyn Fn(&mut Disturbances));
+
+/// In the same hall, with motors, odometry and scans that are not as they should be.
 #[test]
 fn what_is_wrong_with_a_robot_costs_it_little() {
     let run = |spoil: &dyn Fn(&mut Disturbances)| {
@@ -130,7 +133,6 @@ fn what_is_wrong_with_a_robot_costs_it_little() {
     };
     let time_s = |report: &RobotReport| report.run.as_ref().unwrap().time_s;
     let good_s = time_s(&run(&|_| {}));
-    type Spoil<'a> = (&'a str, &'a dyn Fn(&mut Disturbances));
     let all: [Spoil<'_>; 4] = [
         ("do not move", &|it| {
             it.actuation.dead_band_mps = 0.06;

@@ -133,6 +133,42 @@ impl BlockedNeighbourhood {
         }
     }
 
+    /// The farthest reach for which [`Self::word`] sees all that blocks.
+    pub(crate) const MOST_WORD_REACH: i32 = 63;
+
+    /// The bits of a word of row `y` that some obstacle blocks: column x is bit x + 1 of the row.
+    /// Rows near `y` are widened to each other's widths, the nearest ones first: theirs are the
+    /// widest. For a reach of at most [`Self::MOST_WORD_REACH`].
+    pub(crate) fn word(&self, obstacles: &BitGrid, y: i32, word: usize) -> u64 {
+        // The word itself and one to each side, as nothing reaches farther.
+        let mut wide = [0_u64; 3];
+        let places = [word.checked_sub(1), Some(word), Some(word + 1)];
+        let merge = |y: i32, wide: &mut [u64; 3]| {
+            if y < 0 || y >= obstacles.height() as i32 {
+                return;
+            }
+            let row = obstacles.row(y);
+            for (place, wide) in places.into_iter().zip(wide) {
+                *wide |= place.and_then(|place| row.get(place)).copied().unwrap_or_default();
+            }
+        };
+        for (dy, &half) in self.half_widths.iter().enumerate() {
+            for row in [y - dy as i32, y + dy as i32] {
+                merge(row, &mut wide);
+            }
+            let next = self.half_widths.get(dy + 1).copied().unwrap_or_default();
+            for _ in next..half {
+                let [low, own, high] = wide;
+                wide = [
+                    low | low << 1 | low >> 1 | own << 63,
+                    own | own << 1 | own >> 1 | low >> 63 | high << 63,
+                    high | high << 1 | high >> 1 | own >> 63,
+                ];
+            }
+        }
+        wide[1]
+    }
+
     /// True when some obstacle blocks `cell`.
     pub(crate) fn is_blocked(&self, cell: Cell, obstacles: &BitGrid) -> bool {
         self.rows()

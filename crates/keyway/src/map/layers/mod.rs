@@ -4,6 +4,7 @@ mod blocked_by;
 mod components;
 mod config;
 pub(in crate::map) mod dilation;
+mod edited;
 mod fingerprint;
 mod free_ends;
 mod hindrance;

@@ -5,11 +5,12 @@ use crate::map::cell_index::Numbering;
 use crate::map::layers::components::LazyComponents;
 use crate::map::layers::config::Neighbourhoods;
 use crate::map::layers::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
+use crate::map::layers::edited::{EditedWindow, EditedWindows};
 use crate::map::layers::fingerprint::LazyFingerprint;
 use crate::map::layers::free_ends::FreeEnds;
 use crate::map::{
-    BitGrid, Cell, CellIndex, CellState, Clearance, Components, Connectivity, Edit, GridFrame,
-    LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
+    BitGrid, Cell, CellIndex, CellState, CellWindow, Clearance, Components, Connectivity, Edit,
+    GridFrame, LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
 
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by
@@ -168,8 +169,9 @@ impl SearchMap {
         let is_whole = reach >= frame.width().max(frame.height()) as i32;
         let count = if is_whole { 1 } else { usize::MAX };
         for end in before.into_iter().chain(now).take(count) {
-            if self.derive_around(end, reach) {
-                self.blocked_cells_changed(end, reach);
+            let window = self.influenced(&CellWindow { low: end, high: end }, reach);
+            if self.test_cells(&window) {
+                self.blocked_cells_changed(&window);
                 changed = true;
             }
         }
@@ -231,10 +233,11 @@ impl SearchMap {
 
     /// Changes cells, and with them every derived layer. Edits outside the map are ignored.
     ///
-    /// Cost: a new obstacle stamps its neighbourhood (one row operation per row); a removed one
-    /// tests each cell of the neighbourhood again.
+    /// Cost: a new obstacle stamps its neighbourhood (one row operation per row); around removed
+    /// ones the neighbourhoods are computed again, 64 cells at a time, once for all edits that are
+    /// near each other. Allocates nothing.
     pub fn apply(&mut self, edits: &[Edit]) {
-        let mut changed = false;
+        let (mut changed, mut edited) = (false, EditedWindows::default());
         let frame = self.frame;
         for edit in edits.iter().filter(|edit| frame.contains(edit.cell)) {
             changed |= self.unknown.set(edit.cell, edit.state == CellState::Unknown);
@@ -245,43 +248,100 @@ impl SearchMap {
             };
             if self.obstacles.set(edit.cell, obstacle) {
                 changed = true;
+                edited.note(edit.cell, !obstacle);
                 if obstacle {
                     self.stamp(edit.cell);
-                } else {
-                    self.unstamp(edit.cell);
                 }
-                self.blocked_cells_changed(edit.cell, self.neighbourhood.reach());
             }
         }
+        let reach = self.neighbourhood.reach();
+        for EditedWindow { window, is_cleared } in edited.iter() {
+            let influenced = self.influenced(&window, reach);
+            if is_cleared {
+                self.derive(&influenced);
+            }
+            self.blocked_cells_changed(&influenced);
+        }
         self.revision += u64::from(changed);
+    }
+
+    /// What changes in a window may have an influence on.
+    fn influenced(&self, window: &CellWindow, reach: i32) -> CellWindow {
+        let last = [self.frame.width() as i32 - 1, self.frame.height() as i32 - 1];
+        let low = |at: i32| (at - reach).max(0);
+        let high = |at: i32, last: i32| at.saturating_add(reach).min(last);
+        CellWindow {
+            low: Cell::new(low(window.low.x), low(window.low.y)),
+            high: Cell::new(high(window.high.x, last[0]), high(window.high.y, last[1])),
+        }
     }
 
     fn stamp(&mut self, cell: Cell) {
         self.neighbourhood.stamp(cell, &mut self.blocked);
         // The neighbourhood is symmetric under the exchange of the axes.
         self.neighbourhood.stamp(Cell::new(cell.y, cell.x), &mut self.blocked_transposed);
-        if self.free_ends.are_near(cell, self.neighbourhood.reach()) {
-            self.derive_around(cell, self.neighbourhood.reach());
+        let reach = self.neighbourhood.reach();
+        if self.free_ends.are_near(cell, reach) {
+            self.test_cells(&self.influenced(&CellWindow { low: cell, high: cell }, reach));
         }
     }
 
-    fn unstamp(&mut self, removed: Cell) {
-        self.derive_around(removed, self.neighbourhood.reach());
+    /// Brings the blocked cells of a window up to date.
+    fn derive(&mut self, window: &CellWindow) {
+        let is_narrow = self.neighbourhood.reach() <= BlockedNeighbourhood::MOST_WORD_REACH;
+        if is_narrow && self.free_ends.ends().is_empty() {
+            self.derive_words(window);
+        } else {
+            self.test_cells(window);
+        }
     }
 
-    /// Tests every cell of a square again; true when one changed.
-    pub(in crate::map) fn derive_around(&mut self, centre: Cell, reach: i32) -> bool {
+    /// The same, cell by cell; true when one changed.
+    fn test_cells(&mut self, window: &CellWindow) -> bool {
         let mut changed = false;
-        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
-        for y in (centre.y - reach).max(0)..=(centre.y + reach).min(height - 1) {
-            for x in (centre.x - reach).max(0)..=(centre.x + reach).min(width - 1) {
-                let cell = Cell::new(x, y);
-                let blocked = self.follows_blocked(cell);
-                changed |= self.blocked.set(cell, blocked);
-                self.blocked_transposed.set(Cell::new(y, x), blocked);
-            }
+        for cell in window.cells() {
+            let blocked = self.follows_blocked(cell);
+            changed |= self.blocked.set(cell, blocked);
+            self.blocked_transposed.set(Cell::new(cell.y, cell.x), blocked);
         }
         changed
+    }
+
+    /// The same, 64 cells at a time. Column x is bit x + 1 of a row.
+    fn derive_words(&mut self, window: &CellWindow) {
+        let bit = |column: i32| (column + 1) as usize;
+        for y in window.low.y..=window.high.y {
+            for word in bit(window.low.x) / 64..=bit(window.high.x) / 64 {
+                let near = self.neighbourhood.word(&self.obstacles, y, word);
+                let blocked = near | self.border_word(y, word);
+                let before = self.blocked.row(y)[word];
+                self.blocked.set_word(y, word, blocked);
+                let mut changed = blocked ^ before;
+                while changed != 0 {
+                    let place = changed.trailing_zeros();
+                    let x = (64 * word) as i32 + place as i32 - 1;
+                    self.blocked_transposed.set(Cell::new(y, x), blocked >> place & 1 == 1);
+                    changed &= changed - 1;
+                }
+            }
+        }
+    }
+
+    /// The bits of a word that are blocked because of the border, or are padding.
+    fn border_word(&self, y: i32, word: usize) -> u64 {
+        let (width, height) = (self.frame.width() as i32, self.frame.height() as i32);
+        let b = self.border_cells.min(width);
+        if y < b || y >= height - b {
+            return u64::MAX;
+        }
+        // The bits before the first free column, and from the one after the last free one on.
+        let first = 64 * word as i64;
+        let below = |bit: i64| match bit - first {
+            ..=0 => 0,
+            1..=63 => (1 << (bit - first)) - 1,
+            _ => u64::MAX,
+        };
+        below(i64::from(b) + 1) | !below(i64::from(width - b) + 1)
     }
 
     /// Whether a cell is blocked, from obstacles and config alone.
@@ -291,10 +351,9 @@ impl SearchMap {
         self.obstacles.get(cell) || (!self.free_ends.contain(cell) && in_zone())
     }
 
-    /// Updates what follows from blocked cells, after some of a square have changed.
-    pub(in crate::map) fn blocked_cells_changed(&mut self, centre: Cell, reach: i32) {
-        let low = Cell::new(centre.x - reach, centre.y - reach);
-        let high = Cell::new(centre.x + reach, centre.y + reach);
+    /// Updates what follows from blocked cells, after some of a window have changed.
+    pub(in crate::map) fn blocked_cells_changed(&mut self, window: &CellWindow) {
+        let CellWindow { low, high } = *window;
         self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
         self.fingerprint.forget();
         self.components.forget();

@@ -81,6 +81,11 @@ fn any_config() -> impl Strategy<Value = LayerConfig> {
     })
 }
 
+/// Places again and again; the corner where there are none.
+fn again(places: &[(i32, i32)]) -> impl Iterator<Item = (i32, i32)> + '_ {
+    (0..).map(|index: usize| places.get(index % places.len().max(1)).copied().unwrap_or_default())
+}
+
 proptest! {
     #[test]
     fn a_cell_is_free_iff_every_rule_holds(states in prop::collection::vec(any_state(), 9 * 7),
@@ -131,6 +136,38 @@ proptest! {
         prop_assert_eq!(map.unknown(), rebuilt.unknown());
         prop_assert_eq!(map.unknown(), grid.unknown());
         prop_assert_eq!(map.penalised(), rebuilt.penalised());
+    }
+
+    /// Rows of several words, reaches up to more than a word, and edits that are far apart.
+    #[test]
+    fn edits_of_wide_maps_give_what_a_rebuild_gives(
+        (width, height) in (100u64..330, 3u64..40), clearance_m in 0.0..8.0f64, expansion_cells in 0u32..4,
+        occupied in prop::collection::vec((0i32..330, 0i32..40), 0..40),
+        edits in prop::collection::vec(prop::collection::vec((0i32..330, 0i32..40, any_state()), 0..50), 1..4),
+    ) {
+        let frame = GridFrame::new(width, height, 0.1, Pose::default()).unwrap();
+        let mut grid = OccupancyGrid::from_fn(frame, |cell| {
+            if occupied.contains(&(cell.x, cell.y)) { CellState::Occupied } else { CellState::Free }
+        });
+        // Squared, as small ones leave more cells free.
+        let mut config = LayerConfig { clearance_m: clearance_m * clearance_m / 8.0, ..LayerConfig::default() };
+        config.published.expansion_cells = expansion_cells;
+        let mut map = SearchMap::new(&grid, config.clone()).unwrap();
+        for edits in edits {
+            // Half of them free what is occupied.
+            let edits: Vec<Edit> = edits.iter().zip(again(&occupied)).enumerate()
+                .map(|(index, (&(x, y, state), (ox, oy)))| if index % 2 == 0 {
+                    Edit { cell: Cell::new(x, y), state }
+                } else {
+                    Edit { cell: Cell::new(ox, oy), state: CellState::Free }
+                }).collect();
+            grid.apply(&edits);
+            map.apply(&edits);
+            let rebuilt = SearchMap::new(&grid, config.clone()).unwrap();
+            prop_assert_eq!(map.blocked(), rebuilt.blocked());
+            prop_assert_eq!(map.blocked_transposed(), rebuilt.blocked_transposed());
+            prop_assert_eq!(map.stops(), rebuilt.stops());
+        }
     }
 
     #[test]

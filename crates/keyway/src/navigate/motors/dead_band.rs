@@ -74,9 +74,10 @@ impl DeadBand {
         if given != Velocity::ZERO || parts == [0.0; 2] || !stands {
             return given;
         }
-        match parts[0] >= parts[1] {
-            true => Velocity::new(self.v.least().copysign(asked.v), 0.0),
-            false => Velocity::new(0.0, self.omega.least().copysign(asked.omega)),
+        if parts[0] >= parts[1] {
+            Velocity::new(self.v.least().copysign(asked.v), 0.0)
+        } else {
+            Velocity::new(0.0, self.omega.least().copysign(asked.omega))
         }
     }
 

@@ -17,7 +17,7 @@ use super::time::Time;
 use crate::geometry::{Pose, Velocity};
 use crate::robot::Robot;
 use dead_band::DeadBand;
-use delay_filter::{DelayFilter, Measured};
+use delay_filter::DelayFilter;
 use odometry::Odometry;
 use serde::{Deserialize, Serialize};
 use under_way::UnderWay;
@@ -59,13 +59,9 @@ impl Motors {
     /// says nothing, what follows from the commands.
     pub(super) fn observe(&mut self, time: Time, pose: Pose, told: Velocity) -> Velocity {
         let command = self.under_way.acts_at(time, self.delay_s()).unwrap_or(Velocity::ZERO);
-        let passed = self.odometry.note(time, (pose, told), command);
-        let measured = match passed {
-            None => Some(Measured::Now(told)),
-            Some(mean) => mean.map(Measured::OnMean),
-        };
+        let measured = self.odometry.note(time, (pose, told), command);
         self.filter.observe(time, measured, &self.under_way);
-        let is_told = passed.is_none();
+        let is_told = !self.odometry.says_nothing();
         if is_told {
             let patience_s = Self::PATIENCE_S.max(3.0 * self.cycle_s);
             self.dead_band.note(time, told, command, patience_s);

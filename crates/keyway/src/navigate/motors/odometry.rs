@@ -1,5 +1,6 @@
 //! Velocities that are always told as 0.
 
+use super::delay_filter::Measured;
 use crate::geometry::{Pose, Velocity, wrap_angle};
 use crate::navigate::time::Time;
 use serde::{Deserialize, Serialize};
@@ -20,18 +21,23 @@ impl Odometry {
     /// A robot that has come so far, and at least half as far as it was told to, has moved.
     const MOVED: [f64; 2] = [0.05, 0.1];
 
-    /// Notes what was told, and the command that acts meanwhile. The mean velocity since the last
-    /// note, as poses show it, where the velocity says nothing; `None` where it speaks.
+    /// Whether the velocity says nothing.
+    pub(super) const fn says_nothing(&self) -> bool {
+        self.says_nothing
+    }
+
+    /// Notes what was told, and the command that acts meanwhile. What that shows: the velocity as
+    /// told, or where it says nothing that of the poses, if there was one before.
     pub(super) fn note(
         &mut self,
         time: Time,
         (pose, told): (Pose, Velocity),
         command: Velocity,
-    ) -> Option<Option<Velocity>> {
+    ) -> Option<Measured> {
         let last = self.last.replace((time, pose));
         if told != Velocity::ZERO {
             *self = Self { last: self.last, ..Self::default() };
-            return None;
+            return Some(Measured::Now(told));
         }
         let passed = last.map(|(before, from)| (time.since_s(before), from));
         if let Some((elapsed_s, from)) = passed.filter(|_| command != Velocity::ZERO) {
@@ -45,10 +51,11 @@ impl Odometry {
         } else if !self.says_nothing {
             (self.began, self.asked) = (None, [0.0; 2]);
         }
-        self.says_nothing.then(|| {
-            let (elapsed_s, from) = passed.filter(|&(elapsed_s, _)| elapsed_s > 0.0)?;
-            Some(mean(from, pose, elapsed_s))
-        })
+        if !self.says_nothing {
+            return Some(Measured::Now(told));
+        }
+        let (elapsed_s, from) = passed.filter(|&(elapsed_s, _)| elapsed_s > 0.0)?;
+        Some(Measured::OnMean(mean(from, pose, elapsed_s)))
     }
 }
 
