@@ -20,6 +20,7 @@ fn the_bundled_scene() {
             ("smoothed", |v| v["length_m"].is_f64() && v["min_clearance_m"].is_f64()),
             ("key_points_m", |v| v.as_array().is_some_and(|points| !points.is_empty())),
             ("misfit", Value::is_null),
+            ("noticed", |v| v.as_array().is_some_and(Vec::is_empty)),
             ("run", Value::is_object),
             ("trajectory", Value::is_array),
             ("inputs", Value::is_object),

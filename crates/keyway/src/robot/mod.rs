@@ -27,8 +27,8 @@ pub struct Robot {
     /// Control cycle \[s\]: time between two commands, from 0.001 to 10.
     pub cycle_s: f64,
     /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant at
-    /// which its command acts, and simulated motors are as late. Where it is wrong, a navigator
-    /// learns it while it drives ([`Doubt::ActsLate`](crate::navigate::Doubt::ActsLate)).
+    /// which its command acts, and simulated motors are as late. Where it is wrong, a robot learns
+    /// it while it drives.
     #[serde(default)]
     pub actuation_delay_s: f64,
     /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from
