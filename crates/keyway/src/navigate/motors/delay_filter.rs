@@ -13,9 +13,9 @@
 //! # What counts as known
 //! With the mean square s² of what the best model is off by (never taken to be below that of a
 //! hundredth of the full speed), a delay is refuted where the sum of its squares is larger than the
-//! best one by 2 s² [`DelayFilter::EVIDENCE`]. A delay is learned when the described one is
-//! refuted, the longest one, too (so the robot has been seen to do what it was told), and all that
-//! are not refuted are near each other. Nothing is learned from a robot that does something else.
+//! best one by 2 s² [`DelayFilter::EVIDENCE`]. The best delay is learned when the described one is
+//! refuted, and the longest one, too: so the robot has been seen to do what it was told. Nothing is
+//! learned from a robot that does something else.
 
 use super::under_way::UnderWay;
 use crate::geometry::Velocity;
@@ -139,10 +139,11 @@ impl DelayFilter {
         self.last = None;
     }
 
-    /// Whether another bank has the same models.
+    /// Whether another bank has the same models, and this one what it may have learned.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let of = |it: &Self| (it.first_s, it.step_s, it.described, it.models.len());
-        of(self) == of(other)
+        let is_possible = |delay_s: f64| (0.0..=self.longest_s()).contains(&delay_s);
+        of(self) == of(other) && self.learned_s.is_none_or(is_possible)
     }
 
     /// Takes in an observation; one that says nothing lets the models go on all the same.

@@ -220,6 +220,9 @@ fn what_was_learned_can_be_stored() {
     assert!(again.take_up(motors.stored()));
     assert_eq!(again.learned_s(), motors.learned_s());
     assert!(!Motors::new(&Robot::jackal()).take_up(motors.stored()), "another robot");
+    let mut stored = serde_json::to_value(motors.stored()).unwrap();
+    stored["filter"]["learned_s"] = serde_json::json!(1e300);
+    assert!(!Motors::new(&robot).take_up(serde_json::from_value(stored).unwrap()), "absurd");
 }
 
 #[test]
