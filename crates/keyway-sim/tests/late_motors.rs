@@ -119,7 +119,7 @@ fn what_was_learned_is_reported() {
     assert!(said[0].contains("0.25 s later, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
 }
 
-/// What is said of a robot, and what makes that true.
+/// A word that is said of a robot, and how that becomes true.
 type Spoil<'a> = (&'a str, &'a dyn Fn(&mut Disturbances));
 
 /// In the same hall, with motors, odometry and scans that are not as they should be.

@@ -248,7 +248,7 @@ struct Driver<'a> {
     passed_s: Vec<f64>,
     /// The last reason why the robot was blocked, if any.
     blocked: Option<Blocked>,
-    /// What was noticed, each kind once.
+    /// The doubts of the run, each kind once.
     noticed: Vec<Doubt>,
 }
 

@@ -23,7 +23,7 @@ pub enum Doubt {
         by_rad: f64,
     },
     /// The velocity has been told as 0 for 2 s, while the pose moved by more than 0.1 m or 0.1 rad.
-    /// What follows from the commands is used in its place.
+    /// The one that follows from the commands is used in its place.
     VelocityAlwaysZero,
     /// The motors act later than the robot's description says
     /// ([`Robot::actuation_delay_s`]), by so much that it was seen in what the robot did. What was

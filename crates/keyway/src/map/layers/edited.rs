@@ -1,4 +1,4 @@
-//! Where a map was edited, in a few windows.
+//! The edited parts of a map, in a few windows.
 
 use crate::map::{Cell, CellWindow};
 use arrayvec::ArrayVec;
@@ -45,7 +45,7 @@ impl EditedWindows {
     }
 }
 
-/// How many cells a window has.
+/// The number of cells of a window.
 fn cells(window: &CellWindow) -> i64 {
     let along = |low: i32, high: i32| i64::from(high) - i64::from(low) + 1;
     along(window.low.x, window.high.x) * along(window.low.y, window.high.y)

@@ -265,7 +265,7 @@ impl SearchMap {
         self.revision += u64::from(changed);
     }
 
-    /// What changes in a window may have an influence on.
+    /// The cells that changes in a window may have an influence on.
     fn influenced(&self, window: &CellWindow, reach: i32) -> CellWindow {
         let last = [self.frame.width() as i32 - 1, self.frame.height() as i32 - 1];
         let low = |at: i32| (at - reach).max(0);

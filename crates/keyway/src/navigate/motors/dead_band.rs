@@ -22,7 +22,7 @@ pub(super) struct DeadBand {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Axis {
     full: f64,
-    /// What is measured of one that stands is no more than this.
+    /// No more than this is measured of one that stands.
     standing: f64,
     /// The largest command that has not moved it; 0 where none is known.
     too_small: f64,
@@ -99,7 +99,7 @@ impl Axis {
     /// it.
     const LARGER: f64 = 1.25;
 
-    /// Who does not move at this part of full speed is held by something else.
+    /// A robot that does not move at this part of full speed is held by something else.
     const MOST: f64 = 0.2;
 
     const fn new(full: f64, standing: f64) -> Self {
@@ -147,7 +147,7 @@ impl Axis {
         now.abs() <= self.standing
     }
 
-    /// Who slows down is not made faster than asked.
+    /// The command that is given; a robot that slows down is not made faster than asked.
     fn given(&self, now: f64, asked: f64) -> f64 {
         let least = self.least();
         if asked.abs() >= least {

@@ -1,4 +1,4 @@
-//! How late a robot does what it is told, learned from what it does.
+//! The delay from a command to its effect, learned from what a robot does.
 //!
 //! # The method
 //! A bank of models, one for each delay that it may have, in steps of half a cycle. Each is driven
@@ -47,7 +47,7 @@ struct Model {
     off_sq: f64,
 }
 
-/// What a robot was seen to do.
+/// The velocity that a robot was seen to have.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Measured {
     /// Its velocity now.
@@ -90,10 +90,10 @@ impl DelayFilter {
     /// Models that differ by less, as parts of full speed, say nothing.
     const SPREAD: f64 = 0.02;
 
-    /// What the best model is off by at least, as a part of full speed.
+    /// The best model is off by at least this part of full speed.
     const LEAST_OFF: f64 = 0.01;
 
-    /// Who is farther off than this does not do what it is told.
+    /// A robot that is farther off than this does not do what it is told.
     const MOST_OFF: f64 = 0.15;
 
     /// Logarithm of the likelihood ratio that refutes a delay.
@@ -134,12 +134,12 @@ impl DelayFilter {
         below_v.lerp(above_v, place - below as f64)
     }
 
-    /// What comes next does not follow from what was before.
+    /// Begins anew: the next observation does not follow from the last one.
     pub(super) fn pause(&mut self) {
         self.last = None;
     }
 
-    /// Whether another bank has the same models, and this one what it may have learned.
+    /// True if another bank has the same models, and this one a delay that it may have learned.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let of = |it: &Self| (it.first_s, it.step_s, it.described, it.models.len());
         let is_possible = |delay_s: f64| (0.0..=self.longest_s()).contains(&delay_s);
@@ -219,7 +219,7 @@ impl DelayFilter {
         self.learned_s = Some(self.delay_s(best) + beside * self.step_s);
     }
 
-    /// Where the parabola through a model and its neighbours is lowest, in steps from it.
+    /// The lowest place of the parabola through a model and its neighbours, in steps from it.
     fn beside(&self, best: usize) -> f64 {
         if best == 0 || best + 1 == self.models.len() {
             return 0.0;

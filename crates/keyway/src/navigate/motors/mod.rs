@@ -22,7 +22,7 @@ use odometry::Odometry;
 use serde::{Deserialize, Serialize};
 use under_way::UnderWay;
 
-/// What was given to the motors, and how they do it.
+/// The commands that were given to the motors, and their ways.
 #[derive(Clone, Debug)]
 pub(super) struct Motors {
     described_s: f64,
@@ -59,7 +59,7 @@ impl Motors {
     /// says nothing, what follows from the commands.
     pub(super) fn observe(&mut self, time: Time, pose: Pose, told: Velocity) -> Velocity {
         let command = self.under_way.acts_at(time, self.delay_s()).unwrap_or(Velocity::ZERO);
-        let measured = self.odometry.note(time, (pose, told), command);
+        let measured = self.odometry.note(time, (pose, told), command, self.under_way.full());
         self.filter.observe(time, measured, &self.under_way);
         let is_told = !self.odometry.says_nothing();
         if is_told {
@@ -125,7 +125,7 @@ impl Motors {
         self.under_way.acts_at(time, self.delay_s())
     }
 
-    /// Whether a robot stands, and no command under way moves it.
+    /// True if a robot stands, and no command under way moves it.
     pub(super) fn is_at_rest(&self, observed: Time, now: Time, stands: (&Robot, Velocity)) -> bool {
         self.under_way.is_at_rest((observed, now), self.delay_s(), stands)
     }

@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Odometry {
     last: Option<(Time, Pose)>,
-    /// Where the robot was when it was first told to drive, with a velocity of 0 since.
+    /// Pose of the robot when it was first told to drive, with a velocity of 0 since.
     began: Option<Pose>,
-    /// How far it should have come since \[m\], and turned \[rad\].
+    /// The way that it should have come since \[m\], and its turns \[rad\].
     asked: [f64; 2],
     says_nothing: bool,
 }
@@ -21,18 +21,24 @@ impl Odometry {
     /// A robot that has come so far, and at least half as far as it was told to, has moved.
     const MOVED: [f64; 2] = [0.05, 0.1];
 
-    /// Whether the velocity says nothing.
+    /// Poses that are farther apart than a robot drives at twice its full speed, and this, are no
+    /// motion: the localisation has jumped.
+    const ROUGH: [f64; 2] = [0.05, 0.1];
+
+    /// True if the velocity says nothing.
     pub(super) const fn says_nothing(&self) -> bool {
         self.says_nothing
     }
 
-    /// Notes what was told, and the command that acts meanwhile. What that shows: the velocity as
-    /// told, or where it says nothing that of the poses, if there was one before.
+    /// Notes the pose and the velocity that were told, and the command that acts meanwhile, of a
+    /// robot with this full speed. The velocity that they show: the one that was told, or where
+    /// that says nothing that of the poses; `None` where these have jumped, or are the first.
     pub(super) fn note(
         &mut self,
         time: Time,
         (pose, told): (Pose, Velocity),
         command: Velocity,
+        full: Velocity,
     ) -> Option<Measured> {
         let last = self.last.replace((time, pose));
         if told != Velocity::ZERO {
@@ -40,12 +46,16 @@ impl Odometry {
             return Some(Measured::Now(told));
         }
         let passed = last.map(|(before, from)| (time.since_s(before), from));
+        let passed = passed.filter(|&(elapsed_s, from)| {
+            let [way_m, turn_rad] = apart(from, pose);
+            way_m <= 2.0 * full.v * elapsed_s + Self::ROUGH[0]
+                && turn_rad <= 2.0 * full.omega * elapsed_s + Self::ROUGH[1]
+        });
         if let Some((elapsed_s, from)) = passed.filter(|_| command != Velocity::ZERO) {
             let began = *self.began.get_or_insert(from);
             self.asked[0] += command.v.abs() * elapsed_s;
             self.asked[1] += command.omega.abs() * elapsed_s;
-            let moved =
-                [pose.point().distance(began.point()), wrap_angle(pose.theta - began.theta).abs()];
+            let moved = apart(began, pose);
             let all = moved.into_iter().zip(self.asked).zip(Self::MOVED);
             self.says_nothing |= { all }.any(|((m, asked), least)| m > least.max(0.5 * asked));
         } else if !self.says_nothing {
@@ -57,6 +67,11 @@ impl Odometry {
         let (elapsed_s, from) = passed.filter(|&(elapsed_s, _)| elapsed_s > 0.0)?;
         Some(Measured::OnMean(mean(from, pose, elapsed_s)))
     }
+}
+
+/// The distance of two poses \[m\], and the turn between them \[rad\].
+fn apart(from: Pose, to: Pose) -> [f64; 2] {
+    [to.point().distance(from.point()), wrap_angle(to.theta - from.theta).abs()]
 }
 
 /// The mean velocity between two poses.

@@ -172,6 +172,14 @@ fn a_robot_whose_velocity_is_never_told_drives_all_the_same() {
         assert!((known.v - real.wheels.v).abs() < 0.05, "{known:?}, {:?}", real.wheels);
         assert!((known.omega - real.wheels.omega).abs() < 0.2, "{known:?}, {:?}", real.wheels);
     }
+    // The localisation jumps when the robot has just been told to turn.
+    let mut motors = Motors::new(&robot);
+    for (cycle, theta) in [0.0, 0.0, -1.5, -1.5].into_iter().enumerate() {
+        let now = at(0.1 * cycle as f64);
+        let velocity = motors.observe(now, Pose::new(0.0, 0.0, theta), Velocity::ZERO);
+        assert_eq!(velocity, Velocity::ZERO, "{cycle}");
+        motors.give(now, now, Velocity::new(0.0, -0.3));
+    }
     // A robot that is never told to move, and whose pose creeps.
     let mut motors = Motors::new(&robot);
     for cycle in 0..100 {

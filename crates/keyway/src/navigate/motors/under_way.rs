@@ -116,7 +116,7 @@ impl UnderWay {
         self.commands.clear();
     }
 
-    /// Whether a robot stands, and no command under way moves it.
+    /// True if a robot stands, and no command under way moves it.
     pub(super) fn is_at_rest(
         &self,
         (observed, now): (Time, Time),

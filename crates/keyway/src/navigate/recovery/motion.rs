@@ -139,8 +139,8 @@ impl Motion {
         }
     }
 
-    /// What is left is nothing: 2 mm, or 2 mrad, or half of what motors that do nothing less than
-    /// this in a cycle do.
+    /// So little that is left is nothing: 2 mm, or 2 mrad, or about half of what motors do in a
+    /// cycle that do nothing less than this.
     fn nothing(self, least: Velocity, cycle_s: f64) -> f64 {
         const NOTHING: f64 = 2e-3;
         let least = match self {

@@ -441,7 +441,7 @@ impl World {
     }
 }
 
-/// Whether nearly all that a scan has met is known to stand there: along a wall that is all alike,
+/// True if nearly all that a scan has met is known to stand there: along a wall that is all alike,
 /// the next scan may be the same as the one before.
 fn is_known(scan: &ProjectedScan, obstacles: &DistanceField) -> bool {
     const NEARLY_ALL: f64 = 0.98;
