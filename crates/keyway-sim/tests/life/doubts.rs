@@ -89,6 +89,7 @@ fn a_scan_that_is_given_again_is_noticed() {
     life.drive_for(2.0);
     let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
     let scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+    let mut sensed = None;
     for cycle in 0..4 {
         let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
         let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
@@ -96,11 +97,33 @@ fn a_scan_that_is_given_again_is_noticed() {
         let expected: &[Doubt] =
             if cycle == 0 { &[] } else { &[Doubt::ScanRepeated { sensor: 0 }] };
         assert_eq!(life.navigator.doubts(), expected, "{cycle}");
+        // The post stays where it was seen.
+        let seen = life.navigator.sensed().clone();
+        assert_eq!(*sensed.get_or_insert(seen), *life.navigator.sensed(), "{cycle}");
         life.navigator.step();
         life.obey(Velocity::new(0.4, 0.0));
     }
     life.drive_for(2.2);
     assert_eq!(life.navigator.doubts(), [], "it is over");
+}
+
+/// Between two walls that go on for ever, a scan without noise is the same everywhere: that is no
+/// silence.
+#[test]
+fn a_corridor_that_is_all_alike_is_driven_through() {
+    let map = hall(|place| !(3.5..4.5).contains(&place.y));
+    let mut life = RobotInAWorld::new(&map, Pose::new(4.0, 4.0, 0.0));
+    life.navigator.set_goal(Point::new(8.0, 4.0)).unwrap();
+    let world = World::from_known(&life.truth, Vec::new()).unwrap();
+    let scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+    for _ in 0..60 {
+        let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
+        let command = life.navigator.step().command();
+        life.obey(command);
+    }
+    assert!(life.pose.x > 6.0, "{:?}", life.pose);
 }
 
 /// The localisation jumps by 0.3 m and 10 degrees: that is named, and the post stays beside the

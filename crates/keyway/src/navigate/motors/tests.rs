@@ -1,5 +1,6 @@
 use super::*;
 use crate::random::Random;
+use std::ops::Range;
 
 /// Motors of a robot, in steps of a millisecond: late, with a lag, and with what they do not do.
 struct Real {
@@ -64,7 +65,22 @@ fn driven_and_told(
     told: impl Fn(&Real) -> Velocity,
 ) -> Motors {
     let mut motors = Motors::new(robot);
-    for cycle in 0..(seconds / robot.cycle_s) as u32 {
+    go_on_and_tell(robot, (&mut motors, real), 0.0..seconds, told);
+    motors
+}
+
+fn go_on(robot: &Robot, both: (&mut Motors, &mut Real), during_s: Range<f64>) {
+    go_on_and_tell(robot, both, during_s, |real| real.wheels);
+}
+
+fn go_on_and_tell(
+    robot: &Robot,
+    (motors, real): (&mut Motors, &mut Real),
+    during_s: Range<f64>,
+    told: impl Fn(&Real) -> Velocity,
+) {
+    let cycles = |time_s: f64| (time_s / robot.cycle_s) as u32;
+    for cycle in cycles(during_s.start)..cycles(during_s.end) {
         let now = at(f64::from(cycle) * robot.cycle_s);
         let velocity = motors.observe(now, real.pose, told(real));
         let (_, then) = motors.predicted(now, now, (real.pose, velocity));
@@ -78,7 +94,6 @@ fn driven_and_told(
         motors.give(now, now, command);
         real.obey(robot, command);
     }
-    motors
 }
 
 fn at(stamp_s: f64) -> Time {
@@ -122,6 +137,19 @@ fn motors_may_be_faster_than_described() {
     let robot = Robot { actuation_delay_s: 0.3, ..Robot::jackal() };
     let motors = driven(&robot, &mut Real::new(100), 6.0);
     assert!((motors.delay_s() - 0.1).abs() < 0.02, "{}", motors.delay_s());
+}
+
+/// What was learned is given up when the robot does as described again.
+#[test]
+fn a_delay_may_end() {
+    let robot = Robot::jackal();
+    let mut motors = Motors::new(&robot);
+    let mut real = Real::new(200);
+    go_on(&robot, (&mut motors, &mut real), 0.0..4.0);
+    assert!((motors.delay_s() - 0.2).abs() < 0.02, "{}", motors.delay_s());
+    real.delay_ms = 0;
+    go_on(&robot, (&mut motors, &mut real), 4.0..90.0);
+    assert_eq!(motors.learned_s(), None);
 }
 
 /// While the speed changes steadily, a lag of first order is as late as its time constant.
