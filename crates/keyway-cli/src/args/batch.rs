@@ -151,6 +151,9 @@ pub(crate) enum SceneCommand {
     /// Makes scenes of the papers' maps: generated ones on which the baselines have the published
     /// figures
     Papers(PapersArgs),
+    /// Makes scenes of narrow places for robots of any shape: tunnels, doors, bays, corners, lanes,
+    /// furnished rooms, and walls to drive along
+    Narrow(NarrowArgs),
     /// Prints the JSON schema of scene files, by which editors complete and check them
     #[command(after_help = "\
 Examples:
@@ -194,6 +197,30 @@ pub(crate) struct PapersArgs {
     /// How many scenes of each: the first maps that fit, by their seeds from 1 on
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 30, value_parser = whole::<usize, 1, 1000>)]
+    pub(crate) count: usize,
+    /// Folder for the scenes
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway scene narrow --out narrow
+  keyway scene narrow tunnel bay --seed 1000 --count 2 --out tunnels-and-bays
+  keyway batch tunnels-and-bays --out tunnels-and-bays-results")]
+pub(crate) struct NarrowArgs {
+    /// Kinds: tunnel, door, bay, corner, lane, room, wall [default: all of them]
+    #[arg(value_name = "KIND")]
+    pub(crate) names: Vec<String>,
+    /// Seed of the first scene of each kind; the others have those that follow
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// How many scenes of each kind
+    #[arg(long, allow_negative_numbers = true)]
+    #[arg(value_name = "N", default_value_t = 20, value_parser = whole::<usize, 1, 10000>)]
     pub(crate) count: usize,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]

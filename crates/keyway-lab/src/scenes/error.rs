@@ -99,6 +99,22 @@ pub enum ScenesError {
         /// All names.
         known: Vec<&'static str>,
     },
+    /// There is no kind of narrow place of this name.
+    #[error(
+        "there is no kind `{name}`; expected one of {}{}",
+        known.join(", "),
+        did_you_mean(name, known.iter().copied())
+    )]
+    NoKind {
+        /// The name.
+        name: String,
+        /// All names.
+        known: Vec<&'static str>,
+    },
+    /// A narrow place makes no scene. All robots and places that are drawn can be used, so this
+    /// does not happen.
+    #[error(transparent)]
+    Narrow(SceneError),
     /// Fewer maps fit a paper than were asked for.
     #[error("{name}: only {found} of {tried} maps fit; ask for as many")]
     TooFew {
@@ -127,9 +143,11 @@ impl ScenesError {
             Self::KeyFrames { .. } => "key_frames",
             Self::NoMap { .. } | Self::Pair { .. } | Self::Unnameable { .. } => "pairs",
             Self::Robot(_) => "robot",
-            Self::NoReconstruction { .. } => "names",
+            Self::NoReconstruction { .. } | Self::NoKind { .. } => "names",
             Self::TooFew { .. } => "count",
-            Self::Wall(_) | Self::Baseline(_) | Self::Reconstruction(_) => return None,
+            Self::Wall(_) | Self::Baseline(_) | Self::Reconstruction(_) | Self::Narrow(_) => {
+                return None;
+            }
         })
     }
 

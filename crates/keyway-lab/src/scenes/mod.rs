@@ -1,4 +1,5 @@
-//! Scenes of the field's benchmarks, of tables of starts and goals, and of the papers' maps.
+//! Scenes of the field's benchmarks, of tables of starts and goals, of the papers' maps, and of
+//! narrow places.
 //!
 //! Each request reads the files that it names, if any, and gives scenes with the names of their
 //! files. Nothing is written. [`scene_schema`] describes the fields of all scene files.
@@ -6,6 +7,7 @@
 mod barn;
 mod dynabarn;
 mod error;
+mod narrow;
 mod pairs;
 mod papers;
 mod schema;
@@ -14,6 +16,7 @@ mod table;
 pub use barn::BarnRequest;
 pub use dynabarn::DynabarnRequest;
 pub use error::ScenesError;
+pub use narrow::NarrowRequest;
 pub use pairs::PairsRequest;
 pub use papers::PapersRequest;
 pub use schema::scene_schema;

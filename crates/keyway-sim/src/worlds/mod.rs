@@ -2,7 +2,7 @@
 //!
 //! A [`GeneratedMap`] gives the size of a map and its obstacles; with a seed it generates an
 //! [`OccupancyGrid`]. Positions are metres from the map's lower left corner, except those of
-//! [`Discs`], which are in the world frame. Obstacles are drawn by the centres of cells.
+//! [`Discs`] and [`Boxes`], which are in the world frame. Obstacles are drawn by the centres of cells.
 //!
 //! ```
 //! use keyway::geometry::Point;
@@ -24,6 +24,7 @@
 //! discs. [`Blocks`] that are to cover nearly all of a map are drawn many times over.
 
 mod blocks;
+mod boxes;
 mod canvas;
 mod clutter;
 mod corridors;
@@ -34,6 +35,7 @@ mod rooms;
 mod u_traps;
 
 pub use blocks::Blocks;
+pub use boxes::Boxes;
 pub use clutter::Clutter;
 pub use corridors::Corridors;
 pub use discs::Discs;
@@ -82,6 +84,8 @@ pub enum Pattern {
     None,
     /// Discs at given places.
     Discs(Discs),
+    /// Boxes at given places.
+    Boxes(Boxes),
     /// Randomly placed discs.
     Clutter(Clutter),
     /// Randomly placed blocks of whole cells.
@@ -105,7 +109,7 @@ impl Pattern {
 
     /// True if another seed gives another map.
     pub const fn is_random(&self) -> bool {
-        !matches!(self, Self::None | Self::Discs(_))
+        !matches!(self, Self::None | Self::Discs(_) | Self::Boxes(_))
     }
 }
 
@@ -149,6 +153,7 @@ impl GeneratedMap {
         match &self.obstacles {
             Pattern::None => {}
             Pattern::Discs(discs) => discs.draw(&mut canvas, self.origin),
+            Pattern::Boxes(boxes) => boxes.draw(&mut canvas, self.origin),
             Pattern::Clutter(clutter) => clutter.draw(&mut canvas, random),
             Pattern::Blocks(blocks) => blocks.draw(&mut canvas, random),
             Pattern::Rooms(rooms) => rooms.draw(&mut canvas, random),
@@ -188,6 +193,7 @@ impl GeneratedMap {
             Pattern::Discs(discs) => {
                 return discs.validate().map_err(|error| error.within("obstacles"));
             }
+            Pattern::Boxes(boxes) => ("boxes", boxes.validate()),
             Pattern::Clutter(clutter) => ("clutter", clutter.validate()),
             Pattern::Blocks(blocks) => ("blocks", blocks.validate()),
             Pattern::Rooms(rooms) => ("rooms", rooms.validate()),

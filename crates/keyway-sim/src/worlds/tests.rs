@@ -8,6 +8,7 @@ fn all() -> Vec<GeneratedMap> {
     let patterns = [
         Pattern::None,
         Pattern::Discs(Discs(vec![[3.0, 4.0, 0.5], [1.0, 1.0, 0.3]])),
+        Pattern::Boxes(Boxes { boxes: vec![[3.0, 4.0, 3.5, 9.0]], turned_deg: 20.0 }),
         Pattern::Clutter(Clutter { share: 0.15, radius_m: [0.1, 0.4] }),
         Pattern::Blocks(Blocks { share: 0.15, side_m: [0.1, 0.4] }),
         Pattern::Rooms(Rooms { room_m: 3.1, door_m: 0.9, wall_m: 0.15, more_doors: 0.2 }),
@@ -80,6 +81,7 @@ fn where_there_are_ways_they_lead_everywhere() {
                 // At most, the pockets of a rough side are cut off.
                 Pattern::Mine(_) => assert!(reached * 100 >= free * 99, "{reached} of {free}"),
                 Pattern::Discs(_)
+                | Pattern::Boxes(_)
                 | Pattern::Clutter(_)
                 | Pattern::Blocks(_)
                 | Pattern::UTraps(_) => {}
@@ -135,6 +137,27 @@ fn discs_are_the_cells_whose_centres_they_hold() {
     }
 }
 
+/// A box turned by 90 degrees about the middle of the map, which is at (0, 5.5): x becomes y - 5.5
+/// with the other sign, and y - 5.5 becomes x.
+#[test]
+fn boxes_are_turned_together() {
+    let boxes = vec![[1.0, 4.0, 9.0, 5.0], [-2.0, 5.0, -1.0, 7.0]];
+    let map = |turned_deg| GeneratedMap {
+        origin: Point::new(-4.0, 3.0),
+        obstacles: Pattern::Boxes(Boxes { boxes: boxes.clone(), turned_deg }),
+        ..GeneratedMap::empty(8.0, 5.0, 0.1)
+    };
+    let [straight, turned] = [0.0, 90.0].map(|deg| map(deg).generate(0, &[]).unwrap());
+    assert_eq!(straight.occupied().count_ones(), 30 * 10 + 10 * 20);
+    for cell in turned.frame().cells() {
+        let Point { x, y } = turned.frame().world_from_cell(cell);
+        let at = straight.frame().cell_near(Point::new(y - 5.5, 5.5 - x));
+        if straight.frame().contains(at) {
+            assert_eq!(turned.occupied().get(cell), straight.occupied().get(at), "{cell:?}");
+        }
+    }
+}
+
 #[test]
 fn bad_values_are_named() {
     let field = |map: GeneratedMap| map.validate().unwrap_err().path;
@@ -154,6 +177,10 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::Discs(discs)), "obstacles.discs[1][2]");
     let discs = Discs(vec![[1.0, f64::NAN, 0.1]]);
     assert_eq!(of(Pattern::Discs(discs)), "obstacles.discs[0][1]");
+    let boxes = |of, turned_deg| Pattern::Boxes(Boxes { boxes: vec![of], turned_deg });
+    assert_eq!(of(boxes([0.0, 0.0, 1.0, -1.0], 0.0)), "obstacles.boxes.boxes[0][3]");
+    assert_eq!(of(boxes([0.0, f64::NAN, 1.0, 1.0], 0.0)), "obstacles.boxes.boxes[0][1]");
+    assert_eq!(of(boxes([0.0; 4], f64::INFINITY)), "obstacles.boxes.turned_deg");
     let rooms = Rooms { room_m: 1.0, door_m: 0.95, wall_m: 0.1, more_doors: 0.0 };
     assert_eq!(of(Pattern::Rooms(rooms)), "obstacles.rooms.door_m");
     let traps = UTraps { count: 1, size_m: [1.0, 1.0], wall_m: 0.3 };

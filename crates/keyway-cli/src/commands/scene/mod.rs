@@ -1,5 +1,5 @@
-//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals and of the
-//! papers' maps, and the schema of scene files.
+//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals, of the
+//! papers' maps and of narrow places, and the schema of scene files.
 
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
@@ -7,8 +7,8 @@ use crate::error::{CliError, Kind};
 use crate::inputs::bad_file;
 use crate::out_dir::prepare;
 use keyway_lab::scenes::{
-    BarnRequest, DynabarnRequest, NamedScene, PairsRequest, PapersRequest, ScenesError,
-    scene_schema,
+    BarnRequest, DynabarnRequest, NamedScene, NarrowRequest, PairsRequest, PapersRequest,
+    ScenesError, scene_schema,
 };
 use serde::Serialize;
 use std::path::Path;
@@ -41,6 +41,10 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
         SceneCommand::Papers(args) => {
             let request = PapersRequest { names: args.names.clone(), count: args.count };
             write(&args.out, &request.scenes()?, args.format)
+        }
+        SceneCommand::Narrow(args) => {
+            let (names, seed, count) = (args.names.clone(), args.seed, args.count);
+            write(&args.out, &NarrowRequest { names, seed, count }.scenes()?, args.format)
         }
         SceneCommand::Dynabarn(args) => {
             let (key_frames, worlds) = (args.key_frames.clone(), args.worlds.clone());
@@ -80,7 +84,9 @@ impl From<ScenesError> for CliError {
         let argument = error.field().map(argument);
         let kind = match error {
             ScenesError::Robot(error) => return bad_file(error, "--robot"),
-            ScenesError::NoReconstruction { .. } | ScenesError::TooFew { .. } => Kind::Usage,
+            ScenesError::NoReconstruction { .. }
+            | ScenesError::NoKind { .. }
+            | ScenesError::TooFew { .. } => Kind::Usage,
             ScenesError::Baseline(_) | ScenesError::Reconstruction(_) => Kind::Config,
             _ => Kind::Input,
         };
