@@ -80,6 +80,7 @@ fn decisions(criterion: &mut Criterion) {
                     velocity,
                     guide,
                     path,
+                    goal_heading_rad: None,
                     remaining_m: f64::INFINITY,
                 };
                 match planner.decide(&scene, &mut DriveMemory::default(), &mut scratch) {

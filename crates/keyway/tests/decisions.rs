@@ -41,6 +41,7 @@ fn warm_decisions_allocate_nothing() {
                     velocity,
                     guide,
                     path: &path,
+                    goal_heading_rad: None,
                     remaining_m: f64::INFINITY,
                 };
                 let decision = planner.decide(&scene, &mut memory, &mut scratch);

@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-pub(crate) const COMMANDS: [&str; 24] = [
+pub(crate) const COMMANDS: [&str; 25] = [
     "",
     "demo",
     "plan",
@@ -20,6 +20,7 @@ pub(crate) const COMMANDS: [&str; 24] = [
     "scene",
     "scene barn",
     "scene dynabarn",
+    "scene narrow",
     "scene pairs",
     "scene papers",
     "scene schema",

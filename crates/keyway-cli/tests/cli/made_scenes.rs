@@ -159,3 +159,20 @@ fn maps_of_papers_become_scenes() {
     let error = keyway(folder.path(), "scene papers nobody --out x").expect_code(2).err;
     assert!(error.contains("expected one of you2021, s1"), "{error}");
 }
+
+/// A bay in which the robot has to face out: it backs in.
+#[test]
+fn narrow_places_are_made_by_seed() {
+    let folder = folder();
+    let line = "scene narrow bay --seed 16 --count 2 --out n --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    assert_eq!(report["files"], json!(["n/bay_00016.toml", "n/bay_00017.toml"]));
+    let run = keyway(folder.path(), "navigate --scene n/bay_00016.toml --format json");
+    let run = run.expect_code(0).json();
+    assert_eq!(run["outcome"], json!("reached"));
+    assert_eq!(run["run"]["recoveries"]["manoeuvre"], json!(0));
+    let error = keyway(folder.path(), "scene narrow bey --out n --format json");
+    let error = error.expect_code(2).json();
+    let message = error["message"].as_str().unwrap();
+    assert!(message.ends_with("did you mean `bay`?"), "{message}");
+}

@@ -201,6 +201,7 @@ mod tests {
                 velocity,
                 guide,
                 path,
+                goal_heading_rad: None,
                 remaining_m: f64::INFINITY,
             };
             let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
@@ -233,6 +234,7 @@ mod tests {
             velocity,
             guide,
             path: &path,
+            goal_heading_rad: None,
             remaining_m: f64::INFINITY,
         };
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.

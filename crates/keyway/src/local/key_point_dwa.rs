@@ -393,6 +393,7 @@ mod tests {
                 velocity,
                 guide,
                 path,
+                goal_heading_rad: None,
                 remaining_m: f64::INFINITY,
             };
             let (memory, scratch) = (&mut DriveMemory::default(), &mut Scratch::default());

@@ -24,6 +24,7 @@
 //!     velocity: Velocity::ZERO,
 //!     guide: Point::new(7.5, 0.5),
 //!     path: &path,
+//!     goal_heading_rad: None,
 //!     remaining_m: f64::INFINITY,
 //! };
 //! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;

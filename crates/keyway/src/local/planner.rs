@@ -54,6 +54,11 @@ pub trait LocalPlanner: Debug {
     fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {
         Explanation::default()
     }
+
+    /// Whether it turns the robot in time before narrow ground; otherwise the controller does.
+    fn turns_in_time(&self) -> bool {
+        false
+    }
 }
 
 /// The memory of a local planner from one cycle to the next.

@@ -28,6 +28,8 @@ pub struct Scene<'a> {
     pub guide: Point,
     /// The smoothed route, from its beginning to the goal.
     pub path: &'a Polyline,
+    /// How the robot is to face at the end of its route \[rad\]; `None` where any heading is right.
+    pub goal_heading_rad: Option<f64>,
     /// What is left of the way to the place where the robot is to stop \[m\]; infinite where it
     /// need not stop. A local planner issues nothing after which the robot could not stop within
     /// this way any more.

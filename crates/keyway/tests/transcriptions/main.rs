@@ -140,6 +140,7 @@ fn run(
             velocity,
             guide: point,
             path,
+            goal_heading_rad: None,
             remaining_m: f64::INFINITY,
         };
         let decision = planner.decide(&scene, &mut memory, &mut scratch);

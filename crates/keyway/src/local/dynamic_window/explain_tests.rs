@@ -33,6 +33,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_>
         velocity,
         guide: Point::new(2.5, 1.0),
         path: &NO_PATH,
+        goal_heading_rad: None,
         remaining_m: f64::INFINITY,
     }
 }

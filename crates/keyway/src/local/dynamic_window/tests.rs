@@ -26,6 +26,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
         velocity,
         guide: guide.into(),
         path: &NO_PATH,
+        goal_heading_rad: None,
         remaining_m: f64::INFINITY,
     }
 }

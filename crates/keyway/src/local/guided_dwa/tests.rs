@@ -35,6 +35,7 @@ impl World {
             velocity: Velocity::ZERO,
             guide,
             path,
+            goal_heading_rad: None,
             remaining_m: f64::INFINITY,
         }
     }

@@ -52,6 +52,10 @@ pub(super) struct Weighing {
     pub(super) comfortable_m: f64,
     /// What a metre counts as in addition where the robot can just turn around.
     pub(super) discomfort: f64,
+    /// What a metre counts as in addition where the robot cannot turn around. Where it has to face
+    /// some way at its end, 0: to drive in with the wrong heading, and out again, has to cost more
+    /// than what is left becomes less by.
+    pub(super) tight: f64,
 }
 
 /// The way ahead, in the positions of the lattice.
@@ -65,9 +69,8 @@ pub(super) struct WayAhead<'a> {
 }
 
 impl Weighing {
-    /// What a metre counts as in addition where the robot cannot turn around: its heading has to
-    /// fit, and often does not.
-    const TIGHT: f64 = 3.0;
+    /// Usual for `tight`: a heading has to fit there, and often does not.
+    pub(super) const TIGHT: f64 = 3.0;
 
     fn weight(&self, room_m: f64) -> f64 {
         if room_m < self.blocked_m {
@@ -75,13 +78,13 @@ impl Weighing {
         }
         let missing = (self.comfortable_m - room_m) / (self.comfortable_m - self.turning_m);
         let missing = missing.clamp(0.0, 1.0);
-        let tight = if room_m < self.turning_m { Self::TIGHT } else { 0.0 };
+        let tight = if room_m < self.turning_m { self.tight } else { 0.0 };
         1.0 + self.discomfort * missing * missing + tight
     }
 
     /// That of the tightest ground that is not blocked.
     fn largest(&self) -> f64 {
-        1.0 + self.discomfort + Self::TIGHT
+        1.0 + self.discomfort + self.tight
     }
 }
 
@@ -315,8 +318,13 @@ mod tests {
     ) -> CostToGo {
         let frame = GridFrame::new(200, 200, 0.1, Pose::default()).unwrap();
         let lattice = Lattice::around(&frame, Point::new(10.0, 10.0), 8.0, 0.1);
-        let weighing =
-            Weighing { blocked_m: 0.3, turning_m: 0.4, comfortable_m: 0.6, discomfort: 0.5 };
+        let weighing = Weighing {
+            blocked_m: 0.3,
+            turning_m: 0.4,
+            comfortable_m: 0.6,
+            discomfort: 0.5,
+            tight: 3.0,
+        };
         let mut cost_to_go = CostToGo::default();
         cost_to_go.fill(lattice, &weighing, room_m, &WayAhead { robot, route, walked }, 100.0);
         cost_to_go

@@ -3,6 +3,7 @@
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
+use super::pose_cost::PoseCost;
 use super::room::{Exact, Outline, Room};
 use crate::geometry::{Point, Velocity};
 use crate::local::rear::Seen;
@@ -50,6 +51,7 @@ pub(super) struct Judge<'a> {
     /// Where it may drive backwards; everywhere, when it sees all around.
     pub(super) seen: Option<Seen<'a>>,
     pub(super) cost_to_go: &'a CostToGo,
+    pub(super) pose_cost: &'a PoseCost,
     pub(super) meeting: &'a Meeting<'a>,
     /// What is left of the route beyond the lattice \[m\].
     pub(super) beyond_m: f64,
@@ -65,6 +67,8 @@ pub(super) struct Judge<'a> {
     pub(super) steering: f64,
     /// The duration of a stretch \[s\].
     pub(super) stretch_s: f64,
+    /// Way within which the robot has to stop \[m\].
+    pub(super) remaining_m: f64,
 }
 
 impl State {
@@ -245,6 +249,9 @@ impl Judge<'_> {
         let left_m = left_m + self.beyond_m;
         let norm = way.norm();
         let cos = if norm > 0.0 { way.dot(state.ahead) / norm } else { 1.0 };
+        if let Some(heading_s) = self.pose_cost.of(state.at, state.ahead) {
+            return profile_s(self.limits, state.velocity.v * cos, left_m) + heading_s;
+        }
         let Limits { v_max_mps, omega_max_radps, acceleration_mps2, .. } = *self.limits;
         let around_s = PI / omega_max_radps + v_max_mps / acceleration_mps2;
         // At the end there is nothing to turn to.
@@ -264,7 +271,7 @@ impl Judge<'_> {
         if left_s <= self.stretch_s {
             return true;
         }
-        if !self.meeting.movers.is_empty() {
+        if !self.meeting.movers.is_empty() || self.pose_cost.is_active() {
             return false;
         }
         self.cost_to_go.straight_to_end(state.at).is_some_and(|way| {
@@ -360,9 +367,9 @@ mod tests {
             let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
             let exact = Exact { footprint: &robot.footprint, obstacles: &obstacles };
             let judge = Judge {
-                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, exact, seen: None, cost_to_go: &cost_to_go,
+                limits: &robot.limits, outline: &Outline::of(&robot), room: &room, exact, seen: None, cost_to_go: &cost_to_go, pose_cost: &PoseCost::default(),
                 meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, tight_now_sq: 0.0, discomfort: 0.5,
-                steering: 0.0, stretch_s: 0.34,
+                steering: 0.0, stretch_s: 0.34, remaining_m: 9.0,
             };
             let (from, to) = (Velocity::new(from.0, from.1), Velocity::new(to.0, to.1));
             let start = State { at: Point::new(0.5, 0.5), ahead: direction(theta), velocity: from, after_s: 0.0 };

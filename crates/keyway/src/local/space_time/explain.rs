@@ -111,7 +111,7 @@ impl Cycle<'_> {
             let free_for_s = self.free_for_s(to);
             return self.refused(to, CONTACT, Some(free_for_s));
         }
-        if !self.planner.passes(self.scene, to, self.judge.stretch_s, scratch) {
+        if !self.planner.passes(self.scene, to, self.judge, scratch) {
             return self.refused(to, STOP_RULE, None);
         }
         let extent = self.planner.extent(self.scene, self.judge);
@@ -145,7 +145,7 @@ impl Cycle<'_> {
     }
 
     fn command(&self, first: Velocity) -> Velocity {
-        self.planner.command(self.scene, first, self.judge.stretch_s)
+        self.planner.command(self.scene, first, self.judge)
     }
 
     /// How long a stretch is free that touches something.

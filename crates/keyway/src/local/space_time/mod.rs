@@ -7,6 +7,9 @@
 //! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is
 //!    computed for every place around the robot, on ground that is weighed by the room on it
 //!    (`cost_to_go.rs`). Ground on which movers walk, and around which the route leads, is blocked.
+//!    Where the robot cannot turn around everywhere on that way, so is what its heading costs, by
+//!    place and heading (`pose_cost.rs`): it turns before a narrow place, backs into a bay, and
+//!    leaves one that it cannot turn in.
 //! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes
 //!    linearly. The W most promising courses are followed from stretch to stretch, as in a beam
 //!    search: each goes on with every pair of a few speeds and turn rates, and of those that lead
@@ -72,15 +75,18 @@
 //! same scene gives the same command on any machine: nothing is random, and nothing depends on
 //! time.
 
+mod around;
 mod buckets;
 mod commitment;
 mod config;
 mod cost_to_go;
 mod course;
 mod explain;
+mod free_headings;
 mod lattice;
 mod meeting;
 mod polish;
+mod pose_cost;
 mod room;
 mod search;
 mod targets;
@@ -97,17 +103,16 @@ use super::{
     Rejections, Scene, Scratch, Share, Shares, StopRule, StopRuleConfig, Surroundings,
 };
 use crate::ConfigError;
-use crate::geometry::{Disc, Point, Velocity};
+use crate::geometry::{Point, Velocity};
 use crate::map::GridFrame;
 use crate::robot::{Limits, Robot};
-use crate::sense::{Mover, SeenCells};
+use crate::sense::SeenCells;
+use around::Around;
 use commitment::{go_on, reluctance_s};
-use cost_to_go::{CostToGo, WayAhead, Weighing};
 use course::{Judge, State};
-use lattice::Lattice;
-use meeting::{Foreseen, Meeting};
+use meeting::Meeting;
 use polish::{FINEST, STEPS, Total, can_stop, polish};
-use room::{Exact, Outline, Room};
+use room::{Exact, Outline};
 use search::{Beam, Extent, Tally};
 use std::sync::Arc;
 
@@ -119,16 +124,6 @@ pub struct SpaceTime {
     outline: Outline,
     rear: Rear,
     gate: StopRule,
-}
-
-/// What is around the robot in one cycle.
-#[derive(Debug, Default)]
-struct Around {
-    room: Room,
-    cost_to_go: CostToGo,
-    movers: Vec<Foreseen>,
-    route: Vec<Point>,
-    walked: Vec<Disc>,
 }
 
 /// What a decision works in.
@@ -156,12 +151,12 @@ impl SpaceTime {
     /// Its name on the command line and in reports.
     pub const NAME: &'static str = "space-time";
 
-    /// Points of the fine lattice in an inscribed radius, and of the coarse one.
-    const FINE: f64 = 3.0;
-    const COARSE: f64 = 2.0;
+    /// Beside something a robot that is slower than the second part of its top speed may come nearer
+    /// by the first: it could not turn away otherwise.
+    const NEARER: [f64; 2] = [0.5, 0.2];
 
-    /// Movers are uncertain by three standard deviations.
-    const DEVIATIONS: f64 = 3.0;
+    /// A heading that costs less is right \[s\].
+    const TURNED_S: f64 = 0.3;
 
     /// A planner for a robot.
     ///
@@ -187,81 +182,11 @@ impl SpaceTime {
         self.robot.limits.v_max_mps * self.config.horizon_s
     }
 
-    /// Takes in what is around the robot; what is left of the route beyond \[m\].
-    fn look(&self, around: &mut Around, scene: &Scene<'_>, covered_m: f64) -> f64 {
-        let frame = scene.obstacles.frame();
-        let robot = local(frame, scene.pose.point());
-        let inscribed_m = self.outline.inscribed_m.max(frame.resolution_m());
-        let reach_m = self.reach_m() + self.outline.circumscribed_m + inscribed_m;
-        let fine = Lattice::around(frame, robot, reach_m + inscribed_m, inscribed_m / Self::FINE);
-        around.room.fill(fine, scene.obstacles, self.weighing().comfortable_m);
-        let beyond_m =
-            way_ahead::collect(&mut around.route, scene, covered_m, reach_m - inscribed_m);
-        let coarse = Lattice::around(frame, robot, reach_m, inscribed_m / Self::COARSE);
-        around.walked.clear();
-        let walked = scene.walked.iter();
-        around
-            .walked
-            .extend(walked.map(|disc| Disc { centre: local(frame, disc.centre), ..*disc }));
-        let way = WayAhead { robot, route: &around.route, walked: &around.walked };
-        let room_m = |at: Point| around.room.of_point(at);
-        let longer_m = 0.5 * self.reach_m();
-        around.cost_to_go.fill(coarse, &self.weighing(), room_m, &way, longer_m);
-        self.foresee(around, scene);
-        beyond_m
-    }
-
-    fn weighing(&self) -> Weighing {
-        let margin_m = self.robot.safety_margin_m();
-        let turning_m = self.outline.circumscribed_m + margin_m;
-        Weighing {
-            blocked_m: self.outline.inscribed_m + margin_m,
-            turning_m,
-            comfortable_m: turning_m + self.config.comfortable_m,
-            discomfort: self.config.discomfort,
-        }
-    }
-
-    /// Takes in the movers that a course may meet.
-    fn foresee(&self, around: &mut Around, scene: &Scene<'_>) {
-        let Around { movers, room, .. } = around;
-        let horizon_s = self.config.horizon_s;
-        // A polygon is between its circles, in most directions.
-        let body_m = 0.5 * (self.outline.inscribed_m + self.outline.circumscribed_m);
-        movers.clear();
-        let near = scene.movers.iter().filter(|mover| {
-            let meets_m = self.reach_m() + mover.velocity_mps.norm() * horizon_s + mover.radius_m;
-            let apart_m = mover.centre.distance(scene.pose.point());
-            mover.is_usable() && apart_m <= meets_m + body_m + self.config.mover_room_m
-        });
-        for mover in near {
-            let mut foreseen = self.foreseen(mover, scene.obstacles.frame(), body_m);
-            foreseen.wall_s = foreseen.until_wall_s(mover.radius_m, room, horizon_s);
-            foreseen.look_ahead(self.config.mover_room_m, self.farthest_s());
-            movers.push(foreseen);
-        }
-    }
-
-    fn foreseen(&self, mover: &Mover, frame: &GridFrame, body_m: f64) -> Foreseen {
-        let (sin, cos) = libm::sincos(frame.origin().theta);
-        let v = mover.velocity_mps;
-        Foreseen {
-            centre: local(frame, mover.centre),
-            velocity_mps: Point::new(v.x * cos + v.y * sin, v.y * cos - v.x * sin),
-            reach_m: mover.radius_m + body_m,
-            off_m: mover.position_uncertainty_m / Self::DEVIATIONS,
-            off_mps: mover.velocity_uncertainty_mps / Self::DEVIATIONS,
-            off_mps2: self.config.mover_acceleration_mps2,
-            wall_s: f64::INFINITY,
-            matters_sq: Foreseen::ALWAYS,
-        }
-    }
-
     /// What the first cycle of a course asks for.
-    fn command(&self, scene: &Scene<'_>, first: Velocity, stretch_s: f64) -> Velocity {
+    fn command(&self, scene: &Scene<'_>, first: Velocity, judge: &Judge<'_>) -> Velocity {
         let Robot { limits, cycle_s, .. } = &*self.robot;
-        let asked = scene.velocity.lerp(first, cycle_s / stretch_s);
-        let stoppable = limits.stoppable_mps(scene.velocity.v, scene.remaining_m, *cycle_s);
+        let asked = scene.velocity.lerp(first, cycle_s / judge.stretch_s);
+        let stoppable = limits.stoppable_mps(scene.velocity.v, judge.remaining_m, *cycle_s);
         let asked = Velocity::new(asked.v.clamp(-stoppable, stoppable), asked.omega);
         limits.reached(scene.velocity, asked, *cycle_s)
     }
@@ -276,7 +201,7 @@ impl SpaceTime {
             width: width as usize,
             lowest_mps: if backwards { self.robot.limits.v_min_mps } else { 0.0 },
             bin_m,
-            elsewhere_m: 0.5 * bin_m.min(scene.remaining_m),
+            elsewhere_m: 0.5 * bin_m.min(judge.remaining_m),
         }
     }
 
@@ -285,10 +210,10 @@ impl SpaceTime {
         &self,
         scene: &Scene<'_>,
         first: Velocity,
-        stretch_s: f64,
+        judge: &Judge<'_>,
         scratch: &mut Scratch,
     ) -> bool {
-        let command = self.command(scene, first, stretch_s);
+        let command = self.command(scene, first, judge);
         // What its rear may be on is asked of every course.
         let seen = SeenCells { behind: None, ..scene.seen };
         let around = Surroundings { seen, ..Surroundings::standing(scene) };
@@ -318,7 +243,7 @@ impl SpaceTime {
                 std::mem::swap(&mut beam.best, rest);
             }
         }
-        let mut passes = |first: Velocity| self.passes(scene, first, judge.stretch_s, scratch);
+        let mut passes = |first: Velocity| self.passes(scene, first, judge, scratch);
         if beam.best.first().is_none_or(|&first| passes(first)) {
             return tally;
         }
@@ -352,6 +277,11 @@ impl SpaceTime {
         let exact = Exact { footprint: &self.robot.footprint, obstacles: scene.obstacles };
         let (margin_m, around_m) = (self.robot.safety_margin_m(), (&around.room, exact));
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
+        let [nearer, slow] = Self::NEARER;
+        let is_slow = scene.velocity.v.abs() <= slow * self.robot.limits.v_max_mps;
+        // Who stands nearer may turn away, by which its tail comes nearer.
+        // Who touches something has less than nothing.
+        let nearest_m = (now_m - 1e-6).min(if is_slow { nearer * now_m } else { now_m });
         let mut judge = Judge {
             limits: &self.robot.limits,
             outline: &self.outline,
@@ -359,16 +289,21 @@ impl SpaceTime {
             exact,
             seen: scene.seen.behind.map(|cells| self.rear.over(cells, frame)),
             cost_to_go: &around.cost_to_go,
+            pose_cost: &around.pose_cost,
             meeting,
             beyond_m,
             comfortable_m,
-            // Who stands nearer may stay as near.
-            least_m: margin_m.min(now_m - 1e-6),
+            least_m: margin_m.min(nearest_m),
             tight_now_sq: Judge::tight_sq(now_m, comfortable_m),
             discomfort,
             steering,
             stretch_s: self.config.stretch_s(),
+            remaining_m: scene.remaining_m,
         };
+        // Who has to turn elsewhere may have to leave the end of its way once more.
+        if around.pose_cost.of(at, ahead).is_some_and(|heading_s| heading_s > Self::TURNED_S) {
+            judge.remaining_m = f64::INFINITY;
+        }
         // No course need be longer than the way: near the end, stretches become finer.
         let shorter_s = judge.time_to_go_s(&start) / f64::from(self.config.stretches);
         judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, judge.stretch_s);
@@ -390,7 +325,7 @@ impl SpaceTime {
         go_on(rest, memory.course(), &start, &judge, extent);
         memory.own = OwnMemory::Nothing;
         let tally = self.search(scene, (&start, &judge), (beam, rest), scratch);
-        let command = beam.best.first().map(|&first| self.command(scene, first, judge.stretch_s));
+        let command = beam.best.first().map(|&first| self.command(scene, first, &judge));
         let stands = command.is_some_and(|command| self.robot.stands(command));
         let total = Total::of(&start, &beam.best, &judge);
         let evaluation = evaluation(tally, total.as_ref(), stands);
@@ -488,5 +423,9 @@ impl LocalPlanner for SpaceTime {
 
     fn explain(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
         self.explained(scene, memory)
+    }
+
+    fn turns_in_time(&self) -> bool {
+        true
     }
 }

@@ -1,11 +1,12 @@
 //! The search drives only what may be among the best. It finds what one finds that drives
 //! everything.
 
-use super::super::{Around, Mover, Scene, SpaceTime, SpaceTimeConfig};
+use super::super::{Around, Scene, SpaceTime, SpaceTimeConfig};
 use super::*;
 use crate::geometry::{Point, Polyline, Pose};
 use crate::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::Robot;
+use crate::sense::Mover;
 use proptest::prelude::*;
 
 /// Every stretch of a level is driven, then all are sorted.
@@ -113,6 +114,7 @@ proptest! {
             velocity: Velocity::new(v, omega),
             guide: Point::new(7.0, 7.0),
             path: &path,
+            goal_heading_rad: None,
             remaining_m: path.length_m(),
         };
         let mut around = Around::default();

@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 #[derive(Debug, Default)]
 pub(super) struct Targets {
     speeds_mps: ArrayVec<f64, 5>,
-    rates_radps: ArrayVec<f64, 9>,
+    rates_radps: ArrayVec<f64, 11>,
 }
 
 impl Targets {
@@ -18,8 +18,8 @@ impl Targets {
     /// The part of what it can accelerate where there is no room for more.
     const GENTLY: f64 = 0.25;
 
-    /// The part of the turn rate that it can reach on a wide arc.
-    const WIDELY: f64 = 0.0625;
+    /// The parts of the turn rate that it can reach on wide arcs.
+    const WIDELY: [f64; 2] = [1.0 / 16.0, 1.0 / 64.0];
 
     /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the
     /// left and to the right as it can, straight on, and what turns it to the way. At the beginning
@@ -52,8 +52,10 @@ impl Targets {
             if v < gently {
                 add(&mut targets.speeds_mps, v + gently);
                 if judge.short_of_turning(state.at) > 0.0 {
-                    add(&mut targets.rates_radps, omega + Self::WIDELY * (left - omega));
-                    add(&mut targets.rates_radps, omega + Self::WIDELY * (right - omega));
+                    for part in Self::WIDELY {
+                        add(&mut targets.rates_radps, omega + part * (left - omega));
+                        add(&mut targets.rates_radps, omega + part * (right - omega));
+                    }
                 }
             }
             for rate_radps in [omega, 0.5 * (omega + left), 0.5 * (omega + right)] {

@@ -8,6 +8,7 @@ use crate::geometry::{Polyline, Pose};
 use crate::local::{Change, Fate, ScoredCandidate};
 use crate::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, OccupancyGrid};
 use crate::robot::Footprint;
+use crate::sense::Mover;
 use proptest::prelude::*;
 
 /// A square world of cells of 0.05 m.
@@ -69,8 +70,7 @@ impl<'a> Drive<'a> {
 
     fn in_scene<R>(&self, look: impl FnOnce(&Scene<'_>) -> R) -> R {
         let Self { path, movers, pose, velocity, world, seen, .. } = self;
-        let frame = world.frame();
-        let end = *path.points().last().unwrap();
+        let (frame, end) = (world.frame(), *path.points().last().unwrap());
         look(&Scene {
             obstacles: world,
             sensed: &BitGrid::new(frame.width(), frame.height(), false),
@@ -81,6 +81,7 @@ impl<'a> Drive<'a> {
             velocity: *velocity,
             guide: end,
             path,
+            goal_heading_rad: None,
             remaining_m: pose.point().distance(end).max(0.01),
         })
     }
@@ -248,10 +249,9 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     drive.memory = memory.clone();
     assert_eq!(drive.decide().unwrap(), warm);
     drive.memory = memory;
-    let scene_grid = BitGrid::new(200, 200, false);
     let scene = Scene {
         obstacles: drive.world,
-        sensed: &scene_grid,
+        sensed: &BitGrid::new(200, 200, false),
         seen: SeenCells::ANYWHERE,
         movers: &drive.movers,
         walked: &[],
@@ -259,6 +259,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
         velocity,
         guide: Point::new(9.0, 5.0),
         path: &drive.path,
+        goal_heading_rad: None,
         remaining_m: 3.0,
     };
     let (planner, memory, scratch) = (&drive.planner, &mut drive.memory, &mut drive.scratch);

@@ -80,6 +80,7 @@ mod tests {
             velocity: Velocity::ZERO,
             guide: point(6.0, 5.0),
             path: &path,
+            goal_heading_rad: None,
             remaining_m: 18.0,
         };
         let mut route = Vec::new();

@@ -1,12 +1,12 @@
 //! Arrival at way-points and at the goal.
 
 use super::Deciding;
-use crate::geometry::Velocity;
+use crate::geometry::Pose;
+use crate::navigate::Step;
 use crate::navigate::mode::Mode;
 use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot};
 use crate::navigate::task::GivenPath;
 use crate::navigate::watch::Watch;
-use crate::navigate::{Blocked, Step};
 
 impl Deciding<'_> {
     /// Goes on to the next stop when the robot is at a way-point.
@@ -30,7 +30,7 @@ impl Deciding<'_> {
         self.is_at_goal() && is_facing && self.robot.stands(self.velocity)
     }
 
-    fn is_at_goal(&self) -> bool {
+    pub(super) fn is_at_goal(&self) -> bool {
         let tolerance_m = self.stack.controller.goal_tolerance_m;
         let is_there = self.pose.point().distance(self.task.goal.position) <= tolerance_m;
         // A path may pass its own end before.
@@ -39,7 +39,8 @@ impl Deciding<'_> {
         is_there && self.task.is_last_leg() && self.task.given.as_ref().is_none_or(is_at_end)
     }
 
-    /// At the goal: brakes, turns to its heading, stays.
+    /// At the goal: brakes, turns to its heading, stays. `None` where it is elsewhere, or has no
+    /// room to turn: then it goes on to where it has, or where it faces as it should.
     pub(super) fn arrive(&mut self) -> Option<Step> {
         if !self.is_at_goal() {
             if matches!(self.task.mode, Mode::Arriving(_)) {
@@ -47,31 +48,42 @@ impl Deciding<'_> {
             }
             return None;
         }
-        let (pose, velocity) = (self.pose, self.velocity);
-        let turn = match std::mem::take(&mut self.task.mode) {
-            Mode::Arriving(turn) => turn,
-            _ => None,
-        };
-        self.task.mode = Mode::Arriving(None);
         if self.has_arrived() {
+            self.task.mode = Mode::Arriving(None);
             return Some(Step::Arrived);
         }
-        let braked = self.robot.limits.braked(velocity, self.robot.cycle_s);
-        let turn = if turn.is_none() && self.robot.stands(velocity) {
-            let left_rad = self.task.goal.turn_left_rad(pose).unwrap_or_default();
-            let spot = OnTheSpot { robot: self.robot, obstacles: &self.world.obstacles };
-            let Some(turn_rad) = spot.turn(pose, left_rad) else {
-                return Some(Step::Blocked { command: Velocity::ZERO, why: Blocked::NoRoomToTurn });
-            };
-            Some(MotionUnderWay::new(Motion::Turn(turn_rad)))
-        } else {
-            turn
+        let (pose, velocity) = (self.pose, self.velocity);
+        let mode = std::mem::take(&mut self.task.mode);
+        let turn = match mode {
+            Mode::Arriving(turn @ Some(_)) => turn,
+            mode => {
+                let Some(turn_rad) = self.turn_at_goal(pose) else {
+                    self.task.mode =
+                        if matches!(mode, Mode::Arriving(_)) { Mode::Following } else { mode };
+                    return None;
+                };
+                let begins = self.robot.stands(velocity) && turn_rad != 0.0;
+                begins.then(|| MotionUnderWay::new(Motion::Turn(turn_rad)))
+            }
         };
+        self.task.mode = Mode::Arriving(None);
+        let braked = self.robot.limits.braked(velocity, self.robot.cycle_s);
         let Some(mut turn) = turn else { return Some(Step::Drive(braked)) };
         if let MotionStep::Moving(command) = turn.step(&self.moment(), &self.world.obstacles) {
             self.task.mode = Mode::Arriving(Some(turn));
             return Some(Step::Drive(self.beside_movers(command)));
         }
         Some(Step::Drive(braked))
+    }
+
+    /// The turn to the heading at the goal, to the nearer side with room; 0 where it faces as it
+    /// should.
+    fn turn_at_goal(&self, pose: Pose) -> Option<f64> {
+        let tolerance_rad = self.stack.controller.goal_yaw_tolerance_rad;
+        let left_rad = self.task.goal.turn_left_rad(pose).unwrap_or_default();
+        if left_rad.abs() <= tolerance_rad {
+            return Some(0.0);
+        }
+        OnTheSpot { robot: self.robot, obstacles: &self.world.obstacles }.turn(pose, left_rad)
     }
 }

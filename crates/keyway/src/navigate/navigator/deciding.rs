@@ -84,6 +84,9 @@ impl<'a> Deciding<'a> {
             return Step::Blocked { command, why };
         }
         match driven {
+            Ok(command) if self.robot.stands(command) && self.is_at_goal() => {
+                Step::Blocked { command, why: Blocked::NoRoomToTurn }
+            }
             Ok(command) if self.can_only_stand(command) => {
                 let why = Blocked::NothingDrives(self.record.evaluation.clone());
                 Step::Blocked { command, why }

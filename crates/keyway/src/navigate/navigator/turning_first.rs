@@ -20,6 +20,7 @@ impl Deciding<'_> {
         let (robot, pose, guide) = (self.robot, self.pose, self.task.guidance.point);
         let is_round = matches!(robot.footprint, Footprint::Circle(_));
         let may_turn = matches!(self.task.mode, Mode::Following)
+            && !self.local.turns_in_time()
             && self.stack.controller.recoveries.contains(&RecoveryKind::Turn);
         let bearing_rad = pose.bearing_to(guide);
         let is_near = pose.point().distance(guide) <= robot.footprint.inscribed_radius_m();

@@ -404,7 +404,20 @@ impl World {
         let Guidance { point: guide, remaining_m } = task.guidance;
         let (path, seen) = (&task.route.smoothed, self.seen_cells());
         let walked = self.walked.avoided();
-        Scene { obstacles, sensed, seen, movers, walked, pose, velocity, guide, path, remaining_m }
+        let goal_heading_rad = task.goal.heading_rad.filter(|_| task.is_last_leg());
+        Scene {
+            obstacles,
+            sensed,
+            seen,
+            movers,
+            walked,
+            pose,
+            velocity,
+            guide,
+            path,
+            goal_heading_rad,
+            remaining_m,
+        }
     }
 
     /// Asks a question of the known map alone, without what was sensed.
