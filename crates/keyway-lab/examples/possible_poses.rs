@@ -26,7 +26,7 @@ const LOOK_M: f64 = 0.01;
 const MOST_NODES: usize = 10_000_000;
 const GOAL_TOLERANCE_M: f64 = 0.1;
 const GOAL_TOLERANCE_RAD: f64 = 0.1;
-/// How much more what is left counts than what was driven.
+/// The way that is left counts so many times as much as the one that was driven.
 const GREED: f64 = 1.5;
 
 /// The ground that it covers, in its own frame: x from `rear` to `ahead`, y up to `half` to both
@@ -200,7 +200,7 @@ impl<'a> World<'a> {
         true
     }
 
-    /// What is left from every cell for the inscribed disc [m].
+    /// The way that is left from every cell for the inscribed disc \[m\].
     fn left_m(&self, goal: Point) -> Vec<f64> {
         let mut left = vec![f64::INFINITY; self.far.len()];
         let [x, y] = self.cell(goal.x, goal.y);

@@ -87,25 +87,15 @@ pub enum ScenesError {
     /// The robot cannot be used.
     #[error(transparent)]
     Robot(ConfigFileError),
-    /// There is no reconstruction of this name.
+    /// There is nothing of this name.
     #[error(
-        "there is no reconstruction `{name}`; expected one of {}{}",
+        "there is no {what} `{name}`; expected one of {}{}",
         known.join(", "),
         did_you_mean(name, known.iter().copied())
     )]
-    NoReconstruction {
-        /// The name.
-        name: String,
-        /// All names.
-        known: Vec<&'static str>,
-    },
-    /// There is no kind of narrow place of this name.
-    #[error(
-        "there is no kind `{name}`; expected one of {}{}",
-        known.join(", "),
-        did_you_mean(name, known.iter().copied())
-    )]
-    NoKind {
+    Unknown {
+        /// The kind of thing, such as a reconstruction.
+        what: &'static str,
         /// The name.
         name: String,
         /// All names.
@@ -143,7 +133,7 @@ impl ScenesError {
             Self::KeyFrames { .. } => "key_frames",
             Self::NoMap { .. } | Self::Pair { .. } | Self::Unnameable { .. } => "pairs",
             Self::Robot(_) => "robot",
-            Self::NoReconstruction { .. } | Self::NoKind { .. } => "names",
+            Self::Unknown { .. } => "names",
             Self::TooFew { .. } => "count",
             Self::Wall(_) | Self::Baseline(_) | Self::Reconstruction(_) | Self::Narrow(_) => {
                 return None;

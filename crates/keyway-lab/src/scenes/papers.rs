@@ -46,7 +46,7 @@ impl PapersRequest {
         let is_unknown = |name: &&String| all.iter().all(|of| of.name != name.as_str());
         if let Some(name) = self.names.iter().find(is_unknown) {
             let known = all.iter().map(|of| of.name).collect();
-            return Err(ScenesError::NoReconstruction { name: name.clone(), known });
+            return Err(ScenesError::Unknown { what: "reconstruction", name: name.clone(), known });
         }
         all.retain(|of| self.names.is_empty() || self.names.iter().any(|name| name == of.name));
         Ok(all)

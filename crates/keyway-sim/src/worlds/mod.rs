@@ -2,7 +2,8 @@
 //!
 //! A [`GeneratedMap`] gives the size of a map and its obstacles; with a seed it generates an
 //! [`OccupancyGrid`]. Positions are metres from the map's lower left corner, except those of
-//! [`Discs`] and [`Boxes`], which are in the world frame. Obstacles are drawn by the centres of cells.
+//! [`Discs`] and [`Boxes`], which are in the world frame. Obstacles are drawn by the centres of
+//! cells.
 //!
 //! ```
 //! use keyway::geometry::Point;

@@ -55,7 +55,7 @@ pub trait LocalPlanner: Debug {
         Explanation::default()
     }
 
-    /// Whether it turns the robot in time before narrow ground; otherwise the controller does.
+    /// True if it turns the robot in time before narrow ground; otherwise the controller does.
     fn turns_in_time(&self) -> bool {
         false
     }

@@ -84,9 +84,7 @@ impl From<ScenesError> for CliError {
         let argument = error.field().map(argument);
         let kind = match error {
             ScenesError::Robot(error) => return bad_file(error, "--robot"),
-            ScenesError::NoReconstruction { .. }
-            | ScenesError::NoKind { .. }
-            | ScenesError::TooFew { .. } => Kind::Usage,
+            ScenesError::Unknown { .. } | ScenesError::TooFew { .. } => Kind::Usage,
             ScenesError::Baseline(_) | ScenesError::Reconstruction(_) => Kind::Config,
             _ => Kind::Input,
         };

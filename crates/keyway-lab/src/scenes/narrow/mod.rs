@@ -17,8 +17,8 @@ use robots::any_robot;
 
 /// Simple narrow places to make scenes of: tunnels, doors, bays, corners, lanes, rooms with
 /// furniture, and walls to drive along. Each has a robot of its own, from a disc of 0.1 m to a
-/// rectangle of 1.2 m x 0.6 m that turns about a point near its rear, of 0.3 to 3 m/s. The whole map
-/// is known, and the robot has no margin beside the one that its scene says.
+/// rectangle of 1.2 m x 0.6 m that turns about a point near its rear, of 0.3 to 3 m/s. The whole
+/// map is known.
 ///
 /// Some cannot be driven at all: the example `possible_poses` of this crate tells them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl NarrowRequest {
         let is_unknown = |name: &&String| Self::all_names().all(|known| known != name.as_str());
         if let Some(name) = self.names.iter().find(is_unknown) {
             let known = Self::all_names().collect();
-            return Err(ScenesError::NoKind { name: name.clone(), known });
+            return Err(ScenesError::Unknown { what: "kind", name: name.clone(), known });
         }
         let is_wanted = |place: &&Place| {
             self.names.is_empty() || self.names.iter().any(|name| name == place.name)
@@ -65,7 +65,7 @@ impl NarrowRequest {
 const SIDE_M: f64 = 10.0;
 const CELL_M: f64 = 0.05;
 
-/// Where a robot stands at first, and at last, in the frame of the map, whose middle is (0, 0).
+/// The first and the last pose of a robot, in the frame of the map, whose middle is (0, 0).
 #[derive(Clone, Copy, Debug)]
 struct Ends {
     start: Pose,
@@ -130,7 +130,7 @@ fn draw(place: &Place, random: &mut Random) -> Drawn {
     Drawn { robot, world, ends }
 }
 
-/// Whether the robot has a margin of a centimetre at both ends.
+/// True if the robot has a margin of a centimetre at both ends.
 fn fits(drawn: &Drawn) -> bool {
     const MARGIN_M: f64 = 0.01;
     let Ok(grid) = drawn.world.generate(0, &[]) else { return false };

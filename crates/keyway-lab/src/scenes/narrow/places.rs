@@ -4,7 +4,7 @@ use super::Ends;
 use super::robots::width_m;
 use keyway::geometry::Pose;
 use keyway::random::Random;
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The boxes that stand, and the ends of the way.
@@ -68,8 +68,7 @@ const FAR_M: f64 = 8.0;
 /// The ways may lie no farther than this from the middle of the map \[m\].
 const REACH_M: f64 = 3.8;
 
-/// What lies to the right of its middle: across the wall, from `left` to `right`, with a gap from
-/// `low` to `high`.
+/// A wall across the map, from `left` to `right`, with a gap from `low` to `high`.
 fn wall_with_gap([left, right]: [f64; 2], [low, high]: [f64; 2]) -> Vec<[f64; 4]> {
     vec![[left, -FAR_M, right, low], [left, high, right, FAR_M]]
 }
@@ -184,12 +183,12 @@ fn wall(robot: &Robot, random: &mut Random) -> Drawing {
     }
     let beside = |random: &mut Random, x: [f64; 2]| {
         let theta = FRAC_PI_2 * f64::from(random.below(4));
-        let (sin, cos) = (theta.sin(), theta.cos());
+        let facing = Pose::new(0.0, 0.0, theta);
         let lowest_m = match &robot.footprint {
-            keyway::robot::Footprint::Circle(circle) => -circle.radius_m(),
-            keyway::robot::Footprint::Polygon(polygon) => {
-                let along = polygon.vertices().iter().map(|at| at.x * sin + at.y * cos);
-                along.fold(0.0, f64::min)
+            Footprint::Circle(circle) => -circle.radius_m(),
+            Footprint::Polygon(polygon) => {
+                let turned = polygon.vertices().iter().map(|&at| facing.world_from_body(at).y);
+                turned.fold(0.0, f64::min)
             }
         };
         Pose::new(random.between(x), random.between([0.01, 0.12]) - lowest_m, theta)

@@ -16,11 +16,12 @@ pub(super) fn any_robot(random: &mut Random) -> Robot {
     Robot { limits: Limits { v_min_mps, ..robot.limits.clone() }, ..robot }
 }
 
+#[expect(clippy::expect_used, reason = "the sizes that are drawn can be used")]
 fn any_footprint(random: &mut Random) -> Footprint {
     let kind = random.below(4);
     if kind == 0 {
         let radius_m = super::to(random.between([0.05, 0.4]), 1e3);
-        return Footprint::circle(radius_m).unwrap_or_else(|_| unreachable!());
+        return Footprint::circle(radius_m).expect("radii of 0.05 to 0.4 m can be used");
     }
     let length_m = random.between([0.25, 1.2]);
     let width_m = (length_m * random.between([0.5, 0.9])).min(0.6);
@@ -30,7 +31,8 @@ fn any_footprint(random: &mut Random) -> Footprint {
     let rear_m = super::to(rear * length_m, 1e3);
     let (ahead_m, half_m) = (length_m - rear_m, 0.5 * width_m);
     let corners = [[ahead_m, half_m], [-rear_m, half_m], [-rear_m, -half_m], [ahead_m, -half_m]];
-    Footprint::polygon(corners.map(Point::from).to_vec()).unwrap_or_else(|_| unreachable!())
+    let corners = corners.map(Point::from).to_vec();
+    Footprint::polygon(corners).expect("rectangles around their origin can be used")
 }
 
 /// Its largest width \[m\], across the direction that it faces.

@@ -1,4 +1,5 @@
-//! What is around the robot in one cycle: room, the way ahead, what headings cost on it, and movers.
+//! The surroundings of the robot in one cycle: room, the way ahead, the cost of headings on it, and
+//! movers.
 
 use super::cost_to_go::{CostToGo, WayAhead, Weighing};
 use super::free_headings::BlockedHeadings;
@@ -13,7 +14,7 @@ use crate::map::GridFrame;
 use crate::sense::Mover;
 use std::f64::consts::FRAC_PI_2;
 
-/// What is around the robot in one cycle.
+/// The surroundings of the robot in one cycle.
 #[derive(Debug, Default)]
 pub(super) struct Around {
     pub(super) room: Room,
@@ -26,10 +27,9 @@ pub(super) struct Around {
 }
 
 impl SpaceTime {
-    /// Points in an inscribed radius: of the fine lattice, for room, of the one for headings, and of
-    /// the coarse one, for the cost to go.
+    /// Points in an inscribed radius: of the fine lattice, for room and for headings, and of the
+    /// coarse one, for the cost to go.
     const FINE: f64 = 3.0;
-    const MEDIUM: f64 = 3.0;
     const COARSE: f64 = 2.0;
 
     /// Movers are uncertain by three standard deviations.
@@ -42,7 +42,8 @@ impl SpaceTime {
         let inscribed_m = self.outline.inscribed_m.max(frame.resolution_m());
         let reach_m = self.reach_m() + self.outline.circumscribed_m + inscribed_m;
         let fine = Lattice::around(frame, robot, reach_m + inscribed_m, inscribed_m / Self::FINE);
-        around.room.fill(fine, scene.obstacles, self.weighing().comfortable_m);
+        let mut weighing = self.weighing();
+        around.room.fill(fine, scene.obstacles, weighing.comfortable_m);
         let beyond_m =
             way_ahead::collect(&mut around.route, scene, covered_m, reach_m - inscribed_m);
         let coarse = Lattice::around(frame, robot, reach_m, inscribed_m / Self::COARSE);
@@ -54,16 +55,14 @@ impl SpaceTime {
         let way = WayAhead { robot, route: &around.route, walked: &around.walked };
         let room_m = |at: Point| around.room.of_point(at);
         let longer_m = 0.5 * self.reach_m();
-        let end = self.way_end(scene, way.route, beyond_m);
+        let end = way_end(scene, way, (beyond_m, weighing.turning_m));
         let has_to_face = matches!(end.facing, Facing::At(_) | Facing::Back(_));
-        let is_tight = |weighing: &Weighing| room_m(end.at) < weighing.turning_m;
-        let mut weighing = self.weighing();
-        if has_to_face && is_tight(&weighing) {
+        if has_to_face && room_m(end.at) < weighing.turning_m {
             weighing.tight = 0.0;
         }
         around.cost_to_go.fill(coarse, &weighing, room_m, &way, longer_m);
-        let medium = Lattice::around(frame, robot, reach_m, inscribed_m / Self::MEDIUM);
-        self.weigh_headings(around, scene, (medium, end));
+        let near = Lattice::around(frame, robot, reach_m, inscribed_m / Self::FINE);
+        self.weigh_headings(around, scene, (near, end, weighing.turning_m));
         self.foresee(around, scene);
         beyond_m
     }
@@ -73,13 +72,12 @@ impl SpaceTime {
         &self,
         around: &mut Around,
         scene: &Scene<'_>,
-        (lattice, end): (Lattice, WayEnd),
+        (lattice, end, turning_m): (Lattice, WayEnd, f64),
     ) {
         let Around { room, cost_to_go, blocked_headings, pose_cost, .. } = around;
         let (frame, margin_m) = (scene.obstacles.frame(), self.robot.safety_margin_m());
         blocked_headings.fit(&self.robot.footprint, margin_m, frame.resolution_m());
         let robot = local(frame, scene.pose.point());
-        let turning_m = self.outline.circumscribed_m + margin_m;
         let ground = Ground {
             obstacles: scene.obstacles,
             blocked: blocked_headings,
@@ -90,24 +88,6 @@ impl SpaceTime {
         };
         let room_m = |place: Point| room.of_point(place);
         pose_cost.fill((lattice, cost_to_go), room_m, &ground, robot, &end);
-    }
-
-    /// The end of the way on the lattice, and how to face there.
-    fn way_end(&self, scene: &Scene<'_>, route: &[Point], beyond_m: f64) -> WayEnd {
-        let frame = scene.obstacles.frame();
-        let robot = local(frame, scene.pose.point());
-        let at = route.last().copied().unwrap_or(robot);
-        let before = route.iter().rev().nth(1).copied().unwrap_or(robot);
-        let turning_m = self.outline.circumscribed_m + self.robot.safety_margin_m();
-        let facing = match scene.goal_heading_rad {
-            _ if beyond_m > 0.0 && backs_in(scene, (beyond_m, turning_m)) => {
-                Facing::Back((before - at).heading())
-            }
-            _ if beyond_m > 0.0 => Facing::On((at - before).heading()),
-            Some(heading_rad) => Facing::At(heading_rad - frame.origin().theta),
-            None => Facing::Any,
-        };
-        WayEnd { at, facing }
     }
 
     fn weighing(&self) -> Weighing {
@@ -156,6 +136,23 @@ impl SpaceTime {
             matters_sq: Foreseen::ALWAYS,
         }
     }
+}
+
+/// The end of the way on the lattice, and the heading there; with what is left beyond it, and the
+/// room that the robot needs to turn \[m\].
+fn way_end(scene: &Scene<'_>, way: WayAhead<'_>, lengths_m: (f64, f64)) -> WayEnd {
+    let WayAhead { robot, route, .. } = way;
+    let at = route.last().copied().unwrap_or(robot);
+    let before = route.iter().rev().nth(1).copied().unwrap_or(robot);
+    let facing = match scene.goal_heading_rad {
+        _ if lengths_m.0 > 0.0 && backs_in(scene, lengths_m) => {
+            Facing::Back((before - at).heading())
+        }
+        _ if lengths_m.0 > 0.0 => Facing::On((at - before).heading()),
+        Some(heading_rad) => Facing::At(heading_rad - scene.obstacles.frame().origin().theta),
+        None => Facing::Any,
+    };
+    WayEnd { at, facing }
 }
 
 /// True if the robot has to come to its goal backwards, as it can turn nowhere on what is left of

@@ -243,7 +243,8 @@ impl Judge<'_> {
     /// With D, what is left of the way, and the angle f between heading and way: the time of the
     /// fastest profile of speeds over D that begins with v cos f, and (1 - cos f) / 2 times what a
     /// robot needs to turn around and to speed up again, up to twice as much where it stands, or
-    /// nearly, and has no room to turn: it has to get away from there first.
+    /// nearly, and has no room to turn: it has to get away from there first. Where headings have a
+    /// cost of their own ([`PoseCost`]), that takes the place of the second part.
     pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
         let (left_m, way) = self.cost_to_go.way(state.at);
         let left_m = left_m + self.beyond_m;

@@ -14,33 +14,38 @@ pub(super) const HEADINGS: usize = 32;
 /// Between two headings \[rad\].
 pub(super) const HEADING_RAD: f64 = TAU / HEADINGS as f64;
 
-/// What comes no nearer than this to a cell does not touch it \[cells\].
+/// A footprint that comes no nearer than this to a cell does not touch it \[cells\].
 const ROUNDING: f64 = 1e-9;
 
-/// Which headings an occupied cell blocks, by where it is from the robot. The robot is in the middle
-/// of a cell, or on the line or the corner between cells: places are those of a grid of half cells.
+/// The headings that an occupied cell blocks, by where it is from the robot. The robot is in the
+/// middle of a cell, or on the line or the corner between cells: places are those of a grid of half
+/// cells.
 #[derive(Debug, Default)]
 pub(super) struct BlockedHeadings {
-    cell_m: f64,
+    /// They are made for this footprint, its margin and the side of a cell \[m\].
+    made_for: Option<(Footprint, f64, f64)>,
     /// Cells to each side that matter.
     reach: i32,
     /// For both parities of a place along both axes, row by row.
     tables: [Vec<Headings>; 4],
-    /// How far the footprint reaches to the left, down, to the right and up \[cells\], by heading.
+    /// The reach of the footprint to the left, down, to the right and up \[cells\], by heading.
     reaches: Vec<[f64; 4]>,
 }
 
 impl BlockedHeadings {
-    /// Cells smaller than this part of the circumscribed radius would make tables too large.
+    /// A footprint that reaches over more cells has no tables: they would be too large.
     const MOST_REACH: f64 = 100.0;
 
-    /// That of a footprint with a margin around it \[m\], unless it is that already. A footprint
-    /// that is not convex counts as if gaps along the rows of cells were filled.
+    /// Makes the tables of a footprint with a margin around it \[m\], unless they are there. A
+    /// footprint that is not convex counts as if gaps along the rows of cells were filled.
     pub(super) fn fit(&mut self, footprint: &Footprint, margin_m: f64, cell_m: f64) {
-        if self.cell_m == cell_m {
+        let is_that = |(of, its_margin_m, its_cell_m): &(Footprint, f64, f64)| {
+            of == footprint && *its_margin_m == margin_m && *its_cell_m == cell_m
+        };
+        if self.made_for.as_ref().is_some_and(is_that) {
             return;
         }
-        self.cell_m = cell_m;
+        self.made_for = Some((footprint.clone(), margin_m, cell_m));
         self.reaches.clear();
         self.tables = Default::default();
         let Footprint::Polygon(polygon) = footprint else { return };
@@ -69,7 +74,7 @@ impl BlockedHeadings {
         }
     }
 
-    /// Whether it knows the footprint: a disc needs none.
+    /// True if there are tables: a disc needs none.
     pub(super) const fn is_useful(&self) -> bool {
         !self.reaches.is_empty()
     }
@@ -164,8 +169,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// What is called free is free, and what is called blocked comes near to something: the
-        /// footprint is a rectangle off its centre.
+        /// Free headings are free, and blocked ones come near to something: the footprint is a
+        /// rectangle off its centre.
         #[test]
         fn headings_are_those_of_the_footprint(
             cells in proptest::collection::vec((0..24, 0..24), 0..8),
@@ -191,6 +196,22 @@ mod tests {
                 prop_assert!(is_free || room <= margin * std::f64::consts::SQRT_2 + 1e-9, "{heading} {room}");
             }
         }
+    }
+
+    /// The same memory may serve another robot, or the same one with another margin.
+    #[test]
+    fn tables_are_those_of_the_last_footprint_and_margin() {
+        let map = OccupancyGrid::from_ascii(&[".....", "....."]);
+        let field = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+        let footprint = |width_m| Footprint::rectangle(2.0, width_m).unwrap();
+        let mut blocked = BlockedHeadings::default();
+        let mut free_ahead = |footprint: &Footprint, margin_m| {
+            blocked.fit(footprint, margin_m, 1.0);
+            blocked.free_at((5, 2), &field) & 1 == 1
+        };
+        assert!(free_ahead(&footprint(1.8), 0.0));
+        assert!(!free_ahead(&footprint(1.8), 0.2), "another margin");
+        assert!(free_ahead(&footprint(1.5), 0.2), "another footprint");
     }
 
     #[test]

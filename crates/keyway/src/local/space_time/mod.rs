@@ -279,8 +279,8 @@ impl SpaceTime {
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
         let [nearer, slow] = Self::NEARER;
         let is_slow = scene.velocity.v.abs() <= slow * self.robot.limits.v_max_mps;
-        // Who stands nearer may turn away, by which its tail comes nearer.
-        // Who touches something has less than nothing.
+        // Who stands nearer may turn away, by which its tail comes nearer; who touches something has
+        // less than no room.
         let nearest_m = (now_m - 1e-6).min(if is_slow { nearer * now_m } else { now_m });
         let mut judge = Judge {
             limits: &self.robot.limits,

@@ -1,7 +1,7 @@
-//! What the heading of a robot costs where it cannot turn everywhere: the time to go of places and
+//! The cost of a heading where the robot cannot turn everywhere: the time to go of places and
 //! headings, less that of places.
 //!
-//! Where everything is wide, a robot turns on its way and what is left is that of a point. In a
+//! In the open, a robot turns on its way and what is left is that of a point. In a
 //! narrow place it is not: a robot that stands nose first in a bay has to get out of it to turn
 //! around, and one that is to stand there tail first turns before it. This finds the least time from
 //! every place and heading near the way ahead to its end, of motions on a lattice: turning on the
@@ -41,7 +41,7 @@ pub(super) struct PoseCost {
     by_place: Vec<u16>,
     buckets: Vec<Vec<u32>>,
     tick_s: f64,
-    /// What a heading costs that leads nowhere \[s\].
+    /// The cost of a heading that leads nowhere \[s\].
     most_s: f64,
     is_active: bool,
     way: Vec<Point>,
@@ -54,7 +54,7 @@ pub(super) struct WayEnd {
     pub(super) facing: Facing,
 }
 
-/// How to face at the end of the way \[rad\], from the x axis of the lattice on.
+/// The heading at the end of the way \[rad\], from the x axis of the lattice on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Facing {
     /// Any heading is right.
@@ -67,7 +67,7 @@ pub(super) enum Facing {
     Back(f64),
 }
 
-/// What the ground is looked at with.
+/// The ground, and the robot on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ground<'a> {
     pub(super) obstacles: &'a DistanceField,
@@ -107,7 +107,7 @@ const STEPS: [(i32, i32, u16); 16] = [
     (2, -1, 9),
 ];
 
-/// Ticks of the longest motion, a power of two.
+/// More than the ticks of the longest motion.
 const BUCKETS: usize = 512;
 
 impl PoseCost {
@@ -144,7 +144,7 @@ impl PoseCost {
         self.is_active = true;
     }
 
-    /// Whether headings matter somewhere on the way.
+    /// True if headings matter somewhere on the way.
     pub(super) const fn is_active(&self) -> bool {
         self.is_active
     }
@@ -340,7 +340,8 @@ impl PoseCost {
         self.buckets.iter_mut().for_each(Vec::clear);
     }
 
-    /// What a pose that is done makes of those from which the robot comes to it.
+    /// Lowers the times of the poses from which the robot comes to one that is done; returns how
+    /// many it lowers.
     fn pass_on(&mut self, state: usize, now: u16, motions: &Motions) -> usize {
         let (number, heading) = (state / HEADINGS, state % HEADINGS);
         let sides = [(heading + 1) % HEADINGS, (heading + HEADINGS - 1) % HEADINGS];
@@ -384,7 +385,7 @@ impl PoseCost {
         1
     }
 
-    /// What a heading costs at a place, a direction of length 1 \[s\]; `None` where headings do not
+    /// The cost of a heading at a place, a direction of length 1 \[s\]; `None` where headings do not
     /// matter, or away from the way.
     pub(super) fn of(&self, at: Point, ahead: Point) -> Option<f64> {
         if !self.is_active {
@@ -435,17 +436,17 @@ impl PoseCost {
     }
 }
 
-/// What motions cost, in ticks.
+/// Costs of motions, in ticks.
 #[derive(Clone, Copy, Debug)]
 struct Motions {
     /// To the next heading.
     turn: u16,
-    /// How much longer a way back takes than one ahead; 0 where the robot cannot reverse.
+    /// A way back takes so many times as long as one ahead; 0 where the robot cannot reverse.
     slower: f64,
 }
 
 impl Motions {
-    /// What is left at the end of the way at a heading; `None` where the way does not end there.
+    /// The time that is left at the end of the way at a heading; `None` where the way does not end there.
     fn at_end(&self, heading: usize, facing: Facing) -> Option<u16> {
         let off_rad = |wanted_rad: f64| wrap_angle(HEADING_RAD * heading as f64 - wanted_rad).abs();
         match facing {
@@ -459,8 +460,14 @@ impl Motions {
             // About as far aside it goes on as well.
             Facing::On(wanted_rad) => {
                 let aside_rad = (off_rad(wanted_rad) - FRAC_PI_4).max(0.0);
-                Some((aside_rad / HEADING_RAD).round() as u16 * self.turn)
+                let ticks = (aside_rad / HEADING_RAD).round() as u16 * self.turn;
+                // No wait is longer than there are buckets.
+                Some(ticks.min(BUCKETS as u16 - 1))
             }
         }
     }
 }
+
+#[cfg(test)]
+#[path = "pose_cost_tests.rs"]
+mod tests;

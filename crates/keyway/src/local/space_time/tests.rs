@@ -245,8 +245,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     }
     let (pose, velocity, memory) = (drive.pose, drive.velocity, drive.memory.clone());
     let warm = drive.decide().unwrap();
-    drive.scratch = Scratch::default();
-    drive.memory = memory.clone();
+    (drive.scratch, drive.memory) = (Scratch::default(), memory.clone());
     assert_eq!(drive.decide().unwrap(), warm);
     drive.memory = memory;
     let scene = Scene {
