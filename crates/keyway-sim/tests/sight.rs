@@ -8,7 +8,7 @@ use driving::{bound_for, next_step};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::{Blocked, Stack, Step};
-use keyway::robot::{Footprint, Robot};
+use keyway::robot::{Footprint, RangeSensor, Robot};
 use keyway::sense::{Observation, Scan};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::{
@@ -95,6 +95,22 @@ fn nothing_is_touched_that_stands_beyond_the_range_of_a_narrow_corridor() {
             assert_ne!(outcome, EpisodeOutcome::Collided, "{name}, cells of {cell_m} m");
             let driven_m = run.unwrap().length_m;
             assert!(driven_m > 12.0 || name != "keyway", "cells of {cell_m} m: {driven_m}");
+        }
+    }
+}
+
+/// A post of 6 cm that is between two of 36 beams until the robot is near.
+#[test]
+fn nothing_is_touched_that_is_between_two_beams() {
+    for robot in [Robot::small(), Robot::jackal()] {
+        let robot = Robot { sensors: vec![RangeSensor::new(36, 360.0, 8.0)], ..robot };
+        for aside in 0..8 {
+            let (start, goal) = (Point::new(1.0, 2.0), Point::new(6.0, 2.0));
+            let mut episode = Episode::new(hall(), robot.clone(), start, goal);
+            let post = Point::new(4.0, 1.85 + 0.04 * f64::from(aside));
+            episode.obstacles = vec![Disc::new(post, 0.03)];
+            let RobotReport { outcome, .. } = run_episode(&episode).unwrap().first();
+            assert_eq!(outcome, EpisodeOutcome::Reached, "{aside}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A robot of which only its size and its speed are known.
 
 use super::{Footprint, Limits, RangeSensor, Robot};
+use std::f64::consts::TAU;
 
 impl Robot {
     /// A robot of this footprint and top speed \[m/s\], with everything else as of usual robots of
@@ -8,7 +9,8 @@ impl Robot {
     /// reach the top speed within a second, between 0.5 and 2.5 m/s²; a turn rate at which its
     /// outermost point is as fast as the top speed, between 0.5 and 3 rad/s, reached within half a
     /// second; no driving backwards; and a lidar at its centre that sees all around, as far as the
-    /// robot comes in 8 s, between 5 and 20 m.
+    /// robot comes in 8 s, between 5 and 20 m, with a beam for each degree, or more where it would
+    /// miss something narrow within the way to stop.
     ///
     /// ```
     /// use keyway::robot::{Footprint, Robot};
@@ -39,9 +41,22 @@ impl Robot {
                 angular_acceleration_radps2,
                 angular_deceleration_radps2: angular_acceleration_radps2,
             },
-            sensors: vec![RangeSensor::new(360, 360.0, (8.0 * v_max_mps).clamp(5.0, 20.0))],
+            sensors: vec![lidar(
+                v_max_mps,
+                rim_m + 0.5 * v_max_mps * v_max_mps / acceleration_mps2,
+            )],
         }
     }
+}
+
+/// A lidar that sees all around; its robot stops within this length \[m\], and the time in which it
+/// reacts.
+fn lidar(v_max_mps: f64, stops_m: f64) -> RangeSensor {
+    const REACTS_S: f64 = 0.5;
+    let range_m = (8.0 * v_max_mps).clamp(5.0, 20.0);
+    let sees_m = (stops_m + REACTS_S * v_max_mps).min(range_m);
+    let turns = (sees_m * TAU / RangeSensor::NARROWEST_M / 360.0).ceil().max(1.0);
+    RangeSensor::new(360 * turns as u32, 360.0, range_m)
 }
 
 #[cfg(test)]

@@ -146,6 +146,7 @@ mod tests {
         for name in Robot::NAMES {
             let robot = Robot::by_name(name).unwrap();
             assert_eq!(robot.validate(), Ok(()));
+            assert!(robot.sight_mps() > robot.limits.v_max_mps, "{name}");
             let text = toml::to_string(&robot).unwrap();
             assert_eq!(toml::from_str::<Robot>(&text).unwrap(), robot);
         }

@@ -79,6 +79,16 @@ impl RangeSensor {
 }
 
 impl RangeSensor {
+    /// Things that are as wide as this are not to be missed between two beams \[m\].
+    pub const NARROWEST_M: f64 = 0.06;
+
+    /// As far as its beams miss nothing that is as wide as [`Self::NARROWEST_M`] \[m\]: its range, or
+    /// less where they are far apart.
+    pub fn sees_everything_m(&self) -> f64 {
+        let step_rad = self.field_of_view_deg.to_radians() / f64::from(self.beams);
+        self.range_m.min(Self::NARROWEST_M / step_rad)
+    }
+
     /// Time from one scan to the next \[s\] on a robot with this control cycle:
     /// [`Self::period_s`], or the cycle.
     pub fn period_in_s(&self, cycle_s: f64) -> f64 {
@@ -141,11 +151,11 @@ impl Robot {
             || !self.sensors.is_empty() && self.sensors.iter().all(goes_on)
     }
 
-    /// Distance from the centre of rotation as far as the sensors that look ahead see \[m\].
+    /// Distance from the centre of rotation as far as the sensors that look ahead miss nothing \[m\].
     fn sees_ahead_m(&self) -> f64 {
         let far = Point::new(1e6, 0.0);
         let ahead = self.sensors.iter().filter(|sensor| sensor.looks_at(far));
-        ahead.map(|sensor| sensor.mount.x_m + sensor.range_m).fold(0.0, f64::max)
+        ahead.map(|sensor| sensor.mount.x_m + sensor.sees_everything_m()).fold(0.0, f64::max)
     }
 
     /// As far as any part of the robot comes until it stands, when it drives ahead at full speed,
@@ -194,6 +204,7 @@ mod tests {
     fn the_speed_of_sight_uses_up_the_range() {
         let mut robot = Robot::small();
         robot.limits.v_max_mps = 2.0;
+        robot.sensors[0].beams = 720;
         // 3.5 m - 0.18 m - 0.02 m = v² / (2 * 0.5) + v (0.1 + 0.15).
         let v = robot.sight_mps();
         assert!((v * v + 0.25 * v - 3.3).abs() < 1e-12, "{v}");
@@ -210,6 +221,20 @@ mod tests {
         assert!(robot.sight_mps() < v - 0.3);
         robot.sensors[0].range_m = 0.19;
         assert_eq!(robot.sight_mps(), 0.0);
+    }
+
+    /// 36 beams are 6 cm apart at 0.344 m.
+    #[test]
+    fn few_beams_see_everything_near_the_robot_only() {
+        let mut robot = Robot::small();
+        assert_eq!(RangeSensor::new(720, 360.0, 5.0).sees_everything_m(), 5.0);
+        robot.sensors = vec![RangeSensor::new(36, 360.0, 5.0)];
+        let far_m = robot.sensors[0].sees_everything_m();
+        assert!((far_m - 0.06 / 10f64.to_radians()).abs() < 1e-12);
+        let v = robot.sight_mps();
+        let (brakes_mps2, react_s) = (robot.limits.deceleration_mps2, 0.25);
+        let needs_m = 0.5 * v * v / brakes_mps2 + v * react_s;
+        assert!((needs_m - (far_m - 0.18 - robot.safety_margin_m())).abs() < 1e-12, "{v}");
     }
 
     #[test]
@@ -233,7 +258,7 @@ mod tests {
     fn mounted(mount: (f64, f64, f64), field_of_view_deg: f64) -> RangeSensor {
         let (x_m, y_m, yaw_deg) = mount;
         let mount = Mount { x_m, y_m, yaw_deg };
-        RangeSensor { mount, ..RangeSensor::new(270, field_of_view_deg, 5.0) }
+        RangeSensor { mount, ..RangeSensor::new(1080, field_of_view_deg, 5.0) }
     }
 
     #[test]

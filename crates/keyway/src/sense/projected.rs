@@ -292,6 +292,14 @@ impl ProjectedScan {
         (low as i64..=high as i64).map(move |beam| (beam as f64).rem_euclid(turn) as usize)
     }
 
+    /// True if nothing of this width stands at a place: the beams to both sides go on beyond it, and
+    /// one of them passes it so near that it would have met that \[m\].
+    pub(crate) fn shows_free(&self, place: Point, width_m: f64) -> bool {
+        let off = self.beam_towards(place).map_or(f64::NAN, |beam| beam - beam.round());
+        let away_m = place.distance(self.pose.point());
+        off.abs() * self.step_rad() * away_m <= 0.5 * width_m && self.sees_through(place)
+    }
+
     /// True if the beams to both sides of a place go on beyond it.
     pub(crate) fn sees_through(&self, place: Point) -> bool {
         let away_m = place.distance(self.pose.point());
@@ -409,6 +417,26 @@ mod tests {
                 assert!(!seen(&near).sees_through(place), "{bearing}");
             }
         }
+    }
+
+    /// Beams of 10 degrees, 0.35 m apart at 2 m.
+    #[test]
+    fn what_is_narrower_than_the_gap_between_two_beams_may_be_there() {
+        let scan = Scan {
+            angle_min_rad: -PI,
+            angle_increment_rad: 10f64.to_radians(),
+            range_min_m: 0.0,
+            range_max_m: 3.0,
+            ranges_m: vec![f64::INFINITY; 36],
+        };
+        let seen = ProjectedScan::new(&frame(), &Footprint::POINT, Pose::default(), &scan);
+        let place = |deg: f64| Point::new(deg.to_radians().cos(), deg.to_radians().sin()) * 2.0;
+        let shows = |deg: f64, width_m| seen.shows_free(place(deg), width_m);
+        assert!(seen.sees_through(place(5.0)) && shows(0.0, 0.06) && shows(30.0, 0.06));
+        assert!(!shows(5.0, 0.34) && shows(5.0, 0.36));
+        // 3 cm beside a beam.
+        assert!(shows(0.85, 0.06) && !shows(0.87, 0.06) && shows(-0.85, 0.06));
+        assert!(!seen.shows_free(Point::new(f64::NAN, 0.0), 1.0));
     }
 
     /// 361 beams of a degree: the first and the last look back.

@@ -4,7 +4,7 @@ use super::ProjectedScan;
 use super::spread::{Spread, Walls};
 use crate::geometry::Pose;
 use crate::map::{BitGrid, Cell, CellWindow, GridFrame};
-use crate::robot::{Footprint, Robot};
+use crate::robot::{Footprint, RangeSensor, Robot};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
@@ -188,6 +188,7 @@ impl SeenGround {
         elapsed_s: f64,
     ) {
         let pose = scan.robot();
+        let narrowest_m = RangeSensor::NARROWEST_M.max(frame.resolution_m());
         let window = CellWindow::around(frame, pose.point(), self.reach_m);
         if let Some(walkers) = &mut self.walkers {
             // Of two scans of the same time only the first finds time that has passed.
@@ -204,7 +205,7 @@ impl SeenGround {
             }
             let place = frame.world_from_cell(cell);
             let covers = || self.footprint.covers(pose.body_from_world(place));
-            if covers() || scan.sees_through(place) {
+            if covers() || scan.shows_free(place, narrowest_m) {
                 self.seen.set(cell, true);
                 walkers.map(|walkers| walkers.left.set(cell, true));
             }
