@@ -46,6 +46,10 @@ pub(super) struct Task {
     pub(super) order: RecoveryOrder,
     /// Duration of the last wait between two attempts at a route \[s\].
     pub(super) waited_s: f64,
+    /// Where no manoeuvre was found that leads beyond the point of no return: from near it the
+    /// robot is not led any more.
+    #[serde(default)]
+    pub(super) led_from: Option<Point>,
     /// The obstacle that the robot has to leave first, until it has.
     pub(super) too_near: Option<StartTooNear>,
 }
@@ -147,6 +151,7 @@ impl Task {
             hold: Hold::default(),
             order: RecoveryOrder::default(),
             waited_s: 0.0,
+            led_from: None,
             too_near,
         }
     }

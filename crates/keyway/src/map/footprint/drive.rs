@@ -2,7 +2,7 @@
 
 use super::turn::LEAST_CELLS;
 use crate::geometry::{Point, Pose, Segment};
-use crate::map::{Clearance, DistanceField};
+use crate::map::DistanceField;
 use crate::robot::{Footprint, Polygon};
 
 impl Footprint {
@@ -14,18 +14,30 @@ impl Footprint {
     /// No poses are sampled: around each that is looked at, no part of the footprint moves farther
     /// than the robot, and where that is not less than the room it has, the drive is halved.
     pub fn is_free_drive(&self, pose: Pose, length_m: f64, field: &DistanceField) -> bool {
+        self.keeps_room_driving(pose, length_m, 0.0, field)
+    }
+
+    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border of
+    /// the map during a straight drive: a margin for [`Self::is_free_drive`].
+    pub fn keeps_room_driving(
+        &self,
+        pose: Pose,
+        length_m: f64,
+        room_m: f64,
+        field: &DistanceField,
+    ) -> bool {
         let end = driven(pose, length_m);
-        if !length_m.is_finite() || !self.is_free(pose, field) || !self.is_free(end, field) {
+        let keeps_room = |pose| self.keeps_room(pose, room_m, field);
+        if !length_m.is_finite() || !keeps_room(pose) || !keeps_room(end) {
             return false;
         }
         match self {
             Self::Circle(circle) => {
                 let way = Segment::new(pose.point(), end.point());
-                field.clearance().is_clear(way, circle.radius_m())
+                field.clearance().is_clear(way, circle.radius_m() + room_m.max(0.0))
             }
             Self::Polygon(polygon) => {
-                length_m == 0.0
-                    || polygon.is_free_along(pose, [0.0, length_m], &field.clearance(), field)
+                length_m == 0.0 || polygon.is_free_along(pose, [0.0, length_m], room_m, field)
             }
         }
     }
@@ -36,27 +48,29 @@ impl Polygon {
         &self,
         pose: Pose,
         [from_m, to_m]: [f64; 2],
-        clearance: &Clearance<'_>,
+        room_m: f64,
         field: &DistanceField,
     ) -> bool {
+        let clearance = field.clearance();
         let middle_m = 0.5 * (from_m + to_m);
         let middle = driven(pose, middle_m);
         let moves_m = 0.5 * (to_m - from_m).abs();
         let cell_m = clearance.frame().resolution_m();
-        let (moves, least) = (moves_m / cell_m, 1e-3 * LEAST_CELLS);
+        let (moves, room, least) = (moves_m / cell_m, room_m / cell_m, 1e-3 * LEAST_CELLS);
         // Whatever the heading, nearly all stretches in the open are decided by one look-up.
         let point = middle.point();
         let nearest_m = field.square_bounds_m(point).0.min(clearance.to_border(point));
-        if nearest_m > self.circumscribed_radius_m() + moves_m + least * cell_m {
+        if nearest_m > self.circumscribed_radius_m() + room_m + moves_m + least * cell_m {
             return true;
         }
-        if self.has_room(middle, moves + least, clearance) {
+        if self.has_room(middle, room + moves + least, &clearance) {
             return true;
         }
         moves > LEAST_CELLS
-            && self.is_clear(middle, clearance)
-            && self.is_free_along(pose, [from_m, middle_m], clearance, field)
-            && self.is_free_along(pose, [middle_m, to_m], clearance, field)
+            && self.is_clear(middle, &clearance)
+            && (room <= 0.0 || self.has_room(middle, room, &clearance))
+            && self.is_free_along(pose, [from_m, middle_m], room_m, field)
+            && self.is_free_along(pose, [middle_m, to_m], room_m, field)
     }
 }
 
@@ -102,7 +116,53 @@ mod tests {
         }
     }
 
+    #[test]
+    fn room_is_kept_by_hand() {
+        // 0.1 m to each side in a lane of 1 m, 0.6 m to a cell ahead.
+        let lane = OccupancyGrid::from_ascii(&["########", ".....#..", "########"]);
+        let field = DistanceField::new(lane.frame(), lane.occupied(), &FieldConfig::default());
+        let pose = Pose::new(2.0, 1.5, 0.0);
+        for footprint in [Footprint::circle(0.4).unwrap(), Footprint::rectangle(0.8, 0.8).unwrap()]
+        {
+            let keeps =
+                |length_m, room_m| footprint.keeps_room_driving(pose, length_m, room_m, &field);
+            assert!(keeps(1.0, 0.09) && !keeps(1.0, 0.11));
+            assert!(keeps(2.5, 0.09) && !keeps(2.55, 0.09), "before the cell");
+            assert!(keeps(-1.5, 0.09) && !keeps(-1.55, 0.09), "before the border");
+            assert!(footprint.keeps_room(pose, 0.09, &field));
+            assert!(!footprint.keeps_room(pose, 0.11, &field));
+            assert!(!footprint.keeps_room(Pose::new(0.45, 1.5, 0.0), 0.09, &field));
+        }
+    }
+
     proptest! {
+        /// What keeps room keeps it at 200 poses; what does not comes nearer at one of them.
+        #[test]
+        fn room_agrees_with_dense_samples(cells in prop::collection::vec(prop::bool::weighted(0.05), 20 * 16),
+                radii in prop::collection::vec(0.05..0.5f64, 3..8), x in 0.2..0.8f64, y in 0.2..0.6f64,
+                theta in -3.1..3.1f64, by in -0.5..0.5f64, turns in prop::bool::ANY, room_m in 0.001..0.05f64) {
+            let frame = GridFrame::new(20, 16, 0.05, Pose::default()).unwrap();
+            let grid = OccupancyGrid::from_occupied(frame, &cells);
+            let field = DistanceField::new(grid.frame(), grid.occupied(), &FieldConfig::default());
+            let vertices = star(&radii, (0.0, 0.0)).iter().map(|&p| p * 0.2).collect();
+            let footprint = Footprint::polygon(vertices).unwrap();
+            let pose = Pose::new(x, y, theta);
+            let says = if turns {
+                footprint.keeps_room_turning(pose.point(), [theta, 4.0 * by], room_m, &field)
+            } else {
+                footprint.keeps_room_driving(pose, by, room_m, &field)
+            };
+            let samples = (0..=200).map(|i| {
+                let part = f64::from(i) / 200.0;
+                if turns { Pose { theta: theta + 4.0 * by * part, ..pose } } else { driven(pose, by * part) }
+            });
+            let at_m = |at| footprint.distance_m(at, &field.clearance(), 1.0)
+                .min(footprint.to_border_m(at, &field.clearance()));
+            let nearest_m = samples.map(at_m).fold(f64::INFINITY, f64::min);
+            prop_assert!(!says || nearest_m >= room_m - 1e-9, "{nearest_m}");
+            prop_assert!(says || nearest_m <= room_m + 1.3e-3 + 2.0 * LEAST_CELLS * 0.05, "{nearest_m}");
+        }
+
         /// What is called free is free at 200 poses; what is not comes near something at one of
         /// them.
         #[test]

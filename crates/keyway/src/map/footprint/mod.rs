@@ -37,6 +37,32 @@ impl Footprint {
         })
     }
 
+    /// True when the footprint is free at a pose and keeps this much room to obstacles and to the
+    /// border of the map \[m\].
+    pub fn keeps_room(&self, pose: Pose, room_m: f64, field: &DistanceField) -> bool {
+        if !self.is_free(pose, field) {
+            return false;
+        }
+        if room_m <= 0.0 || self.is_far(pose.point(), room_m, field) {
+            return true;
+        }
+        let (clearance, cell_m) = (field.clearance(), field.frame().resolution_m());
+        match self {
+            Self::Circle(circle) => {
+                let reach_m = circle.radius_m() + room_m;
+                clearance.is_clear_point(pose.point(), reach_m)
+                    && clearance.to_border(pose.point()) >= reach_m
+            }
+            Self::Polygon(polygon) => polygon.has_room(pose, room_m / cell_m, &clearance),
+        }
+    }
+
+    /// True if nothing is within the circumscribed radius and this much more \[m\].
+    fn is_far(&self, point: Point, room_m: f64, field: &DistanceField) -> bool {
+        let nearest_m = field.square_bounds_m(point).0.min(field.clearance().to_border(point));
+        nearest_m > 0.0 && nearest_m >= self.circumscribed_radius_m() + room_m
+    }
+
     /// What the two radii decide, whatever the heading; `None` where that is not enough.
     fn is_free_by_radii(&self, point: Point, field: &DistanceField) -> Option<bool> {
         let border_m = field.clearance().to_border(point);

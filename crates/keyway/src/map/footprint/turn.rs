@@ -24,40 +24,57 @@ impl Footprint {
         turn_rad: f64,
         field: &DistanceField,
     ) -> bool {
+        self.keeps_room_turning(point, [from_rad, turn_rad], 0.0, field)
+    }
+
+    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border of
+    /// the map during a turn: a margin for [`Self::is_free_turn`]. The turn is given by the heading
+    /// at which it begins, and by how far it goes \[rad\].
+    pub fn keeps_room_turning(
+        &self,
+        point: Point,
+        [from_rad, turn_rad]: [f64; 2],
+        room_m: f64,
+        field: &DistanceField,
+    ) -> bool {
         if !turn_rad.is_finite() {
             return false;
         }
         let to_rad = from_rad + turn_rad.clamp(-TAU, TAU);
-        let is_free = |theta| self.is_free(Pose { x: point.x, y: point.y, theta }, field);
-        if !is_free(from_rad) || !is_free(to_rad) {
+        let keeps_room =
+            |theta| self.keeps_room(Pose { x: point.x, y: point.y, theta }, room_m, field);
+        if !keeps_room(from_rad) || !keeps_room(to_rad) {
             return false;
         }
         let Self::Polygon(polygon) = self else { return true };
-        let is_far = self.is_free_by_radii(point, field) == Some(true);
-        is_far
+        let room = room_m / field.frame().resolution_m();
+        self.is_far(point, room_m, field)
             || turn_rad == 0.0
-            || polygon.is_free_between(point, [from_rad, to_rad], &field.clearance())
+            || polygon.is_free_between(point, [from_rad, to_rad], room, &field.clearance())
     }
 }
 
 impl Polygon {
+    /// With room around it \[cells\].
     fn is_free_between(
         &self,
         point: Point,
         [from_rad, to_rad]: [f64; 2],
+        room: f64,
         clearance: &Clearance<'_>,
     ) -> bool {
         let middle_rad = 0.5 * (from_rad + to_rad);
         let middle = Pose { x: point.x, y: point.y, theta: middle_rad };
         let moves_m = self.circumscribed_radius_m() * 0.5 * (to_rad - from_rad).abs();
         let moves_cells = moves_m / clearance.frame().resolution_m();
-        if self.has_room(middle, moves_cells + 1e-3 * LEAST_CELLS, clearance) {
+        if self.has_room(middle, room + moves_cells + 1e-3 * LEAST_CELLS, clearance) {
             return true;
         }
         moves_cells > LEAST_CELLS
             && self.is_clear(middle, clearance)
-            && self.is_free_between(point, [from_rad, middle_rad], clearance)
-            && self.is_free_between(point, [middle_rad, to_rad], clearance)
+            && (room <= 0.0 || self.has_room(middle, room, clearance))
+            && self.is_free_between(point, [from_rad, middle_rad], room, clearance)
+            && self.is_free_between(point, [middle_rad, to_rad], room, clearance)
     }
 
     /// Whether a pose is clear with this much room \[cells\] around the footprint.

@@ -4,7 +4,7 @@ use super::Deciding;
 use crate::geometry::Pose;
 use crate::navigate::Step;
 use crate::navigate::mode::Mode;
-use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot};
+use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot, kept_room_m};
 use crate::navigate::task::GivenPath;
 use crate::navigate::watch::Watch;
 
@@ -84,6 +84,8 @@ impl Deciding<'_> {
         if left_rad.abs() <= tolerance_rad {
             return Some(0.0);
         }
-        OnTheSpot { robot: self.robot, obstacles: &self.world.obstacles }.turn(pose, left_rad)
+        let (robot, obstacles) = (self.robot, &self.world.obstacles);
+        let room_m = kept_room_m(robot, pose, obstacles);
+        OnTheSpot { robot, obstacles, room_m }.turn(pose, left_rad)
     }
 }

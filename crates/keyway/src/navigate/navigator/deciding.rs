@@ -10,7 +10,7 @@ use crate::navigate::recovery::Moment;
 use crate::navigate::start::touches;
 use crate::navigate::task::Task;
 use crate::navigate::world::World;
-use crate::navigate::{Blocked, Stack, Step};
+use crate::navigate::{Blocked, RecoveryKind, Stack, Step};
 use crate::robot::Robot;
 
 /// Everything that a decision looks at and remembers.
@@ -73,6 +73,10 @@ impl<'a> Deciding<'a> {
             if let Some(command) = self.turn_first() {
                 return Step::Drive(command);
             }
+        }
+        if let Some(command) = driven.as_ref().ok().and_then(|&command| self.led_in(command)) {
+            let why = Blocked::Recovering(RecoveryKind::Manoeuvre);
+            return Step::Blocked { command, why };
         }
         let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
         if let Mode::Waiting { why, left_s } = &mut self.task.mode {

@@ -5,6 +5,7 @@ mod changes;
 mod deciding;
 mod driving;
 mod guarding;
+mod no_return;
 mod recovering;
 mod replanning;
 mod slowing;

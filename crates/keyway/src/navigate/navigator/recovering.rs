@@ -5,8 +5,8 @@ use super::replanning::Replanned;
 use crate::geometry::Velocity;
 use crate::navigate::RecoveryKind;
 use crate::navigate::mode::Mode;
-use crate::navigate::recovery::{Motion, OnTheSpot, RecoveryUnderWay, TightPlace};
-use crate::navigate::watch::{RestOfRoute, Watch};
+use crate::navigate::recovery::{Motion, OnTheSpot, RecoveryUnderWay, kept_room_m};
+use crate::navigate::watch::Watch;
 
 impl Deciding<'_> {
     /// Begins the first kind of recovery in the order that can do something. Motions begin where
@@ -34,15 +34,12 @@ impl Deciding<'_> {
     fn begin(&mut self, kind: RecoveryKind) -> bool {
         let config = &self.stack.controller;
         let (robot, pose, obstacles) = (self.robot, self.pose, &self.world.obstacles);
-        let spot = OnTheSpot { robot, obstacles };
+        let room_m = kept_room_m(robot, pose, obstacles);
+        let spot = OnTheSpot { robot, obstacles, room_m };
         let motions = match kind {
             RecoveryKind::Replan => return self.replan() != Replanned::Alike,
             RecoveryKind::Turn => spot.turn_towards(pose, self.task.guidance.point),
-            RecoveryKind::Manoeuvre => {
-                let goal_tolerance_m = config.goal_tolerance_m;
-                let RestOfRoute { path, covered_m } = self.rest();
-                TightPlace { robot, obstacles, path, covered_m, goal_tolerance_m }.manoeuvre(pose)
-            }
+            RecoveryKind::Manoeuvre => self.tight_place().manoeuvre(pose),
             RecoveryKind::BackUp => {
                 let places = self.world.track.back(pose.point(), config.back_up_m);
                 spot.back_up(pose, places, 0.5 * config.back_up_m)
@@ -50,7 +47,7 @@ impl Deciding<'_> {
             RecoveryKind::Wait => Some(vec![Motion::Wait(config.wait_s)]),
         };
         let Some(motions) = motions else { return false };
-        let begun = RecoveryUnderWay::begin(kind, motions);
+        let begun = RecoveryUnderWay::begin(kind, motions, room_m);
         self.task.mode = begun.map_or(Mode::Following, Mode::Recovering);
         true
     }

@@ -4,7 +4,7 @@ use super::Deciding;
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::RecoveryKind;
 use crate::navigate::mode::Mode;
-use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot};
+use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot, kept_room_m};
 use crate::navigate::route::turning_clearance_m;
 use crate::robot::Footprint;
 use std::f64::consts::FRAC_PI_6;
@@ -35,7 +35,8 @@ impl Deciding<'_> {
         if !can_turn(pose) || can_turn(robot.stop_pose(pose, self.velocity, command)) {
             return;
         }
-        if let Some(turn_rad) = (OnTheSpot { robot, obstacles }).turn(pose, bearing_rad) {
+        let room_m = kept_room_m(robot, pose, obstacles);
+        if let Some(turn_rad) = (OnTheSpot { robot, obstacles, room_m }).turn(pose, bearing_rad) {
             self.task.mode = Mode::TurningFirst(MotionUnderWay::new(Motion::Turn(turn_rad)));
         }
     }

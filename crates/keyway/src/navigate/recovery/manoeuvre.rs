@@ -52,6 +52,8 @@ pub(in crate::navigate) struct TightPlace<'a> {
     pub(in crate::navigate) covered_m: f64,
     /// How near to the end of the path is near enough \[m\].
     pub(in crate::navigate) goal_tolerance_m: f64,
+    /// Room that its motions keep \[m\].
+    pub(in crate::navigate) room_m: f64,
 }
 
 /// A pose that was reached.
@@ -81,7 +83,9 @@ impl TightPlace<'_> {
     /// none, or more would have to be looked at.
     pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
         let stations = self.stations();
-        self.along_route(pose, &stations).or_else(|| self.searched(pose, &stations))
+        self.along_route(pose, &stations)
+            .or_else(|| self.lined_up(pose))
+            .or_else(|| self.searched(pose, &stations))
     }
 
     /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is
@@ -151,17 +155,17 @@ impl TightPlace<'_> {
         Some(facing(merged(&nodes, index), nodes[index].pose, place))
     }
 
-    fn radius_m(&self) -> f64 {
+    pub(super) fn radius_m(&self) -> f64 {
         self.robot.footprint.circumscribed_radius_m()
     }
 
     /// The circumscribed radius; of a robot that is smaller than a cell, or a point, the side of a
     /// cell \[m\].
-    fn size_m(&self) -> f64 {
+    pub(super) fn size_m(&self) -> f64 {
         self.radius_m().max(self.obstacles.frame().resolution_m())
     }
 
-    fn reach_m(&self) -> f64 {
+    pub(super) fn reach_m(&self) -> f64 {
         REACH_SIZES * self.size_m()
     }
 
@@ -214,11 +218,6 @@ impl TightPlace<'_> {
             && !self.is_free(pose, Motion::Turn(TAU))
     }
 
-    fn has_room_to_turn(&self, pose: Pose) -> bool {
-        let turning_m = self.radius_m() + self.robot.safety_margin_m();
-        self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
-    }
-
     fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
         let step_m = STEP_SQUARES * self.square_m();
         let back = (self.robot.limits.v_min_mps < 0.0).then_some((Motion::Drive(-step_m), 0));
@@ -226,13 +225,16 @@ impl TightPlace<'_> {
         [(Motion::Drive(step_m), 0)].into_iter().chain(turns).chain(back)
     }
 
-    fn is_free(&self, pose: Pose, motion: Motion) -> bool {
+    pub(super) fn is_free(&self, pose: Pose, motion: Motion) -> bool {
         let footprint = &self.robot.footprint;
         match motion {
             Motion::Turn(turn_rad) => {
-                footprint.is_free_turn(pose.point(), pose.theta, turn_rad, self.obstacles)
+                let turn = [pose.theta, turn_rad];
+                footprint.keeps_room_turning(pose.point(), turn, self.room_m, self.obstacles)
             }
-            Motion::Drive(length_m) => footprint.is_free_drive(pose, length_m, self.obstacles),
+            Motion::Drive(length_m) => {
+                footprint.keeps_room_driving(pose, length_m, self.room_m, self.obstacles)
+            }
             Motion::Wait(_) => true,
         }
     }
@@ -280,7 +282,7 @@ fn facing(mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
     motions
 }
 
-fn after(pose: Pose, motion: Motion) -> Pose {
+pub(super) fn after(pose: Pose, motion: Motion) -> Pose {
     match motion {
         Motion::Turn(turn_rad) => Pose::new(pose.x, pose.y, pose.theta + turn_rad),
         Motion::Drive(length_m) => {
@@ -373,6 +375,7 @@ mod tests {
                 path: &path,
                 covered_m: 0.0,
                 goal_tolerance_m: 0.1,
+                room_m: 0.0,
             };
             let start = Pose::new(0.4, 0.4, 0.0);
             let motions = place.along_route(start, &place.stations()).unwrap();
@@ -394,6 +397,7 @@ mod tests {
             path: &path,
             covered_m: 0.0,
             goal_tolerance_m: 0.1,
+            room_m: 0.0,
         };
         let start = Pose::new(0.4, 0.4, FRAC_PI_2);
         assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
@@ -435,6 +439,7 @@ mod tests {
             path: &path,
             covered_m: 0.0,
             goal_tolerance_m: 0.1,
+            room_m: 0.0,
         };
         let start = Pose::new(0.98, 0.8, 100f64.to_radians());
         assert!(!robot.footprint.is_free_turn(start.point(), start.theta, TAU, &obstacles));
@@ -482,6 +487,7 @@ mod tests {
             path: &path,
             covered_m: 0.0,
             goal_tolerance_m,
+            room_m: 0.0,
         };
         let start = Pose::new(1.0, 0.6, 0.05);
         assert_eq!(place.searched(start, &place.stations()), None);

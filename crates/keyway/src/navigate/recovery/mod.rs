@@ -3,12 +3,13 @@
 //! Each is a few [`Motion`]s, certified free of contact before they are begun and again in every
 //! cycle; or a new route; or time.
 
+mod line_up;
 mod manoeuvre;
 mod motion;
 mod track;
 
 pub(super) use manoeuvre::TightPlace;
-pub(super) use motion::{Moment, Motion, MotionStep, MotionUnderWay};
+pub(super) use motion::{Moment, Motion, MotionStep, MotionUnderWay, kept_room_m};
 pub(super) use track::Track;
 
 use crate::geometry::{Point, Pose, Shift, Velocity, wrap_angle};
@@ -135,14 +136,17 @@ pub(super) struct RecoveryUnderWay {
     motion: MotionUnderWay,
     /// The motions after it.
     later: VecDeque<Motion>,
+    /// Room that all of them keep \[m\].
+    #[serde(default)]
+    room_m: f64,
 }
 
 impl RecoveryUnderWay {
-    /// A recovery that begins; `None` where it has no motions.
-    pub(super) fn begin(kind: RecoveryKind, motions: Vec<Motion>) -> Option<Self> {
+    /// A recovery that begins, of motions that keep some room \[m\]; `None` where there are none.
+    pub(super) fn begin(kind: RecoveryKind, motions: Vec<Motion>, room_m: f64) -> Option<Self> {
         let mut later = VecDeque::from(motions);
-        let motion = MotionUnderWay::new(later.pop_front()?);
-        Some(Self { kind, motion, later })
+        let motion = MotionUnderWay::with_room(later.pop_front()?, room_m);
+        Some(Self { kind, motion, later, room_m })
     }
 
     /// Moves it with the robot.
@@ -160,7 +164,9 @@ impl RecoveryUnderWay {
             match self.motion.step(moment, obstacles) {
                 MotionStep::Moving(command) => return Some((self.kind, command)),
                 MotionStep::Refused => return None,
-                MotionStep::Done => self.motion = MotionUnderWay::new(self.later.pop_front()?),
+                MotionStep::Done => {
+                    self.motion = MotionUnderWay::with_room(self.later.pop_front()?, self.room_m);
+                }
             }
         }
     }
@@ -171,6 +177,8 @@ impl RecoveryUnderWay {
 pub(super) struct OnTheSpot<'a> {
     pub(super) robot: &'a Robot,
     pub(super) obstacles: &'a DistanceField,
+    /// Room that its motions keep \[m\].
+    pub(super) room_m: f64,
 }
 
 impl OnTheSpot<'_> {
@@ -183,7 +191,8 @@ impl OnTheSpot<'_> {
         let other_way_rad = left_rad - TAU.copysign(left_rad);
         [left_rad, other_way_rad].into_iter().find(|&turn_rad| {
             let footprint = &self.robot.footprint;
-            footprint.is_free_turn(pose.point(), pose.theta, turn_rad, self.obstacles)
+            let turn = [pose.theta, turn_rad];
+            footprint.keeps_room_turning(pose.point(), turn, self.room_m, self.obstacles)
         })
     }
 
@@ -214,7 +223,9 @@ impl OnTheSpot<'_> {
             ways.find_map(|(turn_rad, length_m)| {
                 let turn_rad = self.turn(pose, turn_rad)?;
                 let facing = Pose::new(pose.x, pose.y, pose.theta + turn_rad);
-                let is_free = self.robot.footprint.is_free_drive(facing, length_m, self.obstacles);
+                let (footprint, room_m) = (&self.robot.footprint, self.room_m);
+                let is_free =
+                    footprint.keeps_room_driving(facing, length_m, room_m, self.obstacles);
                 is_free.then(|| vec![Motion::Turn(turn_rad), Motion::Drive(length_m)])
             })
         })
@@ -239,7 +250,7 @@ mod tests {
         let vertices = [[0.0, 0.3], [0.0, -0.3], [1.9, -0.3], [1.9, 0.3]];
         let footprint = Footprint::polygon(vertices.map(Point::from).to_vec()).unwrap();
         let robot = Robot { footprint, ..Robot::small() };
-        let spot = OnTheSpot { robot: &robot, obstacles: &obstacles };
+        let spot = OnTheSpot { robot: &robot, obstacles: &obstacles, room_m: 0.0 };
         let pose = Pose::new(2.5, 1.95, PI / 2.0);
         let turn_rad = spot.turn(pose, PI).unwrap();
         assert!((turn_rad + PI).abs() < 1e-9, "{turn_rad}");
@@ -255,7 +266,7 @@ mod tests {
         let pose = Pose::new(5.0, 2.0, 0.0);
         let places = [Point::new(3.0, 2.0), Point::new(4.0, 2.0)];
         let motions = |robot: &Robot| {
-            let spot = OnTheSpot { robot, obstacles: &obstacles };
+            let spot = OnTheSpot { robot, obstacles: &obstacles, room_m: 0.0 };
             spot.back_up(pose, places.into_iter(), 0.2).unwrap()
         };
         let [Motion::Turn(turn_rad), Motion::Drive(length_m)] = motions(&both_ways)[..] else {

@@ -52,6 +52,9 @@ pub(in crate::navigate) struct Moment<'a> {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct MotionUnderWay {
     left: Motion,
+    /// Room that it was found with \[m\]; `None` for what the robot keeps where it begins.
+    #[serde(default)]
+    room_m: Option<f64>,
     /// Where the robot was when `left` was left; `None` before it begins, while the robot still
     /// brakes.
     from: Option<Pose>,
@@ -60,9 +63,34 @@ pub(in crate::navigate) struct MotionUnderWay {
 /// Speed of recoveries near obstacles, as a share of the robot's limits.
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
+/// Room that motions from a pose keep \[m\]: nearly the margin of courses; of half of what the robot
+/// has, where that is less.
+pub(in crate::navigate) fn kept_room_m(
+    robot: &Robot,
+    pose: Pose,
+    obstacles: &DistanceField,
+) -> f64 {
+    let (margin_m, clearance) = (robot.safety_margin_m(), obstacles.clearance());
+    let to_border_m = robot.footprint.to_border_m(pose, &clearance);
+    let room_m = robot.footprint.distance_m(pose, &clearance, 2.0 * margin_m).min(to_border_m);
+    NEARLY * margin_m.min(0.5 * room_m.max(0.0))
+}
+
+/// A robot that just keeps the margin keeps this part of it on the way, too.
+const NEARLY: f64 = 0.9;
+
 impl MotionUnderWay {
+    /// The part of the room that is kept on the way: no robot drives exactly as it should.
+    const KEEPS: f64 = 0.5;
+
+    /// A motion from where the robot then is.
     pub(in crate::navigate) const fn new(motion: Motion) -> Self {
-        Self { left: motion, from: None }
+        Self { left: motion, room_m: None, from: None }
+    }
+
+    /// One of several, which were found with this room around the robot \[m\].
+    pub(in crate::navigate) const fn with_room(motion: Motion, room_m: f64) -> Self {
+        Self { left: motion, room_m: Some(room_m), from: None }
     }
 
     /// Moves it with the robot: a correction is no motion.
@@ -82,6 +110,8 @@ impl MotionUnderWay {
             return MotionStep::Moving(limits.braked(velocity, cycle_s));
         }
         let from = self.from.replace(pose).unwrap_or(pose);
+        let room_m = *self.room_m.get_or_insert_with(|| kept_room_m(robot, pose, obstacles));
+        let room_m = Self::KEEPS * room_m;
         self.left = self.left.after(from, pose, elapsed_s);
         if is_standing && self.left.size() <= self.left.nothing(least, cycle_s) {
             return MotionStep::Done;
@@ -90,7 +120,8 @@ impl MotionUnderWay {
         let command = match self.left {
             Motion::Wait(_) => Velocity::ZERO,
             Motion::Turn(left_rad) => {
-                if !footprint.is_free_turn(pose.point(), pose.theta, left_rad, obstacles) {
+                let turn = [pose.theta, left_rad];
+                if !footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles) {
                     return MotionStep::Refused;
                 }
                 let most = turn_share(robot, pose, obstacles) * limits.omega_max_radps;
@@ -98,7 +129,7 @@ impl MotionUnderWay {
                 Velocity::new(0.0, stops.min(most).copysign(left_rad))
             }
             Motion::Drive(left_m) => {
-                if !footprint.is_free_drive(pose, left_m, obstacles) {
+                if !footprint.keeps_room_driving(pose, left_m, room_m, obstacles) {
                     return MotionStep::Refused;
                 }
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
@@ -226,7 +257,37 @@ mod tests {
         let most_radps = robot.limits.omega_max_radps;
         let reach_m = robot.footprint.circumscribed_radius_m();
         assert_eq!(fastest_radps(2.5), most_radps);
-        assert_eq!(fastest_radps(1.0 + reach_m + 0.5 * robot.safety_margin_m()), 0.25 * most_radps);
+        assert_eq!(fastest_radps(1.0 + reach_m + 0.9 * robot.safety_margin_m()), 0.25 * most_radps);
+    }
+
+    /// Half of the room that a motion was found with is kept on the way; one that begins on its own
+    /// keeps the margin, or half of what the robot has.
+    #[test]
+    fn motions_keep_room() {
+        let map = OccupancyGrid::from_ascii(&["########", "........", "########"]);
+        let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+        let footprint = crate::robot::Footprint::rectangle(0.8, 0.8).unwrap();
+        let robot = Robot { footprint, safety_margin_m: Some(0.08), ..Robot::jackal() };
+        let first = |mut motion: MotionUnderWay, y| {
+            let pose = Pose::new(4.0, y, 0.0);
+            let (velocity, elapsed_s) = (Velocity::ZERO, robot.cycle_s);
+            let moment = Moment { robot: &robot, pose, velocity, elapsed_s, least: Velocity::ZERO };
+            matches!(motion.step(&moment, &obstacles), MotionStep::Moving(_))
+        };
+        let drive = Motion::Drive(1.0);
+        // 0.1 m of room in the middle, 0.02 m beside it.
+        for (y, found_with_m, is_free) in
+            [(1.5, 0.19, true), (1.5, 0.21, false), (1.58, 0.03, true), (1.58, 0.05, false)]
+        {
+            let motion = MotionUnderWay::with_room(drive, found_with_m);
+            assert_eq!(first(motion, y), is_free, "{y} {found_with_m}");
+        }
+        assert!(first(MotionUnderWay::new(drive), 1.58) && first(MotionUnderWay::new(drive), 1.5));
+        let kept_m = |y| kept_room_m(&robot, Pose::new(4.0, y, 0.0), &obstacles);
+        assert!(
+            (kept_m(1.5) - 0.9 * 0.05).abs() < 1e-9 && (kept_m(1.58) - 0.9 * 0.01).abs() < 1e-9
+        );
+        assert_eq!(kept_m(1.7), 0.0, "in contact");
     }
 
     proptest! {

@@ -1,0 +1,66 @@
+//! The point of no return of a robot that cannot drive backwards.
+//!
+//! Where such a robot has its nose in a place in which it can neither drive on nor turn, it stays.
+//! So before it leaves the last place from which it surely gets on, it has to know how: from
+//! where it would stand, it can turn and drive straight to where it can turn around again, to its
+//! goal, or as far as it looks. If that is not so, it stops, and a manoeuvre leads it in.
+
+use super::Deciding;
+use crate::geometry::Velocity;
+use crate::navigate::RecoveryKind;
+use crate::navigate::mode::Mode;
+use crate::navigate::recovery::{RecoveryUnderWay, TightPlace, kept_room_m};
+use crate::navigate::watch::RestOfRoute;
+
+impl Deciding<'_> {
+    /// The command of a manoeuvre that leads on, or braking before it begins, where a command leads
+    /// beyond the point of no return.
+    pub(super) fn led_in(&mut self, command: Velocity) -> Option<Velocity> {
+        if !self.leads_beyond_return(command) {
+            return None;
+        }
+        if !self.robot.stands(self.velocity) {
+            return Some(self.robot.limits.braked(self.velocity, self.robot.cycle_s));
+        }
+        let kind = RecoveryKind::Manoeuvre;
+        let place = self.tight_place();
+        let motions = place.manoeuvre(self.pose).or_else(|| place.straight_on(self.pose, false));
+        let begun =
+            motions.and_then(|motions| RecoveryUnderWay::begin(kind, motions, place.room_m));
+        let Some(begun) = begun else {
+            self.task.led_from = Some(self.pose.point());
+            return None;
+        };
+        self.task.mode = Mode::Recovering(begun);
+        self.record.counts.recoveries.add(kind);
+        self.go_on_recovering().map(|(_, command)| command)
+    }
+
+    /// True if the robot would stand where it does not surely get on, while now it comes to where it
+    /// can turn around.
+    fn leads_beyond_return(&self, command: Velocity) -> bool {
+        let footprint = &self.robot.footprint;
+        let (inscribed_m, size_m) =
+            (footprint.inscribed_radius_m(), footprint.circumscribed_radius_m());
+        let may_wedge = self.robot.limits.v_min_mps >= 0.0 && size_m > inscribed_m;
+        if !may_wedge || self.robot.stands(command) || !self.local.turns_in_time() {
+            return false;
+        }
+        let was_asked =
+            self.task.led_from.is_some_and(|at| at.distance(self.pose.point()) < size_m);
+        let stands_at = |command| self.robot.stop_pose(self.pose, self.velocity, command);
+        let place = self.tight_place();
+        !was_asked
+            && place.straight_on(stands_at(command), true).is_none()
+            && place.straight_on(stands_at(Velocity::ZERO), false).is_some()
+    }
+
+    /// The place in which it is.
+    pub(super) fn tight_place(&self) -> TightPlace<'_> {
+        let (robot, obstacles) = (self.robot, &self.world.obstacles);
+        let RestOfRoute { path, covered_m } = self.rest();
+        let goal_tolerance_m = self.stack.controller.goal_tolerance_m;
+        let room_m = kept_room_m(robot, self.pose, obstacles);
+        TightPlace { robot, obstacles, path, covered_m, goal_tolerance_m, room_m }
+    }
+}
