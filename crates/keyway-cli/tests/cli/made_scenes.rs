@@ -175,6 +175,15 @@ fn narrow_places_are_made_by_seed() {
         assert_eq!(run["outcome"], json!("reached"), "{seed}");
         assert_eq!(run["run"]["recoveries"]["manoeuvre"], json!(0), "{seed}");
     }
+    // Robots without a reverse gear, which would not come out again had they entered aslant.
+    for scene in ["door_00002", "door_00019", "tunnel_00006"] {
+        let (kind, seed) = scene.split_once('_').unwrap();
+        let line = format!("scene narrow {kind} --seed {seed} --count 1 --out n");
+        keyway(folder.path(), &line).expect_code(0);
+        let line = format!("navigate --scene n/{scene}.toml --format json");
+        let run = keyway(folder.path(), &line).expect_code(0).json();
+        assert_eq!(run["outcome"], json!("reached"), "{scene}");
+    }
     let error = keyway(folder.path(), "scene narrow bey --out n --format json");
     let error = error.expect_code(2).json();
     let message = error["message"].as_str().unwrap();

@@ -175,6 +175,27 @@ impl Judge<'_> {
         (missing_m / swings_m).clamp(0.0, 1.0)
     }
 
+    /// What turns the robot to the middle of a narrow way while it drives ahead \[rad/s\]; `None`
+    /// elsewhere.
+    ///
+    /// In a straight lane, the distances of two places to its walls, one on each side of the robot,
+    /// differ by twice what it is off the middle.
+    pub(super) fn to_middle_radps(&self, state: &State) -> Option<f64> {
+        let v = state.velocity.v;
+        let ahead_m = self.outline.inscribed_m + v.abs() * self.stretch_s;
+        let at = state.at + state.ahead * ahead_m.copysign(v);
+        let aside = Point::new(-state.ahead.y, state.ahead.x);
+        let beside_m = 0.5 * self.outline.inscribed_m;
+        let room_m = |left_m: f64| self.room.of_point(at + aside * left_m);
+        let left_m = 0.5 * (room_m(beside_m) - room_m(-beside_m));
+        let narrow_m = self.outline.inscribed_m + Self::NARROW * self.comfortable_m;
+        // The arc that leads there.
+        (room_m(left_m) < narrow_m).then_some(2.0 * v * left_m / (ahead_m * ahead_m))
+    }
+
+    /// With less room to each side than this part of what the robot likes, a way is narrow.
+    const NARROW: f64 = 0.5;
+
     /// Whether the robot drives backwards where it has not looked: what is there would be touched
     /// before it is seen.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {

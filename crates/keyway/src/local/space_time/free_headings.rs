@@ -7,9 +7,9 @@ use crate::robot::Footprint;
 use std::f64::consts::TAU;
 
 /// A bit for each of so many headings, `TAU / HEADINGS` apart, from the x axis of the cells on.
-pub(super) type Headings = u32;
+pub(super) type Headings = u64;
 
-pub(super) const HEADINGS: usize = 32;
+pub(super) const HEADINGS: usize = 64;
 
 /// Between two headings \[rad\].
 pub(super) const HEADING_RAD: f64 = TAU / HEADINGS as f64;

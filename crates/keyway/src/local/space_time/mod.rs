@@ -294,7 +294,7 @@ impl SpaceTime {
             beyond_m,
             comfortable_m,
             least_m: margin_m.min(nearest_m),
-            tight_now_sq: Judge::tight_sq(now_m, comfortable_m),
+            tight_now_sq: Judge::tight_sq(nearest_m, comfortable_m),
             discomfort,
             steering,
             stretch_s: self.config.stretch_s(),

@@ -7,7 +7,7 @@
 //! every place and heading near the way ahead to its end, of motions on a lattice: turning on the
 //! spot, ahead and, where the robot can, back, each straight on or with a turn to the next heading.
 //! A place is free at a heading where the footprint fits somewhere in the lattice's square around
-//! it. The time without headings is found on the same lattice, so that what the lattice adds is in
+//! it, at that heading or half-way to the next ones. The time without headings is found on the same lattice, so that what the lattice adds is in
 //! both.
 //!
 //! # Source
@@ -18,12 +18,12 @@
 //! Otherwise linear in the places near that way, 32 headings each.
 
 use super::cost_to_go::CostToGo;
-use super::free_headings::{BlockedHeadings, HEADING_RAD, HEADINGS, Headings};
+use super::free_headings::{self as fine, BlockedHeadings};
 use super::lattice::Lattice;
 use crate::geometry::{Point, wrap_angle};
 use crate::map::DistanceField;
 use crate::robot::Limits;
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Values of the places near the way.
 #[derive(Debug, Default)]
@@ -34,8 +34,8 @@ pub(super) struct PoseCost {
     /// The points near the way, as indices.
     near: Vec<u32>,
     /// At which headings the footprint fits, and from which it turns to the next one, by point.
-    free: Vec<Headings>,
-    turning: Vec<Headings>,
+    free: Vec<Sectors>,
+    turning: Vec<Sectors>,
     /// Time to go by place and heading, and by place, in ticks.
     by_pose: Vec<u16>,
     by_place: Vec<u16>,
@@ -81,6 +81,14 @@ pub(super) struct Ground<'a> {
 
 /// Angles that differ by less are the same \[rad\].
 const ROUNDING_RAD: f64 = 1e-6;
+
+/// A bit for each of the headings of the search; it stands for those up to the next ones.
+type Sectors = u32;
+
+const HEADINGS: usize = 32;
+
+/// Between two headings \[rad\].
+const HEADING_RAD: f64 = TAU / HEADINGS as f64;
 
 const NONE: u32 = u32::MAX;
 
@@ -205,10 +213,10 @@ impl PoseCost {
         (x, y): (usize, usize),
         room_m: f64,
         ground: &Ground<'_>,
-    ) -> (Headings, Headings) {
+    ) -> (Sectors, Sectors) {
         let half_m = std::f64::consts::FRAC_1_SQRT_2 * self.lattice.spacing_m;
         if room_m >= ground.turning_m {
-            return (Headings::MAX, Headings::MAX);
+            return (Sectors::MAX, Sectors::MAX);
         }
         if room_m + half_m < ground.inscribed_m {
             return (0, 0);
@@ -222,19 +230,18 @@ impl PoseCost {
             let off = 0.5 * f64::from(side * (2 * part - parts)) / f64::from(parts);
             (middle + off.round()).round() as i32
         };
-        let (mut free, mut turning) = (0, 0);
+        let mut free = 0;
         for row in 0..=parts {
             for column in 0..=parts {
                 let at = (halves(middle.x, column), halves(middle.y, row));
-                let here = ground.blocked.free_at(at, ground.obstacles);
-                free |= here;
-                turning |= here & here.rotate_right(1);
-                if turning == Headings::MAX {
-                    return (free, turning);
+                free |= ground.blocked.free_at(at, ground.obstacles);
+                if free == fine::Headings::MAX {
+                    break;
                 }
             }
         }
-        (free, turning)
+        let beside = free.rotate_left(1) | free.rotate_right(1);
+        (every_other(free | beside), every_other(free.rotate_right(1)))
     }
 
     /// Finds all times.
@@ -434,6 +441,16 @@ impl PoseCost {
         // What rounding adds must not decide between two courses.
         Some(f64::from(heading_s as f32))
     }
+}
+
+/// The bits with even numbers.
+fn every_other(bits: u64) -> u32 {
+    let mut even = bits & 0x5555_5555_5555_5555;
+    even = (even | even >> 1) & 0x3333_3333_3333_3333;
+    even = (even | even >> 2) & 0x0f0f_0f0f_0f0f_0f0f;
+    even = (even | even >> 4) & 0x00ff_00ff_00ff_00ff;
+    even = (even | even >> 8) & 0x0000_ffff_0000_ffff;
+    (even | even >> 16) as u32
 }
 
 /// Costs of motions, in ticks.

@@ -62,6 +62,16 @@ fn robot(v_min_mps: f64) -> Robot {
     robot
 }
 
+#[test]
+fn every_other_bit() {
+    assert_eq!(every_other(u64::MAX), u32::MAX);
+    assert_eq!(every_other(0x5555_5555_5555_5555), u32::MAX);
+    assert_eq!(every_other(0xaaaa_aaaa_aaaa_aaaa), 0);
+    for bit in 0..32 {
+        assert_eq!(every_other(1 << (2 * bit)), 1 << bit);
+    }
+}
+
 const AHEAD: Point = Point::new(1.0, 0.0);
 const BACK: Point = Point::new(-1.0, 0.0);
 

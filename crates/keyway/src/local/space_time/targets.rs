@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 #[derive(Debug, Default)]
 pub(super) struct Targets {
     speeds_mps: ArrayVec<f64, 5>,
-    rates_radps: ArrayVec<f64, 11>,
+    rates_radps: ArrayVec<f64, 12>,
 }
 
 impl Targets {
@@ -22,7 +22,8 @@ impl Targets {
     const WIDELY: [f64; 2] = [1.0 / 16.0, 1.0 / 64.0];
 
     /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the
-    /// left and to the right as it can, straight on, and what turns it to the way. At the beginning
+    /// left and to the right as it can, straight on, what turns it to the way, and on a narrow one to
+    /// its middle. At the beginning
     /// of a course, where it `is_near`, also those half-way to the slowest and to the sides; from
     /// rest, or nearly, also gently ahead, and in wide arcs where there is no room to turn on the
     /// spot: on them a polygon gets away from a wall.
@@ -45,6 +46,9 @@ impl Targets {
         let bearing_rad = if bearing_rad.abs() < Self::FACING_RAD { 0.0 } else { bearing_rad };
         for rate_radps in [left, right, rate(0.0), rate(bearing_rad / stretch_s)] {
             add(&mut targets.rates_radps, rate_radps);
+        }
+        if let Some(rate_radps) = judge.to_middle_radps(state) {
+            add(&mut targets.rates_radps, rate(rate_radps));
         }
         if is_near {
             add(&mut targets.speeds_mps, 0.5 * (v + slowest));
