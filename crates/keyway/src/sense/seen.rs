@@ -35,7 +35,9 @@ pub enum SeenWanted {
 }
 
 /// Cells whose centres lie between beams that go on beyond them, or which the robot has covered:
-/// nothing stands in them, except what has been met there as well.
+/// nothing stands in them, except what has been met there as well. One of the beams passes so near
+/// that it would have met a thing as wide as [`RangeSensor::NARROWEST_M`], or as a cell, if that is
+/// larger.
 ///
 /// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would
 ///   be met too late, whether it is beyond the sensor's range, behind a corner, or where no beam
