@@ -115,6 +115,23 @@ fn nothing_is_touched_that_is_between_two_beams() {
     }
 }
 
+/// With 19 beams a robot surely sees no farther than its own front: it creeps, and its recoveries
+/// are as slow as always.
+#[test]
+fn who_surely_sees_nothing_creeps() {
+    let mut robot = Robot::small();
+    robot.sensors = vec![RangeSensor::new(19, 360.0, 8.0)];
+    robot.limits.v_min_mps = -0.5;
+    assert_eq!(robot.sight_mps(), 0.0);
+    let (start, goal) = (Point::new(1.0, 2.0), Point::new(3.0, 2.0));
+    let mut episode = Episode::new(hall(), robot, start, goal);
+    episode.obstacles = vec![Disc::new(Point::new(2.0, 2.05), 0.03)];
+    let RobotReport { outcome, trajectory, .. } = run_episode(&episode).unwrap().first();
+    assert_ne!(outcome, EpisodeOutcome::Collided);
+    let speeds = trajectory.unwrap().into_iter().map(|row| row[4].abs());
+    assert!(speeds.fold(0.0, f64::max) <= 0.25 * 0.5 + 1e-9);
+}
+
 /// The command of a step and, when it is the sensor's silence, since when.
 fn command(step: &Step) -> (Velocity, Option<f64>) {
     match step {

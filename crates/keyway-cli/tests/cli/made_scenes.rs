@@ -183,6 +183,9 @@ fn narrow_places_are_made_by_seed() {
         let line = format!("navigate --scene n/{scene}.toml --format json");
         let run = keyway(folder.path(), &line).expect_code(0).json();
         assert_eq!(run["outcome"], json!("reached"), "{scene}");
+        // Two of them have to be led in.
+        let is_led = run["run"]["recoveries"]["manoeuvre"].as_u64().unwrap() > 0;
+        assert_eq!(is_led, scene != "door_00019", "{scene}");
     }
     let error = keyway(folder.path(), "scene narrow bey --out n --format json");
     let error = error.expect_code(2).json();

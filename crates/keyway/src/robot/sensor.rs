@@ -85,7 +85,9 @@ impl RangeSensor {
     /// As far as its beams miss nothing that is as wide as [`Self::NARROWEST_M`] \[m\]: its range, or
     /// less where they are far apart.
     pub fn sees_everything_m(&self) -> f64 {
-        let step_rad = self.field_of_view_deg.to_radians() / f64::from(self.beams);
+        // All around, the last beam is as far from the first one as from the one before it.
+        let gaps = if self.field_of_view_deg >= 360.0 { self.beams } else { self.beams - 1 };
+        let step_rad = self.field_of_view_deg.to_radians() / f64::from(gaps);
         self.range_m.min(Self::NARROWEST_M / step_rad)
     }
 
@@ -168,7 +170,8 @@ impl Robot {
             + self.limits.stop_m()
     }
 
-    /// The fastest speed from which the robot still stops within its sensor's range \[m/s\]: from a
+    /// The fastest speed from which the robot still stops within what its sensor surely sees
+    /// ([`RangeSensor::sees_everything_m`]) \[m/s\]: from a
     /// scan that is as old as it may be, after another cycle and a delay, with its foremost point.
     /// It may be more than the robot drives; 0 where no speed is slow enough.
     ///

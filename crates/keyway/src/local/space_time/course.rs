@@ -60,8 +60,8 @@ pub(super) struct Judge<'a> {
     /// With less than this it touches something: the margin, or what it has now, where that is less
     /// \[m\].
     pub(super) least_m: f64,
-    /// Part of the room that is missing in a tight place in which it is now, squared: it does not
-    /// get out of there by standing.
+    /// Part of the room that is missing in a tight place in which it is now, squared, with the room
+    /// that it may use there: it does not get out of there by standing.
     pub(super) tight_now_sq: f64,
     pub(super) discomfort: f64,
     pub(super) steering: f64,

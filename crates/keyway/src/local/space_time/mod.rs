@@ -37,8 +37,9 @@
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
-//! The second term of q counts only as far as it is more than where the robot is now: a tight place
-//! does not become wider because the robot stays in it.
+//! The second term of q counts only as far as it is more than with the room that the robot has now,
+//! or, where it is slow, may use now: a tight place does not become wider because the robot stays in
+//! it.
 //!
 //! So there are no weights of heading, speed and distance to balance: what turns away from the way,
 //! drives slowly or takes a detour takes longer, and everything else is given as the time that it
@@ -339,14 +340,16 @@ impl SpaceTime {
     }
 }
 
-/// The same robot, no faster than it can stop within its sensor's range: the stop rule would let
-/// nothing faster pass. One that sees no farther than its own front is left as it is, and stands.
+/// The same robot, no faster than it can stop within what its sensor surely sees, ahead and back.
+/// One that surely sees no farther than its own front creeps.
 fn within_sight(robot: Arc<Robot>) -> Arc<Robot> {
-    let sight_mps = robot.sight_mps();
-    if sight_mps <= 0.0 || robot.limits.v_max_mps <= sight_mps {
+    const CREEPING_MPS: f64 = 0.02;
+    let sight_mps = robot.sight_mps().max(CREEPING_MPS);
+    if robot.limits.v_max_mps <= sight_mps {
         return robot;
     }
-    let limits = Limits { v_max_mps: sight_mps, ..robot.limits.clone() };
+    let v_min_mps = robot.limits.v_min_mps.max(-sight_mps);
+    let limits = Limits { v_max_mps: sight_mps, v_min_mps, ..robot.limits.clone() };
     Arc::new(Robot { limits, ..(*robot).clone() })
 }
 

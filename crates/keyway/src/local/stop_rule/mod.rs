@@ -50,7 +50,7 @@
 //! - none with anything that stands out of view while the robot drives ahead, if its sensor looks
 //!   at all of its front: such a thing stands on ground that has not been seen, and the robot could
 //!   stop before that. One that is narrower than three cells may be missed between other things,
-//!   and one that is narrower than 6 cm and than a cell between two beams;
+//!   and one that is narrower than 6 cm, or than a cell, between two beams;
 //! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or
 //!   into a disc that turns on the spot, which covers no other ground.
 //!

@@ -26,7 +26,7 @@ impl Footprint {
         room_m: f64,
         field: &DistanceField,
     ) -> bool {
-        let end = driven(pose, length_m);
+        let (end, room_m) = (driven(pose, length_m), room_m.max(0.0));
         let keeps_room = |pose| self.keeps_room(pose, room_m, field);
         if !length_m.is_finite() || !keeps_room(pose) || !keeps_room(end) {
             return false;
@@ -34,7 +34,7 @@ impl Footprint {
         match self {
             Self::Circle(circle) => {
                 let way = Segment::new(pose.point(), end.point());
-                field.clearance().is_clear(way, circle.radius_m() + room_m.max(0.0))
+                field.clearance().is_clear(way, circle.radius_m() + room_m)
             }
             Self::Polygon(polygon) => {
                 length_m == 0.0 || polygon.is_free_along(pose, [0.0, length_m], room_m, field)

@@ -40,6 +40,7 @@ impl Footprint {
         if !turn_rad.is_finite() {
             return false;
         }
+        let room_m = room_m.max(0.0);
         let to_rad = from_rad + turn_rad.clamp(-TAU, TAU);
         let keeps_room =
             |theta| self.keeps_room(Pose { x: point.x, y: point.y, theta }, room_m, field);

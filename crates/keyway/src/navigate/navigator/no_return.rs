@@ -43,16 +43,23 @@ impl Deciding<'_> {
         let (inscribed_m, size_m) =
             (footprint.inscribed_radius_m(), footprint.circumscribed_radius_m());
         let may_wedge = self.robot.limits.v_min_mps >= 0.0 && size_m > inscribed_m;
-        if !may_wedge || self.robot.stands(command) || !self.local.turns_in_time() {
-            return false;
-        }
+        let may_manoeuvre = matches!(self.task.mode, Mode::Following)
+            && self.stack.controller.recoveries.contains(&RecoveryKind::Manoeuvre);
         let was_asked =
             self.task.led_from.is_some_and(|at| at.distance(self.pose.point()) < size_m);
+        if !may_wedge
+            || !may_manoeuvre
+            || was_asked
+            || self.robot.stands(command)
+            || !self.local.turns_in_time()
+        {
+            return false;
+        }
         let stands_at = |command| self.robot.stop_pose(self.pose, self.velocity, command);
         let place = self.tight_place();
-        !was_asked
+        // Inside of a long lane, the first one is answered at once.
+        place.straight_on(stands_at(Velocity::ZERO), false).is_some()
             && place.straight_on(stands_at(command), true).is_none()
-            && place.straight_on(stands_at(Velocity::ZERO), false).is_some()
     }
 
     /// The place in which it is.

@@ -221,6 +221,7 @@ impl Deciding<'_> {
             return Replanned::Alike;
         }
         self.record.counts.ways_taken += 1;
+        task.led_from = None;
         task.watch = Watch::NEW;
         Replanned::Elsewhere
     }

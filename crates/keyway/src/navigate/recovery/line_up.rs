@@ -6,11 +6,12 @@ use super::motion::Motion;
 use crate::geometry::{Point, Pose, wrap_angle};
 
 impl TightPlace<'_> {
-    /// A turn, a drive and a turn to before the narrow place ahead, and a drive through it, to where
-    /// the robot can turn around again, or as far as it looks; `None` where that is not free.
+    /// A turn, a drive and a turn to before the narrow place ahead, and a drive into it, from where
+    /// it is free straight on to where the robot can turn around again, or as far as it looks; `None`
+    /// where there are no such motions.
     pub(super) fn lined_up(&self, pose: Pose) -> Option<Vec<Motion>> {
         let narrow = self.narrow_place()?;
-        let degrees = (0..=Self::MOST_DEG).flat_map(|degree| [degree, -degree]);
+        let degrees = Self::both_ways(1);
         degrees.map(|degree| f64::from(degree).to_radians()).find_map(|turn_rad| {
             let inside = after(narrow, Motion::Turn(turn_rad));
             let (size_m, step_m) = (self.size_m(), 0.25 * self.size_m());
@@ -32,6 +33,12 @@ impl TightPlace<'_> {
 
     /// Turns that are tried are no larger than this \[deg\].
     const MOST_DEG: i32 = 40;
+
+    /// Turns that are tried \[deg\], small ones first.
+    fn both_ways(step_deg: usize) -> impl Iterator<Item = i32> {
+        let degrees = (0..=Self::MOST_DEG).step_by(step_deg);
+        degrees.flat_map(|degree| [degree, -degree]).skip(1)
+    }
 
     /// The motions to the beginning of a line and along it, to the narrow place and from there on.
     fn through(&self, pose: Pose, begin: Pose, [back_m, ahead_m]: [f64; 2]) -> Option<Vec<Motion>> {
@@ -106,7 +113,7 @@ impl TightPlace<'_> {
         if self.can_turn_around(pose) {
             return Some(Vec::new());
         }
-        let degrees = (0..=Self::MOST_DEG).step_by(2).flat_map(|degree| [degree, -degree]);
+        let degrees = Self::both_ways(2);
         degrees.map(|degree| f64::from(degree).to_radians()).find_map(|turn_rad| {
             let turn = Motion::Turn(turn_rad);
             let facing = after(pose, turn);

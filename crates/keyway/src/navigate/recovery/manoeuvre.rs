@@ -2,7 +2,7 @@
 //! the route.
 //!
 //! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at its
-//! corners, it does: that needs no margin. Where only the inscribed disc fits, a longer robot may
+//! corners, it does: that needs little margin. Where only the inscribed disc fits, a longer robot may
 //! have to turn first, drive out, and turn again. This searches such sequences in the plane and the
 //! heading: best first by time, over squares of a cell or less and headings that are [`STEP_RAD`]
 //! apart, each motion certified for the whole footprint. It ends where the robot has room to turn

@@ -31,7 +31,7 @@ pub enum RecoveryKind {
     /// A turn on the spot towards the guide point, to the nearer side with room.
     Turn,
     /// Turns and straight drives to where it has room to turn around again, farther along the
-    /// route, or where it can face it. They need no margin, and no curve.
+    /// route, or where it can face it. They need little margin, and no curve.
     Manoeuvre,
     /// Straight back to a place where the robot has been; a robot that cannot drive backwards turns
     /// around first.

@@ -1,13 +1,13 @@
 //! Motions of recoveries: turns on the spot, straight drives and pauses, each certified before it
 //! is commanded.
 //!
-//! In every cycle all that is left of a motion is certified free of contact by
-//! [`Footprint::is_free_turn`] or [`Footprint::is_free_drive`], and the velocity is one from which
-//! the robot can stop within what is left. So a motion can be broken off in any cycle: braking
-//! needs no more ground than was certified.
+//! In every cycle all that is left of a motion is certified to keep room by
+//! [`Footprint::keeps_room_turning`] or [`Footprint::keeps_room_driving`], and the velocity is one
+//! from which the robot can stop within what is left. So a motion can be broken off in any cycle:
+//! braking needs no more ground than was certified.
 //!
-//! [`Footprint::is_free_turn`]: crate::robot::Footprint::is_free_turn
-//! [`Footprint::is_free_drive`]: crate::robot::Footprint::is_free_drive
+//! [`Footprint::keeps_room_turning`]: crate::robot::Footprint::keeps_room_turning
+//! [`Footprint::keeps_room_driving`]: crate::robot::Footprint::keeps_room_driving
 
 use crate::geometry::{Pose, Shift, Velocity, wrap_angle};
 use crate::map::DistanceField;
