@@ -28,8 +28,8 @@ pub struct Scene<'a> {
     pub guide: Point,
     /// The smoothed route, from its beginning to the goal.
     pub path: &'a Polyline,
-    /// Heading at the end of the route \[rad\], counter-clockwise from the x axis; `None` where any is
-    /// right.
+    /// Heading at the end of the route \[rad\], counter-clockwise from the x axis; `None` where any
+    /// is right.
     pub goal_heading_rad: Option<f64>,
     /// What is left of the way to the place where the robot is to stop \[m\]; infinite where it
     /// need not stop. A local planner issues nothing after which the robot could not stop within

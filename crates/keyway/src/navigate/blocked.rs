@@ -76,8 +76,9 @@ pub enum Blocked {
     /// far as is safe (it may see a gap when it is nearer), and plans again from time to time.
     #[error("{}", no_route_text(.0))]
     NoRoute(NavigateError),
-    /// The robot got no farther and tries what this says. Its motions are as safe as any others.
-    #[error("the robot gets no farther and {0}")]
+    /// The robot got no farther, or would not, and tries what this says. Its motions are as safe as
+    /// any others.
+    #[error("instead of driving on, the robot {0}")]
     Recovering(RecoveryKind),
     /// The robot stands at its goal and has no room to turn to the heading there, to either side.
     #[error("there is no room at the goal to turn to its heading")]

@@ -46,8 +46,8 @@ pub(super) struct Task {
     pub(super) order: RecoveryOrder,
     /// Duration of the last wait between two attempts at a route \[s\].
     pub(super) waited_s: f64,
-    /// Where no manoeuvre was found that leads beyond the point of no return: from near it the
-    /// robot is not led any more.
+    /// The place from which no manoeuvre was found that leads beyond the point of no return: near
+    /// it the robot is not led any more.
     #[serde(default)]
     pub(super) led_from: Option<Point>,
     /// The obstacle that the robot has to leave first, until it has.

@@ -82,11 +82,12 @@ impl RangeSensor {
     /// Things that are as wide as this are not to be missed between two beams \[m\].
     pub const NARROWEST_M: f64 = 0.06;
 
-    /// As far as its beams miss nothing that is as wide as [`Self::NARROWEST_M`] \[m\]: its range, or
-    /// less where they are far apart.
+    /// As far as its beams miss nothing that is as wide as [`Self::NARROWEST_M`] \[m\]: its range,
+    /// or less where they are far apart.
     pub fn sees_everything_m(&self) -> f64 {
         // All around, the last beam is as far from the first one as from the one before it.
-        let gaps = if self.field_of_view_deg >= 360.0 { self.beams } else { self.beams - 1 };
+        let gaps =
+            if self.field_of_view_deg >= 360.0 { self.beams } else { self.beams.saturating_sub(1) };
         let step_rad = self.field_of_view_deg.to_radians() / f64::from(gaps);
         self.range_m.min(Self::NARROWEST_M / step_rad)
     }
@@ -153,7 +154,8 @@ impl Robot {
             || !self.sensors.is_empty() && self.sensors.iter().all(goes_on)
     }
 
-    /// Distance from the centre of rotation as far as the sensors that look ahead miss nothing \[m\].
+    /// Distance from the centre of rotation as far as the sensors that look ahead miss nothing
+    /// \[m\].
     fn sees_ahead_m(&self) -> f64 {
         let far = Point::new(1e6, 0.0);
         let ahead = self.sensors.iter().filter(|sensor| sensor.looks_at(far));
@@ -234,6 +236,10 @@ mod tests {
         robot.sensors = vec![RangeSensor::new(36, 360.0, 5.0)];
         let far_m = robot.sensors[0].sees_everything_m();
         assert!((far_m - 0.06 / 10f64.to_radians()).abs() < 1e-12);
+        // The first and the last of few beams look to both sides; one beam sees no width.
+        let in_a_quarter = |beams| RangeSensor::new(beams, 90.0, 5.0).sees_everything_m();
+        assert!((in_a_quarter(10) - far_m).abs() < 1e-12);
+        assert_eq!([in_a_quarter(1), in_a_quarter(0)], [0.0, 0.0]);
         let v = robot.sight_mps();
         let (brakes_mps2, react_s) = (robot.limits.deceleration_mps2, 0.25);
         let needs_m = 0.5 * v * v / brakes_mps2 + v * react_s;

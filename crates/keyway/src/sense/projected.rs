@@ -292,8 +292,8 @@ impl ProjectedScan {
         (low as i64..=high as i64).map(move |beam| (beam as f64).rem_euclid(turn) as usize)
     }
 
-    /// True if nothing of this width stands at a place: the beams to both sides go on beyond it, and
-    /// one of them passes it so near that it would have met that \[m\].
+    /// True if nothing of this width \[m\] stands at a place: the beams to both sides go on beyond
+    /// it, and one of them passes so near that it would have met it.
     pub(crate) fn shows_free(&self, place: Point, width_m: f64) -> bool {
         let off = self.beam_towards(place).map_or(f64::NAN, |beam| beam - beam.round());
         let away_m = place.distance(self.pose.point());

@@ -53,8 +53,8 @@ pub(super) struct Weighing {
     /// What a metre counts as in addition where the robot can just turn around.
     pub(super) discomfort: f64,
     /// In addition where the robot cannot turn around. Where it has to face some way at the end, 0:
-    /// to drive in with the wrong heading, and out again, has to cost more than what is left becomes
-    /// less by.
+    /// to drive in with the wrong heading, and out again, has to cost more than what is left
+    /// becomes less by.
     pub(super) tight: f64,
 }
 

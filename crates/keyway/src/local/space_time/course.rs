@@ -175,8 +175,7 @@ impl Judge<'_> {
         (missing_m / swings_m).clamp(0.0, 1.0)
     }
 
-    /// What turns the robot to the middle of a narrow way while it drives ahead \[rad/s\]; `None`
-    /// elsewhere.
+    /// The turn rate that leads to the middle of a narrow way \[rad/s\]; `None` elsewhere.
     ///
     /// In a straight lane, the distances of two places to its walls, one on each side of the robot,
     /// differ by twice what it is off the middle.

@@ -38,8 +38,8 @@
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
 //! The second term of q counts only as far as it is more than with the room that the robot has now,
-//! or, where it is slow, may use now: a tight place does not become wider because the robot stays in
-//! it.
+//! or, where it is slow, may use now: a tight place does not become wider because the robot stays
+//! in it.
 //!
 //! So there are no weights of heading, speed and distance to balance: what turns away from the way,
 //! drives slowly or takes a detour takes longer, and everything else is given as the time that it
@@ -280,8 +280,8 @@ impl SpaceTime {
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
         let [nearer, slow] = Self::NEARER;
         let is_slow = scene.velocity.v.abs() <= slow * self.robot.limits.v_max_mps;
-        // Who stands nearer may turn away, by which its tail comes nearer; who touches something has
-        // less than no room.
+        // Who stands nearer may turn away, by which its tail comes nearer; who touches something
+        // has less than no room.
         let nearest_m = (now_m - 1e-6).min(if is_slow { nearer * now_m } else { now_m });
         let mut judge = Judge {
             limits: &self.robot.limits,

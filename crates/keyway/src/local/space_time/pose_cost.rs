@@ -7,8 +7,8 @@
 //! every place and heading near the way ahead to its end, of motions on a lattice: turning on the
 //! spot, ahead and, where the robot can, back, each straight on or with a turn to the next heading.
 //! A place is free at a heading where the footprint fits somewhere in the lattice's square around
-//! it, at that heading or half-way to the next ones. The time without headings is found on the same lattice, so that what the lattice adds is in
-//! both.
+//! it, at that heading or half-way to the next ones. The time without headings is found on the same
+//! lattice, so that what the lattice adds is in both.
 //!
 //! # Source
 //! Dijkstra's search with buckets \[Dial1969\], from the end on.
@@ -231,13 +231,12 @@ impl PoseCost {
             (middle + off.round()).round() as i32
         };
         let mut free = 0;
-        for row in 0..=parts {
-            for column in 0..=parts {
-                let at = (halves(middle.x, column), halves(middle.y, row));
-                free |= ground.blocked.free_at(at, ground.obstacles);
-                if free == fine::Headings::MAX {
-                    break;
-                }
+        let places = (0..=parts).flat_map(|row| (0..=parts).map(move |column| (column, row)));
+        for (column, row) in places {
+            let at = (halves(middle.x, column), halves(middle.y, row));
+            free |= ground.blocked.free_at(at, ground.obstacles);
+            if free == fine::Headings::MAX {
+                break;
             }
         }
         let beside = free.rotate_left(1) | free.rotate_right(1);
@@ -392,8 +391,8 @@ impl PoseCost {
         1
     }
 
-    /// The cost of a heading at a place, a direction of length 1 \[s\]; `None` where headings do not
-    /// matter, or away from the way.
+    /// The cost of a heading at a place, a direction of length 1 \[s\]; `None` where headings do
+    /// not matter, or away from the way.
     pub(super) fn of(&self, at: Point, ahead: Point) -> Option<f64> {
         if !self.is_active {
             return None;
@@ -463,7 +462,8 @@ struct Motions {
 }
 
 impl Motions {
-    /// The time that is left at the end of the way at a heading; `None` where the way does not end there.
+    /// The time that is left at the end of the way at a heading; `None` where the way does not end
+    /// there.
     fn at_end(&self, heading: usize, facing: Facing) -> Option<u16> {
         let off_rad = |wanted_rad: f64| wrap_angle(HEADING_RAD * heading as f64 - wanted_rad).abs();
         match facing {

@@ -75,7 +75,8 @@ fn every_other_bit() {
 const AHEAD: Point = Point::new(1.0, 0.0);
 const BACK: Point = Point::new(-1.0, 0.0);
 
-/// Along the lane to its right end, however it faces there: 1.5 s ahead, 3 s back at half the speed.
+/// Along the lane to its right end, where any heading is right: 1.5 s ahead, 3 s back at half the
+/// speed.
 #[test]
 fn backwards_through_a_lane_takes_as_long_as_the_drive_back() {
     let (from, end) = (Point::new(3.5, 3.0), Point::new(5.0, 3.0));
@@ -116,7 +117,7 @@ fn in_the_open_and_for_a_disc_headings_do_not_matter() {
     assert!(!pose_cost(&disc, Point::new(3.5, 3.0), end).is_active());
 }
 
-/// However slowly it turns, the headings at the end are those from which the way goes on.
+/// For the slowest turner, too, the headings at the end are those from which the way goes on.
 #[test]
 fn a_slow_turner_is_not_lost_at_the_end_of_the_way() {
     let mut slow = robot(0.0);

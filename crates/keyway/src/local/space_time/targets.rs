@@ -22,11 +22,10 @@ impl Targets {
     const WIDELY: [f64; 2] = [1.0 / 16.0, 1.0 / 64.0];
 
     /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the
-    /// left and to the right as it can, straight on, what turns it to the way, and on a narrow one to
-    /// its middle. At the beginning
-    /// of a course, where it `is_near`, also those half-way to the slowest and to the sides; from
-    /// rest, or nearly, also gently ahead, and in wide arcs where there is no room to turn on the
-    /// spot: on them a polygon gets away from a wall.
+    /// left and to the right as it can, straight on, what turns it to the way, and on a narrow one
+    /// to its middle. At the beginning of a course, where it `is_near`, also those half-way to the
+    /// slowest and to the sides; from rest, or nearly, also gently ahead, and in wide arcs where
+    /// there is no room to turn on the spot: on them a polygon gets away from a wall.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
         let Velocity { v, omega, .. } = state.velocity;

@@ -17,8 +17,8 @@ impl Footprint {
         self.keeps_room_driving(pose, length_m, 0.0, field)
     }
 
-    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border of
-    /// the map during a straight drive: a margin for [`Self::is_free_drive`].
+    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border
+    /// of the map during a straight drive: a margin for [`Self::is_free_drive`].
     pub fn keeps_room_driving(
         &self,
         pose: Pose,
@@ -136,7 +136,7 @@ mod tests {
     }
 
     proptest! {
-        /// What keeps room keeps it at 200 poses; what does not comes nearer at one of them.
+        /// A motion that keeps room keeps it at 200 poses; any other comes nearer at one of them.
         #[test]
         fn room_agrees_with_dense_samples(cells in prop::collection::vec(prop::bool::weighted(0.05), 20 * 16),
                 radii in prop::collection::vec(0.05..0.5f64, 3..8), x in 0.2..0.8f64, y in 0.2..0.6f64,

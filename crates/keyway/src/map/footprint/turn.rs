@@ -27,9 +27,9 @@ impl Footprint {
         self.keeps_room_turning(point, [from_rad, turn_rad], 0.0, field)
     }
 
-    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border of
-    /// the map during a turn: a margin for [`Self::is_free_turn`]. The turn is given by the heading
-    /// at which it begins, and by how far it goes \[rad\].
+    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border
+    /// of the map during a turn: a margin for [`Self::is_free_turn`]. The turn is given by the
+    /// heading at which it begins, and by how far it goes \[rad\].
     pub fn keeps_room_turning(
         &self,
         point: Point,

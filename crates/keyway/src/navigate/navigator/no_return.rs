@@ -1,9 +1,9 @@
 //! The point of no return of a robot that cannot drive backwards.
 //!
-//! Where such a robot has its nose in a place in which it can neither drive on nor turn, it stays.
-//! So before it leaves the last place from which it surely gets on, it has to know how: from
-//! where it would stand, it can turn and drive straight to where it can turn around again, to its
-//! goal, or as far as it looks. If that is not so, it stops, and a manoeuvre leads it in.
+//! Such a robot stays in a place in which it can neither drive on nor turn. So before it leaves the
+//! last place from which it surely gets on, it has to know how: from where it would stand, it can
+//! turn and drive straight to where it can turn around again, to its goal, or as far as it looks.
+//! If that is not so, it stops, and a manoeuvre leads it in.
 
 use super::Deciding;
 use crate::geometry::Velocity;
@@ -36,8 +36,8 @@ impl Deciding<'_> {
         self.go_on_recovering().map(|(_, command)| command)
     }
 
-    /// True if the robot would stand where it does not surely get on, while now it comes to where it
-    /// can turn around.
+    /// True if the robot would stand where it does not surely get on, while now it comes to where
+    /// it can turn around.
     fn leads_beyond_return(&self, command: Velocity) -> bool {
         let footprint = &self.robot.footprint;
         let (inscribed_m, size_m) =

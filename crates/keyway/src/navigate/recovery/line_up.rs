@@ -7,8 +7,8 @@ use crate::geometry::{Point, Pose, wrap_angle};
 
 impl TightPlace<'_> {
     /// A turn, a drive and a turn to before the narrow place ahead, and a drive into it, from where
-    /// it is free straight on to where the robot can turn around again, or as far as it looks; `None`
-    /// where there are no such motions.
+    /// it is free straight on to where the robot can turn around again, or as far as it looks;
+    /// `None` where there are no such motions.
     pub(super) fn lined_up(&self, pose: Pose) -> Option<Vec<Motion>> {
         let narrow = self.narrow_place()?;
         let degrees = Self::both_ways(1);
@@ -77,8 +77,8 @@ impl TightPlace<'_> {
         narrow.get(narrow.len() / 2).map(|&at| self.in_the_middle(at))
     }
 
-    /// Samples of a narrow place, each a tenth of the robot's size after the last one: in the middle
-    /// of them it is wholly inside.
+    /// Samples of a narrow place, each a tenth of the robot's size after the last one: in the
+    /// middle of them it is wholly inside.
     const SAMPLES: usize = 30;
 
     /// The place beside one that is as far from both sides.
@@ -97,9 +97,12 @@ impl TightPlace<'_> {
 
     /// True if the robot can turn around at a pose, or is at the goal.
     fn can_turn_around(&self, pose: Pose) -> bool {
+        self.is_at_goal(pose.point()) || self.has_room_to_turn(pose)
+    }
+
+    pub(super) fn is_at_goal(&self, point: Point) -> bool {
         let end = self.path.points().last();
-        let is_goal = end.is_some_and(|end| end.distance(pose.point()) <= self.goal_tolerance_m);
-        is_goal || self.has_room_to_turn(pose)
+        end.is_some_and(|end| end.distance(point) <= self.goal_tolerance_m)
     }
 
     pub(super) fn has_room_to_turn(&self, pose: Pose) -> bool {
@@ -107,8 +110,8 @@ impl TightPlace<'_> {
         self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
     }
 
-    /// A turn and a straight drive to where the robot can turn around, or to the goal, or `beyond` as
-    /// far as it looks; none where it can turn around. `None` where there are no such motions.
+    /// A turn and a straight drive to where the robot can turn around, or to the goal, or `beyond`
+    /// as far as it looks; none where it can turn around. `None` where there are no such motions.
     pub(in crate::navigate) fn straight_on(&self, pose: Pose, beyond: bool) -> Option<Vec<Motion>> {
         if self.can_turn_around(pose) {
             return Some(Vec::new());
@@ -125,8 +128,8 @@ impl TightPlace<'_> {
         })
     }
 
-    /// How far straight on the robot can turn around, or is at the goal, or as far as it looks
-    /// \[m\]; `None` where its inscribed disc does not come so far.
+    /// The way straight on to where the robot can turn around, or is at the goal, or as far as it
+    /// looks \[m\]; `None` where its inscribed disc does not come so far.
     fn straight_m(&self, pose: Pose) -> Option<f64> {
         let step_m = 0.25 * self.size_m();
         let inscribed_m = self.robot.footprint.inscribed_radius_m();

@@ -1,15 +1,15 @@
 //! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along
 //! the route.
 //!
-//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at its
-//! corners, it does: that needs little margin. Where only the inscribed disc fits, a longer robot may
-//! have to turn first, drive out, and turn again. This searches such sequences in the plane and the
-//! heading: best first by time, over squares of a cell or less and headings that are [`STEP_RAD`]
-//! apart, each motion certified for the whole footprint. It ends where the robot has room to turn
-//! around again and sees a place of the route farther on, or at the end of the route. If there is
-//! no such place, as before a lane too narrow to turn in, a robot that stands aside of its route,
-//! where it cannot turn, goes to where it can, in sight of the place of the route at which it is,
-//! and faces that.
+//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at
+//! its corners, it does: that needs little margin. Where only the inscribed disc fits, a longer
+//! robot may have to turn first, drive out, and turn again: in line with a narrow place
+//! (`line_up.rs`), or as a search in the plane and the heading finds. That is best first by time,
+//! over squares of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified
+//! for the whole footprint. It ends where the robot has room to turn around again and sees a place
+//! of the route farther on, or at the end of the route. If there is no such place, as before a
+//! lane too narrow to turn in, a robot that stands aside of its route, where it cannot turn, goes
+//! to where it can, in sight of the place of the route at which it is, and faces that.
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
 
@@ -195,8 +195,7 @@ impl TightPlace<'_> {
     /// The place of the route to which the robot can go on from here as usual.
     fn leads_on(&self, pose: Pose, stations: &[Point]) -> Option<Place> {
         let point = pose.point();
-        let end = self.path.points().last();
-        if end.is_some_and(|end| end.distance(point) <= self.goal_tolerance_m) {
+        if self.is_at_goal(point) {
             return Some(Place::Goal);
         }
         if !self.has_room_to_turn(pose) {
@@ -211,7 +210,7 @@ impl TightPlace<'_> {
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
     }
 
-    /// Whether it faces elsewhere than along its route, and has no room to turn there.
+    /// True if it faces elsewhere than along its route, and has no room to turn there.
     fn is_stuck_aside(&self, pose: Pose) -> bool {
         let ahead = self.path.at_length(self.covered_m + self.size_m());
         ahead.is_some_and(|ahead| pose.bearing_to(ahead).abs() > ASIDE_RAD)

@@ -81,7 +81,7 @@ impl Display for RecoveryKind {
         f.write_str(match self {
             Self::Replan => "plans a new route",
             Self::Turn => "turns towards its route",
-            Self::Manoeuvre => "works its way out of a tight place",
+            Self::Manoeuvre => "works its way through a tight place",
             Self::BackUp => "goes back the way that it came",
             Self::Wait => "waits",
         })

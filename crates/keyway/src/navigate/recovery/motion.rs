@@ -63,8 +63,8 @@ pub(in crate::navigate) struct MotionUnderWay {
 /// Speed of recoveries near obstacles, as a share of the robot's limits.
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
-/// Room that motions from a pose keep \[m\]: nearly the margin of courses; of half of what the robot
-/// has, where that is less.
+/// Room that motions from a pose keep \[m\]: nearly the margin of courses, or nearly half of what
+/// the robot has, where that is less.
 pub(in crate::navigate) fn kept_room_m(
     robot: &Robot,
     pose: Pose,
