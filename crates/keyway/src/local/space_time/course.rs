@@ -343,8 +343,9 @@ fn turned(direction: Point, by: Point) -> Point {
 mod tests {
     use super::*;
     use crate::geometry::Pose;
-    use crate::map::{DistanceField, FieldConfig, OccupancyGrid};
-    use crate::robot::Robot;
+    use crate::local::space_time::lattice::Lattice;
+    use crate::map::{CellState, DistanceField, FieldConfig, OccupancyGrid};
+    use crate::robot::{Footprint, Robot};
     use proptest::prelude::*;
 
     #[test]
@@ -372,6 +373,58 @@ mod tests {
         assert!((time(-0.5, 1.25) - 5.0).abs() < 1e-12);
         assert!(time(0.5, 0.2) > time(0.4, 0.2));
         assert_eq!(time(0.0, 0.0), 0.0);
+    }
+
+    /// A lane of 0.6 m with its middle at y = 1.3 m, and open ground from x = 6 m on.
+    #[test]
+    fn on_a_narrow_way_it_is_led_to_the_middle() {
+        let frame = crate::map::GridFrame::new(200, 60, 0.05, Pose::default()).unwrap();
+        let map = OccupancyGrid::from_fn(frame, |cell| {
+            let is_wall = cell.x < 120 && !(20..32).contains(&cell.y);
+            if is_wall { CellState::Occupied } else { CellState::Free }
+        });
+        let obstacles = DistanceField::new(&frame, map.occupied(), &FieldConfig::default());
+        let mut robot = Robot::small();
+        robot.footprint = Footprint::circle(0.25).unwrap();
+        let (outline, cost_to_go, pose_cost) =
+            (Outline::of(&robot), CostToGo::default(), PoseCost::default());
+        let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0, horizon_s: 1.0 };
+        let rate_radps = |(x, y): (f64, f64), v| {
+            let at = Point::new(x, y);
+            let mut room = Room::default();
+            room.fill(Lattice::around(&frame, at, 2.0, 0.05), &obstacles, 1.0);
+            let exact = Exact { footprint: &robot.footprint, obstacles: &obstacles };
+            let judge = Judge {
+                limits: &robot.limits,
+                outline: &outline,
+                room: &room,
+                exact,
+                seen: None,
+                cost_to_go: &cost_to_go,
+                pose_cost: &pose_cost,
+                meeting: &meeting,
+                beyond_m: 0.0,
+                comfortable_m: 0.2,
+                least_m: 0.0,
+                tight_now_sq: 0.0,
+                discomfort: 0.5,
+                steering: 0.0,
+                stretch_s: 0.5,
+                remaining_m: 9.0,
+            };
+            let velocity = Velocity::new(v, 0.0);
+            judge.to_middle_radps(&State { at, ahead: direction(0.0), velocity, after_s: 0.0 })
+        };
+        // 5 cm beside it, on an arc over 0.25 m and 0.5 s of way.
+        let radps = 2.0 * 0.4 * 0.05 / (0.45 * 0.45);
+        for (y, expected) in [(1.3, 0.0), (1.25, radps), (1.35, -radps)] {
+            let found = rate_radps((4.0, y), 0.4).unwrap();
+            assert!((found - expected).abs() < 0.1 * radps, "{y} {found}");
+        }
+        // Backwards, a turn to the left leads to the right.
+        let back = rate_radps((4.0, 1.25), -0.4).unwrap();
+        assert!((back + radps).abs() < 0.1 * radps, "{back}");
+        assert_eq!(rate_radps((8.0, 1.25), 0.4), None, "in the open");
     }
 
     proptest! {
