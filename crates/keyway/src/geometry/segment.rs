@@ -40,6 +40,12 @@ impl Square {
         dx * dx + dy * dy
     }
 
+    /// Its point that is nearest to a point: the point itself where that lies inside.
+    pub(crate) fn nearest_to(self, point: Point) -> Point {
+        let Point { x, y } = self.corner;
+        Point::new(point.x.clamp(x, x + 1.0), point.y.clamp(y, y + 1.0))
+    }
+
     /// The four corners, counter-clockwise from the lower left.
     pub(crate) fn corners(self) -> [Point; 4] {
         let Point { x, y } = self.corner;

@@ -11,10 +11,11 @@ use crate::map::{
 };
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::robot::{Footprint, Robot};
-use crate::route::{EndRule, Route, RouteQuery, plan_route};
+use crate::route::{
+    EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
+};
 use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::Smoother;
-use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 
 /// The map layers of one robot, widest clearance first: a route uses the first on which there is a
@@ -45,10 +46,9 @@ impl Layers {
             }
         }
         let fitting = maps.len();
-        // Half the diagonal of a cell: a lane that is just wide enough has a cell as near as this
-        // to its middle.
+        // A lane that is just wide enough has a cell near its middle.
         let narrowest_m = least_m.min(stack.map.clearance_m);
-        let clearance_m = (narrowest_m - known.frame().resolution_m() * FRAC_1_SQRT_2).max(0.0);
+        let clearance_m = looser_clearance_m(known.frame(), narrowest_m);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
         Ok(Self { maps, fitting, is_inserted: false })
     }
@@ -68,6 +68,14 @@ impl Layers {
     /// The maps on which a way has the clearance that the robot needs.
     fn fitting(&self) -> &[SearchMap] {
         &self.maps[..self.fitting]
+    }
+
+    /// The last map, and the clearance that the robot needs \[m\]; `None` where no map is looser
+    /// than those on which a way has it.
+    fn looser(&mut self) -> Option<(&mut SearchMap, f64)> {
+        let [.., least, looser] = &mut self.maps[..] else { return None };
+        let needed_m = least.config().clearance_m;
+        (looser.config().clearance_m < needed_m).then_some((looser, needed_m))
     }
 
     /// Changes some cells of all maps.
@@ -206,11 +214,20 @@ impl Router {
         check_room(&self.layers, PathEnd::Start, start, self.radius_m)?;
         check_room(&self.layers, PathEnd::Goal, goal, self.radius_m)?;
         let query = footprint_query(start, goal, self.radius_m);
-        let (planner, smoother) = (&*self.planner, &*self.smoother);
-        let route =
-            first_route(self.layers.fitting(), planner, smoother, &query, &mut self.workspace)
-                .map_err(|error| explain(&self.layers, planner, &query, error))?;
-        Ok(self.wider(known, &query, &route).unwrap_or(route))
+        match self.first_of(self.layers.fitting, &query) {
+            Ok(route) => Ok(self.wider(known, &query, &route).unwrap_or(route)),
+            Err(error) => self
+                .between_cells(&query)
+                .ok_or_else(|| explain(&self.layers, &*self.planner, &query, error)),
+        }
+    }
+
+    /// A route that keeps what the robot needs, though no path of cells does.
+    fn between_cells(&mut self, query: &RouteQuery) -> Option<Route> {
+        let Self { layers, planner, smoother, workspace, radius_m } = self;
+        let (looser, needed_m) = layers.looser()?;
+        let kept_m = needed_m.max(*radius_m);
+        plan_between_cells(looser, kept_m, &**planner, &**smoother, query, workspace, &mut ())
     }
 
     /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on
@@ -256,8 +273,21 @@ impl Router {
     ) -> Result<Route, NavigateError> {
         let query =
             RouteQuery { budget: Some(budget), ..footprint_query(position, goal, self.radius_m) };
-        let (planner, smoother) = (&*self.planner, &*self.smoother);
-        first_route(&self.layers.maps, planner, smoother, &query, &mut self.workspace)
+        let fitting = self.first_of(self.layers.fitting, &query);
+        let is_final =
+            matches!(fitting, Ok(_) | Err(NavigateError::Plan(PlanError::BudgetExhausted { .. })));
+        if is_final {
+            return fitting;
+        }
+        // What has failed so far fails at once: its ends are not joined.
+        let any = self.layers.maps.len();
+        self.between_cells(&query).map_or_else(|| self.first_of(any, &query), Ok)
+    }
+
+    /// The route on the first of the widest maps on which there is one.
+    fn first_of(&mut self, maps: usize, query: &RouteQuery) -> Result<Route, NavigateError> {
+        let Self { layers, planner, smoother, workspace, .. } = self;
+        first_route(&layers.maps[..maps], &**planner, &**smoother, query, workspace)
     }
 
     /// The nearest place with room for the robot, on what is known and sensed.

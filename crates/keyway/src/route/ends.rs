@@ -1,7 +1,7 @@
 //! How the positions of a route are joined to the cells of its path.
 
 use crate::geometry::{Point, Segment};
-use crate::map::{Cell, SearchMap};
+use crate::map::{Cell, Clearance, SearchMap};
 use crate::plan::{PathEnd, PlanError, check_end};
 
 /// How a position is joined to the cells of a path.
@@ -37,6 +37,20 @@ impl EndRule {
         let way = Segment::new(position, map.frame().world_from_cell(cell));
         let room_m = map.clearance().of_point(position, radius_m);
         if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
+    }
+
+    /// What a straight way from (or to) a position must keep \[m\], for a route that keeps
+    /// `clearance_m`.
+    pub(super) fn room_m(
+        &self,
+        clearance: Clearance<'_>,
+        position: Point,
+        clearance_m: f64,
+    ) -> f64 {
+        match *self {
+            Self::OwnCell => clearance_m,
+            Self::NearestFree { radius_m } => clearance.of_point(position, radius_m),
+        }
     }
 
     /// What the smoothed line keeps where the path does: where cells are too coarse for a lane,

@@ -58,8 +58,22 @@ impl<'a> Clearance<'a> {
         if !point.is_finite() {
             return 0.0;
         }
-        let grid = self.frame.grid_from_world(point);
-        let mut best_sq = (reach_m / self.frame.resolution_m()).powi(2);
+        let (grid, reach) =
+            (self.frame.grid_from_world(point), reach_m / self.frame.resolution_m());
+        self.within_m(self.of_grid_point(grid, reach, |_| {}), (reach.powi(2).sqrt(), reach_m))
+    }
+
+    /// The square nearest to a point, if one is nearer than a reach \[cells\].
+    pub(crate) fn nearest_square(&self, grid: Point, reach: f64) -> Option<Square> {
+        let mut nearest = None;
+        self.of_grid_point(grid, reach, |square| nearest = Some(square));
+        nearest
+    }
+
+    /// Distance from a point to the nearest square, up to a reach \[cells\]; each square that is
+    /// nearer than those before it is told.
+    fn of_grid_point(&self, grid: Point, reach: f64, mut nearer: impl FnMut(Square)) -> f64 {
+        let mut best_sq = reach.powi(2);
         let row = floor_to_i32(grid.y).clamp(0, self.obstacles.height() as i32 - 1);
         let column = floor_to_i32(grid.x);
         let reach = best_sq.sqrt();
@@ -83,14 +97,19 @@ impl<'a> Clearance<'a> {
                 let right = self.obstacles.first_one_in_span(y, column, to);
                 let left = self.obstacles.last_one_in_span(y, from, column);
                 for x in right.into_iter().chain(left) {
-                    best_sq = best_sq.min(square(x, y).distance_sq_to_point(grid));
+                    let square = square(x, y);
+                    let distance_sq = square.distance_sq_to_point(grid);
+                    if distance_sq < best_sq {
+                        best_sq = distance_sq;
+                        nearer(square);
+                    }
                 }
             }
             if !in_reach {
                 break;
             }
         }
-        self.within_m(best_sq.sqrt(), (reach, reach_m))
+        best_sq.sqrt()
     }
 
     /// A distance \[cells\] in metres where it is less than the reach, which is given in cells and

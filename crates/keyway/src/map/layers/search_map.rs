@@ -265,6 +265,27 @@ impl SearchMap {
         self.revision += u64::from(changed);
     }
 
+    /// Blocks cells though nothing stands there. An edit near them may free them again.
+    pub(crate) fn close(&mut self, cells: &[Cell]) {
+        self.set_blocked(cells, |_, _| true);
+    }
+
+    /// Frees cells that were closed, where nothing else blocks them.
+    pub(crate) fn open(&mut self, cells: &[Cell]) {
+        self.set_blocked(cells, Self::follows_blocked);
+    }
+
+    fn set_blocked(&mut self, cells: &[Cell], is_blocked: impl Fn(&Self, Cell) -> bool) {
+        for &cell in cells {
+            let blocked = is_blocked(self, cell);
+            if self.blocked.set(cell, blocked) {
+                self.blocked_transposed.set(Cell::new(cell.y, cell.x), blocked);
+                self.blocked_cells_changed(&CellWindow { low: cell, high: cell });
+                self.count_revision();
+            }
+        }
+    }
+
     /// The cells that changes in a window may have an influence on.
     fn influenced(&self, window: &CellWindow, reach: i32) -> CellWindow {
         let last = [self.frame.width() as i32 - 1, self.frame.height() as i32 - 1];
