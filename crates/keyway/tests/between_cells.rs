@@ -12,7 +12,7 @@ use keyway::plan::AStar;
 use keyway::random::Random;
 use keyway::robot::{Footprint, Robot};
 use keyway::route::{
-    EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
+    BetweenCells, EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
 };
 use keyway::search::Workspace;
 use keyway::smooth::Taut;
@@ -63,7 +63,7 @@ fn planned(grid: &OccupancyGrid, clearance_m: f64, query: &RouteQuery) -> Option
     let (planner, mut workspace) = (AStar::default(), Workspace::default());
     let route = plan_between_cells(
         &mut looser,
-        clearance_m,
+        BetweenCells { clearance_m, attempts: 16 },
         &planner,
         &Taut,
         query,

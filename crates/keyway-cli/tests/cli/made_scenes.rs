@@ -192,3 +192,24 @@ fn narrow_places_are_made_by_seed() {
     let message = error["message"].as_str().unwrap();
     assert!(message.ends_with("did you mean `bay`?"), "{message}");
 }
+
+/// Passages whose middle lies between two rows of cells: no centre of a cell has the room that the
+/// robot needs.
+#[test]
+fn passages_between_cells_are_driven() {
+    let folder = folder();
+    for scene in ["lane_07010", "tunnel_07002", "tunnel_07004"] {
+        let (kind, seed) = scene.split_once('_').unwrap();
+        let line = format!("scene narrow {kind} --seed {seed} --count 1 --out n");
+        keyway(folder.path(), &line).expect_code(0);
+        let line = format!("navigate --scene n/{scene}.toml --format json");
+        let run = keyway(folder.path(), &line).expect_code(0).json();
+        assert_eq!(run["outcome"], json!("reached"), "{scene}");
+        let clearance_m = run["run"]["min_clearance_m"].as_f64().unwrap();
+        assert!(clearance_m > 0.0, "{scene}: {clearance_m}");
+    }
+    // This one is as wide as the robot, but not as its margin asks for.
+    keyway(folder.path(), "scene narrow door --seed 7010 --count 1 --out n").expect_code(0);
+    let run = keyway(folder.path(), "navigate --scene n/door_07010.toml --format json").json();
+    assert_eq!(run["outcome"], json!("no_path"));
+}

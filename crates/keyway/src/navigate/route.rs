@@ -12,7 +12,7 @@ use crate::map::{
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::robot::{Footprint, Robot};
 use crate::route::{
-    EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
+    BetweenCells, EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
 };
 use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::Smoother;
@@ -217,17 +217,24 @@ impl Router {
         match self.first_of(self.layers.fitting, &query) {
             Ok(route) => Ok(self.wider(known, &query, &route).unwrap_or(route)),
             Err(error) => self
-                .between_cells(&query)
+                .between_cells(&query, Self::FIRST_ATTEMPTS)
                 .ok_or_else(|| explain(&self.layers, &*self.planner, &query, error)),
         }
     }
 
+    /// Paths on which a first route between the centres of cells is sought: where there is none, it
+    /// costs more to tell why.
+    const FIRST_ATTEMPTS: u32 = 16;
+
+    /// The same while the robot waits for it.
+    const LATER_ATTEMPTS: u32 = 4;
+
     /// A route that keeps what the robot needs, though no path of cells does.
-    fn between_cells(&mut self, query: &RouteQuery) -> Option<Route> {
+    fn between_cells(&mut self, query: &RouteQuery, attempts: u32) -> Option<Route> {
         let Self { layers, planner, smoother, workspace, radius_m } = self;
         let (looser, needed_m) = layers.looser()?;
-        let kept_m = needed_m.max(*radius_m);
-        plan_between_cells(looser, kept_m, &**planner, &**smoother, query, workspace, &mut ())
+        let wanted = BetweenCells { clearance_m: needed_m.max(*radius_m), attempts };
+        plan_between_cells(looser, wanted, &**planner, &**smoother, query, workspace, &mut ())
     }
 
     /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on
@@ -281,7 +288,8 @@ impl Router {
         }
         // What has failed so far fails at once: its ends are not joined.
         let any = self.layers.maps.len();
-        self.between_cells(&query).map_or_else(|| self.first_of(any, &query), Ok)
+        self.between_cells(&query, Self::LATER_ATTEMPTS)
+            .map_or_else(|| self.first_of(any, &query), Ok)
     }
 
     /// The route on the first of the widest maps on which there is one.

@@ -30,7 +30,7 @@ mod ends;
 mod no_path;
 mod no_room;
 
-pub use between_cells::{looser_clearance_m, plan_between_cells};
+pub use between_cells::{BetweenCells, looser_clearance_m, plan_between_cells};
 pub use ends::EndRule;
 pub use no_path::{NoPath, why_no_path};
 pub use no_room::why_no_room;

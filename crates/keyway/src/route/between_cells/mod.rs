@@ -23,9 +23,6 @@ use pinch::Pinch;
 use room::{CHORD_CELLS, Room};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Paths that are tried.
-const ATTEMPTS: u32 = 16;
-
 /// How often the range of the room that a way may have is halved.
 const HALVINGS: u32 = 4;
 
@@ -37,7 +34,16 @@ pub fn looser_clearance_m(frame: &GridFrame, clearance_m: f64) -> f64 {
     (clearance_m - HALF_DIAGONAL * frame.resolution_m()).max(0.0)
 }
 
-/// Plans a route that keeps `clearance_m`, wherever between the cells' centres it has to be for
+/// The route that is wanted of [`plan_between_cells`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BetweenCells {
+    /// What it keeps from obstacles and from the map's border \[m\].
+    pub clearance_m: f64,
+    /// How many paths are tried, each of which costs a search.
+    pub attempts: u32,
+}
+
+/// Plans a route that keeps a clearance, wherever between the cells' centres it has to be for
 /// that; `None` where none was found. Where there is room, it keeps more, up to half the diagonal
 /// of a cell. Near its ends it may come as near to obstacles as the [`EndRule`](super::EndRule) allows.
 ///
@@ -46,7 +52,7 @@ pub fn looser_clearance_m(frame: &GridFrame, clearance_m: f64) -> f64 {
 /// [`plan_route`](super::plan_route) has found no path for: the route is not the shortest one.
 pub fn plan_between_cells(
     looser: &mut SearchMap,
-    clearance_m: f64,
+    wanted: BetweenCells,
     planner: &dyn GlobalPlanner,
     smoother: &dyn Smoother,
     query: &RouteQuery,
@@ -56,14 +62,14 @@ pub fn plan_between_cells(
     let mut query = RouteQuery { if_unreachable: IfUnreachable::Fail, ..*query };
     let mut closed = Vec::new();
     let mut way = None;
-    for _ in 0..ATTEMPTS {
+    for _ in 0..wanted.attempts {
         let mut plan = Plan::default();
         if query.search(looser, planner, workspace, &mut plan, stages).is_err() {
             break;
         }
         let expanded = plan.statistics.expanded();
         query.budget = query.budget.map(|budget| budget.saturating_sub(expanded));
-        match Way::along(looser.clearance(), &query, &plan.cells, clearance_m) {
+        match Way::along(looser.clearance(), &query, &plan.cells, wanted.clearance_m) {
             Ok(found) => {
                 way = Some((found, plan));
                 break;
