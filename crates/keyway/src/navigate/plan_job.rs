@@ -28,6 +28,8 @@ pub struct Planned {
     pub(super) changes: u64,
     /// The clearance of the map that was added for the route, if one was \[m\].
     pub(super) inserted_m: Option<f64>,
+    /// A route had to lead between the centres of cells.
+    pub(super) is_between_cells: bool,
     pub(super) task: Result<Task, NavigateError>,
 }
 
@@ -48,7 +50,9 @@ impl PlanJob {
     pub fn run(self) -> Planned {
         let Self { mut router, known, parts, changes, start, way_points, goal } = self;
         let task = Task::plan(&mut router, &known, &parts, start, (&way_points, goal));
-        Planned { start, changes, inserted_m: router.layers.inserted_m(), task }
+        let (inserted_m, is_between_cells) =
+            (router.layers.inserted_m(), router.layers.is_between_cells);
+        Planned { start, changes, inserted_m, is_between_cells, task }
     }
 }
 

@@ -31,6 +31,8 @@ pub(super) struct Layers {
     fitting: usize,
     /// The last but one of these was added for a route.
     is_inserted: bool,
+    /// A route had to lead between the centres of cells, so later ones may have to.
+    pub(super) is_between_cells: bool,
 }
 
 impl Layers {
@@ -50,7 +52,7 @@ impl Layers {
         let narrowest_m = least_m.min(stack.map.clearance_m);
         let clearance_m = looser_clearance_m(known.frame(), narrowest_m);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
-        Ok(Self { maps, fitting, is_inserted: false })
+        Ok(Self { maps, fitting, is_inserted: false, is_between_cells: false })
     }
 
     /// Adds a map between those on which a way has the clearance that the robot needs, in the place
@@ -216,9 +218,11 @@ impl Router {
         let query = footprint_query(start, goal, self.radius_m);
         match self.first_of(self.layers.fitting, &query) {
             Ok(route) => Ok(self.wider(known, &query, &route).unwrap_or(route)),
-            Err(error) => self
-                .between_cells(&query, Self::FIRST_ATTEMPTS)
-                .ok_or_else(|| explain(&self.layers, &*self.planner, &query, error)),
+            Err(error) => {
+                let route = self.between_cells(&query, Self::FIRST_ATTEMPTS);
+                self.layers.is_between_cells |= route.is_some();
+                route.ok_or_else(|| explain(&self.layers, &*self.planner, &query, error))
+            }
         }
     }
 
@@ -271,7 +275,8 @@ impl Router {
     /// How often the range of clearances is halved.
     const HALVINGS: u32 = 3;
 
-    /// A route on what is known and sensed, within a budget of expanded nodes.
+    /// A route on what is known and sensed, within a budget of expanded nodes: between the centres
+    /// of cells where a route had to lead there on the known map.
     pub(super) fn again(
         &mut self,
         position: Point,
@@ -286,10 +291,11 @@ impl Router {
         if is_final {
             return fitting;
         }
+        let between = self.layers.is_between_cells;
+        let between = between.then(|| self.between_cells(&query, Self::LATER_ATTEMPTS)).flatten();
         // What has failed so far fails at once: its ends are not joined.
         let any = self.layers.maps.len();
-        self.between_cells(&query, Self::LATER_ATTEMPTS)
-            .map_or_else(|| self.first_of(any, &query), Ok)
+        between.map_or_else(|| self.first_of(any, &query), Ok)
     }
 
     /// The route on the first of the widest maps on which there is one.

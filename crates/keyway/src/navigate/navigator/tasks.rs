@@ -42,8 +42,10 @@ impl Navigator {
         let (parts, wanted) = (&self.parts, (way_points, goal.into()));
         let plan = |router: &mut _, known: &_| Task::plan(router, known, parts, start, wanted);
         let task = self.world.on_known(plan);
-        let inserted_m = self.world.router.layers.inserted_m();
-        self.accept(Planned { start, changes: self.world.changes, inserted_m, task })
+        let layers = &self.world.router.layers;
+        let (inserted_m, is_between_cells) = (layers.inserted_m(), layers.is_between_cells);
+        let changes = self.world.changes;
+        self.accept(Planned { start, changes, inserted_m, is_between_cells, task })
     }
 
     /// The search of [`Self::set_goals`] as a value: the robot drives on while it runs. Its result
@@ -69,7 +71,7 @@ impl Navigator {
     /// # Errors
     /// The error that the search has found, as for [`Self::set_goals`]. Then it goes on as before.
     pub fn accept(&mut self, planned: Planned) -> Result<(), NavigateError> {
-        let Planned { start, changes, inserted_m, task } = planned;
+        let Planned { start, changes, inserted_m, is_between_cells, task } = planned;
         let place = self.place.ok_or(NavigateError::PlaceUnknown)?;
         let task = task?;
         if changes != self.world.changes {
@@ -78,6 +80,7 @@ impl Navigator {
             return self.set_goals(way_points, task.goal);
         }
         self.world.add_layer(inserted_m);
+        self.world.router.layers.is_between_cells |= is_between_cells;
         self.ask_for(Some(Errand::Drive(Box::new(task))));
         self.record.counts.routes_planned += 1;
         self.record.counts.ways_taken += 1;

@@ -21,6 +21,8 @@ pub(in crate::navigate) struct StoredWorld {
     map: Arc<OccupancyGrid>,
     masks: Masks,
     inserted_m: Option<f64>,
+    #[serde(default)]
+    is_between_cells: bool,
     sensed: SensedPlaces,
     seen: Option<SeenStored>,
     tracker: Option<Tracker>,
@@ -82,6 +84,7 @@ impl World {
             map: Arc::clone(self.unmasked.as_ref().unwrap_or(&self.known)),
             masks: self.masks.clone(),
             inserted_m: self.router.layers.inserted_m(),
+            is_between_cells: self.router.layers.is_between_cells,
             sensed: self.sensed.stored(),
             seen: self.seen.as_ref().map(crate::sense::SeenGround::stored),
             tracker: self.tracker.clone(),
@@ -119,6 +122,7 @@ impl World {
         if let Some(clearance_m) = stored.inserted_m {
             router.layers.insert_again(&known, clearance_m);
         }
+        router.layers.is_between_cells = stored.is_between_cells;
         router.layers.mark(&world.sensed.cells(), |_| CellState::Occupied);
         world.obstacles = router.distances(&parts.robot);
         if let (Some(seen), Some(cells)) = (&mut world.seen, stored.seen)
