@@ -417,6 +417,9 @@ mod tests {
             let by_segment = brute(&|s| in_grid.distance_sq_to_square(s));
             prop_assert!((clearance.of_point(segment.a, reach) - by_point.min(reach)).abs() < 1e-12);
             prop_assert!((clearance.of_segment(segment, reach) - by_segment.min(reach)).abs() < 1e-12);
+            let nearest = clearance.nearest_square(in_grid.a, reach * 10.0);
+            let nearest = nearest.map(|square| square.nearest_to(in_grid.a).distance(in_grid.a) * 0.1);
+            prop_assert!((nearest.unwrap_or(reach) - by_point.min(reach)).abs() < 1e-12);
             match clearance.of_line(&Polyline::new(vec![segment.a, segment.b])) {
                 Some(nearest) => prop_assert!((nearest - by_segment).abs() < 1e-12),
                 None => prop_assert!(squares.is_empty()),

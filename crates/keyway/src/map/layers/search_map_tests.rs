@@ -35,6 +35,23 @@ fn a_disc_may_not_leave_the_map() {
 }
 
 #[test]
+fn closed_cells_are_blocked_until_they_are_opened() {
+    let rows = [".....", "..#..", "....."];
+    let (mut map, as_built) = (map(&rows, with_clearance(0.4)), map(&rows, with_clearance(0.4)));
+    // One of them is blocked anyway.
+    let cells = [Cell::new(2, 0), Cell::new(2, 1), Cell::new(2, 2)];
+    map.close(&cells);
+    assert!(cells.iter().all(|&cell| !map.is_free(cell)) && !map.obstacles().get(cells[0]));
+    assert_eq!(map.components(Connectivity::Eight).sizes(), [6, 6]);
+    assert_ne!(map.fingerprint(), as_built.fingerprint());
+    map.open(&cells);
+    assert_eq!(map.blocked(), as_built.blocked());
+    assert_eq!(map.blocked_transposed(), as_built.blocked_transposed());
+    assert_eq!(map.stops(), as_built.stops());
+    assert_eq!(map.components(Connectivity::Eight).sizes(), [14]);
+}
+
+#[test]
 fn names_the_bad_field() {
     let grid = OccupancyGrid::from_ascii(&["."]);
     let error = SearchMap::new(&grid, with_clearance(f64::NAN)).unwrap_err();
