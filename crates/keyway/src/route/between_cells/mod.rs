@@ -45,7 +45,7 @@ pub struct BetweenCells {
 
 /// Plans a route that keeps a clearance, wherever between the cells' centres it has to be for
 /// that; `None` where none was found. Where there is room, it keeps more, up to half the diagonal
-/// of a cell. Near its ends it may come as near to obstacles as the [`EndRule`](super::EndRule) allows.
+/// of a cell. Near its ends it may come as near to obstacles as [`EndRule`](super::EndRule) allows.
 ///
 /// `looser` has a clearance of [`looser_clearance_m`]; some of its cells are blocked in between,
 /// and free again at the end. A budget is for all attempts together. Meant for what
