@@ -82,6 +82,7 @@ fn decisions(criterion: &mut Criterion) {
                     path,
                     goal_heading_rad: None,
                     remaining_m: f64::INFINITY,
+                    smoothed: None,
                 };
                 match planner.decide(&scene, &mut DriveMemory::default(), &mut scratch) {
                     Ok(decision) => decision.evaluation,

@@ -146,6 +146,8 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 deceleration_mps2: rates.1,
                 angular_acceleration_radps2: rates.2,
                 angular_deceleration_radps2: rates.3,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             };
             let sensors = vec![RangeSensor::new(90, 360.0, 5.0)];
             Robot { footprint, cycle_s, actuation_delay_s, safety_margin_m, limits, sensors }

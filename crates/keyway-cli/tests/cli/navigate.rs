@@ -50,6 +50,8 @@ fn the_bundled_scene() {
             ("omega_sign_changes_per_m", Value::is_f64),
             ("v_variation_mps", Value::is_f64),
             ("omega_variation_radps", Value::is_f64),
+            ("max_jerk_mps3", Value::is_f64),
+            ("max_angular_jerk_radps3", Value::is_f64),
             ("mrpb", Value::is_object),
         ],
     );

@@ -4,7 +4,7 @@ use super::task::Task;
 use super::{
     Cycle, Episode, EpisodeError, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport,
 };
-use crate::metrics::Mrpb;
+use crate::metrics::{CommandJerk, Mrpb};
 use crate::report::{
     Clock, Controlled, RunPart, SmoothedPart, WayPointPart, timed, trajectory_row,
 };
@@ -173,6 +173,7 @@ impl<'a> Ready<'a> {
             key_points: navigator.guide_points(),
             misfit: navigator.misfit(),
             navigator,
+            jerk: CommandJerk::new(task.robot.robot.cycle_s),
             cycles: 0,
             decisions_s: 0.0,
             passed_s: Vec::new(),
@@ -241,6 +242,8 @@ struct Driver<'a> {
     key_points: Vec<Point>,
     misfit: Option<Misfit>,
     navigator: Navigator,
+    /// That of its commands so far.
+    jerk: CommandJerk,
     /// Decisions so far, and their total wall clock time \[s\].
     cycles: u64,
     decisions_s: f64,
@@ -269,6 +272,7 @@ impl Driver<'_> {
         self.observer.decided(&cycle);
         self.passed_s.resize(navigator.way_points_passed(), t_s);
         self.cycles += 1;
+        self.jerk.note(step.command());
         let remaining_m = remaining_m(navigator);
         let action = match step {
             _ if self.observer.gives_up() => Action::GiveUp,
@@ -298,6 +302,8 @@ impl Driver<'_> {
             recoveries: navigator.recoveries(),
             unsafe_commands: navigator.refusals(),
             way_points: self.way_points(),
+            max_jerk_mps3: self.jerk.max_mps3(),
+            max_angular_jerk_radps3: self.jerk.max_radps3(),
             mean_cycle_us: is_measured.then(|| self.decisions_s * 1e6 / self.cycles as f64),
         };
         let mrpb = Mrpb::of_run(run, world, Mrpb::safe_distance_m(&task.robot.robot));

@@ -48,6 +48,11 @@ pub struct RunPart {
     pub v_variation_mps: f64,
     /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: f64,
+    /// Largest change of the acceleration of the commands, from cycle to cycle and per time
+    /// \[m/s³\].
+    pub max_jerk_mps3: f64,
+    /// The same of the turn rate \[rad/s³\].
+    pub max_angular_jerk_radps3: f64,
     /// Measures of MRPB.
     pub mrpb: Mrpb,
 }
@@ -77,6 +82,10 @@ pub struct Controlled {
     pub way_points: Vec<WayPointPart>,
     /// Mean wall clock time of a decision \[us\].
     pub mean_cycle_us: Option<f64>,
+    /// Largest change of the acceleration of the commands \[m/s³\].
+    pub max_jerk_mps3: f64,
+    /// The same of the turn rate \[rad/s³\].
+    pub max_angular_jerk_radps3: f64,
 }
 
 /// A contact.
@@ -112,8 +121,15 @@ impl ContactPart {
 impl RunPart {
     /// Measures a run.
     pub fn of(run: &Run, mrpb: Mrpb, controlled: Controlled) -> Self {
-        let Controlled { routes_planned, recoveries, unsafe_commands, way_points, mean_cycle_us } =
-            controlled;
+        let Controlled {
+            routes_planned,
+            recoveries,
+            unsafe_commands,
+            way_points,
+            mean_cycle_us,
+            max_jerk_mps3,
+            max_angular_jerk_radps3,
+        } = controlled;
         let metrics = RunMetrics::of_run(run);
         Self {
             time_s: metrics.time_s,
@@ -133,6 +149,8 @@ impl RunPart {
             omega_sign_changes_per_m: metrics.omega_sign_changes_per_m,
             v_variation_mps: metrics.v_variation_mps,
             omega_variation_radps: metrics.omega_variation_radps,
+            max_jerk_mps3,
+            max_angular_jerk_radps3,
             mrpb,
         }
     }

@@ -6,6 +6,7 @@ mod changes;
 mod clocks;
 mod doubts;
 mod goals;
+mod jerk;
 mod mishaps;
 mod points;
 mod random_calls;

@@ -47,7 +47,11 @@ pub(crate) struct RobotInAWorld {
 impl RobotInAWorld {
     /// The small robot with the default stack, at rest.
     pub(crate) fn new(map: &OccupancyGrid, pose: Pose) -> Self {
-        let robot = Robot::small();
+        Self::of(Robot::small(), map, pose)
+    }
+
+    /// Another robot.
+    pub(crate) fn of(robot: Robot, map: &OccupancyGrid, pose: Pose) -> Self {
         let stack = Stack::keyway(&robot).fit(&robot).unwrap();
         let mut navigator = Navigator::new(map, &stack).unwrap();
         navigator.relocate(pose);

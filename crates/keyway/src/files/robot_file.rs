@@ -51,6 +51,10 @@ pub struct LimitsPart {
     pub angular_acceleration_radps2: Option<f64>,
     /// See [`Limits::angular_deceleration_radps2`].
     pub angular_deceleration_radps2: Option<f64>,
+    /// See [`Limits::jerk_mps3`].
+    pub jerk_mps3: Option<f64>,
+    /// See [`Limits::angular_jerk_radps3`].
+    pub angular_jerk_radps3: Option<f64>,
 }
 
 impl RobotFile {
@@ -113,6 +117,8 @@ impl LimitsPart {
             angular_deceleration_radps2: self
                 .angular_deceleration_radps2
                 .unwrap_or(base.angular_deceleration_radps2),
+            jerk_mps3: self.jerk_mps3.or(base.jerk_mps3),
+            angular_jerk_radps3: self.angular_jerk_radps3.or(base.angular_jerk_radps3),
             ..base.clone()
         }
     }

@@ -26,6 +26,7 @@
 //!     path: &path,
 //!     goal_heading_rad: None,
 //!     remaining_m: f64::INFINITY,
+//!     smoothed: None,
 //! };
 //! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;
 //! assert!(decision.command.v > 0.0 && decision.command.omega.abs() < 1e-9);
@@ -49,6 +50,7 @@ mod planner;
 mod rear;
 mod remedies;
 mod scene;
+mod smoothed;
 mod space_time;
 mod stop_rule;
 mod terms;
@@ -68,5 +70,6 @@ pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWe
 pub(crate) use mover_rule::MoverRule;
 pub use planner::{Course, Detour, DriveMemory, LocalPlanner, OwnMemory, Scratch};
 pub use scene::Scene;
+pub use smoothed::Smoothed;
 pub use space_time::{SpaceTime, SpaceTimeConfig};
 pub use stop_rule::{Gated, Refusal, RefusalCounts, StopRule, StopRuleConfig, Surroundings};

@@ -1,5 +1,6 @@
 //! What one decision may look at.
 
+use super::Smoothed;
 use crate::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
 use crate::sense::{Mover, SeenCells};
@@ -35,4 +36,7 @@ pub struct Scene<'a> {
     /// need not stop. A local planner issues nothing after which the robot could not stop within
     /// this way any more.
     pub remaining_m: f64,
+    /// The robot itself, if its commands are averaged: then `pose` and `velocity` are those of its
+    /// reference, which is what a local planner decides for.
+    pub smoothed: Option<Smoothed<'a>>,
 }

@@ -26,7 +26,7 @@ impl Act {
         let &Moment { robot, velocity, elapsed_s, .. } = moment;
         let braked = robot.limits.braked(velocity, robot.cycle_s);
         if self.is_done {
-            return if robot.stands(velocity) { Step::Arrived } else { Step::Drive(braked) };
+            return if moment.stands() { Step::Arrived } else { Step::Drive(braked) };
         }
         self.left_s -= elapsed_s;
         if self.left_s < 0.0 {

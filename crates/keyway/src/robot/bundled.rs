@@ -50,6 +50,8 @@ impl Robot {
                 deceleration_mps2: 0.5,
                 angular_acceleration_radps2: 3.0,
                 angular_deceleration_radps2: 3.0,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![RangeSensor::new(360, 360.0, 3.5)],
         }
@@ -73,6 +75,8 @@ impl Robot {
                 deceleration_mps2: 3.0,
                 angular_acceleration_radps2: 6.0,
                 angular_deceleration_radps2: 6.0,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![RangeSensor::new(720, 270.0, 30.0)],
         }
@@ -94,6 +98,8 @@ impl Robot {
                 deceleration_mps2: 0.2,
                 angular_acceleration_radps2: 50.0 * degree,
                 angular_deceleration_radps2: 50.0 * degree,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![RangeSensor::new(360, 360.0, 5.0)],
         }
@@ -149,6 +155,8 @@ impl Robot {
                 deceleration_mps2: 0.9,
                 angular_acceleration_radps2: 7.725,
                 angular_deceleration_radps2: 7.725,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![lidar],
         }
@@ -179,6 +187,8 @@ impl Robot {
                 deceleration_mps2: 1.0,
                 angular_acceleration_radps2: 1.0,
                 angular_deceleration_radps2: 1.0,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![lidar],
         }
@@ -210,6 +220,8 @@ impl Robot {
                 deceleration_mps2: 1.5,
                 angular_acceleration_radps2: 2.0,
                 angular_deceleration_radps2: 2.0,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![scanner(0.43, 0.236, 45.0), scanner(-0.354, -0.236, -135.0)],
         }
@@ -242,6 +254,8 @@ impl Robot {
                 deceleration_mps2: 1.25,
                 angular_acceleration_radps2: 0.79,
                 angular_deceleration_radps2: 1.8,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![lidar],
         }
@@ -275,6 +289,8 @@ impl Robot {
                 deceleration_mps2: 1.0,
                 angular_acceleration_radps2: 0.2,
                 angular_deceleration_radps2: 2.0,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![scanner],
         }
@@ -304,6 +320,8 @@ impl Robot {
                 deceleration_mps2: 2.5,
                 angular_acceleration_radps2: 3.2,
                 angular_deceleration_radps2: 3.2,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![lidar],
         }

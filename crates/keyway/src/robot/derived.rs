@@ -40,6 +40,8 @@ impl Robot {
                 deceleration_mps2: acceleration_mps2,
                 angular_acceleration_radps2,
                 angular_deceleration_radps2: angular_acceleration_radps2,
+                jerk_mps3: None,
+                angular_jerk_radps3: None,
             },
             sensors: vec![lidar(
                 v_max_mps,

@@ -68,7 +68,7 @@ impl Robot {
     /// cycle \[s\].
     pub(crate) fn backing_s(&self) -> f64 {
         let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
-        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s
+        self.actuation_delay_s + 2.0 * self.cycle_s + stop_s + 2.0 * self.smoothing_lag_s()
     }
 }
 

@@ -1,6 +1,7 @@
 //! Description of a robot: its size, its limits, its sensors.
 
 mod bundled;
+mod command_window;
 mod derived;
 mod drive_model;
 mod footprint;
@@ -10,6 +11,7 @@ mod sensor;
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
 
+pub use command_window::CommandWindow;
 pub use drive_model::{CycleCount, Ramp};
 #[cfg(test)]
 pub(crate) use footprint::star;
@@ -62,6 +64,13 @@ pub struct Limits {
     pub angular_acceleration_radps2: f64,
     /// Angular deceleration \[rad/s²\], positive; from the full turn rate, too.
     pub angular_deceleration_radps2: f64,
+    /// Largest change of the acceleration of its commands, per time \[m/s³\]; none unless it is
+    /// given. Commands are then the mean over some cycles ([`CommandWindow`]), 2 s at most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jerk_mps3: Option<f64>,
+    /// The same of turning \[rad/s³\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular_jerk_radps3: Option<f64>,
 }
 
 impl Robot {
@@ -110,6 +119,7 @@ impl Robot {
             return Err(ConfigError::must_be(field, expected, value));
         }
         self.validate_sensors()?;
+        self.limits.check_jerks(self.cycle_s)?;
         self.limits.check_stopping()
     }
 }

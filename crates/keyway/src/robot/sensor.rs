@@ -166,7 +166,10 @@ impl Robot {
     /// goes on for two cycles, a delay and three periods of its sensor (so many scans may be lost),
     /// and then brakes \[m\].
     pub(crate) fn looks_ahead_m(&self) -> f64 {
-        let reacts_s = self.actuation_delay_s + 2.0 * self.cycle_s + 3.0 * self.scan_period_s();
+        let reacts_s = self.actuation_delay_s
+            + 2.0 * self.cycle_s
+            + 3.0 * self.scan_period_s()
+            + self.smoothing_lag_s();
         self.footprint.circumscribed_radius_m()
             + self.limits.v_max_mps * reacts_s
             + self.limits.stop_m()
@@ -178,11 +181,12 @@ impl Robot {
     /// It may be more than the robot drives; 0 where no speed is slow enough.
     ///
     /// From the speed v it needs v² / (2 b) + v t, with the deceleration b and the time t of those:
-    /// of the scan's period, the delay, a cycle, and half of one in which it brakes less, as it
-    /// brakes in whole cycles.
+    /// of the scan's period, the delay, a cycle, half of one in which it brakes less, as it brakes
+    /// in whole cycles, and the time by which it is behind its reference.
     pub fn sight_mps(&self) -> f64 {
         let react_s =
             self.scan_period_s().max(self.cycle_s) + self.actuation_delay_s + 1.5 * self.cycle_s;
+        let react_s = react_s + self.smoothing_lag_s();
         let free_m = self.sees_ahead_m() - self.footprint.foremost_m() - self.safety_margin_m();
         let lost_mps = self.limits.deceleration_mps2 * react_s;
         let square = lost_mps * lost_mps + 2.0 * self.limits.deceleration_mps2 * free_m.max(0.0);

@@ -28,6 +28,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
         path: &NO_PATH,
         goal_heading_rad: None,
         remaining_m: f64::INFINITY,
+        smoothed: None,
     }
 }
 

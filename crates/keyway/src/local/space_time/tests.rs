@@ -83,6 +83,7 @@ impl<'a> Drive<'a> {
             path,
             goal_heading_rad: None,
             remaining_m: pose.point().distance(end).max(0.01),
+            smoothed: None,
         })
     }
 
@@ -260,6 +261,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
         path: &drive.path,
         goal_heading_rad: None,
         remaining_m: 3.0,
+        smoothed: None,
     };
     let (planner, memory, scratch) = (&drive.planner, &mut drive.memory, &mut drive.scratch);
     let _ = planner.decide(&scene, memory, scratch);

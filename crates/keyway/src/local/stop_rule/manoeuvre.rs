@@ -3,6 +3,7 @@
 use super::start::{Body, Covered, ROUNDING_M, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Disc, Point, Pose, Velocity, wrap_angle};
+use crate::local::Smoothed;
 use crate::local::rear::{Seen, SeenAhead};
 use crate::map::{self, Cell, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
 use crate::robot::Robot;
@@ -85,19 +86,25 @@ struct Reach {
 }
 
 impl Reach {
-    /// Of all manoeuvres whose velocities lie between these.
-    fn new(robot: &Robot, core: &Core<'_>, from: Velocity, asked: Velocity) -> Self {
+    /// Of all manoeuvres whose velocities lie between the present ones and what was asked for.
+    fn new(robot: &Robot, core: &Core<'_>, around: &Surroundings<'_>, asked: Velocity) -> Self {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+        let from = around.smoothed.map_or(around.velocity, |robot| robot.fastest());
         let v = from.v.abs().max(asked.v.abs());
         let omega = from.omega.abs().max(asked.omega.abs());
         let stop_s = (v / limits.deceleration_mps2).max(omega / limits.angular_deceleration_radps2);
         // The mean speed while braking is half of the first one; the last cycle may be braked more
         // gently.
         let full_s = cycle_s + 0.5 * (stop_s + cycle_s);
-        Self {
-            moves_m: core.moves_m(v * full_s, omega * full_s),
-            duration_s: 2.0 * cycle_s + stop_s,
-        }
+        let duration_s = 2.0 * cycle_s + stop_s;
+        // A robot comes no farther for an average than the reference, and what is still averaged;
+        // one that does not drive as it was told first brakes to where it does.
+        let (more_s, later_s) = around.smoothed.map_or((0.0, 0.0), |_| {
+            let smoothed_s = 2.0 * robot.smoothing_lag_s() + cycle_s;
+            (smoothed_s + full_s, smoothed_s + duration_s)
+        });
+        let full_s = full_s + more_s;
+        Self { moves_m: core.moves_m(v * full_s, omega * full_s), duration_s: duration_s + later_s }
     }
 }
 
@@ -113,7 +120,7 @@ impl<'a> Manoeuvres<'a> {
         Work { near, shrunk, touched, boxes, turned }: &'a mut Work,
     ) -> Self {
         let (core, _) = robot.footprint.core();
-        let reach = Reach::new(robot, &core, around.velocity, asked);
+        let reach = Reach::new(robot, &core, around, asked);
         collect_near(near, config, robot, around, &reach);
         let start = Start { robot, around, margin_m: config.margin_m };
         touched.clear();
@@ -151,27 +158,51 @@ impl<'a> Manoeuvres<'a> {
 
     /// Whether a manoeuvre that begins with a cycle towards `first` is admissible.
     pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
-        let (mut from, mut to) = (self.from(first), first);
-        if from == Velocity::ZERO && to == Velocity::ZERO {
+        let from = self.from(first);
+        let is_moved = self.around.smoothed.is_some_and(|robot| !robot.window.is_zero());
+        if from == Velocity::ZERO && first == Velocity::ZERO && !is_moved {
             return Ok(());
         }
         if self.is_covered {
             return Err(Refusal::Covered);
         }
         // What is left of a motion that is reversed leads back, too, and has to.
-        let behind = self.behind.filter(|_| first.v < 0.0);
-        let ahead = self.ahead.filter(|_| first.v > 0.0);
+        let leads = |sign: f64| {
+            let is_there = |v: f64| v * sign > 0.0;
+            is_there(first.v) || self.around.smoothed.is_some_and(|robot| robot.leads(is_there))
+        };
+        let behind = self.behind.filter(|_| leads(-1.0));
+        let ahead = self.ahead.filter(|_| leads(1.0));
         let is_seen = behind.is_none() && ahead.is_none();
         if self.grounds.is_empty() && self.near.is_empty() && is_seen {
             return Ok(());
         }
-        let (limits, cycle_s) = (&self.robot.limits, self.robot.cycle_s);
-        let arc_s = cycle_s / f64::from(Pose::RAMP_ARCS);
-        let (mut pose, mut after_s) = (self.around.pose, self.around.delay_s);
+        let robot = self.robot;
+        let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+        let braking = std::iter::successors(Some(first), |&last| {
+            let braked = || limits.reached(last, limits.braked(last, cycle_s), cycle_s);
+            (last != Velocity::ZERO).then(braked)
+        });
+        match self.around.smoothed {
+            None => self.follow(from, braking, (ahead, behind)),
+            Some(it) => self.follow(from, it.velocities(from, braking, robot), (ahead, behind)),
+        }
+    }
+
+    /// Whether a manoeuvre is admissible that begins with a velocity and has those at the ends of
+    /// its cycles.
+    fn follow(
+        &mut self,
+        mut from: Velocity,
+        velocities: impl Iterator<Item = Velocity>,
+        (ahead, behind): (Option<SeenAhead<'a>>, Option<Seen<'a>>),
+    ) -> Result<(), Refusal> {
+        let arc_s = self.robot.cycle_s / f64::from(Pose::RAMP_ARCS);
+        let (mut pose, mut after_s) = (self.around.robot().0, self.around.delay_s);
         let mut spare_m = f64::NEG_INFINITY;
         // How far it has driven ahead since its front was looked at.
         let (mut unlooked_m, cell_m) = (0.0, self.around.obstacles.frame().resolution_m());
-        loop {
+        for to in velocities {
             for velocity in Pose::ramp_arcs(from, to) {
                 let stretch = Stretch { start: pose, velocity, duration_s: arc_s, after_s };
                 spare_m = self.check_standing(&stretch, spare_m)?;
@@ -196,15 +227,9 @@ impl<'a> Manoeuvres<'a> {
             if spare_m < 0.0 {
                 spare_m = self.look(pose, after_s, 0.0)?;
             }
-            if to == Velocity::ZERO {
-                return if unlooked_m > 0.0 {
-                    self.check_sight(ahead, pose, after_s)
-                } else {
-                    Ok(())
-                };
-            }
-            (from, to) = (to, limits.reached(to, limits.braked(to, cycle_s), cycle_s));
+            from = to;
         }
+        if unlooked_m > 0.0 { self.check_sight(ahead, pose, after_s) } else { Ok(()) }
     }
 
     /// Refuses a pose whose front is not within what has been seen.
@@ -231,8 +256,10 @@ impl<'a> Manoeuvres<'a> {
     /// that the noise seems to lead to. If it is no noise, it is the end of a manoeuvre that was
     /// admissible.
     fn from(&self, first: Velocity) -> Velocity {
-        let Velocity { v, omega, .. } = self.around.velocity;
-        let is_standing = self.robot.stands(self.around.velocity);
+        let (_, now) = self.around.robot();
+        let Velocity { v, omega, .. } = now;
+        let is_still = |it: Smoothed<'_>| it.window.is_still(self.robot);
+        let is_standing = self.robot.stands(now) && self.around.smoothed.is_none_or(is_still);
         let unless_noise =
             |now: f64, asked: f64| if is_standing && asked == 0.0 { 0.0 } else { now };
         Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))
@@ -365,7 +392,7 @@ fn collect_near(
     let (core, radius_m) = robot.footprint.core();
     near.clear();
     for mover in around.movers.iter().filter(|mover| mover.is_usable()) {
-        let gap_m = gap_m(&core, radius_m, around.pose, &mover.now());
+        let gap_m = gap_m(&core, radius_m, around.robot().0, &mover.now());
         let approach_m = mover.fastest_mps(&config.movers) * (around.delay_s + reach.duration_s);
         if gap_m - reach.moves_m - approach_m >= config.margin_m {
             continue;

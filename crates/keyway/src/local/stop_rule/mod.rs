@@ -38,6 +38,13 @@
 //! the movers are known. What the robot does until then was decided before, when it was the
 //! beginning of the manoeuvre of an earlier command.
 //!
+//! Of a robot with limits of jerk ([`Surroundings::smoothed`]), what is asked for is a velocity of
+//! its reference, and so is braking; the manoeuvre is that of the robot itself: in every cycle it
+//! gets the mean of the last velocities of the reference
+//! ([`CommandWindow`](crate::robot::CommandWindow)), those of the cycles before included, until
+//! nothing of them is left. (3) and (4) are then asked, too, where only what is left leads back or
+//! ahead.
+//!
 //! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along
 //! the present arc and issues the nearest velocity on that line which it finds admissible; and
 //! braking when there is none. Who asks for braking along the present arc always gets it.
@@ -69,7 +76,10 @@
 //! brakes, what happens is the first cycle of a manoeuvre that touches nothing, and the next state
 //! has the rest of it. So every state is safe, and the way from one to the next is part of a
 //! manoeuvre that touches nothing. It does not matter that estimates change from cycle to cycle, if
-//! each of them holds the mover. ∎
+//! each of them holds the mover. With limits of jerk, a state is that of the robot along with what
+//! is averaged, and braking is that of its reference. The first cycle of a manoeuvre is again what
+//! happens, and leaves a state from which braking is the rest of that manoeuvre; the rest of the
+//! proof needs no more. ∎
 //!
 //! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther
 //! than [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin.
@@ -121,6 +131,8 @@
 
 #[cfg(test)]
 mod admits_tests;
+#[cfg(test)]
+mod jerk_tests;
 mod manoeuvre;
 #[cfg(test)]
 mod mover_tests;
@@ -133,7 +145,7 @@ mod tests;
 mod touching_tests;
 
 use super::rear::{Front, Rear};
-use super::{Scene, Scratch};
+use super::{Scene, Scratch, Smoothed};
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
@@ -191,23 +203,34 @@ pub struct Surroundings<'a> {
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
     pub delay_s: f64,
-    /// Where the robot is when the command acts.
+    /// Where the robot is when the command acts; its reference, if its commands are averaged.
     pub pose: Pose,
     /// How it then moves.
     pub velocity: Velocity,
+    /// The robot itself, if its commands are averaged.
+    pub smoothed: Option<Smoothed<'a>>,
 }
 
 impl<'a> Surroundings<'a> {
     /// Everything that stands, as a local planner sees it. Nothing is asked about what has been
     /// seen, and nothing moves.
     pub const fn standing(scene: &Scene<'a>) -> Self {
-        let Scene { obstacles, pose, velocity, .. } = *scene;
-        Self { obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity }
+        let Scene { obstacles, pose, velocity, smoothed, .. } = *scene;
+        let (seen, movers, delay_s) = (SeenCells::ANYWHERE, &[], 0.0);
+        Self { obstacles, seen, movers, delay_s, pose, velocity, smoothed }
+    }
+
+    /// The robot itself.
+    fn robot(&self) -> (Pose, Velocity) {
+        self.smoothed.map_or((self.pose, self.velocity), |robot| (robot.pose, robot.velocity))
     }
 
     fn is_finite(&self) -> bool {
-        let Pose { x, y, theta } = self.pose;
-        [x, y, theta].iter().all(|number| number.is_finite()) && is_finite(self.velocity)
+        let is_finite = |(pose, velocity): (Pose, Velocity)| {
+            let Pose { x, y, theta } = pose;
+            [x, y, theta].iter().all(|number| number.is_finite()) && is_finite(velocity)
+        };
+        is_finite((self.pose, self.velocity)) && is_finite(self.robot())
     }
 }
 
@@ -333,6 +356,7 @@ impl RefusalCounts {
 ///     let pose = Pose::new(x, 1.5, 0.0);
 ///     let around = Surroundings {
 ///         obstacles: &obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity,
+///         smoothed: None,
 ///     };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };

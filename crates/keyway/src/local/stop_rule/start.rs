@@ -121,7 +121,7 @@ impl<'a> Start<'a> {
         shrunk: &'a mut Vec<Point>,
         touched: &mut Touched,
     ) -> Result<ArrayVec<Body<'a>, 2>, Covered> {
-        let Surroundings { pose, obstacles, .. } = *self.around;
+        let (obstacles, (pose, _)) = (self.around.obstacles, self.around.robot());
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
         let reach_m = radius_m + self.margin_m + moves_m;
@@ -153,7 +153,8 @@ impl<'a> Start<'a> {
     /// touches, it keeps away from the places that the scan met, so that a robot that touches the
     /// squares of a wall may go along it.
     fn whole(&self, moves_m: f64, touched: &mut Touched) -> Body<'a> {
-        let Surroundings { pose, obstacles, seen, .. } = *self.around;
+        let Surroundings { obstacles, seen, .. } = *self.around;
+        let (pose, _) = self.around.robot();
         let clearance = obstacles.clearance();
         let (core, radius_m) = self.robot.footprint.core();
         let touch_m = radius_m + ROUNDING_M;
@@ -180,7 +181,7 @@ impl<'a> Start<'a> {
 
     /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
     fn shrink(&self, vertices: &[Point], shrunk: &'a mut Vec<Point>, reach_m: f64) -> Core<'a> {
-        let Surroundings { pose, obstacles, .. } = *self.around;
+        let (obstacles, (pose, _)) = (self.around.obstacles, self.around.robot());
         let mut fill = |scale: f64| {
             shrunk.clear();
             shrunk.extend(vertices.iter().map(|&vertex| vertex * scale));

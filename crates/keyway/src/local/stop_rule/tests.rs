@@ -19,7 +19,7 @@ impl Ground {
     }
 
     /// A wall 0.2 m thick whose face stands at x = 5 m, on a map of 10 m x 8 m.
-    fn wall() -> Self {
+    pub(super) fn wall() -> Self {
         let frame = GridFrame::new(100, 80, 0.1, Pose::default()).unwrap();
         let is_wall = |i: usize| (50..52).contains(&(i % 100));
         Self::new(&frame, &(0..8000).map(is_wall).collect::<Vec<_>>())
@@ -30,7 +30,7 @@ impl Ground {
     }
 
     /// Room of a footprint \[m\]: exact, up to 1 m.
-    fn room_m(&self, footprint: &Footprint, pose: Pose) -> f64 {
+    pub(super) fn room_m(&self, footprint: &Footprint, pose: Pose) -> f64 {
         let clearance = self.field.clearance();
         footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
     }
@@ -42,7 +42,15 @@ impl Ground {
         movers: &'a [Mover],
     ) -> Surroundings<'a> {
         let seen = SeenCells::ANYWHERE;
-        Surroundings { obstacles: &self.field, seen, movers, delay_s: 0.0, pose, velocity }
+        Surroundings {
+            obstacles: &self.field,
+            seen,
+            movers,
+            delay_s: 0.0,
+            pose,
+            velocity,
+            smoothed: None,
+        }
     }
 }
 

@@ -85,8 +85,15 @@ impl AmongDiscs {
         self.layer.update(&self.map, &scan, None, &mut Vec::new());
         let field = DistanceField::new(&frame, self.layer.sensed(), &FieldConfig::default());
         let seen = SeenCells { scans: std::slice::from_ref(&scan), ..SeenCells::ANYWHERE };
-        let around =
-            Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity };
+        let around = Surroundings {
+            obstacles: &field,
+            seen,
+            movers: &[],
+            delay_s: 0.0,
+            pose,
+            velocity,
+            smoothed: None,
+        };
         gate(&rule(&self.robot), &around, command)
     }
 

@@ -9,17 +9,19 @@
 mod dead_band;
 mod delay_filter;
 mod odometry;
+mod smoothing;
 #[cfg(test)]
 mod tests;
 mod under_way;
 
 use super::time::Time;
 use crate::geometry::{Pose, Velocity};
-use crate::robot::Robot;
+use crate::robot::{CommandWindow, Robot};
 use dead_band::DeadBand;
 use delay_filter::DelayFilter;
 use odometry::Odometry;
 use serde::{Deserialize, Serialize};
+use smoothing::{Drive, Smoothing};
 use under_way::UnderWay;
 
 /// The commands that were given to the motors, and their ways.
@@ -31,6 +33,9 @@ pub(super) struct Motors {
     filter: DelayFilter,
     dead_band: DeadBand,
     odometry: Odometry,
+    drive: Drive,
+    /// `None` for a robot without limits of jerk.
+    smoothing: Option<Smoothing>,
 }
 
 /// The part of [`Motors`] that does not follow from the robot.
@@ -40,6 +45,8 @@ pub(super) struct StoredMotors {
     filter: DelayFilter,
     dead_band: DeadBand,
     odometry: Odometry,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    smoothing: Option<Smoothing>,
 }
 
 impl Motors {
@@ -52,16 +59,22 @@ impl Motors {
         let under_way = UnderWay::new(robot, filter.longest_s());
         let (dead_band, odometry) = (DeadBand::new(robot), Odometry::default());
         let cycle_s = robot.cycle_s;
-        Self { described_s, cycle_s, under_way, filter, dead_band, odometry }
+        let drive = Drive { limits: robot.limits.clone(), cycle_s };
+        let smoothing = Smoothing::of(robot);
+        Self { described_s, cycle_s, under_way, filter, dead_band, odometry, drive, smoothing }
     }
 
     /// Learns from what was observed. The velocity that the robot has: as told, or where odometry
     /// says nothing, what follows from the commands.
     pub(super) fn observe(&mut self, time: Time, pose: Pose, told: Velocity) -> Velocity {
-        let command = self.under_way.acts_at(time, self.delay_s()).unwrap_or(Velocity::ZERO);
+        let acting = self.under_way.acts_at(time, self.delay_s());
+        let command = acting.unwrap_or(Velocity::ZERO);
         let measured = self.odometry.note(time, (pose, told), command, self.under_way.full());
         self.filter.observe(time, measured, &self.under_way);
         let is_told = !self.odometry.says_nothing();
+        if let (Some(smoothing), Some(command), true) = (&mut self.smoothing, acting, is_told) {
+            smoothing.note(time, (told, command), &self.drive);
+        }
         if is_told {
             let patience_s = Self::PATIENCE_S.max(3.0 * self.cycle_s);
             self.dead_band.note(time, told, command, patience_s);
@@ -115,6 +128,46 @@ impl Motors {
         self.under_way.predicted((observed, now), self.delay_s(), state)
     }
 
+    /// Begins a cycle of a robot that has a velocity when its next command acts: the pose and the
+    /// velocity to decide for. They are those of its reference, if its commands are averaged.
+    pub(super) fn begin(
+        &mut self,
+        now: Time,
+        (pose, velocity): (Pose, Velocity),
+    ) -> (Pose, Velocity) {
+        let Some(smoothing) = &mut self.smoothing else { return (pose, velocity) };
+        smoothing.begin(now, velocity, &self.drive);
+        let Smoothing { window, .. } = smoothing;
+        (window.reference_pose(pose, velocity, self.cycle_s), window.reference())
+    }
+
+    /// The command to give where one was decided on; the same, unless commands are averaged.
+    pub(super) fn smoothed(&mut self, now: Time, decided: Velocity) -> Velocity {
+        match &mut self.smoothing {
+            Some(smoothing) => smoothing.smooth(Some(now), decided, &self.drive),
+            None => decided,
+        }
+    }
+
+    /// The command that stops a robot of which nothing is known: at once, unless commands are
+    /// averaged. Then it goes on with the motion that was found to touch nothing.
+    pub(super) fn stopping(&mut self) -> Velocity {
+        let Some(smoothing) = &mut self.smoothing else { return Velocity::ZERO };
+        let Drive { limits, cycle_s } = &self.drive;
+        let braked = limits.braked(smoothing.window.reference(), *cycle_s);
+        smoothing.smooth(None, braked, &self.drive)
+    }
+
+    /// What is still averaged, if commands are.
+    pub(super) fn window(&self) -> Option<&CommandWindow> {
+        self.smoothing.as_ref().map(|smoothing| &smoothing.window)
+    }
+
+    /// True if something of what was decided is still to be given.
+    pub(super) fn moves_on(&self, robot: &Robot) -> bool {
+        self.window().is_some_and(|window| !window.is_still(robot))
+    }
+
     /// Notes a command that is given now.
     pub(super) fn give(&mut self, observed: Time, now: Time, command: Velocity) {
         self.under_way.give(observed, now, command);
@@ -127,7 +180,8 @@ impl Motors {
 
     /// True if a robot stands, and no command under way moves it.
     pub(super) fn is_at_rest(&self, observed: Time, now: Time, stands: (&Robot, Velocity)) -> bool {
-        self.under_way.is_at_rest((observed, now), self.delay_s(), stands)
+        let is_at_rest = self.under_way.is_at_rest((observed, now), self.delay_s(), stands);
+        is_at_rest && !self.moves_on(stands.0)
     }
 
     /// The clock begins anew: what is under way is forgotten, and not what was learned.
@@ -136,21 +190,31 @@ impl Motors {
         self.filter.pause();
         self.dead_band.pause();
         self.odometry = Odometry::default();
+        if let Some(smoothing) = &mut self.smoothing {
+            smoothing.restart_clock();
+        }
     }
 
     pub(super) fn stored(&self) -> StoredMotors {
         let Self { under_way, filter, dead_band, odometry, .. } = self;
         let (commands, filter) = (under_way.commands(), filter.clone());
-        StoredMotors { commands, filter, dead_band: *dead_band, odometry: *odometry }
+        let smoothing = self.smoothing.clone();
+        StoredMotors { commands, filter, dead_band: *dead_band, odometry: *odometry, smoothing }
     }
 
     /// Takes up what was stored; false where it is not that of this robot.
     pub(super) fn take_up(&mut self, stored: StoredMotors) -> bool {
-        let is_own = stored.filter.is_like(&self.filter);
+        let is_like = |stored: &Smoothing| {
+            self.smoothing.as_ref().is_some_and(|own| stored.window.is_like(&own.window))
+        };
+        let is_own = stored.filter.is_like(&self.filter)
+            && stored.smoothing.is_some() == self.smoothing.is_some()
+            && stored.smoothing.as_ref().is_none_or(is_like);
         self.under_way.take_up(&stored.commands);
         self.under_way.too_small = stored.dead_band.too_small();
         (self.filter, self.dead_band) = (stored.filter, stored.dead_band);
         self.odometry = stored.odometry;
+        self.smoothing = stored.smoothing;
         is_own
     }
 }

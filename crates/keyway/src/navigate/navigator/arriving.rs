@@ -27,7 +27,7 @@ impl Deciding<'_> {
         let (config, goal) = (&self.stack.controller, &self.task.goal);
         let left_rad = goal.turn_left_rad(self.pose);
         let is_facing = left_rad.is_none_or(|left| left.abs() <= config.goal_yaw_tolerance_rad);
-        self.is_at_goal() && is_facing && self.robot.stands(self.velocity)
+        self.is_at_goal() && is_facing && self.stands()
     }
 
     pub(super) fn is_at_goal(&self) -> bool {
@@ -62,7 +62,7 @@ impl Deciding<'_> {
                         if matches!(mode, Mode::Arriving(_)) { Mode::Following } else { mode };
                     return None;
                 };
-                let begins = self.robot.stands(velocity) && turn_rad != 0.0;
+                let begins = self.stands() && turn_rad != 0.0;
                 begins.then(|| MotionUnderWay::new(Motion::Turn(turn_rad)))
             }
         };

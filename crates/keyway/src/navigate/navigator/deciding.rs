@@ -28,15 +28,23 @@ pub(super) struct Deciding<'a> {
     pub(super) pose: Pose,
     /// Its velocity then.
     pub(super) velocity: Velocity,
+    /// The robot itself; the same, unless its commands are averaged.
+    pub(super) robot_then: (Pose, Velocity),
     /// Since the last decision \[s\].
     pub(super) elapsed_s: f64,
 }
 
 impl<'a> Deciding<'a> {
     pub(super) fn moment(&self) -> Moment<'a> {
-        let Self { robot, pose, velocity, elapsed_s, .. } = *self;
+        let Self { robot, pose, velocity, robot_then, elapsed_s, .. } = *self;
         let least = self.world.motors.least();
-        Moment { robot, pose, velocity, elapsed_s, least }
+        let moves_on = self.world.motors.moves_on(robot);
+        Moment { robot, pose, velocity, robot_then, moves_on, elapsed_s, least }
+    }
+
+    /// True if the robot stands, and stays there.
+    pub(super) fn stands(&self) -> bool {
+        self.moment().stands()
     }
 
     /// Notes that the robot has left what it was too near to, once it is told so.

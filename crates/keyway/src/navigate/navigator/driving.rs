@@ -14,8 +14,10 @@ impl Deciding<'_> {
         let Guidance { point, remaining_m } = self.task.guidance;
         let left = WayLeft { way_m: remaining_m, turn_rad: pose.bearing_to(point).abs() };
         let mut memory = self.task.memory.clone();
-        let asked = Asked { pose, velocity, memory: memory.clone() };
-        let scene = self.world.scene(self.task, pose, velocity);
+        let window = self.world.motors.window().cloned();
+        let robot_then = self.robot_then;
+        let asked = Asked { pose, velocity, robot_then, window, memory: memory.clone() };
+        let scene = self.world.scene(self.task, (pose, velocity), asked.smoothed());
         let decision = self.local.decide(&scene, &mut memory, &mut self.record.scratch);
         (self.task.memory, self.record.asked) = (memory, Some(asked));
         self.record.evaluation = match &decision {

@@ -93,7 +93,7 @@ impl Deciding<'_> {
 impl Record {
     /// The same step with the command that the stop rule lets pass.
     pub(super) fn guarded(&mut self, world: &World, moment: &Moment<'_>, step: Step) -> Step {
-        let &Moment { robot, pose, velocity, elapsed_s, .. } = moment;
+        let &Moment { robot, pose, velocity, robot_then, elapsed_s, .. } = moment;
         let Some(rule) = &self.guard.rule else { return step };
         let (Step::Drive(asked) | Step::Blocked { command: asked, .. }) = step else {
             return step;
@@ -101,10 +101,10 @@ impl Record {
         let movers = world.tracker.as_ref().map_or(&[][..], Tracker::possible_movers);
         let (obstacles, seen) = (&world.obstacles, world.seen_cells());
         let delay_s = world.motors.delay_s() + world.scan_age_s();
-        let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity };
+        let smoothed = world.smoothed(robot_then);
+        let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity, smoothed };
         let gated = rule.gate(&around, asked, &mut self.scratch);
-        let keeps_standing =
-            gated.changed() && robot.stands(velocity) && robot.stands(gated.command);
+        let keeps_standing = gated.changed() && moment.stands() && robot.stands(gated.command);
         self.guard.note(gated.why, keeps_standing, elapsed_s);
         match (gated.why, step) {
             (None, step) => step,

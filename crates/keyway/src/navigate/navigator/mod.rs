@@ -22,9 +22,9 @@ use super::time::Time;
 use super::world::{Told, World};
 use super::{Blocked, FittedStack, NavigateError, RecoveryCounts, Step};
 use crate::geometry::{Pose, Shift, Velocity};
-use crate::local::{DriveMemory, Evaluation, Scratch};
+use crate::local::{DriveMemory, Evaluation, Scratch, Smoothed};
 use crate::map::OccupancyGrid;
-use crate::robot::Robot;
+use crate::robot::{CommandWindow, Robot};
 use crate::sense::Observation;
 use deciding::Deciding;
 use guarding::{Guard, beside_movers};
@@ -91,8 +91,19 @@ struct Record {
 struct Asked {
     pose: Pose,
     velocity: Velocity,
+    /// The robot itself; the same, unless its commands are averaged.
+    robot_then: (Pose, Velocity),
+    /// What was averaged then, if commands are.
+    window: Option<CommandWindow>,
     /// Its memory before it answered.
     memory: DriveMemory,
+}
+
+impl Asked {
+    fn smoothed(&self) -> Option<Smoothed<'_>> {
+        let (window, (pose, velocity)) = (self.window.as_ref()?, self.robot_then);
+        Some(Smoothed { window, pose, velocity })
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -200,22 +211,25 @@ impl Navigator {
         let step = self.stepped(&told, now, staleness);
         // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
         let command = self.parts.robot.limits.clamped(step.command());
+        let command = self.world.motors.smoothed(now, command);
         self.world.motors.give(told.time, now, command);
         let step = step.commanding(command);
         (self.issued, self.last) = (command, Some(step.clone()));
         step
     }
 
-    /// Stops at once, without knowing where the robot is.
+    /// Stops at once, without knowing where the robot is; within its limits of jerk, if it has
+    /// some.
     fn stop(&mut self, why: Blocked) -> Step {
         self.record.asked = None;
         self.record.guard.pause();
         self.stepped = None;
-        self.issued = Velocity::ZERO;
+        let command = self.world.motors.stopping();
+        self.issued = command;
         if let Some(now) = self.world.now() {
-            self.world.motors.give(now, now, Velocity::ZERO);
+            self.world.motors.give(now, now, command);
         }
-        Step::Blocked { command: Velocity::ZERO, why }
+        Step::Blocked { command, why }
     }
 
     /// A step counts for no more time than this, or three cycles: whoever was away for longer has
@@ -224,31 +238,34 @@ impl Navigator {
 
     fn stepped(&mut self, told: &Told, now: Time, staleness: Option<Blocked>) -> Step {
         let &Told { time, pose, velocity } = told;
+        let robot_then = self.world.motors.predicted(time, now, (pose, velocity));
+        let (pose_then, velocity_then) = self.world.motors.begin(now, robot_then);
         let Robot { limits, cycle_s, .. } = &*self.parts.robot;
-        let (pose_then, velocity_then) = self.world.motors.predicted(time, now, (pose, velocity));
         let braked = limits.braked(velocity_then, *cycle_s);
         let outside =
             |pose: &Pose| self.world.known.frame().cell_from_world(pose.point()).is_none();
         let since = self.stepped.take();
-        if let Some(pose) = [pose, pose_then].iter().find(|&pose| outside(pose)) {
+        if let Some(pose) = [pose, robot_then.0, pose_then].iter().find(|&pose| outside(pose)) {
             return Step::Blocked { command: braked, why: Blocked::OffTheMap(pose.point()) };
         }
         if let Some(why) = staleness {
             // The velocity is as old as the pose.
-            let command = limits.braked(self.issued, *cycle_s);
+            let reference = self.world.motors.window().map(CommandWindow::reference);
+            let command = limits.braked(reference.unwrap_or(self.issued), *cycle_s);
             return Step::Blocked { command, why };
         }
         let longest_s = Self::LONGEST_S.max(3.0 * cycle_s);
         let elapsed_s = since.map_or(*cycle_s, |last| now.since_s(last).min(longest_s));
         self.stepped = Some(now);
         let robot = Arc::clone(&self.parts.robot);
-        self.world.look_ahead();
+        self.world.look_ahead(robot.smoothing_lag_s());
         self.slow_down(pose.point(), velocity_then);
         let silence = self.world.silence(&self.parts);
         let is_at_rest = self.world.motors.is_at_rest(time, now, (&robot, velocity));
         let least = self.world.motors.least();
         let (robot, pose_now, velocity) = (&*robot, pose, velocity_then);
-        let moment = Moment { robot, pose: pose_then, velocity, elapsed_s, least };
+        let (pose, moves_on) = (pose_then, self.world.motors.moves_on(robot));
+        let moment = Moment { robot, pose, velocity, robot_then, moves_on, elapsed_s, least };
         let step = match &mut self.errand {
             None if is_at_rest => Step::Idle,
             None => Step::Drive(braked),
@@ -318,7 +335,7 @@ impl Navigator {
         let local = slow.map_or(local, |slow| &slow.local);
         let (local, guide) = (&**local, &**guide);
         let (world, record) = (&mut self.world, &mut self.record);
-        let &Moment { pose, velocity, elapsed_s, .. } = moment;
+        let &Moment { pose, velocity, robot_then, elapsed_s, .. } = moment;
         Some(Deciding {
             robot,
             stack,
@@ -330,6 +347,7 @@ impl Navigator {
             record,
             pose,
             velocity,
+            robot_then,
             elapsed_s,
         })
     }
@@ -340,7 +358,9 @@ impl Navigator {
         let Some(pose) = self.place.filter(|pose| pose.point().is_finite()) else { return };
         let robot = Arc::clone(&self.parts.robot);
         let (velocity, least) = (Velocity::ZERO, self.world.motors.least());
-        let moment = Moment { robot: &robot, pose, velocity, elapsed_s: 0.0, least };
+        let (robot_then, moves_on) = ((pose, velocity), self.world.motors.moves_on(&robot));
+        let moment =
+            Moment { robot: &robot, pose, velocity, robot_then, moves_on, elapsed_s: 0.0, least };
         if let Some(mut deciding) = self.deciding(&moment) {
             deciding.replan();
         }

@@ -19,7 +19,7 @@ impl Deciding<'_> {
         if !self.leads_beyond_return(command) {
             return None;
         }
-        if !self.robot.stands(self.velocity) {
+        if !self.stands() {
             return Some(self.robot.limits.braked(self.velocity, self.robot.cycle_s));
         }
         let kind = RecoveryKind::Manoeuvre;

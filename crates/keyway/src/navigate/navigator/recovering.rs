@@ -18,7 +18,7 @@ impl Deciding<'_> {
             let order = &self.stack.controller.recoveries;
             let remaining_m = self.task.guidance.remaining_m;
             let Some(kind) = self.task.order.next(order, remaining_m) else { return };
-            if kind != RecoveryKind::Replan && !self.robot.stands(self.velocity) {
+            if kind != RecoveryKind::Replan && !self.stands() {
                 self.task.order.put_off();
                 self.task.mode = Mode::StoppingFor(kind);
                 return;
@@ -56,7 +56,7 @@ impl Deciding<'_> {
     /// is.
     pub(super) fn go_on_recovering(&mut self) -> Option<(RecoveryKind, Velocity)> {
         if let Mode::StoppingFor(kind) = self.task.mode {
-            if !self.robot.stands(self.velocity) {
+            if !self.stands() {
                 let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
                 return Some((kind, braked));
             }

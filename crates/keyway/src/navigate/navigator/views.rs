@@ -108,7 +108,7 @@ impl Navigator {
             return Explanation::default();
         };
         // Nothing of it has changed since the decision.
-        let scene = self.world.scene(task, asked.pose, asked.velocity);
+        let scene = self.world.scene(task, (asked.pose, asked.velocity), asked.smoothed());
         let local = self.slow.as_ref().map_or(&self.parts.local, |slow| &slow.local);
         local.explain(&scene, &asked.memory)
     }

@@ -42,10 +42,21 @@ pub(in crate::navigate) struct Moment<'a> {
     pub(in crate::navigate) robot: &'a Robot,
     pub(in crate::navigate) pose: Pose,
     pub(in crate::navigate) velocity: Velocity,
+    /// The robot itself; the same, unless its commands are averaged.
+    pub(in crate::navigate) robot_then: (Pose, Velocity),
+    /// It will go on by what is averaged.
+    pub(in crate::navigate) moves_on: bool,
     /// Since the last decision \[s\].
     pub(in crate::navigate) elapsed_s: f64,
     /// The least speed and turn rate that its motors do.
     pub(in crate::navigate) least: Velocity,
+}
+
+impl Moment<'_> {
+    /// True if it stands, and stays there.
+    pub(in crate::navigate) fn stands(&self) -> bool {
+        self.robot.stands(self.velocity) && !self.moves_on
+    }
 }
 
 /// A motion under way.
@@ -101,11 +112,12 @@ impl MotionUnderWay {
     /// The next cycle. `obstacles` are all that are known and sensed.
     pub(in crate::navigate) fn step(
         &mut self,
-        &Moment { robot, pose, velocity, elapsed_s, least }: &Moment<'_>,
+        moment: &Moment<'_>,
         obstacles: &DistanceField,
     ) -> MotionStep {
+        let &Moment { robot, pose, velocity, elapsed_s, least, .. } = moment;
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
-        let is_standing = robot.stands(velocity);
+        let is_standing = moment.stands();
         if self.from.is_none() && !is_standing {
             return MotionStep::Moving(limits.braked(velocity, cycle_s));
         }
@@ -189,6 +201,12 @@ mod tests {
     use crate::map::{FieldConfig, OccupancyGrid};
     use proptest::prelude::*;
 
+    fn moment(robot: &Robot, state: (Pose, Velocity), elapsed_s: f64) -> Moment<'_> {
+        let ((pose, velocity), robot_then) = (state, state);
+        let (least, moves_on) = (Velocity::ZERO, false);
+        Moment { robot, pose, velocity, robot_then, moves_on, elapsed_s, least }
+    }
+
     /// Obeys a motion as a robot does; where it ended, and the fastest it was.
     fn obey(motion: Motion, robot: &Robot, start: (Pose, Velocity)) -> (Pose, MotionStep, f64) {
         let map = OccupancyGrid::from_ascii(&["........"; 8]);
@@ -196,8 +214,8 @@ mod tests {
         let (mut pose, mut velocity) = start;
         let (mut under_way, mut fastest) = (MotionUnderWay::new(motion), 0.0f64);
         for _ in 0..2000 {
-            let (elapsed_s, least) = (robot.cycle_s, Velocity::ZERO);
-            let moment = Moment { robot, pose, velocity, elapsed_s, least };
+            let elapsed_s = robot.cycle_s;
+            let moment = moment(robot, (pose, velocity), elapsed_s);
             match under_way.step(&moment, &obstacles) {
                 MotionStep::Moving(command) => {
                     let reached = robot.limits.reached(velocity, command, robot.cycle_s);
@@ -244,8 +262,7 @@ mod tests {
             let (mut turn, mut fastest_radps) = (MotionUnderWay::new(Motion::Turn(3.0)), 0.0f64);
             loop {
                 let elapsed_s = robot.cycle_s;
-                let moment =
-                    Moment { robot: &robot, pose, velocity, elapsed_s, least: Velocity::ZERO };
+                let moment = moment(&robot, (pose, velocity), elapsed_s);
                 let MotionStep::Moving(command) = turn.step(&moment, &obstacles) else {
                     return fastest_radps;
                 };
@@ -271,7 +288,7 @@ mod tests {
         let first = |mut motion: MotionUnderWay, y| {
             let pose = Pose::new(4.0, y, 0.0);
             let (velocity, elapsed_s) = (Velocity::ZERO, robot.cycle_s);
-            let moment = Moment { robot: &robot, pose, velocity, elapsed_s, least: Velocity::ZERO };
+            let moment = moment(&robot, (pose, velocity), elapsed_s);
             matches!(motion.step(&moment, &obstacles), MotionStep::Moving(_))
         };
         let drive = Motion::Drive(1.0);

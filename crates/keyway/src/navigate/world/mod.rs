@@ -17,7 +17,7 @@ use super::walked_ground::WalkedGround;
 use super::{Blocked, FittedStack, NavigateError, Step};
 use crate::geometry::{Pose, Shift, Velocity};
 use crate::guide::Guidance;
-use crate::local::Scene;
+use crate::local::{Scene, Smoothed};
 use crate::map::{Cell, CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::{
@@ -343,15 +343,16 @@ impl World {
         self.now
     }
 
-    /// Brings what is known from the latest scan to the present.
-    pub(super) fn look_ahead(&mut self) {
+    /// Brings what is known from the latest scan to the present; movers to when a robot is there
+    /// that is behind its reference by a time \[s\].
+    pub(super) fn look_ahead(&mut self, lag_s: f64) {
         // What one sensor has marked, another may have seen through.
         let sensed = self.sensed.sensed();
         let known = self.known.occupied();
         self.edits.retain(|edit| sensed.get(edit.cell) || known.get(edit.cell));
         let age_s = self.scan_age_s();
         if let Some(tracker) = &self.tracker {
-            let ahead_s = self.motors.delay_s() + age_s;
+            let ahead_s = self.motors.delay_s() + age_s + lag_s;
             self.movers_then.clear();
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(ahead_s)));
         }
@@ -398,7 +399,12 @@ impl World {
     }
 
     /// The view of a local planner of a robot with a task.
-    pub(super) fn scene<'a>(&'a self, task: &'a Task, pose: Pose, velocity: Velocity) -> Scene<'a> {
+    pub(super) fn scene<'a>(
+        &'a self,
+        task: &'a Task,
+        (pose, velocity): (Pose, Velocity),
+        smoothed: Option<Smoothed<'a>>,
+    ) -> Scene<'a> {
         let (obstacles, sensed, movers) =
             (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
         let Guidance { point: guide, remaining_m } = task.guidance;
@@ -417,7 +423,14 @@ impl World {
             path,
             goal_heading_rad,
             remaining_m,
+            smoothed,
         }
+    }
+
+    /// The robot itself when its next command acts, if its commands are averaged.
+    pub(super) fn smoothed(&self, robot_then: (Pose, Velocity)) -> Option<Smoothed<'_>> {
+        let (window, (pose, velocity)) = (self.motors.window()?, robot_then);
+        Some(Smoothed { window, pose, velocity })
     }
 
     /// Asks a question of the known map alone, without what was sensed.

@@ -1,0 +1,105 @@
+//! Robots with limits of jerk in whole runs.
+#![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
+
+use keyway::geometry::{Disc, Point, Pose};
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::Stack;
+use keyway::robot::{Footprint, Robot};
+use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
+use keyway_sim::sim::Disturbances;
+
+/// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
+fn hall() -> OccupancyGrid {
+    let frame = GridFrame::new(240, 160, 0.05, Pose::default()).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| {
+        let is_wall = (80..84).contains(&cell.x) && cell.y < 110
+            || (150..154).contains(&cell.x) && cell.y > 50;
+        if is_wall { CellState::Occupied } else { CellState::Free }
+    })
+}
+
+/// A robot among posts that no map has.
+fn driven(robot: &Robot, disturbances: &Disturbances) -> RobotReport {
+    let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
+    let mut episode = Episode::new(hall(), robot.clone(), start, goal);
+    let places = [(2.4, 3.6), (3.2, 5.8), (6.2, 4.4), (6.6, 2.2), (9.3, 3.5), (9.6, 4.9)];
+    episode.obstacles = places.map(|(x, y)| Disc::new(Point::new(x, y), 0.2)).to_vec();
+    episode.robots[0].disturbances = disturbances.clone();
+    run_episode(&episode).unwrap().first()
+}
+
+/// A robot with limits of jerk \[m/s³, rad/s³\].
+fn limited(robot: Robot, jerk_mps3: f64, angular_jerk_radps3: f64) -> Robot {
+    let mut robot = robot;
+    robot.limits.jerk_mps3 = Some(jerk_mps3);
+    robot.limits.angular_jerk_radps3 = Some(angular_jerk_radps3);
+    robot
+}
+
+fn robots() -> [Robot; 3] {
+    let long = Robot { footprint: Footprint::rectangle(0.5, 0.3).unwrap(), ..Robot::small() };
+    [
+        limited(Robot::jackal(), 10.0, 40.0),
+        limited(Robot::small(), 2.0, 12.0),
+        limited(long, 1.5, 15.0),
+    ]
+}
+
+/// It reaches its goal, touches nothing, and keeps its limits of jerk.
+fn check(robot: &Robot, report: &RobotReport) {
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    let run = report.run.as_ref().unwrap();
+    let (jerk, angular) = (robot.limits.jerk_mps3, robot.limits.angular_jerk_radps3);
+    assert!(run.max_jerk_mps3 <= jerk.unwrap() + 1e-9, "{}", run.max_jerk_mps3);
+    assert!(run.max_angular_jerk_radps3 <= angular.unwrap() + 1e-9, "{run:?}");
+    assert!(run.max_jerk_mps3 >= 0.5 * jerk.unwrap(), "{}", run.max_jerk_mps3);
+}
+
+#[test]
+fn runs_keep_the_limits() {
+    for robot in robots() {
+        let report = driven(&robot, &Disturbances::default());
+        check(&robot, &report);
+        // It costs less than the time by which it stops later, thrice.
+        let mut free = robot.clone();
+        (free.limits.jerk_mps3, free.limits.angular_jerk_radps3) = (None, None);
+        let time_s = |report: &RobotReport| report.run.as_ref().unwrap().time_s;
+        let free = driven(&free, &Disturbances::default());
+        let lost_s = time_s(&report) - time_s(&free);
+        let limit_s = 6.0 * robot.smoothing_lag_s() + 0.1 * time_s(&free);
+        assert!(lost_s < limit_s, "{lost_s} {}", time_s(&free));
+        assert!(free.run.unwrap().max_jerk_mps3 > 2.0 * robot.limits.jerk_mps3.unwrap());
+    }
+}
+
+/// With noise of sensors, motors and odometry, and with delays, told or not.
+#[test]
+fn runs_with_errors_keep_the_limits() {
+    for (index, robot) in robots().into_iter().enumerate() {
+        for (known_s, unknown_s) in [(0.0, 0.0), (0.15, 0.0), (0.0, 0.1)] {
+            let robot = Robot { actuation_delay_s: known_s, ..robot.clone() };
+            let mut disturbances = Disturbances { seed: index as u64, ..Disturbances::default() };
+            disturbances.sensor.range_m = 0.01;
+            disturbances.actuation.delay_s = unknown_s;
+            disturbances.actuation.v_relative = 0.05;
+            disturbances.actuation.omega_relative = 0.05;
+            disturbances.localisation.position_m = 0.005;
+            disturbances.localisation.v_relative = 0.05;
+            disturbances.localisation.omega_relative = 0.05;
+            check(&robot, &driven(&robot, &disturbances));
+        }
+    }
+}
+
+/// So do all local planners.
+#[test]
+fn runs_of_other_stacks_keep_the_limits() {
+    let robot = limited(Robot::small(), 2.0, 12.0);
+    for name in Stack::NAMES {
+        let stack = Stack::by_name(name, &robot).unwrap();
+        let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
+        let mut episode = Episode::new(hall(), robot.clone(), start, goal);
+        episode.robots[0].stack = stack.with_stop_rule(&robot);
+        check(&robot, &run_episode(&episode).unwrap().first());
+    }
+}
