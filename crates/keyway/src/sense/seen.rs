@@ -147,7 +147,7 @@ impl SeenGround {
             return None;
         }
         let seen = BitGrid::new(frame.width(), frame.height(), false);
-        let back_s = robot.cycle_s + 3.0 * limits.stop_s();
+        let back_s = robot.cycle_s + 3.0 * limits.stop_s() + robot.smoothing_lag_s();
         let back_m = robot.footprint.circumscribed_radius_m() - limits.v_min_mps * back_s;
         let stop_s = robot.backing_s();
         let walkers = (backs_up && walker_mps > 0.0).then(|| Walkers {
