@@ -7,7 +7,9 @@
 //! reference, so it keeps the limits of acceleration, too; and that change changes by the
 //! difference of two changes of the reference, n cycles apart, over n. With changes from -b c to
 //! a c in cycles of duration c, the jerk is (a + b) / (n c) at most, and n follows from its limit
-//! ([`Limits::smoothing_cycles`]).
+//! ([`Limits::smoothing_cycles`]). Only where acceleration and deceleration differ, and the
+//! reference turns round within n cycles, a command may change by the larger one where the motors
+//! do the smaller one: then they are behind it for some cycles.
 //!
 //! The mean neither adds nor takes way: the robot comes along a straight as far as the reference,
 //! later by (n - 1) / 2 cycles. So at any time there is a place at which the reference is

@@ -125,7 +125,9 @@ impl MotionUnderWay {
         let room_m = *self.room_m.get_or_insert_with(|| kept_room_m(robot, pose, obstacles));
         let room_m = Self::KEEPS * room_m;
         self.left = self.left.after(from, pose, elapsed_s);
-        if is_standing && self.left.size() <= self.left.nothing(least, cycle_s) {
+        // Of an average over some cycles, none is more than the motors do before as many have passed.
+        let least_s = limits.smoothing_cycles(cycle_s) as f64 * cycle_s;
+        if is_standing && self.left.size() <= self.left.nothing(least, least_s) {
             return MotionStep::Done;
         }
         let footprint = &robot.footprint;
@@ -183,15 +185,15 @@ impl Motion {
     }
 
     /// So little that is left is nothing: 2 mm, or 2 mrad, or about half of what motors do in a
-    /// cycle that do nothing less than this.
-    fn nothing(self, least: Velocity, cycle_s: f64) -> f64 {
+    /// time that do nothing less than this.
+    fn nothing(self, least: Velocity, least_s: f64) -> f64 {
         const NOTHING: f64 = 2e-3;
         let least = match self {
             Self::Turn(_) => least.omega,
             Self::Drive(_) => least.v,
             Self::Wait(_) => 0.0,
         };
-        NOTHING.max(0.6 * least * cycle_s)
+        NOTHING.max(0.6 * least * least_s)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Knowledge of a navigator: the map, and what was observed.
 
 mod changing;
+mod scene;
 mod storing;
 
 pub(super) use storing::StoredWorld;
@@ -11,13 +12,10 @@ use super::motors::Motors;
 use super::poses::Poses;
 use super::recovery::Track;
 use super::route::Router;
-use super::task::Task;
 use super::time::Time;
 use super::walked_ground::WalkedGround;
 use super::{Blocked, FittedStack, NavigateError, Step};
 use crate::geometry::{Pose, Shift, Velocity};
-use crate::guide::Guidance;
-use crate::local::{Scene, Smoothed};
 use crate::map::{Cell, CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::{
@@ -396,41 +394,6 @@ impl World {
             timed_out.peek().copied()?
         };
         Some(Blocked::SensorSilent { sensor, silent_s })
-    }
-
-    /// The view of a local planner of a robot with a task.
-    pub(super) fn scene<'a>(
-        &'a self,
-        task: &'a Task,
-        (pose, velocity): (Pose, Velocity),
-        smoothed: Option<Smoothed<'a>>,
-    ) -> Scene<'a> {
-        let (obstacles, sensed, movers) =
-            (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
-        let Guidance { point: guide, remaining_m } = task.guidance;
-        let (path, seen) = (&task.route.smoothed, self.seen_cells());
-        let walked = self.walked.avoided();
-        let goal_heading_rad = task.goal.heading_rad.filter(|_| task.is_last_leg());
-        Scene {
-            obstacles,
-            sensed,
-            seen,
-            movers,
-            walked,
-            pose,
-            velocity,
-            guide,
-            path,
-            goal_heading_rad,
-            remaining_m,
-            smoothed,
-        }
-    }
-
-    /// The robot itself when its next command acts, if its commands are averaged.
-    pub(super) fn smoothed(&self, robot_then: (Pose, Velocity)) -> Option<Smoothed<'_>> {
-        let (window, (pose, velocity)) = (self.motors.window()?, robot_then);
-        Some(Smoothed { window, pose, velocity })
     }
 
     /// Asks a question of the known map alone, without what was sensed.

@@ -1,0 +1,47 @@
+//! The world as a local planner sees it.
+
+use super::World;
+use crate::geometry::{Pose, Velocity};
+use crate::guide::Guidance;
+use crate::local::{Scene, Smoothed};
+use crate::navigate::task::Task;
+
+impl World {
+    /// The view of a local planner of a robot with a task.
+    pub(in crate::navigate) fn scene<'a>(
+        &'a self,
+        task: &'a Task,
+        (pose, velocity): (Pose, Velocity),
+        smoothed: Option<Smoothed<'a>>,
+    ) -> Scene<'a> {
+        let (obstacles, sensed, movers) =
+            (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
+        let Guidance { point: guide, remaining_m } = task.guidance;
+        let (path, seen) = (&task.route.smoothed, self.seen_cells());
+        let walked = self.walked.avoided();
+        let goal_heading_rad = task.goal.heading_rad.filter(|_| task.is_last_leg());
+        Scene {
+            obstacles,
+            sensed,
+            seen,
+            movers,
+            walked,
+            pose,
+            velocity,
+            guide,
+            path,
+            goal_heading_rad,
+            remaining_m,
+            smoothed,
+        }
+    }
+
+    /// The robot itself when its next command acts, if its commands are averaged.
+    pub(in crate::navigate) fn smoothed(
+        &self,
+        robot_then: (Pose, Velocity),
+    ) -> Option<Smoothed<'_>> {
+        let (window, (pose, velocity)) = (self.motors.window()?, robot_then);
+        Some(Smoothed { window, pose, velocity })
+    }
+}
