@@ -48,11 +48,15 @@ fn robots() -> [Robot; 3] {
 /// It reaches its goal, touches nothing, and keeps its limits of jerk.
 fn check(robot: &Robot, report: &RobotReport) {
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    check_jerk(robot, report);
+}
+
+fn check_jerk(robot: &Robot, report: &RobotReport) {
     let run = report.run.as_ref().unwrap();
     let (jerk, angular) = (robot.limits.jerk_mps3, robot.limits.angular_jerk_radps3);
     assert!(run.max_jerk_mps3 <= jerk.unwrap() + 1e-9, "{}", run.max_jerk_mps3);
     assert!(run.max_angular_jerk_radps3 <= angular.unwrap() + 1e-9, "{run:?}");
-    assert!(run.max_jerk_mps3 >= 0.5 * jerk.unwrap(), "{}", run.max_jerk_mps3);
+    assert!(run.max_jerk_mps3 >= 0.3 * jerk.unwrap(), "{}", run.max_jerk_mps3);
 }
 
 #[test]
@@ -91,7 +95,24 @@ fn runs_with_errors_keep_the_limits() {
     }
 }
 
-/// So do all local planners.
+/// With wheels that lag, and motors that do nothing small.
+#[test]
+fn runs_with_weak_motors_keep_the_limits() {
+    type Spoil = fn(&mut Disturbances);
+    let spoils: [Spoil; 2] = [
+        |it| it.actuation.lag_s = 0.1,
+        |it| (it.actuation.dead_band_mps, it.actuation.dead_band_radps) = (0.06, 0.24),
+    ];
+    for robot in robots() {
+        for spoil in spoils {
+            let mut disturbances = Disturbances::default();
+            spoil(&mut disturbances);
+            check(&robot, &driven(&robot, &disturbances));
+        }
+    }
+}
+
+/// So do all stacks, some of which do not get through the hall.
 #[test]
 fn runs_of_other_stacks_keep_the_limits() {
     let robot = limited(Robot::small(), 2.0, 12.0);
@@ -100,6 +121,8 @@ fn runs_of_other_stacks_keep_the_limits() {
         let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
         let mut episode = Episode::new(hall(), robot.clone(), start, goal);
         episode.robots[0].stack = stack.with_stop_rule(&robot);
-        check(&robot, &run_episode(&episode).unwrap().first());
+        let report = run_episode(&episode).unwrap().first();
+        assert_ne!(report.outcome, EpisodeOutcome::Collided, "{name} {:?}", report.reason);
+        check_jerk(&robot, &report);
     }
 }

@@ -3,7 +3,7 @@
 use super::tests::{Ground, commands, every_cycle, instants, robots, rule};
 use super::*;
 use crate::geometry::Point;
-use crate::map::GridFrame;
+use crate::map::{BitGrid, GridFrame};
 use crate::robot::CommandWindow;
 use proptest::prelude::*;
 
@@ -107,7 +107,7 @@ fn what_is_averaged_counts() {
     let (ground, rule) = (Ground::wall(), rule(&robot));
     let mut robot = Averaged::new(robot, Pose::new(4.72, 4.0, 0.0));
     robot.window.refill(Velocity::new(0.3, 0.0));
-    (0..9).for_each(|_| drop(robot.window.push(Velocity::ZERO)));
+    (0..9).for_each(|_| _ = robot.window.push(Velocity::ZERO));
     robot.velocity = Velocity::new(0.03, 0.0);
     let turn = Velocity::new(0.0, 0.3);
     let changed = |robot: &Averaged| {
@@ -118,6 +118,30 @@ fn what_is_averaged_counts() {
     robot.window.refill(Velocity::new(0.3, 0.0));
     robot.window.push(Velocity::ZERO);
     assert!(changed(&robot));
+}
+
+/// Where what is averaged leads, ahead or back, ground has to be seen, whatever else is asked for.
+#[test]
+fn what_is_averaged_stays_on_seen_ground() {
+    let mut robot = Robot::small();
+    (robot.limits.v_min_mps, robot.limits.jerk_mps3) = (-0.5, Some(1.0));
+    let (ground, rule) = (Ground::open(), rule(&robot));
+    // 0.18 m of robot, and over 0.2 m to come.
+    let refusal = |v: f64, sees_m: f64| {
+        let mut cells = BitGrid::new(200, 200, false);
+        let reach = (sees_m * 10.0).round() as i32;
+        (0..200).for_each(|y| cells.fill_span(y, 100 - reach, 99 + reach));
+        let mut robot = Averaged::new(robot.clone(), Pose::default());
+        robot.window.refill(Velocity::new(v, 0.0));
+        robot.window.push(Velocity::ZERO);
+        robot.velocity = robot.window.command();
+        let both = SeenCells { ahead: Some(&cells), behind: Some(&cells), ..SeenCells::ANYWHERE };
+        let around = Surroundings { seen: both, ..robot.among(&ground) };
+        rule.gate(&around, Velocity::new(0.0, 0.3), &mut Scratch::default()).why
+    };
+    assert_eq!([refusal(0.5, 0.8), refusal(-0.5, 0.8), refusal(0.0, 0.2)], [None; 3]);
+    assert!(matches!(refusal(0.5, 0.3), Some(Refusal::OutOfSight { .. })));
+    assert!(matches!(refusal(-0.5, 0.3), Some(Refusal::Unseen { .. })));
 }
 
 proptest! {
