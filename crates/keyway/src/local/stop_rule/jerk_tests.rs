@@ -114,9 +114,9 @@ fn what_is_averaged_counts() {
         rule.gate(&robot.among(&ground), turn, &mut Scratch::default()).changed()
     };
     assert!(!changed(&robot));
-    // 0.1 m before the wall, and 0.108 m to come.
+    // 0.1 m before the wall, and 0.12 m to come.
     robot.window.refill(Velocity::new(0.3, 0.0));
-    robot.window.push(Velocity::ZERO);
+    robot.velocity = robot.window.push(Velocity::ZERO);
     assert!(changed(&robot));
 }
 
