@@ -218,7 +218,7 @@ fn who_walks_to_and_fro_is_gone_around() {
     let (_, report) = reached("pacing");
     let run = report.run.unwrap();
     assert!(
-        run.time_s < 15.0 && run.recoveries.go_around == 1,
+        run.time_s < 9.0 && run.recoveries.go_around == 1,
         "{} s, {:?}",
         run.time_s,
         run.recoveries
@@ -245,7 +245,7 @@ fn what_is_gone_around_is_said() {
     watch_episode(&episode, RunOptions::default(), std::slice::from_mut(&mut walked)).unwrap();
     let first = walked.0.iter().position(|discs| !discs.is_empty()).unwrap();
     assert!(
-        first as f64 * episode.robots[0].robot.cycle_s > 3.0,
+        first as f64 * episode.robots[0].robot.cycle_s > 2.5,
         "only after it has waited: {first}"
     );
     for [x, y, radius_m] in &walked.0[first] {

@@ -32,6 +32,34 @@ fn outcomes(report: &Value) -> Vec<&str> {
     outcomes
 }
 
+/// In mirror images of each other's situations, too, and where there is room for one only.
+#[test]
+fn robots_with_the_usual_stack_get_past_each_other() {
+    let folder = scenes();
+    for (scene, make_way) in [
+        ("crossing", false),
+        ("doorway", false),
+        ("circle_swap", false),
+        ("corridor", true),
+        ("bay", true),
+    ] {
+        let report = driven(&folder, &format!("--scene {scene}.toml"), 0);
+        assert!(outcomes(&report).iter().all(|&outcome| outcome == "reached"), "{scene}");
+        assert!(report["min_robot_clearance_m"].as_f64() > Some(0.03), "{scene}");
+        let robots = report["robots"].as_array().unwrap().iter();
+        let ways = robots.map(|robot| robot["run"]["recoveries"]["make_way"].as_u64().unwrap());
+        assert_eq!(ways.sum::<u64>() > 0, make_way, "{scene}");
+    }
+    for scene in ["corridor", "bay"] {
+        let line = format!("--scene {scene}.toml --set controller.make_way=false");
+        assert_eq!(
+            outcomes(&driven(&folder, &line, 1)),
+            ["stuck"; 2],
+            "otherwise it shows nothing"
+        );
+    }
+}
+
 /// None of these outcomes is wanted or unwanted: they are what the stacks do today.
 #[test]
 fn what_becomes_of_the_robots_of_the_scenes() {

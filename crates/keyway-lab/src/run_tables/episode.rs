@@ -59,7 +59,7 @@ fn run_facts(run: &RunPart) -> Vec<(&'static str, String)> {
 
 /// Text of the recoveries that were tried, with their numbers.
 fn recoveries(counts: RecoveryCounts) -> String {
-    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, go_around } = counts;
+    let RecoveryCounts { replan, turn, manoeuvre, back_up, wait, go_around, make_way } = counts;
     let kinds = [
         (replan, "replan"),
         (turn, "turn"),
@@ -67,6 +67,7 @@ fn recoveries(counts: RecoveryCounts) -> String {
         (back_up, "back-up"),
         (wait, "wait"),
         (go_around, "way around movers"),
+        (make_way, "way made for movers"),
     ];
     counted(&kinds)
 }

@@ -80,6 +80,10 @@ pub enum Blocked {
     /// any others.
     #[error("instead of driving on, the robot {0}")]
     Recovering(RecoveryKind),
+    /// Somebody wants past where two cannot pass: the robot stands beside their way until they have
+    /// gone by.
+    #[error("the robot makes way for somebody who comes towards it")]
+    MakingWay,
     /// The robot stands at its goal and has no room to turn to the heading there, to either side.
     #[error("there is no room at the goal to turn to its heading")]
     NoRoomToTurn,
@@ -161,6 +165,7 @@ impl Blocked {
             Self::PoseStale { .. } => 112,
             Self::NoRoomForAct => 113,
             Self::OutOfTime => 114,
+            Self::MakingWay => 115,
         }
     }
 }

@@ -45,11 +45,13 @@
 mod act;
 mod blocked;
 mod doubts;
+mod encounter;
 mod error;
 mod fitted;
 mod goal;
 mod headings;
 mod masks;
+mod met;
 mod misfit;
 mod mode;
 mod motors;

@@ -2,7 +2,7 @@
 
 use super::recovery::{MotionUnderWay, RecoveryUnderWay};
 use super::{NavigateError, RecoveryKind};
-use crate::geometry::Shift;
+use crate::geometry::{Disc, Point, Shift};
 use crate::plan::PlanError;
 use crate::search::SearchStatistics;
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,16 @@ pub(super) enum Mode {
         /// Until the next one \[s\].
         left_s: f64,
     },
+    /// It drives to a place beside the way of somebody who wants past, and stands there until they
+    /// have passed.
+    MakingWay {
+        /// The end of its route.
+        place: Point,
+        /// Where the other one was when the robot began to make way.
+        other: Disc,
+        /// Since it stands there \[s\].
+        stood_s: f64,
+    },
     /// It is at its goal: it brakes, then turns to the heading there.
     Arriving(Option<MotionUnderWay>),
 }
@@ -45,6 +55,9 @@ impl Mode {
             Self::TurningFirst(motion) => motion.shift(shift),
             Self::Recovering(recovery) => recovery.shift(shift),
             Self::Arriving(turn) => *turn = None,
+            Self::MakingWay { place, other, .. } => {
+                (*place, other.centre) = (shift.point(*place), shift.point(other.centre));
+            }
             Self::Following | Self::StoppingFor(_) | Self::Waiting { .. } => {}
         }
     }

@@ -36,6 +36,7 @@ pub struct Stack {
 
 /// Parameters of the navigation loop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own in stack files")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ControllerConfig {
@@ -59,6 +60,11 @@ pub struct ControllerConfig {
     /// stack files that do not have it.
     #[serde(default)]
     pub go_around: bool,
+    /// Where somebody comes towards the robot and two cannot pass, drive to a place beside their way
+    /// and let them pass, if that is nearer than theirs. Needs `movers`; false in stack files that
+    /// do not have it.
+    #[serde(default)]
+    pub make_way: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
     pub blocked_s: f64,
     /// A recovery begins when the remaining way has not become shorter for this long \[s\], by 5 cm
@@ -128,6 +134,7 @@ impl ControllerConfig {
         start_error_m: 0.0,
         watch_route: false,
         go_around: false,
+        make_way: false,
         recoveries: Cow::Borrowed(&[RecoveryKind::Replan]),
         back_up_m: 1.0,
         wait_s: 2.0,
@@ -149,6 +156,7 @@ impl ControllerConfig {
         "start_error_m",
         "watch_route",
         "go_around",
+        "make_way",
         "blocked_s",
         "no_progress_s",
         "recoveries",
@@ -168,7 +176,7 @@ impl ControllerConfig {
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever
     /// is larger; the least clearance is the inscribed radius and the margin that the local planner
     /// keeps. The route is watched, a start may be off by 5 cm (a cell of most maps, and what a
-    /// localisation by scans is off), the robot goes around movers that hold it up, all recoveries
+    /// localisation by scans is off), the robot goes around movers that hold it up and makes way where two cannot pass, all recoveries
     /// are tried, and it goes back by up to twice its circumscribed radius. Movers are followed;
     /// there is no stop rule. A robot that sees nothing stops.
     pub fn for_robot(robot: &Robot) -> Self {
@@ -178,6 +186,7 @@ impl ControllerConfig {
             start_error_m: Self::START_ERROR_M,
             watch_route: true,
             go_around: true,
+            make_way: true,
             recoveries: Cow::Borrowed(&[
                 RecoveryKind::Replan,
                 RecoveryKind::Turn,
@@ -218,6 +227,11 @@ impl ControllerConfig {
         if self.go_around && self.movers.is_none() {
             let reason = "needs `controller.movers`: movers that are not told apart cannot be gone around; set it to false";
             return Err(ConfigError::new("go_around", reason));
+        }
+        if self.make_way && self.movers.is_none() {
+            let reason =
+                "needs `controller.movers`: nobody is seen to come otherwise; set it to false";
+            return Err(ConfigError::new("make_way", reason));
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! A goal, and the progress towards it.
 
+use super::met::Met;
 use super::mode::Mode;
 use super::recovery::RecoveryOrder;
 use super::route::{Router, check_goal_heading};
@@ -43,6 +44,9 @@ pub(super) struct Task {
     pub(super) is_lost: bool,
     pub(super) watch: Watch,
     pub(super) hold: Hold,
+    /// Whom it met.
+    #[serde(default)]
+    pub(super) met: Met,
     pub(super) order: RecoveryOrder,
     /// Duration of the last wait between two attempts at a route \[s\].
     pub(super) waited_s: f64,
@@ -149,6 +153,7 @@ impl Task {
             is_lost: false,
             watch: Watch::NEW,
             hold: Hold::default(),
+            met: Met::default(),
             order: RecoveryOrder::default(),
             waited_s: 0.0,
             led_from: None,
@@ -165,8 +170,16 @@ impl Task {
         self.passed + 1 == self.stops.len()
     }
 
+    /// True on the way to the next stop, and not to a place beside somebody else's way.
+    pub(super) const fn is_on_its_way(&self) -> bool {
+        !matches!(self.mode, Mode::MakingWay { .. })
+    }
+
     /// Length of the legs after the present one \[m\].
     pub(super) fn later_m(&self) -> f64 {
+        if !self.is_on_its_way() {
+            return 0.0;
+        }
         self.stops[self.passed + 1..].iter().map(|(_, length_m)| length_m).sum()
     }
 }

@@ -138,7 +138,7 @@ pub(super) struct Hold {
 
 impl Hold {
     /// A way around is looked for each time when so much more time has passed \[s\].
-    const LOOK_S: f64 = 3.0;
+    const LOOK_S: f64 = 0.5;
 
     /// A robot is held up while it comes no farther than its own diameter, or than it drives at
     /// full speed in this time \[s\].
@@ -153,6 +153,11 @@ impl Hold {
         }
         self.held_s += elapsed_s;
         self.unlooked_s += elapsed_s;
+    }
+
+    /// How long the robot has been held up \[s\].
+    pub(super) const fn held_s(&self) -> f64 {
+        self.held_s
     }
 
     /// How long the robot has been held up, when it is time to look for a way around \[s\].
@@ -253,18 +258,18 @@ mod tests {
     fn a_robot_that_stays_near_a_place_is_held_up() {
         let (mut hold, robot) = (Hold::default(), Robot::small());
         let mut held = Vec::new();
-        for cycle in 1..=70 {
+        for cycle in 1..=12 {
             // To and fro by 10 cm.
             hold.note(Point::new(0.1 * f64::from(cycle % 2), 0.0), &robot, 0.1);
             held.extend(hold.look().map(|held_s| (cycle, held_s)));
         }
-        assert_eq!(held.iter().map(|held| held.0).collect::<Vec<_>>(), [30, 60]);
-        assert!((held[1].1 - 6.0).abs() < 1e-9, "{held:?}");
-        for cycle in 1..30 {
+        assert_eq!(held.iter().map(|held| held.0).collect::<Vec<_>>(), [5, 10]);
+        assert!((held[1].1 - 1.0).abs() < 1e-9, "{held:?}");
+        for cycle in 1..5 {
             hold.note(Point::new(0.5, 0.0), &robot, 0.1);
             assert_eq!(hold.look(), None, "{cycle}: it got away");
         }
         hold.note(Point::new(0.5, 0.0), &robot, 0.1);
-        assert!((hold.look().unwrap() - 3.0).abs() < 1e-9);
+        assert!((hold.look().unwrap() - 0.5).abs() < 1e-9);
     }
 }

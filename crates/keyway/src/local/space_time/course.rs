@@ -127,7 +127,8 @@ impl Judge<'_> {
             }
             let driving = v.abs() / self.limits.v_max_mps;
             cost.clearance_s += self.discomfort * self.missing(room_m) * driving * step_s;
-            cost.movers_s += self.meeting.cost_s(state.at, state.after_s, v) * step_s;
+            let velocity_mps = state.ahead * v;
+            cost.movers_s += self.meeting.cost_s(state.at, state.after_s, velocity_mps) * step_s;
         }
         state.end_stretch(to);
         cost.steering_s += self.steering_s(from.velocity, to);

@@ -107,15 +107,20 @@ impl Foreseen {
 }
 
 impl Meeting<'_> {
+    /// So much more it costs to come near to a mover on its left, and so much less on its right.
+    const TO_THE_LEFT: f64 = 0.1;
+
     /// What a second at a place costs a robot of this speed \[s\].
     ///
     /// With the gap g between the discs, the standard deviation s and the comfortable room n, it
     /// counts as `contact` R² / (R² + s²) (1 + |v| / 2) times
     /// - 1 - g / R, where the discs overlap (g < 0, R the distance at which they touch);
     /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the less is known, the
-    ///   more likely a contact is outside the disc, and the less likely it is inside.
+    ///   more likely a contact is outside the disc, and the less likely it is inside. By up to
+    ///   [`Self::TO_THE_LEFT`] more on the left of a mover, and less on its right: of two that do the
+    ///   same as each other, neither gets past.
     #[inline]
-    pub(super) fn cost_s(&self, at: Point, after_s: f64, v_mps: f64) -> f64 {
+    pub(super) fn cost_s(&self, at: Point, after_s: f64, velocity_mps: Point) -> f64 {
         let part = (after_s / self.horizon_s * PARTS as f64) as usize;
         let part = part.min(PARTS - 1);
         let mut sum = 0.0;
@@ -135,13 +140,23 @@ impl Meeting<'_> {
             let gap_m = apart_sq.sqrt() - mover.reach_m;
             let near = (1.0 - gap_m / wide_m).min(1.0);
             let grazing = 0.1 + 0.4 * off_m / (off_m + 0.1);
+            let left = to_the_left(apart, velocity_mps - mover.velocity_mps);
+            let grazing = grazing * (1.0 + Self::TO_THE_LEFT * left);
             let touching = if gap_m < 0.0 { 1.0 - gap_m / mover.reach_m } else { 0.0 };
             let reach_sq = mover.reach_m * mover.reach_m;
             let likely = reach_sq / (reach_sq + off_m * off_m);
             sum += likely * (grazing * near * near + touching);
         }
-        self.contact * (1.0 + 0.5 * v_mps.abs()) * sum
+        self.contact * (1.0 + 0.5 * velocity_mps.norm()) * sum
     }
+}
+
+/// By how much a robot that is `apart` from a mover keeps to the left of it: from 1, where they
+/// pass at a right angle, to -1, where it keeps to the right. Of two that meet, both find the same.
+#[inline]
+fn to_the_left(apart: Point, relative_mps: Point) -> f64 {
+    let most = (apart.norm_sq() * relative_mps.norm_sq()).sqrt();
+    if most > 0.0 { relative_mps.cross(apart) / most } else { 0.0 }
 }
 
 /// The gap up to which a mover costs something \[m\].
@@ -167,19 +182,42 @@ mod tests {
         matters_sq: Foreseen::ALWAYS,
     };
 
+    const STANDING: Point = Point::new(0.0, 0.0);
+
+    /// They come towards each other, 0.6 m apart to the side.
+    #[test]
+    fn keeping_left_costs_more_and_both_agree() {
+        let (robot, other) = (Point::new(4.0, 5.0), Point::new(5.0, 5.6));
+        let (east, west) = (Point::new(1.0, 0.0), Point::new(-1.0, 0.0));
+        let right = to_the_left(robot - other, east - west);
+        let left = to_the_left(other - robot, east - west);
+        assert!(right < -0.5 && left == -right, "{right} {left}");
+        assert_eq!(right, to_the_left(other - robot, west - east));
+        assert_eq!(left, to_the_left(robot - other, west - east));
+        let cost = |y: f64| {
+            let movers = [Foreseen { velocity_mps: west, ..WALKER }];
+            let meeting =
+                Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
+            meeting.cost_s(Point::new(5.0, y), 0.0, east)
+        };
+        let (right, left) = (cost(4.4), cost(5.6));
+        let more = (1.0 + Meeting::TO_THE_LEFT) / (1.0 - Meeting::TO_THE_LEFT);
+        assert!((left / right - more).abs() < 1e-9, "{right} {left}");
+    }
+
     #[test]
     fn cost_by_hand() {
         let movers = [WALKER];
         let meeting =
             Meeting { movers: &movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
-        let cost = |x: f64, after_s: f64| meeting.cost_s(Point::new(x, 5.0), after_s, 0.0);
+        let cost = |x: f64, after_s: f64| meeting.cost_s(Point::new(x, 5.0), after_s, STANDING);
         assert_eq!(cost(5.7, 0.0), 0.0, "0.2 m apart");
         assert!((cost(5.6, 0.0) - 30.0 * 0.1 * 0.25).abs() < 1e-9);
         assert!((cost(5.5, 0.0) - 3.0).abs() < 1e-9, "they touch");
         assert!((cost(5.0, 0.0) - 30.0 * (0.1 + 2.0)).abs() < 1e-9);
         assert_eq!(cost(5.0, 1.0), 0.0, "it has gone");
         assert!((cost(6.5, 1.0) - 3.0).abs() < 1e-9);
-        let moving = meeting.cost_s(Point::new(6.5, 5.0), 1.0, 2.0);
+        let moving = meeting.cost_s(Point::new(6.5, 5.0), 1.0, Point::new(2.0, 0.0));
         assert!((moving - 6.0).abs() < 1e-9, "twice as much at 2 m/s");
     }
 
@@ -191,7 +229,7 @@ mod tests {
             Meeting { movers, comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 }.cost_s(
                 Point::new(x, 5.0),
                 1.0,
-                0.0,
+                STANDING,
             )
         };
         assert!(cost(&unsure, 7.0) > 0.0 && cost(&sure, 7.0) == 0.0);
@@ -214,7 +252,7 @@ mod tests {
             let cost = |mover| {
                 let meeting =
                     Meeting { movers: &[mover], comfortable_m: 0.2, contact: 30.0, horizon_s: 3.1 };
-                meeting.cost_s(Point::new(x, 5.3), after_s, 0.5)
+                meeting.cost_s(Point::new(x, 5.3), after_s, Point::new(0.3, 0.4))
             };
             assert_eq!(cost(ahead).to_bits(), cost(walker).to_bits(), "{x} {after_s}");
         }

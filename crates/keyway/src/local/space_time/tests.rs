@@ -472,13 +472,13 @@ proptest! {
         }
     }
 
-    /// A world seen in a mirror is driven in a mirror: of random courses no two are equally good.
+    /// Where nothing moves, a world seen in a mirror is driven in a mirror: of random courses no two
+    /// are equally good.
     /// The cells are a sixteenth of a metre, so that their mirrored centres are exact.
     #[test]
     fn left_and_right_are_alike(
         blocks in prop::collection::vec((0i32..80, 0i32..80), 0..50), (x, y, heading) in (1.0..4.0f64, 1.0..4.0f64, -3.0..3.0f64),
         (v, omega) in (0.0..0.5f64, -0.4..0.4f64), end in (0.2..4.8f64, 0.2..4.8f64), shape in 0..3usize,
-        walker in prop::option::of((1.0..4.0f64, 1.0..4.0f64, -1.0..1.0f64, -1.0..1.0f64)),
     ) {
         const SIDE_M: f64 = 5.0;
         let is_block = |x: i32, y: i32| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 3);
@@ -489,7 +489,6 @@ proptest! {
             let start = Pose::new(x, axis_m + side * y, side * heading);
             let mut drive = Drive::new(&robot, world, start, &[at(x, y), at(end.0, end.1)]);
             drive.velocity = Velocity::new(v, side * omega);
-            drive.movers.extend(walker.map(|(x, y, vx, vy)| self::walker(at(x, y), [vx, side * vy])));
             drive
         });
         for cycle in 0..5 {

@@ -69,6 +69,9 @@ impl<'a> Deciding<'a> {
     /// The step of a robot on its way.
     fn go_on(&mut self) -> Step {
         self.look_after_route();
+        if let Some(step) = self.stand_aside() {
+            return step;
+        }
         if let Some((kind, command)) = self.go_on_recovering() {
             return Step::Blocked { command, why: Blocked::Recovering(kind) };
         }

@@ -5,6 +5,7 @@ mod changes;
 mod deciding;
 mod driving;
 mod guarding;
+mod making_way;
 mod no_return;
 mod recovering;
 mod replanning;

@@ -31,7 +31,11 @@ impl Deciding<'_> {
         if self.task.mode.is_recovering() {
             return;
         }
+        self.note_met();
         if let Mode::Waiting { left_s, .. } = self.task.mode {
+            if self.make_way() {
+                return;
+            }
             if left_s <= 0.0 && self.replan() == Replanned::Failed {
                 self.leave_way_point();
             }
@@ -42,7 +46,7 @@ impl Deciding<'_> {
         if let Some(GivenPath { path, covered_m }) = &mut self.task.given {
             *covered_m = path.nearest_along(position, *covered_m, window_m);
         }
-        if self.go_around() {
+        if self.go_on_making_way() || self.go_around() || self.make_way() {
             return;
         }
         let config = &self.stack.controller;
@@ -206,14 +210,14 @@ impl Deciding<'_> {
     }
 
     /// Follows another route from here on.
-    fn take(&mut self, route: Route) -> Replanned {
+    pub(super) fn take(&mut self, route: Route) -> Replanned {
         let is_same = self.is_same_way(&route);
         let task = &mut *self.task;
         task.guide_memory = GuideMemory::default();
         task.memory = std::mem::take(&mut task.memory).on_another_route();
         (task.route, task.covered_m, task.is_lost) = (route, 0.0, false);
         task.waited_s = 0.0;
-        if matches!(task.mode, Mode::Waiting { .. }) {
+        if matches!(task.mode, Mode::Waiting { .. } | Mode::MakingWay { .. }) {
             task.mode = Mode::Following;
         }
         if is_same {

@@ -56,12 +56,16 @@ pub struct RecoveryCounts {
     /// Ways around movers that held the robot up.
     #[serde(default)]
     pub go_around: u32,
+    /// Drives to a place beside the way of somebody who wants past.
+    #[serde(default)]
+    pub make_way: u32,
 }
 
 impl RecoveryCounts {
     /// All of them.
     pub const fn total(&self) -> u32 {
-        self.replan + self.turn + self.manoeuvre + self.back_up + self.wait + self.go_around
+        let of_kinds = self.replan + self.turn + self.manoeuvre + self.back_up + self.wait;
+        of_kinds + self.go_around + self.make_way
     }
 
     pub(super) const fn add(&mut self, kind: RecoveryKind) {

@@ -1,7 +1,7 @@
 //! Corrections of what is known: of the place of the robot, or the map.
 
 use super::World;
-use crate::geometry::{Pose, Shift};
+use crate::geometry::{Disc, Pose, Shift};
 use crate::map::{Cell, CellState, Edit, OccupancyGrid};
 use crate::navigate::doubts::Doubts;
 use crate::navigate::masks::Masks;
@@ -47,6 +47,14 @@ impl World {
         if let Some(seen) = &mut self.seen {
             seen.clear();
         }
+    }
+
+    /// Nothing was ever sensed on a disc: who stood there is taken to have gone.
+    pub(in crate::navigate) fn forget_disc(&mut self, disc: &Disc) {
+        let map = self.unmasked.as_ref().unwrap_or(&self.known);
+        self.sensed.forget_disc(map, disc, &mut self.changed);
+        self.keep_out();
+        self.spread_changes();
     }
 
     /// The clock begins anew.

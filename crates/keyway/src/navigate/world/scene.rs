@@ -19,7 +19,8 @@ impl World {
         let Guidance { point: guide, remaining_m } = task.guidance;
         let (path, seen) = (&task.route.smoothed, self.seen_cells());
         let walked = self.walked.avoided();
-        let goal_heading_rad = task.goal.heading_rad.filter(|_| task.is_last_leg());
+        let goal_heading_rad =
+            task.goal.heading_rad.filter(|_| task.is_last_leg() && task.is_on_its_way());
         Scene {
             obstacles,
             sensed,

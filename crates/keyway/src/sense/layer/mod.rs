@@ -6,7 +6,7 @@ pub(super) use points::says_something;
 mod tests;
 
 use super::{Hit, Mover, ProjectedScan, SensorPoints, Tracker};
-use crate::geometry::{Point, Square};
+use crate::geometry::{Disc, Point, Square};
 use crate::map::{BitGrid, Cell, CellState, CellWindow, Edit, GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -245,6 +245,30 @@ impl SensedLayer {
         let free = |cell| Some(Edit { cell, state: known.state(cell)? });
         edits.extend(self.cells().into_iter().filter_map(free));
         *self = Self { cycle: self.cycle, scanned: self.scanned, ..Self::new(known.frame()) };
+    }
+
+    /// Forgets what was sensed in the cells that a disc touches. `edits` is emptied and receives the
+    /// cells that changed.
+    pub(crate) fn forget_disc(
+        &mut self,
+        known: &OccupancyGrid,
+        disc: &Disc,
+        edits: &mut Vec<Edit>,
+    ) {
+        edits.clear();
+        let frame = known.frame();
+        let (centre, reach) =
+            (frame.grid_from_world(disc.centre), disc.radius_m / frame.resolution_m());
+        for cell in CellWindow::around(frame, disc.centre, disc.radius_m).cells() {
+            let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
+            let is_near = square.distance_sq_to_point(centre) <= reach * reach;
+            if is_near && self.sensed.set(cell, false) {
+                self.places.remove(&cell);
+                self.met.retain(|(met, _), _| *met != cell);
+                self.count -= 1;
+                edits.extend(known.state(cell).map(|state| Edit { cell, state }));
+            }
+        }
     }
 
     /// Takes in changes of the known map. What stands on it is sensed no longer; a cell that was

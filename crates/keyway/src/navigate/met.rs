@@ -1,0 +1,124 @@
+//! Somebody whom the robot met on its way.
+
+use crate::geometry::{Disc, Segment};
+use crate::sense::Mover;
+use serde::{Deserialize, Serialize};
+
+/// The last one that moved across the robot's way. Once it stands, it is seen as an obstacle.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Met {
+    disc: Option<Disc>,
+    /// Since it was seen to move \[s\].
+    age_s: f64,
+    /// Since the robot looked for a way past \[s\].
+    unlooked_s: f64,
+}
+
+impl Met {
+    /// A way past is looked for each time when so much more time has passed \[s\].
+    const LOOK_S: f64 = 0.5;
+
+    /// Who has not been seen to move for so long is somebody else \[s\].
+    const FORGET_S: f64 = 30.0;
+
+    /// What moves no farther than this from where it was is still the same \[m\].
+    const SAME_M: f64 = 1.0;
+
+    /// Takes in what moves: the one that was met before, or else the first that is nearer than
+    /// `needed_m` to a way.
+    pub(super) fn note(
+        &mut self,
+        movers: &[Mover],
+        way: &(impl Iterator<Item = Segment> + Clone),
+        needed_m: f64,
+        elapsed_s: f64,
+    ) {
+        self.age_s += elapsed_s;
+        self.unlooked_s += elapsed_s;
+        let is_seen = |mover: &&Mover| mover.unseen_s == 0.0 && mover.is_usable();
+        let seen = || movers.iter().filter(is_seen);
+        let same = self.disc.and_then(|disc| {
+            let near = seen().filter(|mover| mover.centre.distance(disc.centre) <= Self::SAME_M);
+            near.min_by(|a, b| {
+                let away_m = |mover: &Mover| mover.centre.distance(disc.centre);
+                away_m(a).total_cmp(&away_m(b))
+            })
+        });
+        let across = || {
+            seen().find(|mover| is_across(&Disc::new(mover.centre, mover.radius_m), way, needed_m))
+        };
+        if let Some(mover) = same.or_else(across) {
+            (self.disc, self.age_s) = (Some(Disc::new(mover.centre, mover.radius_m)), 0.0);
+        } else if self.age_s > Self::FORGET_S {
+            self.disc = None;
+        }
+    }
+
+    /// The one that was met, if there is one.
+    pub(super) const fn disc(&self) -> Option<Disc> {
+        self.disc
+    }
+
+    /// True when it is time to look for a way past.
+    pub(super) fn look(&mut self) -> bool {
+        let is_time = self.unlooked_s >= Self::LOOK_S;
+        if is_time {
+            self.unlooked_s = 0.0;
+        }
+        is_time
+    }
+
+    pub(super) const fn forget(&mut self) {
+        self.disc = None;
+    }
+}
+
+/// True if something comes nearer than `needed_m` to a way.
+pub(super) fn is_across(
+    disc: &Disc,
+    way: &(impl Iterator<Item = Segment> + Clone),
+    needed_m: f64,
+) -> bool {
+    let reach_m = disc.radius_m + needed_m;
+    way.clone().any(|leg| leg.distance_sq_to_point(disc.centre) <= reach_m * reach_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+
+    fn way() -> impl Iterator<Item = Segment> + Clone {
+        std::iter::once(Segment::new(Point::new(0.0, 0.0), Point::new(5.0, 0.0)))
+    }
+
+    fn mover(id: u64, x: f64, y: f64) -> Mover {
+        Mover::standing(id, Point::new(x, y), 0.2)
+    }
+
+    #[test]
+    fn it_is_who_moves_across_the_way_until_that_is_long_ago() {
+        let mut met = Met::default();
+        let mut note = |movers: &[Mover], elapsed_s| {
+            met.note(movers, &way(), 0.3, elapsed_s);
+            met.disc().map(|disc| disc.centre.x)
+        };
+        assert_eq!(note(&[mover(1, 3.0, 0.6)], 0.1), None, "beside the way");
+        assert_eq!(note(&[mover(1, 3.0, 0.6), mover(2, 4.0, 0.4)], 0.1), Some(4.0));
+        assert_eq!(note(&[mover(3, 1.0, 0.0), mover(4, 4.5, 0.8)], 0.1), Some(4.5), "the same one");
+        let only_expected = Mover { unseen_s: 0.1, ..mover(4, 4.9, 0.8) };
+        assert_eq!(note(&[only_expected], 0.1), Some(4.5));
+        assert_eq!(note(&[], 29.0), Some(4.5));
+        assert_eq!(note(&[], 2.0), None);
+    }
+
+    #[test]
+    fn a_way_past_is_looked_for_twice_a_second() {
+        let mut met = Met::default();
+        let looks = (0..10).filter(|_| {
+            met.note(&[], &way(), 0.3, 0.25);
+            met.look()
+        });
+        assert_eq!(looks.count(), 5);
+    }
+}

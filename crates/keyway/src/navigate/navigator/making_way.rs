@@ -1,0 +1,150 @@
+//! Making way for somebody who comes towards the robot where two cannot pass.
+
+use super::Deciding;
+use crate::geometry::{Disc, Point};
+use crate::map::Clearance;
+use crate::navigate::encounter::{Encounter, Party};
+use crate::navigate::met::is_across;
+use crate::navigate::mode::Mode;
+use crate::navigate::watch::RestOfRoute;
+use crate::navigate::{Blocked, Step};
+use crate::route::Route;
+
+impl Deciding<'_> {
+    /// A robot that has been held up for so long makes way, if that is up to it \[s\].
+    const HELD_S: f64 = 2.0;
+
+    /// After so long the other one does not make way, though it would be up to it \[s\].
+    const ALONE_S: f64 = 8.0;
+
+    /// It stands beside the way of somebody for no longer than this \[s\].
+    const STANDS_S: f64 = 12.0;
+
+    /// Notes who comes towards the robot.
+    pub(super) fn note_met(&mut self) {
+        if !self.stack.controller.make_way {
+            return;
+        }
+        let (needed_m, ahead_m) = (self.needed_m(), 2.0 * self.robot.decision_reach_m());
+        let mut met = self.task.met;
+        let movers = &self.world.movers_then;
+        met.note(movers, &self.rest().beginning(ahead_m), needed_m, self.elapsed_s);
+        self.task.met = met;
+    }
+
+    /// Drives to a place beside the way of whom it met, if there is no way past, and it is up to
+    /// the robot to make way.
+    pub(super) fn make_way(&mut self) -> bool {
+        let Some(other) = self.task.met.disc() else { return false };
+        let held_s = self.task.hold.held_s();
+        if held_s < Self::HELD_S || !self.task.met.look() {
+            return false;
+        }
+        if self.route_past(&other, self.task.next_stop()).is_some() {
+            return false;
+        }
+        let Some(place) = self.encounter(other).place(held_s >= Self::ALONE_S) else {
+            return false;
+        };
+        let Some(route) = self.route_past(&other, place.at) else { return false };
+        self.record.counts.routes_planned += 1;
+        self.record.counts.recoveries.make_way += 1;
+        self.take(route);
+        self.task.mode = Mode::MakingWay { place: place.at, other, stood_s: 0.0 };
+        true
+    }
+
+    fn encounter(&self, other: Disc) -> Encounter<'_> {
+        let footprint = &self.robot.footprint;
+        let robot = Party {
+            centre: self.pose.point(),
+            narrow_m: footprint.inscribed_radius_m(),
+            wide_m: footprint.circumscribed_radius_m(),
+        };
+        let other =
+            Party { centre: other.centre, narrow_m: other.radius_m, wide_m: other.radius_m };
+        let known = Clearance::new(self.world.known.frame(), self.world.known.occupied());
+        let seen = self.world.obstacles.clearance();
+        let apart_m = 2.0 * self.robot.safety_margin_m() + 2.0 * known.frame().resolution_m();
+        Encounter { known, seen, robot, other, apart_m }
+    }
+
+    /// A route that does not lead through a disc, on which something stands or moves.
+    fn route_past(&mut self, disc: &Disc, to: Point) -> Option<Route> {
+        let (from, budget) = (self.pose.point(), self.stack.controller.replan_budget);
+        let needed_m = self.robot.footprint.inscribed_radius_m();
+        let router = &mut self.world.router;
+        let around = router.around(&self.world.known, (from, to), budget, &[*disc]);
+        let is_past = |route: &Route| !is_across(disc, &route.smoothed.segments(), needed_m);
+        around.or_else(|| router.again(from, to, budget).ok().filter(is_past))
+    }
+
+    /// Goes on as soon as there is a way past, or when that takes too long. False if it does not
+    /// make way.
+    pub(super) fn go_on_making_way(&mut self) -> bool {
+        let Mode::MakingWay { place, stood_s, other } = &mut self.task.mode else { return false };
+        let tolerance_m = self.stack.controller.goal_tolerance_m;
+        if self.pose.point().distance(*place) <= tolerance_m {
+            *stood_s += self.elapsed_s;
+        }
+        let config = &self.stack.controller;
+        let is_held = self.task.watch.blocked_s.max(self.task.watch.no_progress_s)
+            >= config.blocked_s.max(config.no_progress_s);
+        if *stood_s >= Self::STANDS_S || *stood_s == 0.0 && is_held {
+            let begun = *other;
+            self.take_as_gone(begun);
+            self.replan();
+            return true;
+        }
+        if self.task.met.look() {
+            self.pass();
+        }
+        true
+    }
+
+    /// Whom it made way for has had the time to pass, though the robot may not have seen it: nobody
+    /// stands any more between where it was and where it was seen last.
+    fn take_as_gone(&mut self, begun: Disc) {
+        self.task.mode = Mode::Following;
+        let last = self.task.met.disc().unwrap_or(begun);
+        let radius_m = begun.radius_m.max(last.radius_m) + self.world.known.frame().resolution_m();
+        let steps = (begun.centre.distance(last.centre) / radius_m).ceil().max(1.0) as u32;
+        for step in 0..=steps {
+            let part = f64::from(step) / f64::from(steps);
+            let centre = begun.centre.lerp(last.centre, part);
+            self.world.forget_disc(&Disc { centre, radius_m });
+        }
+        self.task.met.forget();
+    }
+
+    /// Takes the route to the next stop, if nobody is on its beginning.
+    fn pass(&mut self) {
+        let nobody = Disc::new(self.pose.point(), 0.0);
+        let other = self.task.met.disc();
+        let route = match other {
+            Some(other) => self.route_past(&other, self.task.next_stop()),
+            None => self.route_past(&nobody, self.task.next_stop()),
+        };
+        let Some(route) = route else { return };
+        let needed_m = self.robot.footprint.inscribed_radius_m();
+        let ahead_m = 2.0 * self.robot.decision_reach_m();
+        let rest = RestOfRoute { path: &route.smoothed, covered_m: 0.0 };
+        let movers = self.world.movers_then.iter().map(|it| Disc::new(it.centre, it.radius_m));
+        let mut discs = other.into_iter().chain(movers);
+        let is_taken = discs.any(|disc| is_across(&disc, &rest.beginning(ahead_m), needed_m));
+        if is_taken {
+            return;
+        }
+        self.record.counts.routes_planned += 1;
+        self.task.met.forget();
+        self.task.mode = Mode::Following;
+        self.take(route);
+    }
+
+    /// The step of a robot that stands beside the way of somebody.
+    pub(super) fn stand_aside(&self) -> Option<Step> {
+        let Mode::MakingWay { stood_s, .. } = self.task.mode else { return None };
+        let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
+        (stood_s > 0.0).then_some(Step::Blocked { command: braked, why: Blocked::MakingWay })
+    }
+}
