@@ -117,8 +117,8 @@ impl Meeting<'_> {
     /// - 1 - g / R, where the discs overlap (g < 0, R the distance at which they touch);
     /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the less is known, the
     ///   more likely a contact is outside the disc, and the less likely it is inside. By up to
-    ///   [`Self::TO_THE_LEFT`] more on the left of a mover, and less on its right: of two that do the
-    ///   same as each other, neither gets past.
+    ///   [`Self::TO_THE_LEFT`] more on the left of a mover, and less on its right: of two that do
+    ///   the same as each other, neither gets past.
     #[inline]
     pub(super) fn cost_s(&self, at: Point, after_s: f64, velocity_mps: Point) -> f64 {
         let part = (after_s / self.horizon_s * PARTS as f64) as usize;

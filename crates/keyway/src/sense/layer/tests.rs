@@ -141,6 +141,23 @@ fn what_stands_is_not_forgotten() {
 }
 
 #[test]
+fn what_was_sensed_on_a_disc_is_forgotten() {
+    let mut case = Case::new(&[".....", "....."]);
+    case.scan(0.5, 0.5, [2.7, NO, NO, NO]);
+    case.scan(0.5, 1.5, [1.7, NO, NO, NO]);
+    let mut forgotten = |x, radius_m| {
+        let (disc, mut edits) = (Disc::new(Point::new(x, 1.5), radius_m), Vec::new());
+        case.layer.forget_disc(&case.known, &disc, &mut edits);
+        assert_eq!(case.layer.count(), case.layer.sensed().count_ones());
+        edits
+    };
+    assert_eq!(forgotten(1.0, 0.9), [], "the nearer square begins 1 m away");
+    assert_eq!(forgotten(1.0, 1.1), [Edit { cell: Cell::new(2, 1), state: Free }]);
+    assert_eq!(case.layer.cells(), [Cell::new(3, 0)]);
+    assert_eq!(case.scan(0.5, 1.5, [1.7, NO, NO, NO]), [(2, 1, Occupied)]);
+}
+
+#[test]
 fn marks_win_whatever_the_order_of_the_beams() {
     // Both beams look right; one passes the cell (2, 0), the other hits in it.
     for ranges in [[1.7, 2.7], [2.7, 1.7]] {
