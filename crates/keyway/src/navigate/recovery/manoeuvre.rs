@@ -26,7 +26,7 @@ use std::f64::consts::{FRAC_PI_6, TAU};
 const HEADINGS: i32 = 36;
 
 /// Between two headings \[rad\].
-const STEP_RAD: f64 = TAU / HEADINGS as f64;
+pub(super) const STEP_RAD: f64 = TAU / HEADINGS as f64;
 
 /// Length of one straight drive, in sides of the squares in which positions count as one: it leads
 /// into another square whatever the heading.
@@ -86,6 +86,7 @@ impl TightPlace<'_> {
         self.along_route(pose, &stations)
             .or_else(|| self.lined_up(pose))
             .or_else(|| self.searched(pose, &stations))
+            .or_else(|| self.off_a_wall(pose, &stations))
     }
 
     /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is
@@ -115,7 +116,7 @@ impl TightPlace<'_> {
         None
     }
 
-    fn searched(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
+    pub(super) fn searched(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
         let mut nodes = vec![Node { pose, heading: 0, time_s: 0.0, by: None }];
         let mut open: BinaryHeap<Entry> = BinaryHeap::from([Reverse((0, 0))]);
         let mut closed = HashSet::new();

@@ -6,6 +6,7 @@
 mod line_up;
 mod manoeuvre;
 mod motion;
+mod off_wall;
 mod track;
 
 pub(super) use manoeuvre::TightPlace;
