@@ -1,22 +1,14 @@
 //! Robots whose commands act late, whether they know it or not.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway::geometry::{Disc, Point, Pose};
-use keyway::map::{CellState, GridFrame, OccupancyGrid};
+mod hall;
+
+use hall::hall;
+use keyway::geometry::{Disc, Point};
 use keyway::navigate::Stack;
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::Disturbances;
-
-/// A hall of 12 m x 8 m in cells of 5 cm with two walls, between which a robot has to turn twice.
-fn hall() -> OccupancyGrid {
-    let frame = GridFrame::new(240, 160, 0.05, Pose::default()).unwrap();
-    OccupancyGrid::from_fn(frame, |cell| {
-        let is_wall = (80..84).contains(&cell.x) && cell.y < 110
-            || (150..154).contains(&cell.x) && cell.y > 50;
-        if is_wall { CellState::Occupied } else { CellState::Free }
-    })
-}
 
 fn episode(robot: Robot) -> Episode {
     let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));

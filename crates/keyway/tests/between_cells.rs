@@ -98,7 +98,7 @@ impl FinePoints {
         Point::new(f64::from(x), f64::from(y)) * (1.0 / f64::from(Self::PER_CELL))
     }
 
-    /// Whether a disc can certainly go from one place to the other, and whether it certainly cannot.
+    /// True if a disc can certainly go from one place to the other; true if it certainly cannot.
     fn joins(&self, radius_m: f64, ends: [Point; 2]) -> [bool; 2] {
         let half = 0.5 * std::f64::consts::SQRT_2 / f64::from(Self::PER_CELL);
         let (half_m, radius_m) = (half * self.frame.resolution_m(), radius_m);
@@ -109,7 +109,7 @@ impl FinePoints {
         ]
     }
 
-    /// Whether points with this room lead from near one place to near the other.
+    /// True if points with this room lead from near one place to near the other.
     fn reaches(&self, ends: [Point; 2], least_m: f64, near: f64) -> bool {
         let [start, goal] = ends.map(|end| self.frame.grid_from_world(end));
         let is_open = |index: usize| self.rooms[index] >= least_m;

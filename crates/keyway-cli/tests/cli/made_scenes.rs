@@ -2,6 +2,7 @@
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 #[test]
 fn worlds_of_barn_become_scenes() {
@@ -177,11 +178,7 @@ fn narrow_places_are_made_by_seed() {
     }
     // Robots without a reverse gear, which would not come out again had they entered aslant.
     for scene in ["door_00002", "door_00019", "tunnel_00006"] {
-        let (kind, seed) = scene.split_once('_').unwrap();
-        let line = format!("scene narrow {kind} --seed {seed} --count 1 --out n");
-        keyway(folder.path(), &line).expect_code(0);
-        let line = format!("navigate --scene n/{scene}.toml --format json");
-        let run = keyway(folder.path(), &line).expect_code(0).json();
+        let run = driven(&folder, scene);
         assert_eq!(run["outcome"], json!("reached"), "{scene}");
         // Two of them have to be led in.
         let is_led = run["run"]["recoveries"]["manoeuvre"].as_u64().unwrap() > 0;
@@ -193,23 +190,25 @@ fn narrow_places_are_made_by_seed() {
     assert!(message.ends_with("did you mean `bay`?"), "{message}");
 }
 
+/// Drives a scene of a kind and a seed, such as `door_00002`.
+fn driven(folder: &TempDir, scene: &str) -> Value {
+    let (kind, seed) = scene.split_once('_').unwrap();
+    let line = format!("scene narrow {kind} --seed {seed} --count 1 --out n");
+    keyway(folder.path(), &line).expect_code(0);
+    keyway(folder.path(), &format!("navigate --scene n/{scene}.toml --format json")).json()
+}
+
 /// Passages whose middle lies between two rows of cells: no centre of a cell has the room that the
 /// robot needs.
 #[test]
 fn passages_between_cells_are_driven() {
     let folder = folder();
     for scene in ["lane_07010", "tunnel_07002", "tunnel_07004"] {
-        let (kind, seed) = scene.split_once('_').unwrap();
-        let line = format!("scene narrow {kind} --seed {seed} --count 1 --out n");
-        keyway(folder.path(), &line).expect_code(0);
-        let line = format!("navigate --scene n/{scene}.toml --format json");
-        let run = keyway(folder.path(), &line).expect_code(0).json();
+        let run = driven(&folder, scene);
         assert_eq!(run["outcome"], json!("reached"), "{scene}");
         let clearance_m = run["run"]["min_clearance_m"].as_f64().unwrap();
         assert!(clearance_m > 0.0, "{scene}: {clearance_m}");
     }
     // This one is as wide as the robot, but not as its margin asks for.
-    keyway(folder.path(), "scene narrow door --seed 7010 --count 1 --out n").expect_code(0);
-    let run = keyway(folder.path(), "navigate --scene n/door_07010.toml --format json").json();
-    assert_eq!(run["outcome"], json!("no_path"));
+    assert_eq!(driven(&folder, "door_07010")["outcome"], json!("no_path"));
 }

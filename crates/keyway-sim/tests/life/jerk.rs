@@ -89,7 +89,7 @@ fn goals_change_and_end_on_the_way() {
     assert!(robot.life.pose.point().distance(Point::new(10.0, 5.0)) < 0.2);
 }
 
-/// Who knows nothing goes on with the motion that was found to touch nothing.
+/// Without knowledge it goes on with the motion that was found to touch nothing.
 #[test]
 fn it_stops_within_its_limits_where_nothing_is_known() {
     let mut robot = Gentle::new(Pose::new(2.0, 4.0, 0.0));

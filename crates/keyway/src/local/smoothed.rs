@@ -7,11 +7,11 @@ use crate::robot::{CommandWindow, Robot};
 /// for its reference; what it touches is a matter of the robot itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Smoothed<'a> {
-    /// What is still averaged.
+    /// The velocities that are still averaged.
     pub window: &'a CommandWindow,
-    /// Where the robot itself is when its next command acts.
+    /// Pose of the robot itself when its next command acts.
     pub pose: Pose,
-    /// How it then moves.
+    /// Its velocity then.
     pub velocity: Velocity,
 }
 

@@ -13,9 +13,10 @@ use std::collections::BinaryHeap;
 /// A robot, and something in its way.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encounter<'a> {
-    /// What stands, as the map says: neither of them is among it.
+    /// Everything that stands, as the map says: neither of them is among it.
     pub(super) known: Clearance<'a>,
-    /// What stands, as it is seen. Near the other one it does not count: that may be among it.
+    /// Everything that stands, as it is seen. Near the two it does not count: the other one may be
+    /// among it.
     pub(super) seen: Clearance<'a>,
     pub(super) robot: Party,
     pub(super) other: Party,
@@ -42,8 +43,8 @@ pub(super) struct PassingPlace {
 }
 
 impl Encounter<'_> {
-    /// What lies farther away than this from the middle between the two is not looked at, beyond
-    /// half of what they are apart \[m\].
+    /// Ground up to this far from the middle between the two is looked at, and half of what they are
+    /// apart farther \[m\].
     const REACH_M: f64 = 6.0;
 
     /// Ways that differ by less are alike \[m\].
@@ -90,7 +91,8 @@ impl Encounter<'_> {
         let beside_m = robot.wide_m + other.narrow_m + apart_m;
         let is_beside = |place: Point| {
             let is_apart = |other: &Point| other.distance(place) >= beside_m;
-            way.iter().all(is_apart) && self.known.is_clear_point(place, robot.wide_m)
+            let is_clear = |all: Clearance<'_>| all.is_clear_point(place, robot.wide_m);
+            way.iter().all(is_apart) && is_clear(self.known) && is_clear(self.seen)
         };
         let mut reached: Vec<usize> =
             (0..from_robot.len()).filter(|&place| from_robot[place].is_finite()).collect();

@@ -1,6 +1,7 @@
 //! Somebody whom the robot met on its way.
 
-use crate::geometry::{Disc, Segment};
+use super::walked_ground::is_across;
+use crate::geometry::{Disc, Segment, Shift};
 use crate::sense::Mover;
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +19,10 @@ impl Met {
     /// A way past is looked for each time when so much more time has passed \[s\].
     const LOOK_S: f64 = 0.5;
 
-    /// Who has not been seen to move for so long is somebody else \[s\].
+    /// Somebody who has not been seen to move for so long is forgotten \[s\].
     const FORGET_S: f64 = 30.0;
 
-    /// What moves no farther than this from where it was is still the same \[m\].
+    /// The same one is found again no farther than this from its last place \[m\].
     const SAME_M: f64 = 1.0;
 
     /// Takes in what moves: the one that was met before, or else the first that is nearer than
@@ -68,25 +69,23 @@ impl Met {
         is_time
     }
 
+    /// Moves it with the robot, to where that turns out to be.
+    pub(super) fn shift(&mut self, shift: &Shift) {
+        if let Some(disc) = &mut self.disc {
+            disc.centre = shift.point(disc.centre);
+        }
+    }
+
     pub(super) const fn forget(&mut self) {
         self.disc = None;
     }
 }
 
-/// True if something comes nearer than `needed_m` to a way.
-pub(super) fn is_across(
-    disc: &Disc,
-    way: &(impl Iterator<Item = Segment> + Clone),
-    needed_m: f64,
-) -> bool {
-    let reach_m = disc.radius_m + needed_m;
-    way.clone().any(|leg| leg.distance_sq_to_point(disc.centre) <= reach_m * reach_m)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Point, Pose};
+    use std::f64::consts::FRAC_PI_2;
 
     fn way() -> impl Iterator<Item = Segment> + Clone {
         std::iter::once(Segment::new(Point::new(0.0, 0.0), Point::new(5.0, 0.0)))
@@ -110,6 +109,14 @@ mod tests {
         assert_eq!(note(&[only_expected], 0.1), Some(4.5));
         assert_eq!(note(&[], 29.0), Some(4.5));
         assert_eq!(note(&[], 2.0), None);
+    }
+
+    #[test]
+    fn it_goes_with_a_robot_whose_place_is_corrected() {
+        let mut met = Met::default();
+        met.note(&[mover(1, 3.0, 0.0)], &way(), 0.3, 0.1);
+        met.shift(&Shift::new(Pose::new(1.0, 0.0, 0.0), Pose::new(1.0, 1.0, FRAC_PI_2)));
+        assert!(met.disc().unwrap().centre.distance(Point::new(1.0, 3.0)) < 1e-12);
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub(super) enum Mode {
     MakingWay {
         /// The end of its route.
         place: Point,
-        /// Where the other one was when the robot began to make way.
+        /// The other one, at the place where it was when the robot began to make way.
         other: Disc,
         /// Since it stands there \[s\].
         stood_s: f64,
@@ -49,16 +49,17 @@ pub(super) fn no_path() -> NavigateError {
 }
 
 impl Mode {
-    /// Moves what is under way with the robot. The heading at the goal is that of the map.
+    /// Moves what is under way with the robot. The heading at the goal is that of the map, and so is
+    /// a place beside somebody's way.
     pub(super) fn shift(&mut self, shift: &Shift) {
         match self {
             Self::TurningFirst(motion) => motion.shift(shift),
             Self::Recovering(recovery) => recovery.shift(shift),
             Self::Arriving(turn) => *turn = None,
-            Self::MakingWay { place, other, .. } => {
-                (*place, other.centre) = (shift.point(*place), shift.point(other.centre));
-            }
-            Self::Following | Self::StoppingFor(_) | Self::Waiting { .. } => {}
+            Self::Following
+            | Self::StoppingFor(_)
+            | Self::Waiting { .. }
+            | Self::MakingWay { .. } => {}
         }
     }
 

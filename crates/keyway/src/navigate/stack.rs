@@ -60,9 +60,9 @@ pub struct ControllerConfig {
     /// stack files that do not have it.
     #[serde(default)]
     pub go_around: bool,
-    /// Where somebody comes towards the robot and two cannot pass, drive to a place beside their way
-    /// and let them pass, if that is nearer than theirs. Needs `movers`; false in stack files that
-    /// do not have it.
+    /// Drive to a place beside the way of somebody who comes towards the robot where two cannot pass,
+    /// and let them pass, if that place is nearer than theirs. Needs `movers`; false in stack files
+    /// that do not have it.
     #[serde(default)]
     pub make_way: bool,
     /// A recovery begins when nothing lets the robot drive for this long \[s\].
@@ -176,9 +176,10 @@ impl ControllerConfig {
     /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever
     /// is larger; the least clearance is the inscribed radius and the margin that the local planner
     /// keeps. The route is watched, a start may be off by 5 cm (a cell of most maps, and what a
-    /// localisation by scans is off), the robot goes around movers that hold it up and makes way where two cannot pass, all recoveries
-    /// are tried, and it goes back by up to twice its circumscribed radius. Movers are followed;
-    /// there is no stop rule. A robot that sees nothing stops.
+    /// localisation by scans is off), the robot goes around movers that hold it up and makes way
+    /// where two cannot pass, all recoveries are tried, and it goes back by up to twice its
+    /// circumscribed radius. Movers are followed; there is no stop rule. A robot that sees nothing
+    /// stops.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),

@@ -84,10 +84,7 @@ impl WalkedGround {
         needed_m: f64,
     ) -> Vec<Disc> {
         let is_across = |step: &Step| {
-            let reach_m = step.disc.radius_m + needed_m;
-            let is_near =
-                |leg: Segment| leg.distance_sq_to_point(step.disc.centre) <= reach_m * reach_m;
-            step.is_avoided || step.is_walked_again && way.clone().any(is_near)
+            step.is_avoided || step.is_walked_again && self::is_across(&step.disc, way, needed_m)
         };
         let (across, mut others): (Vec<Step>, Vec<Step>) =
             self.steps.iter().partition(|&step| is_across(step));
@@ -119,6 +116,16 @@ impl WalkedGround {
         self.avoided.clear();
         self.avoided.extend(self.steps.iter().filter(|step| step.is_avoided).map(|step| step.disc));
     }
+}
+
+/// True if a disc comes nearer than `needed_m` to a way.
+pub(super) fn is_across(
+    disc: &Disc,
+    way: &(impl Iterator<Item = Segment> + Clone),
+    needed_m: f64,
+) -> bool {
+    let reach_m = disc.radius_m + needed_m;
+    way.clone().any(|leg| leg.distance_sq_to_point(disc.centre) <= reach_m * reach_m)
 }
 
 impl Step {
@@ -155,7 +162,7 @@ impl Hold {
         self.unlooked_s += elapsed_s;
     }
 
-    /// How long the robot has been held up \[s\].
+    /// Time for which the robot has been held up \[s\].
     pub(super) const fn held_s(&self) -> f64 {
         self.held_s
     }

@@ -1,7 +1,7 @@
 //! Limits of jerk, as a moving average behind a motion that is limited in acceleration only.
 //!
 //! # The method
-//! What drives a robot is planned as a *reference*: a velocity for the end of each cycle, which
+//! The motion of a robot is planned as a *reference*: a velocity for the end of each cycle, which
 //! keeps the limits of speed and acceleration. The command of a cycle is the mean of the last n of
 //! them. From one command to the next it changes by the mean of the last n changes of the
 //! reference, so it keeps the limits of acceleration, too; and that change changes by the

@@ -39,7 +39,7 @@ impl EndRule {
         if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
     }
 
-    /// What a straight way from (or to) a position must keep \[m\], for a route that keeps
+    /// Room that a straight way from (or to) a position must keep \[m\], for a route that keeps
     /// `clearance_m`.
     pub(super) fn room_m(
         &self,

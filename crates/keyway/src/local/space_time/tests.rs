@@ -472,9 +472,8 @@ proptest! {
         }
     }
 
-    /// Where nothing moves, a world seen in a mirror is driven in a mirror: of random courses no two
-    /// are equally good.
-    /// The cells are a sixteenth of a metre, so that their mirrored centres are exact.
+    /// Unless something moves, a world seen in a mirror is driven in a mirror: of random courses no
+    /// two are equally good. The cells are a sixteenth of a metre, so that their mirrored centres are exact.
     #[test]
     fn left_and_right_are_alike(
         blocks in prop::collection::vec((0i32..80, 0i32..80), 0..50), (x, y, heading) in (1.0..4.0f64, 1.0..4.0f64, -3.0..3.0f64),

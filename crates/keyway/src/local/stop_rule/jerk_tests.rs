@@ -120,7 +120,7 @@ fn what_is_averaged_counts() {
     assert!(changed(&robot));
 }
 
-/// Where what is averaged leads, ahead or back, ground has to be seen, whatever else is asked for.
+/// Ground has to be seen to which the average leads, ahead or back, whatever else is asked for.
 #[test]
 fn what_is_averaged_stays_on_seen_ground() {
     let mut robot = Robot::small();

@@ -189,8 +189,8 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// Whether a manoeuvre is admissible that begins with a velocity and has those at the ends of
-    /// its cycles.
+    /// Refuses a manoeuvre that is not admissible: it begins with a velocity and has those at the
+    /// ends of its cycles.
     fn follow(
         &mut self,
         mut from: Velocity,

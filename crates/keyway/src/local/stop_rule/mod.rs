@@ -203,9 +203,9 @@ pub struct Surroundings<'a> {
     pub movers: &'a [Mover],
     /// From that instant to the one at which the command acts \[s\].
     pub delay_s: f64,
-    /// Where the robot is when the command acts; its reference, if its commands are averaged.
+    /// Pose of the robot when the command acts; that of its reference, if its commands are averaged.
     pub pose: Pose,
-    /// How it then moves.
+    /// Its velocity then.
     pub velocity: Velocity,
     /// The robot itself, if its commands are averaged.
     pub smoothed: Option<Smoothed<'a>>,

@@ -158,7 +158,7 @@ impl Motors {
         smoothing.smooth(None, braked, &self.drive)
     }
 
-    /// What is still averaged, if commands are.
+    /// The velocities that are still averaged, if commands are.
     pub(super) fn window(&self) -> Option<&CommandWindow> {
         self.smoothing.as_ref().map(|smoothing| &smoothing.window)
     }

@@ -4,8 +4,8 @@ use super::Deciding;
 use crate::geometry::{Disc, Point};
 use crate::map::Clearance;
 use crate::navigate::encounter::{Encounter, Party};
-use crate::navigate::met::is_across;
 use crate::navigate::mode::Mode;
+use crate::navigate::walked_ground::is_across;
 use crate::navigate::watch::RestOfRoute;
 use crate::navigate::{Blocked, Step};
 use crate::route::Route;
@@ -90,23 +90,21 @@ impl Deciding<'_> {
         let config = &self.stack.controller;
         let is_held = self.task.watch.blocked_s.max(self.task.watch.no_progress_s)
             >= config.blocked_s.max(config.no_progress_s);
-        if *stood_s >= Self::STANDS_S || *stood_s == 0.0 && is_held {
-            let begun = *other;
-            self.take_as_gone(begun);
+        let (begun, stood_s) = (*other, *stood_s);
+        let last = self.task.met.disc().unwrap_or(begun);
+        if stood_s >= Self::STANDS_S || stood_s == 0.0 && is_held {
+            self.take_as_gone(begun, last);
             self.replan();
-            return true;
-        }
-        if self.task.met.look() {
-            self.pass();
+        } else if self.task.met.look() {
+            self.pass(last);
         }
         true
     }
 
     /// Whom it made way for has had the time to pass, though the robot may not have seen it: nobody
     /// stands any more between where it was and where it was seen last.
-    fn take_as_gone(&mut self, begun: Disc) {
+    fn take_as_gone(&mut self, begun: Disc, last: Disc) {
         self.task.mode = Mode::Following;
-        let last = self.task.met.disc().unwrap_or(begun);
         let radius_m = begun.radius_m.max(last.radius_m) + self.world.known.frame().resolution_m();
         let steps = (begun.centre.distance(last.centre) / radius_m).ceil().max(1.0) as u32;
         for step in 0..=steps {
@@ -118,26 +116,19 @@ impl Deciding<'_> {
     }
 
     /// Takes the route to the next stop, if nobody is on its beginning.
-    fn pass(&mut self) {
-        let nobody = Disc::new(self.pose.point(), 0.0);
-        let other = self.task.met.disc();
-        let route = match other {
-            Some(other) => self.route_past(&other, self.task.next_stop()),
-            None => self.route_past(&nobody, self.task.next_stop()),
-        };
-        let Some(route) = route else { return };
+    fn pass(&mut self, other: Disc) {
+        let Some(route) = self.route_past(&other, self.task.next_stop()) else { return };
         let needed_m = self.robot.footprint.inscribed_radius_m();
         let ahead_m = 2.0 * self.robot.decision_reach_m();
         let rest = RestOfRoute { path: &route.smoothed, covered_m: 0.0 };
         let movers = self.world.movers_then.iter().map(|it| Disc::new(it.centre, it.radius_m));
-        let mut discs = other.into_iter().chain(movers);
+        let mut discs = movers.chain([other]);
         let is_taken = discs.any(|disc| is_across(&disc, &rest.beginning(ahead_m), needed_m));
         if is_taken {
             return;
         }
         self.record.counts.routes_planned += 1;
         self.task.met.forget();
-        self.task.mode = Mode::Following;
         self.take(route);
     }
 

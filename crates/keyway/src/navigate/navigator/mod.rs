@@ -94,7 +94,7 @@ struct Asked {
     velocity: Velocity,
     /// The robot itself; the same, unless its commands are averaged.
     robot_then: (Pose, Velocity),
-    /// What was averaged then, if commands are.
+    /// The velocities that were averaged then, if commands are.
     window: Option<CommandWindow>,
     /// Its memory before it answered.
     memory: DriveMemory,
@@ -181,7 +181,10 @@ impl Navigator {
     fn shift_errand(&mut self, shift: &Shift) {
         match &mut self.errand {
             Some(Errand::Act(act)) => act.shift(shift),
-            Some(Errand::Drive(task)) => task.mode.shift(shift),
+            Some(Errand::Drive(task)) => {
+                task.mode.shift(shift);
+                task.met.shift(shift);
+            }
             None => {}
         }
     }

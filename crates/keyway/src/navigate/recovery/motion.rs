@@ -125,7 +125,7 @@ impl MotionUnderWay {
         let room_m = *self.room_m.get_or_insert_with(|| kept_room_m(robot, pose, obstacles));
         let room_m = Self::KEEPS * room_m;
         self.left = self.left.after(from, pose, elapsed_s);
-        // Of an average over some cycles, none is more than the motors do before as many have passed.
+        // An averaged command takes as many cycles to become what the motors do in one.
         let least_s = limits.smoothing_cycles(cycle_s) as f64 * cycle_s;
         if is_standing && self.left.size() <= self.left.nothing(least, least_s) {
             return MotionStep::Done;

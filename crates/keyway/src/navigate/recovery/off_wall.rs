@@ -18,7 +18,7 @@ const LEAST_RAD: f64 = 0.003;
 /// The part of the largest free turn that it makes: what touches nearly cannot drive on.
 const SHARE: f64 = 0.75;
 
-/// How often the range of turns is halved.
+/// Halvings of the range of turns.
 const HALVINGS: u32 = 10;
 
 /// Length of a drive \[circumscribed radii\].

@@ -23,7 +23,7 @@ use pinch::Pinch;
 use room::{CHORD_CELLS, Room};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// How often the range of the room that a way may have is halved.
+/// Halvings of the range of the room that a way may have.
 const HALVINGS: u32 = 4;
 
 /// A cell's centre is no farther than this from any point of the cell \[cells\].
@@ -37,9 +37,9 @@ pub fn looser_clearance_m(frame: &GridFrame, clearance_m: f64) -> f64 {
 /// The route that is wanted of [`plan_between_cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BetweenCells {
-    /// What it keeps from obstacles and from the map's border \[m\].
+    /// Distance that it keeps from obstacles and from the map's border \[m\].
     pub clearance_m: f64,
-    /// How many paths are tried, each of which costs a search.
+    /// Number of paths that are tried, each of which costs a search.
     pub attempts: u32,
 }
 
@@ -100,9 +100,9 @@ fn cells_to_close(pinches: &[Pinch], map: &SearchMap) -> Vec<Cell> {
 /// A way with room.
 struct Way {
     points: Vec<Point>,
-    /// What it keeps \[m\], but for its ends.
+    /// Room that it keeps \[m\], but for its ends.
     kept_m: f64,
-    /// What all of it has to keep \[m\], its ends too.
+    /// Room that all of it has to keep \[m\], its ends too.
     needed_m: f64,
 }
 

@@ -4,7 +4,7 @@ use super::pinch::Pinch;
 use crate::geometry::{Point, Segment};
 use crate::map::{Cell, Clearance};
 
-/// What chords may cut off bends \[cells\].
+/// Chords may cut off so much of bends \[cells\].
 pub(super) const CHORD_CELLS: f64 = 1.0 / 128.0;
 
 /// Points of a path are no farther apart than this \[cells\].
@@ -16,7 +16,7 @@ const MOVES: u32 = 64;
 /// No point is moved farther than this \[cells\].
 const FAR_CELLS: f64 = 2.0;
 
-/// How often a connection that comes too near to something is halved.
+/// Halvings of a connection that comes too near to something.
 const SPLITS: u32 = 3;
 
 /// An end is joined to one of so many first points of the way.
@@ -28,9 +28,9 @@ const MORE: f64 = 1.0 + 1e-9;
 /// Seeks points from which nothing is nearer than a distance.
 pub(super) struct Room<'a> {
     clearance: Clearance<'a>,
-    /// What the way keeps between its points \[m\].
+    /// Room that the way keeps between its points \[m\].
     kept_m: f64,
-    /// What its points keep \[cells\].
+    /// Room that its points keep \[cells\].
     reach: f64,
 }
 

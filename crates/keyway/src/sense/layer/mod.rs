@@ -247,8 +247,8 @@ impl SensedLayer {
         *self = Self { cycle: self.cycle, scanned: self.scanned, ..Self::new(known.frame()) };
     }
 
-    /// Forgets what was sensed in the cells that a disc touches. `edits` is emptied and receives the
-    /// cells that changed.
+    /// Forgets everything that was sensed in the cells that a disc touches. `edits` is emptied and
+    /// receives the cells that changed.
     pub(crate) fn forget_disc(
         &mut self,
         known: &OccupancyGrid,
@@ -256,13 +256,8 @@ impl SensedLayer {
         edits: &mut Vec<Edit>,
     ) {
         edits.clear();
-        let frame = known.frame();
-        let (centre, reach) =
-            (frame.grid_from_world(disc.centre), disc.radius_m / frame.resolution_m());
-        for cell in CellWindow::around(frame, disc.centre, disc.radius_m).cells() {
-            let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
-            let is_near = square.distance_sq_to_point(centre) <= reach * reach;
-            if is_near && self.sensed.set(cell, false) {
+        for cell in cells_under(disc, known.frame()) {
+            if self.sensed.set(cell, false) {
                 self.places.remove(&cell);
                 self.met.retain(|(met, _), _| *met != cell);
                 self.count -= 1;
@@ -307,14 +302,8 @@ impl SensedLayer {
         if self.count == self.cleared.len() as u64 {
             return;
         }
-        let centre = frame.grid_from_world(mover.centre);
-        let reach = mover.radius_m / frame.resolution_m();
-        for cell in CellWindow::around(frame, mover.centre, mover.radius_m).cells() {
-            let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
-            if square.distance_sq_to_point(centre) <= reach * reach {
-                self.clear(cell);
-            }
-        }
+        let disc = Disc { centre: mover.centre, radius_m: mover.radius_m };
+        cells_under(&disc, frame).for_each(|cell| self.clear(cell));
     }
 
     /// Clears the cells whose places are seen through.
@@ -351,4 +340,14 @@ fn in_order<K: Ord + Copy, V: Copy>(map: &HashMap<K, V>) -> Vec<(K, V)> {
     let mut entries: Vec<(K, V)> = map.iter().map(|(&key, &value)| (key, value)).collect();
     entries.sort_unstable_by_key(|(key, _)| *key);
     entries
+}
+
+/// The cells whose squares a disc touches.
+fn cells_under(disc: &Disc, frame: &GridFrame) -> impl Iterator<Item = Cell> + use<> {
+    let centre = frame.grid_from_world(disc.centre);
+    let reach = disc.radius_m / frame.resolution_m();
+    CellWindow::around(frame, disc.centre, disc.radius_m).cells().filter(move |cell| {
+        let square = Square { corner: Point::new(f64::from(cell.x), f64::from(cell.y)) };
+        square.distance_sq_to_point(centre) <= reach * reach
+    })
 }
