@@ -145,14 +145,15 @@ fn what_was_sensed_on_a_disc_is_forgotten() {
     let mut case = Case::new(&[".....", "....."]);
     case.scan(0.5, 0.5, [2.7, NO, NO, NO]);
     case.scan(0.5, 1.5, [1.7, NO, NO, NO]);
-    let mut forgotten = |x, radius_m| {
-        let (disc, mut edits) = (Disc::new(Point::new(x, 1.5), radius_m), Vec::new());
+    let mut forgotten = |x, y, radius_m| {
+        let (disc, mut edits) = (Disc::new(Point::new(x, y), radius_m), Vec::new());
         case.layer.forget_disc(&case.known, &disc, &mut edits);
         assert_eq!(case.layer.count(), case.layer.sensed().count_ones());
         edits
     };
-    assert_eq!(forgotten(1.0, 0.9), [], "the nearer square begins 1 m away");
-    assert_eq!(forgotten(1.0, 1.1), [Edit { cell: Cell::new(2, 1), state: Free }]);
+    assert_eq!(forgotten(1.0, 1.5, 0.9), [], "the nearer square begins 1 m away");
+    assert_eq!(forgotten(1.0, 1.5, 1.1), [Edit { cell: Cell::new(2, 1), state: Free }]);
+    assert_eq!(forgotten(2.3, 1.7, 0.9), [], "the corner of the other one is 0.99 m away");
     assert_eq!(case.layer.cells(), [Cell::new(3, 0)]);
     assert_eq!(case.scan(0.5, 1.5, [1.7, NO, NO, NO]), [(2, 1, Occupied)]);
 }
