@@ -5,6 +5,7 @@ mod hall;
 
 use hall::hall;
 use keyway::geometry::{Disc, Point};
+use keyway::local::LocalConfig;
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
@@ -117,4 +118,27 @@ fn runs_of_other_stacks_keep_the_limits() {
         assert_ne!(report.outcome, EpisodeOutcome::Collided, "{name} {:?}", report.reason);
         check_jerk(&robot, &report);
     }
+}
+
+/// Where a change of the acceleration has a cost, turn rates change more gradually, and a run takes
+/// no longer.
+#[test]
+fn the_cost_of_jerk_makes_turns_smoother() {
+    let robot = Robot::jackal();
+    let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
+    let driven = |jerk: f64| {
+        let mut episode = Episode::new(hall(), robot.clone(), start, goal);
+        let LocalConfig::SpaceTime(local) = &mut episode.robots[0].stack.local else {
+            panic!("the default stack has courses");
+        };
+        local.jerk = jerk;
+        let report = run_episode(&episode).unwrap().first();
+        assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+        let turns: Vec<f64> = report.trajectory.unwrap().iter().map(|row| row[5]).collect();
+        let changes = turns.windows(3).map(|turns| turns[0] - 2.0 * turns[1] + turns[2]);
+        (changes.map(|change| change * change).sum::<f64>(), report.run.unwrap().time_s)
+    };
+    let ((smooth, time_s), (rough, rough_time_s)) = (driven(0.3), driven(0.0));
+    assert!(smooth < 0.8 * rough, "{smooth} {rough}");
+    assert!(time_s < 1.02 * rough_time_s, "{time_s} {rough_time_s}");
 }

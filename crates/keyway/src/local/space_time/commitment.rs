@@ -1,8 +1,9 @@
 //! The course of the last cycle, gone on with from now; and when another one is taken.
 
-use super::course::{Cost, Judge, State};
+use super::course::{Acceleration, Cost, Judge, State};
 use crate::geometry::{Point, Velocity};
 use crate::local::Course;
+use crate::robot::Robot;
 
 /// A course by another side of an obstacle is taken when it is so much better \[s\].
 const DECIDED_S: f64 = 0.3;
@@ -61,5 +62,56 @@ pub(super) fn go_on(
         let wanted = course.velocity(start.velocity, after_s);
         before = judge.limits.reached(before, wanted, judge.stretch_s);
         rest.push(before);
+    }
+}
+
+/// The acceleration with which a course that was begun a cycle ago goes on from a velocity.
+pub(super) fn going_on(course: Option<&Course>, from: Velocity, robot: &Robot) -> Acceleration {
+    let Some(course) = course else { return Acceleration::default() };
+    let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+    let [left_s, whole_s] = [course.stretch_s - cycle_s, course.stretch_s];
+    let planned = match *course.velocities {
+        [first, ..] if left_s >= cycle_s => Acceleration::of(from, first, left_s, limits),
+        [first, second, ..] => Acceleration::of(first, second, whole_s, limits),
+        _ => Acceleration::default(),
+    };
+    Acceleration {
+        linear: planned.linear.clamp(-1.0, 1.0),
+        angular: planned.angular.clamp(-1.0, 1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_course_goes_on_with_the_acceleration_of_the_stretch_that_it_is_in() {
+        let robot = Robot::small();
+        let course = |stretch_s, velocities: &[(f64, f64)]| Course {
+            stretch_s,
+            velocities: velocities.iter().map(|&(v, omega)| Velocity::new(v, omega)).collect(),
+        };
+        let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
+        let parts = |v: f64, omega: f64| Acceleration {
+            linear: v / limits.acceleration_mps2,
+            angular: omega / limits.angular_acceleration_radps2,
+        };
+        let is_near = |a: Acceleration, b: Acceleration| {
+            (a.linear - b.linear).abs() < 1e-9 && (a.angular - b.angular).abs() < 1e-9
+        };
+        // In five cycles it changes by 0.1 m/s, in the four that are left by 0.08 m/s.
+        let from = Velocity::new(0.12, 0.0);
+        let long = course(5.0 * cycle_s, &[(0.2, -0.04), (0.0, 0.0)]);
+        let found = going_on(Some(&long), from, &robot);
+        assert!(is_near(found, parts(0.08 / (4.0 * cycle_s), -0.04 / (4.0 * cycle_s))));
+        // Its first stretch is over: it brakes.
+        let short = course(cycle_s, &[(0.12, 0.0), (0.1, 0.0)]);
+        let found = going_on(Some(&short), from, &robot);
+        assert!(is_near(found, parts(-0.02 / cycle_s, 0.0)));
+        // It is nowhere near the course, and can do no more than it can.
+        let found = going_on(Some(&long), Velocity::new(-9.0, 0.0), &robot);
+        assert_eq!(found.linear, 1.0);
+        assert_eq!(going_on(None, from, &robot), Acceleration::default());
     }
 }

@@ -26,6 +26,10 @@ pub struct SpaceTimeConfig {
     pub discomfort: f64,
     /// u: a second in which the velocity changes as fast as it can counts as so many more.
     pub steering: f64,
+    /// j: to begin with another acceleration than the last course goes on with, other by the whole
+    /// limit, counts as so many stretches; 0 in stack files that do not have it.
+    #[serde(default)]
+    pub jerk: f64,
     /// n: room that the robot likes to have to what moves \[m\]; positive.
     pub mover_room_m: f64,
     /// p: a second in which the robot touches a mover counts as so many more.
@@ -64,6 +68,7 @@ impl SpaceTimeConfig {
             comfortable_m: (2.0 * two_cycles_m).max(inscribed_m),
             discomfort: 0.5,
             steering: 0.03,
+            jerk: 0.0,
             mover_room_m: two_cycles_m.max(inscribed_m),
             contact: 30.0,
             mover_acceleration_mps2: 1.0,
@@ -91,6 +96,7 @@ impl SpaceTimeConfig {
         let weights = [
             ("discomfort", self.discomfort),
             ("steering", self.steering),
+            ("jerk", self.jerk),
             ("contact", self.contact),
         ];
         let mut weights = weights.into_iter();

@@ -65,10 +65,30 @@ pub(super) struct Judge<'a> {
     pub(super) tight_now_sq: f64,
     pub(super) discomfort: f64,
     pub(super) steering: f64,
+    pub(super) jerk: f64,
+    /// The acceleration that the last course goes on with.
+    pub(super) before: Acceleration,
     /// The duration of a stretch \[s\].
     pub(super) stretch_s: f64,
     /// Way within which the robot has to stop \[m\].
     pub(super) remaining_m: f64,
+}
+
+/// Accelerations as parts of the robot's limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Acceleration {
+    pub(super) linear: f64,
+    pub(super) angular: f64,
+}
+
+impl Acceleration {
+    /// The constant one from one velocity to another.
+    pub(super) fn of(from: Velocity, to: Velocity, duration_s: f64, limits: &Limits) -> Self {
+        Self {
+            linear: (to.v - from.v) / (limits.acceleration_mps2 * duration_s),
+            angular: (to.omega - from.omega) / (limits.angular_acceleration_radps2 * duration_s),
+        }
+    }
 }
 
 impl State {
@@ -107,7 +127,7 @@ impl Judge<'_> {
             self.step(&mut state, (from.velocity, to), (step, steps));
         }
         state.end_stretch(to);
-        cost.steering_s += self.steering_s(from.velocity, to);
+        cost.steering_s += self.steering_s(from, to);
         (state, cost)
     }
 
@@ -131,7 +151,7 @@ impl Judge<'_> {
             cost.movers_s += self.meeting.cost_s(state.at, state.after_s, velocity_mps) * step_s;
         }
         state.end_stretch(to);
-        cost.steering_s += self.steering_s(from.velocity, to);
+        cost.steering_s += self.steering_s(from, to);
         Some((state, cost))
     }
 
@@ -250,12 +270,17 @@ impl Judge<'_> {
     /// So much more a metre counts as where there is no room at all.
     const TIGHTER: f64 = 8.0;
 
-    /// What the change of a velocity in a stretch costs \[s\].
-    fn steering_s(&self, from: Velocity, to: Velocity) -> f64 {
-        let Limits { acceleration_mps2, angular_acceleration_radps2, .. } = *self.limits;
-        let turn = (to.omega - from.omega) / (angular_acceleration_radps2 * self.stretch_s);
-        let speed = (to.v - from.v) / (acceleration_mps2 * self.stretch_s);
-        self.steering * self.stretch_s * (turn * turn + 0.25 * speed * speed)
+    /// The cost of changing the velocity in a stretch \[s\]; in the first one, also that of changing
+    /// the acceleration.
+    fn steering_s(&self, from: &State, to: Velocity) -> f64 {
+        let Acceleration { linear, angular } =
+            Acceleration::of(from.velocity, to, self.stretch_s, self.limits);
+        let mut cost = self.steering * (angular * angular + 0.25 * linear * linear);
+        if from.after_s == 0.0 {
+            let (linear, angular) = (linear - self.before.linear, angular - self.before.angular);
+            cost += self.jerk * (angular * angular + 0.25 * linear * linear);
+        }
+        self.stretch_s * cost
     }
 
     /// An estimate of the time that is needed from a state to the end of the route, to stand there
@@ -410,6 +435,8 @@ mod tests {
                 tight_now_sq: 0.0,
                 discomfort: 0.5,
                 steering: 0.0,
+                jerk: 0.0,
+                before: Acceleration::default(),
                 stretch_s: 0.5,
                 remaining_m: 9.0,
             };
@@ -444,7 +471,7 @@ mod tests {
             let judge = Judge {
                 limits: &robot.limits, outline: &Outline::of(&robot), room: &room, exact, seen: None, cost_to_go: &cost_to_go, pose_cost: &PoseCost::default(),
                 meeting: &meeting, beyond_m: 0.0, comfortable_m: 0.2, least_m: 0.0, tight_now_sq: 0.0, discomfort: 0.5,
-                steering: 0.0, stretch_s: 0.34, remaining_m: 9.0,
+                steering: 0.0, jerk: 0.0, before: Acceleration::default(), stretch_s: 0.34, remaining_m: 9.0,
             };
             let (from, to) = (Velocity::new(from.0, from.1), Velocity::new(to.0, to.1));
             let start = State { at: Point::new(0.5, 0.5), ahead: direction(theta), velocity: from, after_s: 0.0 };

@@ -74,7 +74,7 @@ impl SpaceTime {
         let covered_m = scene.path.nearest_along(position, memory.covered_m, self.reach_m());
         let beyond_m = self.look(&mut around, scene, covered_m);
         let meeting = self.meeting(&around);
-        let (start, judge) = self.judge(scene, &around, &meeting, beyond_m);
+        let (start, judge) = self.judge(scene, &around, (&meeting, memory.course()), beyond_m);
         let cycle = Cycle { planner: self, scene, start: &start, judge: &judge };
         let mut rest = Vec::new();
         let extent = (self.config.stretches, self.robot.cycle_s);

@@ -35,6 +35,7 @@
 //! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
 //! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
 //! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
+//! | j | jerk: j times a stretch and the squared change of the acceleration, in parts of its limit, from that with which the last course goes on | `jerk` | |
 //! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
 //! The second term of q counts only as far as it is more than with the room that the robot has now,
@@ -109,7 +110,7 @@ use crate::map::GridFrame;
 use crate::robot::{Limits, Robot};
 use crate::sense::SeenCells;
 use around::Around;
-use commitment::{go_on, reluctance_s};
+use commitment::{go_on, going_on, reluctance_s};
 use course::{Judge, State};
 use meeting::Meeting;
 use polish::{FINEST, STEPS, Total, can_stop, polish};
@@ -267,14 +268,14 @@ impl SpaceTime {
         &'a self,
         scene: &Scene<'a>,
         around: &'a Around,
-        meeting: &'a Meeting<'a>,
+        (meeting, last): (&'a Meeting<'a>, Option<&Course>),
         beyond_m: f64,
     ) -> (State, Judge<'a>) {
         let frame = scene.obstacles.frame();
         let (sin, cos) = libm::sincos(scene.pose.theta - frame.origin().theta);
         let (at, ahead) = (local(frame, scene.pose.point()), Point::new(cos, sin));
         let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
-        let SpaceTimeConfig { comfortable_m, discomfort, steering, .. } = self.config;
+        let SpaceTimeConfig { comfortable_m, discomfort, steering, jerk, .. } = self.config;
         let exact = Exact { footprint: &self.robot.footprint, obstacles: scene.obstacles };
         let (margin_m, around_m) = (self.robot.safety_margin_m(), (&around.room, exact));
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
@@ -298,6 +299,8 @@ impl SpaceTime {
             tight_now_sq: Judge::tight_sq(nearest_m, comfortable_m),
             discomfort,
             steering,
+            jerk,
+            before: going_on(last, scene.velocity, &self.robot),
             stretch_s: self.config.stretch_s(),
             remaining_m: scene.remaining_m,
         };
@@ -307,7 +310,12 @@ impl SpaceTime {
         }
         // No course need be longer than the way: near the end, stretches become finer.
         let shorter_s = judge.time_to_go_s(&start) / f64::from(self.config.stretches);
-        judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, judge.stretch_s);
+        let whole_s = judge.stretch_s;
+        judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, whole_s);
+        // There the robot must be able to correct itself at once.
+        if judge.stretch_s < whole_s {
+            judge.jerk = 0.0;
+        }
         (start, judge)
     }
 
@@ -321,7 +329,7 @@ impl SpaceTime {
         (memory, scratch): (&mut DriveMemory, &mut Scratch),
     ) -> Result<Decision, NoCommand> {
         let meeting = self.meeting(around);
-        let (start, judge) = self.judge(scene, around, &meeting, beyond_m);
+        let (start, judge) = self.judge(scene, around, (&meeting, memory.course()), beyond_m);
         let extent = (self.config.stretches, self.robot.cycle_s);
         go_on(rest, memory.course(), &start, &judge, extent);
         memory.own = OwnMemory::Nothing;

@@ -121,7 +121,7 @@ proptest! {
         let mut around = Around::default();
         let beyond_m = planner.look(&mut around, &scene, 0.0);
         let meeting = planner.meeting(&around);
-        let (start, judge) = planner.judge(&scene, &around, &meeting, beyond_m);
+        let (start, judge) = planner.judge(&scene, &around, (&meeting, None), beyond_m);
         let extent = Extent { width, ..planner.extent(&scene, &judge) };
         let begins = |velocity: Velocity| velocity.v <= fastest_mps;
         let mut beam = Beam::default();
