@@ -3,7 +3,7 @@
 
 use keyway::geometry::{Disc, Point, Pose};
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway_sim::episode::{
     Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
     run_episode, watch_episode,
@@ -171,4 +171,49 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
         }
     }
     assert!(driving == 0 && standing > 10, "{driving} {standing}");
+}
+
+/// A robot in a lane with a bay, and somebody who comes along it, in cells of 5 cm: the lane spans
+/// some rows, the bay some columns and rows.
+fn in_a_lane(
+    robot: Robot,
+    (lane, bay): (std::ops::Range<i32>, [std::ops::Range<i32>; 2]),
+    (radius_m, frames): (f64, [(f64, f64); 2]),
+) -> Episode {
+    let y = 0.025 * f64::from(lane.start + lane.end);
+    let frame = GridFrame::new(200, 68, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |cell| {
+        let is_lane = (4..196).contains(&cell.x) && lane.contains(&cell.y);
+        let is_free = is_lane || bay[0].contains(&cell.x) && bay[1].contains(&cell.y);
+        if is_free { CellState::Free } else { CellState::Occupied }
+    });
+    let frames = frames.map(|(t_s, x)| KeyFrame { t_s, position: Point::new(x, y) });
+    let motion = Motion::KeyFrames(KeyFrames::new(frames.to_vec()).unwrap());
+    let start = Start { position: Point::new(1.0, y), heading_rad: Some(0.0) };
+    let mut episode = Episode::new(map, robot, start.position, Point::new(9.0, y));
+    episode.movers = vec![MovingObstacle::new(radius_m, motion).unwrap()];
+    episode.with_each_robot(|robot| robot.start = start)
+}
+
+/// The robot drives far enough into the bay for whoever comes along the lane.
+#[test]
+fn who_comes_along_a_lane_passes_a_robot_in_a_bay() {
+    let bay = [88..108, 20..54];
+    let frames = [(0.0, 9.0), (25.0, 1.4)];
+    let report = run_episode(&in_a_lane(Robot::small(), (20..32, bay), (0.2, frames)));
+    let report = report.unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(report.run.unwrap().recoveries.make_way > 0);
+}
+
+/// Marks of the other one from before it was known to move do not keep the robot in the bay.
+#[test]
+fn a_robot_that_made_way_leaves_the_bay_again() {
+    let mut robot = Robot::derived(Footprint::circle(0.18).unwrap(), 0.5);
+    robot.sensors[0].range_m = 5.0;
+    let bay = [60..84, 20..58];
+    let frames = [(0.0, 9.2), (26.0, 0.8)];
+    let report = run_episode(&in_a_lane(robot, (20..36, bay), (0.3, frames))).unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(report.run.unwrap().recoveries.make_way > 0);
 }

@@ -45,7 +45,10 @@ pub(super) struct PassingPlace {
 impl Encounter<'_> {
     /// Ground up to this far from the middle between the two is looked at, and half of what they are
     /// apart farther \[m\].
-    const REACH_M: f64 = 6.0;
+    pub(super) const REACH_M: f64 = 6.0;
+
+    /// It drives so much farther than to the nearest place where that leaves more room \[m\].
+    const DEEPER_M: f64 = 0.3;
 
     /// Ways that differ by less are alike \[m\].
     const ALIKE_M: f64 = 0.3;
@@ -89,16 +92,24 @@ impl Encounter<'_> {
         }
         let way = ground.way_to(end, &from_other);
         let beside_m = robot.wide_m + other.narrow_m + apart_m;
+        let apart_m = |place: Point| {
+            way.iter().map(|other| other.distance(place)).fold(f64::INFINITY, f64::min)
+        };
         let is_beside = |place: Point| {
-            let is_apart = |other: &Point| other.distance(place) >= beside_m;
             let is_clear = |all: Clearance<'_>| all.is_clear_point(place, robot.wide_m);
-            way.iter().all(is_apart) && is_clear(self.known) && is_clear(self.seen)
+            apart_m(place) >= beside_m && is_clear(self.known) && is_clear(self.seen)
         };
         let mut reached: Vec<usize> =
             (0..from_robot.len()).filter(|&place| from_robot[place].is_finite()).collect();
         reached.sort_unstable_by(|&a, &b| from_robot[a].total_cmp(&from_robot[b]));
-        let place = reached.into_iter().find(|&place| is_beside(ground.place(place)))?;
-        Some(PassingPlace { at: ground.place(place), way_m: from_robot[place] })
+        let nearest = reached.iter().position(|&place| is_beside(ground.place(place)))?;
+        let way_m = from_robot[reached[nearest]];
+        // The other one may drive to one side of its way, and there may be more room farther on.
+        let near = reached[nearest..].iter().map(|&place| (place, ground.place(place)));
+        let near = near.take_while(|(place, _)| from_robot[*place] <= way_m + Self::DEEPER_M);
+        let all = near.filter(|(_, place)| is_beside(*place));
+        let (_, at) = all.max_by(|a, b| apart_m(a.1).total_cmp(&apart_m(b.1)))?;
+        Some(PassingPlace { at, way_m })
     }
 }
 
@@ -228,7 +239,8 @@ mod tests {
     fn the_one_that_is_nearer_to_the_bay_makes_way() {
         let map = lane(30..40);
         let found = met(&map, 5.0, 7.0).unwrap();
-        assert!((3.0..4.0).contains(&found.at.x) && found.at.y > 1.46, "{found:?}");
+        // It drives farther into the bay than it has to.
+        assert!((3.0..4.0).contains(&found.at.x) && found.at.y > 1.6, "{found:?}");
         assert!((1.5..2.5).contains(&found.way_m), "{found:?}");
         assert_eq!(met(&map, 7.0, 5.0), None, "the other one is nearer");
         // From the other side the bay is between them.

@@ -5,6 +5,7 @@ use crate::geometry::{Disc, Point};
 use crate::map::Clearance;
 use crate::navigate::encounter::{Encounter, Party};
 use crate::navigate::mode::Mode;
+use crate::navigate::navigator::replanning::Replanned;
 use crate::navigate::walked_ground::is_across;
 use crate::navigate::watch::RestOfRoute;
 use crate::navigate::{Blocked, Step};
@@ -16,6 +17,9 @@ impl Deciding<'_> {
 
     /// After so long the other one does not make way, though it would be up to it \[s\].
     const ALONE_S: f64 = 8.0;
+
+    /// A robot near the place that comes no nearer for so long is there \[s\].
+    const COMES_ON_S: f64 = 1.0;
 
     /// It stands beside the way of somebody for no longer than this \[s\].
     const STANDS_S: f64 = 12.0;
@@ -83,18 +87,24 @@ impl Deciding<'_> {
     /// make way.
     pub(super) fn go_on_making_way(&mut self) -> bool {
         let Mode::MakingWay { place, stood_s, other } = &mut self.task.mode else { return false };
-        let tolerance_m = self.stack.controller.goal_tolerance_m;
-        if self.pose.point().distance(*place) <= tolerance_m {
+        let config = &self.stack.controller;
+        let mut near_m = config.goal_tolerance_m;
+        // A place has hardly more room than is needed: the robot drives on to it, if it can.
+        if self.task.watch.no_progress_s < Self::COMES_ON_S {
+            near_m = near_m.min(self.world.known.frame().resolution_m());
+        }
+        if *stood_s > 0.0 || self.pose.point().distance(*place) <= near_m {
             *stood_s += self.elapsed_s;
         }
-        let config = &self.stack.controller;
         let is_held = self.task.watch.blocked_s.max(self.task.watch.no_progress_s)
             >= config.blocked_s.max(config.no_progress_s);
         let (begun, stood_s) = (*other, *stood_s);
         let last = self.task.met.disc().unwrap_or(begun);
         if stood_s >= Self::STANDS_S || stood_s == 0.0 && is_held {
             self.take_as_gone(begun, last);
-            self.replan();
+            if self.replan() == Replanned::Failed {
+                self.forget_around();
+            }
         } else if self.task.met.look() {
             self.pass(last);
         }
@@ -113,6 +123,14 @@ impl Deciding<'_> {
             self.world.forget_disc(&Disc { centre, radius_m });
         }
         self.task.met.forget();
+    }
+
+    /// Forgets what was sensed around a robot that has made way and has no route. It may be the
+    /// other one, as that came into view, and out of view now. Everything that stands in view is
+    /// there again with the next scan, before the next attempt.
+    fn forget_around(&mut self) {
+        let (centre, radius_m) = (self.pose.point(), Encounter::REACH_M);
+        self.world.forget_disc(&Disc { centre, radius_m });
     }
 
     /// Takes the route to the next stop, if nobody is on its beginning.
