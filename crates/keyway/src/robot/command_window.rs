@@ -58,7 +58,12 @@ impl Limits {
         let turning = either(self.angular_acceleration_radps2, self.angular_deceleration_radps2);
         [
             ("limits.jerk_mps3", self.jerk_mps3, straight, "accelerations"),
-            ("limits.angular_jerk_radps3", self.angular_jerk_radps3, turning, "angular ones"),
+            (
+                "limits.angular_jerk_radps3",
+                self.angular_jerk_radps3,
+                turning,
+                "angular accelerations",
+            ),
         ]
     }
 

@@ -24,10 +24,12 @@ impl Deciding<'_> {
 
     /// True if the robot stands at its goal and faces as it should.
     pub(super) fn has_arrived(&self) -> bool {
-        let (config, goal) = (&self.stack.controller, &self.task.goal);
-        let left_rad = goal.turn_left_rad(self.pose);
-        let is_facing = left_rad.is_none_or(|left| left.abs() <= config.goal_yaw_tolerance_rad);
-        self.is_at_goal() && is_facing && self.stands()
+        self.is_at_goal() && self.faces_as_it_should(self.pose) && self.stands()
+    }
+
+    fn faces_as_it_should(&self, pose: Pose) -> bool {
+        let tolerance_rad = self.stack.controller.goal_yaw_tolerance_rad;
+        self.task.goal.turn_left_rad(pose).is_none_or(|left| left.abs() <= tolerance_rad)
     }
 
     pub(super) fn is_at_goal(&self) -> bool {
@@ -54,8 +56,11 @@ impl Deciding<'_> {
         }
         let (pose, velocity) = (self.pose, self.velocity);
         let mode = std::mem::take(&mut self.task.mode);
+        // The rest of a turn may be too little to move the motors.
+        let (pose_then, velocity_then) = self.robot_then;
+        let rests = self.robot.stands(velocity_then) && self.faces_as_it_should(pose_then);
         let turn = match mode {
-            Mode::Arriving(turn @ Some(_)) => turn,
+            Mode::Arriving(turn @ Some(_)) if !rests => turn,
             mode => {
                 let Some(turn_rad) = self.turn_at_goal(pose) else {
                     self.task.mode =
