@@ -7,16 +7,15 @@
 //! `doors` the goal stays; after 3 s the map says that the middle of the way ahead is closed, and
 //! after 9 s that it is open again.
 
-use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Point, Pose};
-use keyway::map::formats::read_map;
 use keyway::map::{Cell, CellState, CellWindow, Edit};
 use keyway::navigate::{Goal, Navigator, Step};
 use keyway_sim::episode::{Episode, EpisodeOutcome, Start, run_episode};
-use keyway_sim::scene_files::{SceneFile, SceneMap, read_scene};
 use keyway_sim::sim::{Action, Control, Outcome, RobotState, Stepper};
 use std::error::Error;
-use std::path::{Path, PathBuf};
+
+#[path = "support/scene.rs"]
+mod scene;
 
 /// Time between two changes \[s\].
 const EVERY_S: f64 = 3.0;
@@ -177,33 +176,16 @@ fn doors(episode: &Episode) -> Result<Option<Measured>, Box<dyn Error>> {
     Ok(Some(Measured { outcome, took_s, fresh_s }))
 }
 
-fn episode(path: &Path) -> Result<Episode, Box<dyn Error>> {
-    let scene = read_scene(path)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let robot = find_robot(&scene.robot, folder)?;
-    let stack = find_stack(&scene.stack, folder, &robot)?;
-    let map: SceneMap = match (&scene.map, scene.generated_map()) {
-        (Some(map), _) => read_map(&folder.join(map), None)?.into(),
-        (None, Some(map)) => map?,
-        (None, None) => return Err("it has no map".into()),
-    };
-    let mut episode: Episode = SceneFile::episode_with(&scene, map, &robot, &stack)?;
-    episode.rules.time_limit_s = Some(300.0);
-    Ok(episode)
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let folder = arguments.first().ok_or("the folder of the scenes is missing")?;
     let has_doors = arguments.get(1).is_some_and(|what| what == "doors");
-    let entries = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
-    let mut paths: Vec<PathBuf> = entries.collect::<std::io::Result<_>>()?;
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    paths.sort();
+    let paths = scene::paths(folder)?;
     let (mut runs, mut reached, mut collided, mut early) = (0, 0, 0, 0);
     let mut ratios = Vec::new();
     for (number, path) in paths.iter().enumerate() {
-        let episode = episode(path)?;
+        let mut episode = scene::episode(path)?;
+        episode.rules.time_limit_s = Some(300.0);
         let measured =
             if has_doors { doors(&episode)? } else { changing(&episode, number as u64)? };
         let Some(Measured { outcome, took_s, fresh_s }) = measured else {

@@ -111,6 +111,33 @@ fn sight(criterion: &mut Criterion) {
     }
 }
 
+/// The edits of a scan: 720 cells around a place, one on each ray, become occupied and free again,
+/// for robots of 8 and 40 cells on a large map.
+fn edits(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("edits of a scan");
+    let frame = GridFrame::new(2000, 2000, 1.0, Pose::default()).unwrap();
+    let grid = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let mut numbers = Numbers(4);
+    let cells: Vec<Cell> = (0..720)
+        .map(|ray| {
+            let (far, turn) = (f64::from(20 + numbers.below(180)), f64::from(ray).to_radians());
+            Cell::new(1000 + (far * turn.cos()) as i32, 1000 + (far * turn.sin()) as i32)
+        })
+        .collect();
+    let [set, clear] = [CellState::Occupied, CellState::Free]
+        .map(|state| cells.iter().map(|&cell| Edit { cell, state }).collect::<Vec<_>>());
+    for clearance_m in [8.0, 40.0] {
+        let config = LayerConfig { clearance_m, ..LayerConfig::default() };
+        let mut map = SearchMap::new(&grid, config).unwrap();
+        group.bench_function(BenchmarkId::from_parameter(clearance_m), |bencher| {
+            bencher.iter(|| {
+                map.apply(&set);
+                map.apply(&clear);
+            });
+        });
+    }
+}
+
 /// What a map costs: all layers, component labels, one edit and its reversal.
 fn layers(criterion: &mut Criterion) {
     let [_, (_, rooms), _] = maps();
@@ -143,6 +170,6 @@ fn layers(criterion: &mut Criterion) {
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20);
-    targets = planners, sight, layers
+    targets = planners, sight, edits, layers
 }
 criterion_main!(benches);
