@@ -4,12 +4,14 @@
 mod hall;
 
 use hall::hall;
-use keyway::geometry::{Disc, Point};
+use keyway::geometry::{Disc, Point, Pose};
 use keyway::local::LocalConfig;
-use keyway::navigate::Stack;
+use keyway::map::{CellState, GridFrame, OccupancyGrid};
+use keyway::navigate::{Goal, Stack};
 use keyway::robot::{Footprint, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::Disturbances;
+use std::f64::consts::FRAC_PI_2;
 
 /// A robot among posts that no map has.
 fn driven(robot: &Robot, disturbances: &Disturbances) -> RobotReport {
@@ -141,4 +143,20 @@ fn the_cost_of_jerk_makes_turns_smoother() {
     let ((smooth, time_s), (rough, rough_time_s)) = (driven(0.3), driven(0.0));
     assert!(smooth < 0.8 * rough, "{smooth} {rough}");
     assert!(time_s < 1.02 * rough_time_s, "{time_s} {rough_time_s}");
+}
+
+/// The mean of a small turn is smaller than what moves the motors: a robot that faces as it should,
+/// within the tolerance, has arrived.
+#[test]
+fn a_turn_that_moves_no_motor_ends() {
+    let robot = limited(Robot::husky(), 1.01, 2.02);
+    let frame = GridFrame::new(200, 120, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let goal = Goal { heading_rad: Some(FRAC_PI_2), ..Point::new(8.0, 3.0).into() };
+    let mut episode = Episode::new(map, robot, Point::new(2.0, 3.0), goal);
+    episode.robots[0].start.heading_rad = Some(0.0);
+    let actuation = &mut episode.robots[0].disturbances.actuation;
+    (actuation.dead_band_mps, actuation.dead_band_radps) = (0.03, 0.08);
+    let report = run_episode(&episode).unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
 }
