@@ -209,11 +209,10 @@ fn who_comes_along_a_lane_passes_a_robot_in_a_bay() {
 /// Marks of the other one from before it was known to move do not keep the robot in the bay.
 #[test]
 fn a_robot_that_made_way_leaves_the_bay_again() {
-    let mut robot = Robot::derived(Footprint::circle(0.18).unwrap(), 0.5);
-    robot.sensors[0].range_m = 5.0;
-    let bay = [60..84, 20..58];
-    let frames = [(0.0, 9.2), (26.0, 0.8)];
-    let report = run_episode(&in_a_lane(robot, (20..36, bay), (0.3, frames))).unwrap().first();
+    let robot = Robot::derived(Footprint::circle(0.27).unwrap(), 0.8);
+    let bay = [88..108, 20..54];
+    let frames = [(0.0, 9.0), (22.0, 1.0)];
+    let report = run_episode(&in_a_lane(robot, (20..32, bay), (0.18, frames))).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(report.run.unwrap().recoveries.make_way > 0);
 }
