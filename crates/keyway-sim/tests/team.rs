@@ -11,6 +11,7 @@ use keyway_sim::episode::{
 };
 use keyway_sim::report::ContactPart;
 use keyway_sim::sim::{Obstacle, StandingPolygon};
+use std::f64::consts::FRAC_PI_2;
 
 /// A hall of 8 m x 8 m, with a wall across it at x = 4 m if so.
 fn hall(has_wall: bool) -> OccupancyGrid {
@@ -140,6 +141,32 @@ fn what_no_map_shows_is_in_the_way_of_every_robot() {
     assert!(reason(1).starts_with("touched an unknown cell at "), "{}", reason(1));
     team.hidden_cells.push(Cell::new(80, 0));
     assert_eq!(run_episode(&team).unwrap_err().robot, None);
+}
+
+/// Two that are not round meet in a lane around a corner, in which they cannot pass: a corner of
+/// the other one sticks out of the disc for which it is taken while it turns.
+#[test]
+fn who_turns_beside_another_does_not_touch_it() {
+    let frame = GridFrame::new(140, 140, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |Cell { x, y }| {
+        let is_room = (4..32).contains(&x) && (4..48).contains(&y)
+            || (80..120).contains(&x) && (108..136).contains(&y);
+        let is_lane = (4..100).contains(&x) && (20..32).contains(&y)
+            || (88..100).contains(&x) && (20..108).contains(&y);
+        if is_room || is_lane { CellState::Free } else { CellState::Occupied }
+    });
+    let ends = [Point::new(0.9, 1.3), Point::new(4.7, 6.2)];
+    let robot = |from: usize, heading_rad: f64| {
+        let mut robot = EpisodeRobot::new(Robot::waffle(), ends[from], ends[1 - from]);
+        robot.start.heading_rad = Some(heading_rad);
+        robot
+    };
+    let robots = vec![robot(0, 0.0), robot(1, -FRAC_PI_2)];
+    let mut team = Episode::of_robots(map, robots);
+    team.rules.time_limit_s = Some(60.0);
+    for report in run_episode(&team).unwrap().robots {
+        assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
+    }
 }
 
 #[test]

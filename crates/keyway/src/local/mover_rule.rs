@@ -54,7 +54,7 @@ impl<'a> MoverRule<'a> {
     const LEAST_STEP_M: f64 = 0.01;
 
     /// Differences of distances up to this are rounding \[m\].
-    const ROUNDING_M: f64 = 1e-9;
+    pub(crate) const ROUNDING_M: f64 = 1e-9;
 
     /// The rule for a robot at a pose that moves with a velocity.
     pub(crate) const fn new(

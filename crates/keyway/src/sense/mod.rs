@@ -18,6 +18,7 @@ mod tracker;
 
 pub use layer::SensedLayer;
 pub(crate) use layer::SensedPlaces;
+pub(crate) use mover::MovingPoint;
 pub use mover::{Mover, MoverBounds};
 pub use observation::{Observation, SensorScan};
 pub use points::{FieldOfView, SensorPoints};

@@ -47,6 +47,13 @@ pub struct Mover {
     pub velocity_uncertainty_mps: f64,
 }
 
+/// A point of the surface of a mover, as a beam hit it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MovingPoint {
+    pub(crate) place: Point,
+    pub(crate) velocity_mps: Point,
+}
+
 /// What movers can do at most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -1,13 +1,13 @@
 //! The last look at a command before it is issued.
 
 use super::{Deciding, Record};
-use crate::geometry::Velocity;
+use crate::geometry::{Pose, Velocity};
 use crate::local::{MoverRule, Refusal, RefusalCounts, StopRule, Surroundings};
 use crate::navigate::recovery::Moment;
 use crate::navigate::world::World;
 use crate::navigate::{Blocked, Step};
 use crate::robot::Robot;
-use crate::sense::Tracker;
+use crate::sense::{MovingPoint, Tracker};
 use serde::{Deserialize, Serialize};
 
 /// The stop rule, and what it did.
@@ -93,6 +93,7 @@ impl Deciding<'_> {
 impl Record {
     /// The same step with the command that the stop rule lets pass.
     pub(super) fn guarded(&mut self, world: &World, moment: &Moment<'_>, step: Step) -> Step {
+        let step = beside_surfaces(world, moment, step);
         let &Moment { robot, pose, velocity, robot_then, elapsed_s, .. } = moment;
         let Some(rule) = &self.guard.rule else { return step };
         let (Step::Drive(asked) | Step::Blocked { command: asked, .. }) = step else {
@@ -124,4 +125,85 @@ pub(super) fn beside_movers(world: &World, moment: &Moment<'_>, command: Velocit
     let looks_m = [horizon_s, robot.safety_margin_m()];
     let rule = MoverRule::new(robot, &world.movers_then, (pose, velocity), looks_m);
     if rule.refuses(command) { limits.braked(velocity, *cycle_s) } else { command }
+}
+
+/// The same step, or braking, where the robot could not stop any more before it comes nearer than
+/// its margin to what is seen of a mover that hardly moves, and nearer than it would come where it
+/// is. The disc for which a mover is taken may leave out a corner of it.
+///
+/// Beside those that walk the robot does not brake for that: they would run into it.
+fn beside_surfaces(world: &World, moment: &Moment<'_>, step: Step) -> Step {
+    let (Step::Drive(command) | Step::Blocked { command, .. }) = step else { return step };
+    let &Moment { robot, pose, velocity, .. } = moment;
+    if !comes_too_near(robot, &world.surfaces_then, (pose, velocity), command) {
+        return step;
+    }
+    step.commanding(robot.limits.braked(velocity, robot.cycle_s))
+}
+
+/// True if a robot that is given a command, and brakes after it, comes nearer than its margin to a
+/// point that moves, and nearer than it would if it stayed.
+fn comes_too_near(
+    robot: &Robot,
+    points: &[MovingPoint],
+    (pose, velocity): (Pose, Velocity),
+    command: Velocity,
+) -> bool {
+    /// Parts of a cycle.
+    const PARTS: u32 = 4;
+    if points.is_empty() || command == Velocity::ZERO {
+        return false;
+    }
+    let (margin_m, cycle_s) = (robot.safety_margin_m(), robot.cycle_s);
+    let (core, radius_m) = robot.footprint.core();
+    let reach_m = robot.footprint.circumscribed_radius_m() + margin_m;
+    let comes_near = |at: Pose, after_s: f64| {
+        points.iter().any(|point| {
+            let place = point.place + point.velocity_mps * after_s;
+            if (at.point() - place).norm_sq() > reach_m * reach_m {
+                return false;
+            }
+            let room_m = |at: Pose| core.distance_to_m(at, place) - radius_m;
+            let moved_m = room_m(at);
+            moved_m < margin_m && moved_m < room_m(pose) - MoverRule::ROUNDING_M
+        })
+    };
+    let mut motions = robot.motion_to_stop(pose, velocity, command).zip(0u32..);
+    motions.any(|(motion, cycle)| {
+        (1..=PARTS).any(|part| {
+            let share = f64::from(part) / f64::from(PARTS);
+            let to = motion.from.lerp(motion.to, share);
+            let at = motion.start.after_ramp(motion.from, to, share * cycle_s);
+            comes_near(at, (f64::from(cycle) + share) * cycle_s)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::robot::Footprint;
+
+    /// A square of 0.4 m at the origin, and a point to the left of its left front corner.
+    #[test]
+    fn a_corner_does_not_turn_into_what_is_seen_of_a_mover() {
+        let footprint = Footprint::rectangle(0.4, 0.4).unwrap();
+        let robot = Robot { footprint, safety_margin_m: Some(0.02), ..Robot::small() };
+        let rest = (Pose::default(), Velocity::ZERO);
+        let point = |x: f64, y: f64| {
+            [MovingPoint { place: Point::new(x, y), velocity_mps: Point::default() }]
+        };
+        let turn = |radps: f64| Velocity::new(0.0, radps);
+        let (left, right) = (turn(0.25), turn(-0.25));
+        // In the first cycle it turns by 0.0125 rad, and until it stands by as much again.
+        let beside = point(0.19, 0.223);
+        assert!(comes_too_near(&robot, &beside, rest, left));
+        assert!(!comes_too_near(&robot, &beside, rest, right), "away");
+        assert!(!comes_too_near(&robot, &point(0.19, 0.23), rest, left), "with room");
+        assert!(!comes_too_near(&robot, &beside, rest, Velocity::ZERO));
+        assert!(!comes_too_near(&robot, &[], rest, left));
+        let goes_on = [MovingPoint { velocity_mps: Point::new(0.0, 1.0), ..beside[0] }];
+        assert!(!comes_too_near(&robot, &goes_on, rest, left), "gone by then");
+    }
 }

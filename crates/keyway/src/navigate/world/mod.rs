@@ -19,8 +19,8 @@ use crate::geometry::{Pose, Shift, Velocity};
 use crate::map::{Cell, CellState, CellWindow, DistanceField, Edit, OccupancyGrid};
 use crate::robot::Robot;
 use crate::sense::{
-    Mover, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer, SensorPoints,
-    SensorScan, Tracker, Walls,
+    Mover, MovingPoint, Observation, ProjectedScan, SeenCells, SeenGround, SensedLayer,
+    SensorPoints, SensorScan, Tracker, Walls,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -49,6 +49,8 @@ pub(super) struct World {
     pub(super) motors: Motors,
     /// Moving obstacles as they will be when the next command acts.
     pub(super) movers_then: Vec<Mover>,
+    /// Points of the surfaces of those that hardly move, then.
+    pub(super) surfaces_then: Vec<MovingPoint>,
     /// Cells that have become occupied since the last decision.
     pub(super) edits: Vec<Edit>,
     /// They were too many to be listed.
@@ -114,6 +116,7 @@ impl World {
             track: Track::new(frame.resolution_m()),
             motors: Motors::new(robot),
             movers_then: Vec::new(),
+            surfaces_then: Vec::new(),
             edits: Vec::new(),
             has_changed_much: false,
             poses: Poses::new(),
@@ -353,6 +356,8 @@ impl World {
             let ahead_s = self.motors.delay_s() + age_s + lag_s;
             self.movers_then.clear();
             self.movers_then.extend(tracker.movers().iter().map(|mover| mover.after(ahead_s)));
+            self.surfaces_then.clear();
+            self.surfaces_then.extend(tracker.surfaces_after(ahead_s));
         }
         if let Some(seen) = self.seen.as_mut().filter(|_| age_s > 0.0) {
             let walls = walls(self.unmasked.as_deref(), &self.known, &self.router);

@@ -64,7 +64,7 @@ mod track;
 
 pub use config::TrackerConfig;
 
-use super::{Mover, ProjectedScan};
+use super::{Mover, MovingPoint, ProjectedScan};
 use crate::ConfigError;
 use crate::geometry::{Point, Shift};
 use crate::map::{Cell, GridFrame, OccupancyGrid};
@@ -176,6 +176,12 @@ impl Tracker {
     /// was where the robot had seen through no more than a second before.
     pub fn possible_movers(&self) -> &[Mover] {
         &self.movers
+    }
+
+    /// Points seen on the surfaces of movers that may as well stand, in a while.
+    pub(crate) fn surfaces_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
+        let movers = self.tracks.iter().filter(|track| track.is_mover && track.may_stand());
+        movers.flat_map(move |track| track.surface_after(after_s))
     }
 
     /// Whether a beam of the last scan, which ended at `place`, hit a mover: one that is followed,

@@ -4,7 +4,7 @@ use super::disc_fit::{Fit, fit, fit_of_radius};
 use super::{EVIDENCE_BEAMS, TrackerConfig};
 use crate::geometry::{Disc, Point, Shift};
 use crate::map::Cell;
-use crate::sense::Mover;
+use crate::sense::{Mover, MovingPoint};
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +33,8 @@ pub(super) struct Track {
     /// How long ago something was last seen to speak against its standing still; infinite when
     /// nothing has \[s\].
     pub(super) since_doubted_s: f64,
+    /// What the last scan saw of it, taken on with its velocity; nothing while it is out of view.
+    pub(super) surface: Surface,
     /// Where it was first seen, or stands since.
     pub(super) anchor: Anchor,
     /// Scans in a row that see through it.
@@ -48,10 +50,13 @@ struct Spread {
     velocity: f64,
 }
 
+/// Hits on one thing.
+type Surface = ArrayVec<Point, { Track::MOST_HITS }>;
+
 /// A place, with the surface that was seen there.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Anchor {
-    pub(super) surface: ArrayVec<Point, { Track::MOST_HITS }>,
+    pub(super) surface: Surface,
     centre: Point,
     off_m: f64,
     age_s: f64,
@@ -103,18 +108,22 @@ impl Track {
             is_mover: false,
             evidence: 0,
             since_doubted_s: f64::INFINITY,
+            surface: Surface::default(),
             anchor: Anchor::default(),
             empty_scans: 0,
             marked: ArrayVec::new(),
         };
         track.restart(&fit, config);
+        note_surface(&mut track.surface, sight.hits);
         track.set_anchor(sight.hits, fit.off_m);
         Some(track)
     }
 
     /// Goes on for some time without being seen.
     pub(super) fn predict(&mut self, elapsed_s: f64, config: &TrackerConfig) {
-        self.centre = self.centre + self.velocity_mps * elapsed_s;
+        let moved = self.velocity_mps * elapsed_s;
+        self.centre = self.centre + moved;
+        self.surface.iter_mut().for_each(|place| *place = *place + moved);
         // White acceleration: its standard deviation is half of what movers can do.
         let pushed = 0.5 * config.acceleration_mps2 * elapsed_s;
         let noise = pushed * pushed;
@@ -136,6 +145,7 @@ impl Track {
     pub(super) fn shift(&mut self, shift: &Shift) {
         self.centre = shift.point(self.centre);
         self.velocity_mps = shift.vector(self.velocity_mps);
+        self.surface.iter_mut().for_each(|place| *place = shift.point(*place));
         self.anchor.centre = shift.point(self.anchor.centre);
         self.anchor.surface.iter_mut().for_each(|place| *place = shift.point(*place));
         self.marked.clear();
@@ -160,6 +170,7 @@ impl Track {
 
     /// A scan does not show it, and where `is_empty` sees through it.
     pub(super) fn miss(&mut self, is_empty: bool) {
+        self.surface.clear();
         self.anchor.unseen_s = self.anchor.unseen_s.max(self.unseen_s);
         self.empty_scans = if is_empty { self.empty_scans + 1 } else { 0 };
     }
@@ -167,6 +178,7 @@ impl Track {
     /// Takes in what a scan shows of it.
     pub(super) fn see(&mut self, sight: &Sight<'_>, config: &TrackerConfig) {
         (self.unseen_s, self.empty_scans) = (0.0, 0);
+        note_surface(&mut self.surface, sight.hits);
         let noise_m = config.range_noise_m;
         let Some(fit) = fit(sight.hits, sight.sensor, noise_m, config.largest_diameter_m) else {
             return;
@@ -241,6 +253,18 @@ impl Track {
         self.marked.push(cell);
     }
 
+    /// True if no more than its uncertainty, a standard deviation, tells it from what stands.
+    pub(super) fn may_stand(&self) -> bool {
+        self.velocity_mps.norm_sq() <= self.spread.velocity
+    }
+
+    /// Its hits in a while, each with its velocity.
+    pub(super) fn surface_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
+        let velocity_mps = self.velocity_mps;
+        let place = move |&place: &Point| place + velocity_mps * after_s;
+        self.surface.iter().map(move |hit| MovingPoint { place: place(hit), velocity_mps })
+    }
+
     pub(super) fn mover(&self) -> Mover {
         Mover {
             id: self.id,
@@ -256,10 +280,7 @@ impl Track {
 
     /// Remembers where it is now, with the surface that is seen.
     fn set_anchor(&mut self, hits: &[Point], off_m: f64) {
-        let surface = &mut self.anchor.surface;
-        surface.clear();
-        let step = hits.len().div_ceil(Self::MOST_HITS).max(1);
-        surface.extend(hits.iter().step_by(step).copied());
+        note_surface(&mut self.anchor.surface, hits);
         (self.anchor.centre, self.anchor.off_m) = (self.centre, off_m);
         (self.anchor.age_s, self.anchor.unseen_s) = (0.0, 0.0);
         self.evidence = 0;
@@ -309,4 +330,11 @@ impl Track {
             velocity: velocity - to_velocity * both,
         };
     }
+}
+
+/// Remembers a surface; of too many hits, every second one, and so on.
+fn note_surface(surface: &mut Surface, hits: &[Point]) {
+    surface.clear();
+    let step = hits.len().div_ceil(Track::MOST_HITS).max(1);
+    surface.extend(hits.iter().step_by(step).copied());
 }
