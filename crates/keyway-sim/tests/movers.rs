@@ -178,7 +178,7 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
 fn in_a_lane(
     robot: Robot,
     (lane, bay): (std::ops::Range<i32>, [std::ops::Range<i32>; 2]),
-    (radius_m, frames): (f64, [(f64, f64); 2]),
+    (radius_m, frames): (f64, &[(f64, f64)]),
 ) -> Episode {
     let y = 0.025 * f64::from(lane.start + lane.end);
     let frame = GridFrame::new(200, 68, 0.05, Pose::default()).unwrap();
@@ -187,8 +187,8 @@ fn in_a_lane(
         let is_free = is_lane || bay[0].contains(&cell.x) && bay[1].contains(&cell.y);
         if is_free { CellState::Free } else { CellState::Occupied }
     });
-    let frames = frames.map(|(t_s, x)| KeyFrame { t_s, position: Point::new(x, y) });
-    let motion = Motion::KeyFrames(KeyFrames::new(frames.to_vec()).unwrap());
+    let frame = |&(t_s, x): &(f64, f64)| KeyFrame { t_s, position: Point::new(x, y) };
+    let motion = Motion::KeyFrames(KeyFrames::new(frames.iter().map(frame).collect()).unwrap());
     let start = Start { position: Point::new(1.0, y), heading_rad: Some(0.0) };
     let mut episode = Episode::new(map, robot, start.position, Point::new(9.0, y));
     episode.movers = vec![MovingObstacle::new(radius_m, motion).unwrap()];
@@ -200,7 +200,7 @@ fn in_a_lane(
 fn who_comes_along_a_lane_passes_a_robot_in_a_bay() {
     let bay = [88..108, 20..54];
     let frames = [(0.0, 9.0), (25.0, 1.4)];
-    let report = run_episode(&in_a_lane(Robot::small(), (20..32, bay), (0.2, frames)));
+    let report = run_episode(&in_a_lane(Robot::small(), (20..32, bay), (0.2, &frames)));
     let report = report.unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(report.run.unwrap().recoveries.make_way > 0);
@@ -212,7 +212,18 @@ fn a_robot_that_made_way_leaves_the_bay_again() {
     let robot = Robot::derived(Footprint::circle(0.27).unwrap(), 0.8);
     let bay = [88..108, 20..54];
     let frames = [(0.0, 9.0), (22.0, 1.0)];
-    let report = run_episode(&in_a_lane(robot, (20..32, bay), (0.18, frames))).unwrap().first();
+    let report = run_episode(&in_a_lane(robot, (20..32, bay), (0.18, &frames))).unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(report.run.unwrap().recoveries.make_way > 0);
+}
+
+/// Somebody in view has not passed, however long the robot has waited for that.
+#[test]
+fn who_stands_before_a_robot_in_a_bay_has_not_gone() {
+    let bay = [88..108, 20..54];
+    let frames = [(0.0, 9.0), (8.0, 6.0), (30.0, 6.0), (50.0, 0.5)];
+    let episode = in_a_lane(Robot::small(), (20..32, bay), (0.2, &frames));
+    let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(report.run.unwrap().recoveries.make_way > 0);
 }

@@ -128,10 +128,11 @@ pub(super) fn beside_movers(world: &World, moment: &Moment<'_>, command: Velocit
 }
 
 /// The same step, or braking, where the robot could not stop any more before it comes nearer than
-/// its margin to what is seen of a mover that hardly moves, and nearer than it would come where it
-/// is. The disc for which a mover is taken may leave out a corner of it.
+/// its margin to what is seen of a mover that may as well stand, and nearer than it would come
+/// where it is. The disc for which a mover is taken may leave out a corner of it.
 ///
 /// Beside those that walk the robot does not brake for that: they would run into it.
+/// [`MoverRule`] asks where a velocity leads that is kept; this, where the robot comes to stand.
 fn beside_surfaces(world: &World, moment: &Moment<'_>, step: Step) -> Step {
     let (Step::Drive(command) | Step::Blocked { command, .. }) = step else { return step };
     let &Moment { robot, pose, velocity, .. } = moment;

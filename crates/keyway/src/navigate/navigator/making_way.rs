@@ -111,8 +111,9 @@ impl Deciding<'_> {
         true
     }
 
-    /// Whom it made way for has had the time to pass, though the robot may not have seen it: nobody
-    /// stands any more between where it was and where it was seen last.
+    /// The one it made way for has had the time to pass, though the robot may not have seen it:
+    /// between where that was and where it was seen last nobody stands any more, but for who is in
+    /// view.
     fn take_as_gone(&mut self, begun: Disc, last: Disc) {
         self.task.mode = Mode::Following;
         let radius_m = begun.radius_m.max(last.radius_m) + self.world.known.frame().resolution_m();
@@ -126,8 +127,7 @@ impl Deciding<'_> {
     }
 
     /// Forgets what was sensed around a robot that has made way and has no route. It may be the
-    /// other one, as that came into view, and out of view now. Everything that stands in view is
-    /// there again with the next scan, before the next attempt.
+    /// other one, as that came into view, and out of view now.
     fn forget_around(&mut self) {
         let (centre, radius_m) = (self.pose.point(), Encounter::REACH_M);
         self.world.forget_disc(&Disc { centre, radius_m });

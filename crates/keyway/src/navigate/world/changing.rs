@@ -49,12 +49,21 @@ impl World {
         }
     }
 
-    /// Nothing was ever sensed on a disc: who stood there is taken to have gone.
+    /// Nothing was ever sensed on a disc, but for what the last scans hit: who stood there and is
+    /// out of view is taken to have gone.
     pub(in crate::navigate) fn forget_disc(&mut self, disc: &Disc) {
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
         self.sensed.forget_disc(map, disc, &mut self.changed);
         self.keep_out();
         self.spread_changes();
+        for sensor in 0..self.scans.len() {
+            let map = self.unmasked.as_ref().unwrap_or(&self.known);
+            let scan = &self.scans[sensor];
+            // The next scan tells what of it moves.
+            self.sensed.update_from(map, sensor, scan, None, &mut self.changed);
+            self.keep_out();
+            self.spread_changes();
+        }
     }
 
     /// The clock begins anew.

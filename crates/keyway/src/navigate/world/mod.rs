@@ -49,7 +49,7 @@ pub(super) struct World {
     pub(super) motors: Motors,
     /// Moving obstacles as they will be when the next command acts.
     pub(super) movers_then: Vec<Mover>,
-    /// Points of the surfaces of those that hardly move, then.
+    /// Points seen on those that may as well stand, then.
     pub(super) surfaces_then: Vec<MovingPoint>,
     /// Cells that have become occupied since the last decision.
     pub(super) edits: Vec<Edit>,

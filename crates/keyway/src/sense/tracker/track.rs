@@ -33,7 +33,7 @@ pub(super) struct Track {
     /// How long ago something was last seen to speak against its standing still; infinite when
     /// nothing has \[s\].
     pub(super) since_doubted_s: f64,
-    /// What the last scan saw of it, taken on with its velocity; nothing while it is out of view.
+    /// Its hits of the last scan, taken on with its velocity; none while it is out of view.
     pub(super) surface: Surface,
     /// Where it was first seen, or stands since.
     pub(super) anchor: Anchor,
