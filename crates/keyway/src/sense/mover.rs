@@ -47,7 +47,7 @@ pub struct Mover {
     pub velocity_uncertainty_mps: f64,
 }
 
-/// A point of the surface of a mover, as a beam hit it \[m\], and its velocity.
+/// A point of the surface of a mover, as a beam hit it \[m\], and a velocity that it may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingPoint {
     pub(crate) place: Point,

@@ -178,7 +178,8 @@ impl Tracker {
         &self.movers
     }
 
-    /// Points seen on the surfaces of movers that may as well stand, in a while.
+    /// Points seen on the surfaces of movers that may as well stand, in a while: once as of movers
+    /// that go on, and once as of what stands.
     pub(crate) fn surfaces_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
         let movers = self.tracks.iter().filter(|track| track.is_mover && track.may_stand());
         movers.flat_map(move |track| track.surface_after(after_s))

@@ -253,16 +253,20 @@ impl Track {
         self.marked.push(cell);
     }
 
-    /// True if no more than its uncertainty, a standard deviation, tells it from what stands.
+    /// True if it may as well stand: no more than its uncertainty, a standard deviation, tells it
+    /// from what does, or it is not round. Of such a thing the middle of what is seen moves as more
+    /// of it comes into view.
     pub(super) fn may_stand(&self) -> bool {
-        self.velocity_mps.norm_sq() <= self.spread.velocity
+        !self.is_round || self.velocity_mps.norm_sq() <= self.spread.velocity
     }
 
-    /// Its hits in a while, each with its velocity.
+    /// Its hits in a while: those of one that goes on, and those of one that stands.
     pub(super) fn surface_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
-        let velocity_mps = self.velocity_mps;
-        let place = move |&place: &Point| place + velocity_mps * after_s;
-        self.surface.iter().map(move |hit| MovingPoint { place: place(hit), velocity_mps })
+        let velocities = [self.velocity_mps, Point::default()].into_iter();
+        velocities.flat_map(move |velocity_mps| {
+            let place = move |&hit: &Point| hit + velocity_mps * after_s;
+            self.surface.iter().map(move |hit| MovingPoint { place: place(hit), velocity_mps })
+        })
     }
 
     pub(super) fn mover(&self) -> Mover {
