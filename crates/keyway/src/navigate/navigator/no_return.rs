@@ -2,8 +2,9 @@
 //!
 //! Such a robot stays in a place in which it can neither drive on nor turn. So before it leaves the
 //! last place from which it surely gets on, it has to know how: from where it would stand, it can
-//! turn and drive straight to where it can turn around again, to its goal, or as far as it looks.
-//! If that is not so, it stops, and a manoeuvre leads it in.
+//! turn and drive straight to where it can turn around again, to its goal, or as far as it looks,
+//! as it faces or in two directions. If that is not so, it stops, and a manoeuvre leads it in: one
+//! that keeps less room, if there is no other.
 
 use super::Deciding;
 use crate::geometry::Velocity;
@@ -23,10 +24,11 @@ impl Deciding<'_> {
             return Some(self.robot.limits.braked(self.velocity, self.robot.cycle_s));
         }
         let kind = RecoveryKind::Manoeuvre;
-        let place = self.tight_place();
-        let motions = place.manoeuvre(self.pose).or_else(|| place.straight_on(self.pose, false));
-        let begun =
-            motions.and_then(|motions| RecoveryUnderWay::begin(kind, motions, place.room_m));
+        let leads_in = |place: TightPlace<'_>| {
+            let motions = place.manoeuvre(self.pose).or_else(|| place.straight_on(self.pose))?;
+            RecoveryUnderWay::begin(kind, motions, place.room_m)
+        };
+        let begun = leads_in(self.tight_place()).or_else(|| leads_in(self.tighter_place()));
         let Some(begun) = begun else {
             self.task.led_from = Some(self.pose.point());
             return None;
@@ -56,10 +58,17 @@ impl Deciding<'_> {
             return false;
         }
         let stands_at = |command| self.robot.stop_pose(self.pose, self.velocity, command);
-        let place = self.tight_place();
         // Inside of a long lane, the first one is answered at once.
-        place.straight_on(stands_at(Velocity::ZERO), false).is_some()
-            && place.straight_on(stands_at(command), true).is_none()
+        self.tighter_place().straight_on(stands_at(Velocity::ZERO)).is_some()
+            && !self.tight_place().surely_gets_on(stands_at(command))
+    }
+
+    /// The place in which it is, with less room to keep: where it does not surely get on any more,
+    /// it may still come out again.
+    fn tighter_place(&self) -> TightPlace<'_> {
+        const SHARE: f64 = 0.25;
+        let place = self.tight_place();
+        TightPlace { room_m: SHARE * place.room_m, ..place }
     }
 
     /// The place in which it is.

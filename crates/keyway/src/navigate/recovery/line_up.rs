@@ -110,22 +110,41 @@ impl TightPlace<'_> {
         self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
     }
 
-    /// A turn and a straight drive to where the robot can turn around, or to the goal, or `beyond`
-    /// as far as it looks; none where it can turn around. `None` where there are no such motions.
-    pub(in crate::navigate) fn straight_on(&self, pose: Pose, beyond: bool) -> Option<Vec<Motion>> {
+    /// A turn and a straight drive to where the robot can turn around, or to the goal; none where
+    /// it can turn around. `None` where there are no such motions.
+    pub(in crate::navigate) fn straight_on(&self, pose: Pose) -> Option<Vec<Motion>> {
         if self.can_turn_around(pose) {
             return Some(Vec::new());
         }
-        let degrees = Self::both_ways(2);
-        degrees.map(|degree| f64::from(degree).to_radians()).find_map(|turn_rad| {
-            let turn = Motion::Turn(turn_rad);
-            let facing = after(pose, turn);
-            let length_m = self.straight_m(facing)?;
-            let drive = Motion::Drive(length_m);
-            let ends = beyond || self.can_turn_around(after(facing, drive));
-            let is_free = ends && self.is_free(pose, turn) && self.is_free(facing, drive);
-            is_free.then(|| vec![turn, drive])
+        Self::both_ways(2).find_map(|degree| {
+            let motions = self.turned_by(pose, degree)?;
+            let end = motions.iter().fold(pose, |at, &motion| after(at, motion));
+            self.can_turn_around(end).then(|| motions.to_vec())
         })
+    }
+
+    /// True if the robot surely gets on from a pose: it can turn around, or it can drive straight on
+    /// to where it can, or as far as it looks, as it faces or in two directions beside each other.
+    /// One direction may be gone a millimetre farther on.
+    pub(in crate::navigate) fn surely_gets_on(&self, pose: Pose) -> bool {
+        let leads_on = |degree| self.turned_by(pose, degree).is_some();
+        let beside = |degree| [Self::BESIDE_DEG, -Self::BESIDE_DEG].map(|off| degree + off);
+        self.can_turn_around(pose)
+            || leads_on(0)
+            || Self::both_ways(2)
+                .any(|degree| leads_on(degree) && beside(degree).into_iter().any(leads_on))
+    }
+
+    /// Between directions that are beside each other \[deg\].
+    const BESIDE_DEG: i32 = 4;
+
+    /// A turn, and a straight drive to where the robot can turn around, or is at the goal, or as far
+    /// as it looks; `None` where it is not free.
+    fn turned_by(&self, pose: Pose, degree: i32) -> Option<[Motion; 2]> {
+        let turn = Motion::Turn(f64::from(degree).to_radians());
+        let facing = after(pose, turn);
+        let drive = Motion::Drive(self.straight_m(facing)?);
+        (self.is_free(pose, turn) && self.is_free(facing, drive)).then_some([turn, drive])
     }
 
     /// The way straight on to where the robot can turn around, or is at the goal, or as far as it
@@ -190,13 +209,15 @@ mod tests {
         });
         assert!(end.x > 2.3 && (end.y - 3.0).abs() < 0.01 && end.theta.abs() < 0.03, "{end:?}");
         // It could not turn around any more, but goes straight on as far as it looks.
-        assert!(place.straight_on(end, true).is_some() && place.straight_on(end, false).is_none());
-        assert_eq!(place.straight_on(start, false), Some(Vec::new()));
-        // Aslant in the mouth it does not get on.
-        assert_eq!(place.straight_on(Pose::new(1.76, 3.0, -0.35), true), None);
+        assert!(place.surely_gets_on(end) && place.straight_on(end).is_none());
+        assert_eq!(place.straight_on(start), Some(Vec::new()));
+        // Aslant in the mouth it does not get on, and not surely where only one direction is free.
+        assert!(!place.surely_gets_on(Pose::new(1.76, 3.0, -0.35)));
+        let aslant = Pose { theta: 0.035, ..end };
+        assert!(place.turned_by(aslant, -2).is_some() && !place.surely_gets_on(aslant));
         // Near the other end it comes to where it can turn around.
         let near_end = Pose::new(8.0, 3.0, 0.0);
-        let motions = place.straight_on(near_end, false).unwrap();
+        let motions = place.straight_on(near_end).unwrap();
         assert!(matches!(motions[..], [Motion::Turn(_), Motion::Drive(m)] if m > 1.0));
     }
 }
