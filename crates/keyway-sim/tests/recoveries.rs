@@ -191,6 +191,44 @@ fn a_wrong_heading_at_the_start() {
     }
 }
 
+/// Two rooms of 4.7 m x 3.1 m, one above the other, and a door of 0.55 m between them.
+fn rooms_with_a_door() -> OccupancyGrid {
+    let origin = keyway::geometry::Pose { x: -5.0, y: -5.0, theta: 0.0 };
+    let frame = GridFrame::new(200, 200, 0.05, origin).unwrap();
+    OccupancyGrid::from_fn(frame, |cell| {
+        let Point { x, y } = frame.world_from_cell(cell);
+        let is_outside = x.abs() > 2.34 || y.abs() > 3.18;
+        let is_wall = y.abs() < 0.05 && !(-0.09..0.445).contains(&x);
+        if is_outside || is_wall { CellState::Occupied } else { CellState::Free }
+    })
+}
+
+/// Its goal is beside the door: it must not turn towards it with its nose in the door.
+#[test]
+fn a_long_nose_without_a_reverse_gear_comes_through_a_door() {
+    let corners = [[0.55, 0.195], [-0.22, 0.195], [-0.22, -0.195], [0.55, -0.195]];
+    let mut robot = Robot::small();
+    robot.footprint = Footprint::polygon(corners.map(Point::from).to_vec()).unwrap();
+    robot.cycle_s = 0.05;
+    robot.limits = Limits {
+        v_min_mps: 0.0,
+        v_max_mps: 2.97,
+        omega_max_radps: 3.0,
+        acceleration_mps2: 2.5,
+        deceleration_mps2: 2.5,
+        angular_acceleration_radps2: 6.0,
+        angular_deceleration_radps2: 6.0,
+        ..robot.limits
+    };
+    (robot.sensors[0].beams, robot.sensors[0].range_m) = (720, 20.0);
+    let (position, goal) = (Point::new(0.992, 2.171), Point::new(1.217, -0.451));
+    let start = Start { position, heading_rad: Some(66.7f64.to_radians()) };
+    let episode = Episode::new(rooms_with_a_door(), robot, position, goal);
+    let report = run_episode(&facing(episode, start)).unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
+    assert!(clearance_m(&report) > 0.0);
+}
+
 #[test]
 fn a_dead_end_that_nothing_leads_out_of() {
     // It can neither turn around nor drive backwards.
