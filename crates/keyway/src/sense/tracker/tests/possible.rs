@@ -60,3 +60,26 @@ fn what_was_pushed_away_stands_again() {
     }
     assert!(drive.tracker.possible_movers().is_empty());
 }
+
+/// Of what is not round, the middle of what is seen moves as more of it is seen: it may stand,
+/// however fast it seems. A disc that walks does not.
+#[test]
+fn who_is_not_round_may_stand() {
+    let seen = |discs: &[(Point, f64)]| {
+        let mut drive = Drive::new(map(&[]), &[]);
+        for cycle in 0..20 {
+            let moved = Point::new(0.0, 0.08 * f64::from(cycle) - 1.2);
+            let now: Vec<_> = discs.iter().map(|&(at, radius_m)| (at + moved, radius_m)).collect();
+            drive.step(Pose::default(), &now);
+        }
+        assert_eq!(drive.tracker.movers().len(), 1, "{:?}", drive.tracker.movers());
+        let points = drive.tracker.surfaces_after(0.5);
+        points.map(|point| point.velocity_mps.norm()).collect::<Vec<f64>>()
+    };
+    assert!(seen(&[(Point::new(1.8, 0.0), 0.25)]).is_empty());
+    // Two discs that touch move as one.
+    let pair = seen(&[(Point::new(1.8, -0.17), 0.17), (Point::new(1.8, 0.17), 0.17)]);
+    let standing = pair.iter().filter(|&&speed_mps| speed_mps == 0.0).count();
+    assert!(standing > 5 && 2 * standing == pair.len(), "once as it goes on: {pair:?}");
+    assert!(pair.iter().any(|&speed_mps| speed_mps > 0.5), "{pair:?}");
+}
