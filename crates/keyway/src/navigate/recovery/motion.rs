@@ -131,6 +131,7 @@ impl MotionUnderWay {
             return MotionStep::Done;
         }
         let footprint = &robot.footprint;
+        let share = || share(robot, pose, self.left, obstacles);
         let command = match self.left {
             Motion::Wait(_) => Velocity::ZERO,
             Motion::Turn(left_rad) => {
@@ -138,7 +139,7 @@ impl MotionUnderWay {
                 if !footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles) {
                     return MotionStep::Refused;
                 }
-                let most = turn_share(robot, pose, obstacles) * limits.omega_max_radps;
+                let most = share() * limits.omega_max_radps;
                 let stops = limits.stoppable_radps(velocity.omega, left_rad.abs(), cycle_s);
                 Velocity::new(0.0, stops.min(most).copysign(left_rad))
             }
@@ -147,7 +148,7 @@ impl MotionUnderWay {
                     return MotionStep::Refused;
                 }
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
-                let most = fastest.min(SPEED_SHARE * limits.v_max_mps);
+                let most = fastest.min(share() * limits.v_max_mps);
                 let stops = limits.stoppable_mps(velocity.v, left_m.abs(), cycle_s);
                 Velocity::new(stops.min(most).copysign(left_m), 0.0)
             }
@@ -156,12 +157,44 @@ impl MotionUnderWay {
     }
 }
 
-/// Rate of a turn on the spot, as a share of the robot's limit: all of it where nothing is within
-/// reach of any part of the robot.
-fn turn_share(robot: &Robot, pose: Pose, obstacles: &DistanceField) -> f64 {
-    let room_m = robot.footprint.circumscribed_radius_m() + robot.safety_margin_m();
-    let is_wide = obstacles.clearance().is_clear_point(pose.point(), room_m);
-    if is_wide { 1.0 } else { SPEED_SHARE }
+/// Speed of a motion, as a share of the robot's limits: the largest at which it stops where it is
+/// wide, even if it goes on too far.
+fn share(robot: &Robot, pose: Pose, motion: Motion, obstacles: &DistanceField) -> f64 {
+    let is_wide = |share: &f64| is_wide(robot, pose, (motion, *share), obstacles);
+    [1.0, 2.0 * SPEED_SHARE].into_iter().find(is_wide).unwrap_or(SPEED_SHARE)
+}
+
+/// True if the robot keeps more than its margin wherever it comes until it stands, when it brakes
+/// in the next cycle from this share of its limits.
+fn is_wide(
+    robot: &Robot,
+    pose: Pose,
+    (motion, share): (Motion, f64),
+    obstacles: &DistanceField,
+) -> bool {
+    /// Beyond the margin.
+    const MORE_M: f64 = 0.05;
+    let (limits, footprint, margin_m) = (&robot.limits, &robot.footprint, robot.safety_margin_m());
+    let room_m = margin_m + MORE_M;
+    let stops_within = |most: f64, brakes: f64| {
+        let fast = share * most;
+        fast * robot.cycle_s + fast * fast / (2.0 * brakes)
+    };
+    match motion {
+        Motion::Turn(left_rad) => {
+            let reach_m = footprint.circumscribed_radius_m() + margin_m;
+            let ahead_rad =
+                stops_within(limits.omega_max_radps, limits.angular_deceleration_radps2);
+            let turn = [pose.theta, ahead_rad.copysign(left_rad)];
+            obstacles.clearance().is_clear_point(pose.point(), reach_m)
+                || footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles)
+        }
+        Motion::Drive(left_m) => {
+            let ahead_m = stops_within(limits.v_max_mps, limits.deceleration_mps2);
+            footprint.keeps_room_driving(pose, ahead_m.copysign(left_m), room_m, obstacles)
+        }
+        Motion::Wait(_) => false,
+    }
 }
 
 impl Motion {
@@ -202,6 +235,7 @@ mod tests {
     use super::*;
     use crate::map::{FieldConfig, OccupancyGrid};
     use proptest::prelude::*;
+    use std::f64::consts::FRAC_PI_2;
 
     fn moment(robot: &Robot, state: (Pose, Velocity), elapsed_s: f64) -> Moment<'_> {
         let ((pose, velocity), robot_then) = (state, state);
@@ -238,7 +272,7 @@ mod tests {
         let start = (Pose::new(4.0, 4.0, 0.0), Velocity::ZERO);
         let (pose, ended, fastest) = obey(Motion::Drive(1.0), &robot, start);
         assert!(ended == MotionStep::Done && (pose.x - 5.0).abs() < 0.01, "{pose:?}");
-        assert!((fastest - 0.125).abs() < 1e-9, "a quarter of full speed: {fastest}");
+        assert_eq!(fastest, robot.limits.v_max_mps);
         let (pose, ended, _) = obey(Motion::Drive(-0.5), &robot, start);
         assert!(ended == MotionStep::Done && (pose.x - 3.5).abs() < 0.01, "{pose:?}");
         for turn_rad in [1.0, -2.0, 5.0, -6.0] {
@@ -253,30 +287,53 @@ mod tests {
         assert_eq!((outside.0, outside.1), (start.0, MotionStep::Refused));
     }
 
-    /// At the limit in the open; at a quarter of it where a wall is within reach of a corner.
+    fn walls(rows: &[&str]) -> DistanceField {
+        let map = OccupancyGrid::from_ascii(rows);
+        DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default())
+    }
+
+    /// At the limit in the open, at half of it where it then stops before a corner is near the
+    /// wall, and at a quarter of it beside the wall.
     #[test]
     fn turns_are_as_fast_as_there_is_room() {
-        let map = OccupancyGrid::from_ascii(&["........", "........", "........", "########"]);
-        let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
+        let obstacles = walls(&["........", "........", "........", "########"]);
+        let (robot, turn) = (Robot::jackal(), Motion::Turn(3.0));
+        let (footprint, margin_m) = (&robot.footprint, robot.safety_margin_m());
+        let share =
+            |beside_m: f64| share(&robot, Pose::new(4.0, 1.0 + beside_m, 0.0), turn, &obstacles);
+        let (inner_m, outer_m) =
+            (footprint.inscribed_radius_m(), footprint.circumscribed_radius_m());
+        assert_eq!(share(outer_m + 1.01 * margin_m), 1.0);
+        // At half of its rate it turns by 0.26 rad until it stands.
+        let corner_m = 0.254 * 0.2625f64.sin() + 0.215 * 0.2625f64.cos();
+        let found = [-1e-3, 1e-3].map(|more_m| share(corner_m + margin_m + 0.05 + more_m));
+        assert_eq!(found, [SPEED_SHARE, 0.5]);
+        assert_eq!(share(inner_m + margin_m), SPEED_SHARE);
+    }
+
+    /// At the limit where nothing is near the way on which it stops, at half of it before a wall,
+    /// and at a quarter of it beside one.
+    #[test]
+    fn drives_are_as_fast_as_there_is_room() {
+        let obstacles = walls(&["........", "........", "........", "########"]);
         let robot = Robot::jackal();
-        let fastest_radps = |y: f64| {
-            let (mut pose, mut velocity) = (Pose::new(4.0, y, 0.0), Velocity::ZERO);
-            let (mut turn, mut fastest_radps) = (MotionUnderWay::new(Motion::Turn(3.0)), 0.0f64);
-            loop {
-                let elapsed_s = robot.cycle_s;
-                let moment = moment(&robot, (pose, velocity), elapsed_s);
-                let MotionStep::Moving(command) = turn.step(&moment, &obstacles) else {
-                    return fastest_radps;
-                };
-                fastest_radps = fastest_radps.max(command.omega.abs());
-                velocity = robot.limits.reached(velocity, command, elapsed_s);
-                pose.theta += velocity.omega * elapsed_s;
-            }
+        let room_m = robot.safety_margin_m() + 0.05;
+        let beside_m = 1.0 + robot.footprint.inscribed_radius_m() + room_m;
+        let along = |y| share(&robot, Pose::new(2.0, y, 0.0), Motion::Drive(1.0), &obstacles);
+        assert_eq!([1e-3, -1e-3].map(|more_m| along(beside_m + more_m)), [1.0, SPEED_SHARE]);
+        let front_m = 0.254;
+        let stops_m = |share: f64| {
+            let fast_mps = share * robot.limits.v_max_mps;
+            fast_mps * robot.cycle_s + 0.5 * fast_mps * fast_mps / robot.limits.deceleration_mps2
         };
-        let most_radps = robot.limits.omega_max_radps;
-        let reach_m = robot.footprint.circumscribed_radius_m();
-        assert_eq!(fastest_radps(2.5), most_radps);
-        assert_eq!(fastest_radps(1.0 + reach_m + 0.9 * robot.safety_margin_m()), 0.25 * most_radps);
+        let before = |way_m: f64| {
+            let pose = Pose::new(4.0, 1.0 + way_m + front_m + room_m, -FRAC_PI_2);
+            share(&robot, pose, Motion::Drive(0.1), &obstacles)
+        };
+        for (slower, faster) in [(0.5, 1.0), (SPEED_SHARE, 0.5)] {
+            let found = [-1e-3, 1e-3].map(|more_m| before(stops_m(faster) + more_m));
+            assert_eq!(found, [slower, faster]);
+        }
     }
 
     /// Half of the room that a motion was found with is kept on the way; one that begins on its own
