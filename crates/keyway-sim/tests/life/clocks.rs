@@ -131,6 +131,28 @@ fn a_robot_that_is_not_told_where_it_is_stops() {
     }
 }
 
+/// A time that is told at the step makes the pose older; one that says nothing new changes nothing.
+#[test]
+fn the_time_may_be_told_at_the_step() {
+    let expected = poses(begun(0.0), |life| drop(life.cycle()));
+    for told_s in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let told = poses(begun(0.0), |life| {
+            life.observe();
+            let step = life.navigator.step_at(life.stamp_s + told_s);
+            life.obey(step.command());
+        });
+        assert_eq!(told, expected, "{told_s}");
+    }
+    let mut life = begun(0.0);
+    life.drive_for(3.0);
+    life.observe();
+    assert!(matches!(life.navigator.step_at(life.stamp_s + 0.1), Step::Drive(_)));
+    assert_eq!(life.navigator.now_s(), Some(life.stamp_s + 0.1));
+    let step = life.navigator.step_at(life.stamp_s + 0.6);
+    let Some(&Blocked::PoseStale { age_s }) = step.why() else { panic!("{step:?}") };
+    assert!((age_s - 0.6).abs() < 1e-6, "{age_s}");
+}
+
 /// A scan that is 0.2 s late, made while the robot turned, is put where the robot was.
 #[test]
 fn a_late_scan_is_put_where_it_was_made() {

@@ -222,6 +222,16 @@ impl Navigator {
         step
     }
 
+    /// The same at a time that may be later than all stamps so far \[s\], by the clock of the
+    /// stamps: what was measured is as old as it then is, and a pose that is too old stops the
+    /// robot. An earlier time, or one that is not finite, is as if none were told.
+    pub fn step_at(&mut self, now_s: f64) -> Step {
+        if self.world.pass_time(now_s) {
+            self.forget_last();
+        }
+        self.step()
+    }
+
     /// Stops at once, without knowing where the robot is; within its limits of jerk, if it has
     /// some.
     fn stop(&mut self, why: Blocked) -> Step {

@@ -339,7 +339,14 @@ impl World {
         }
     }
 
-    /// The time of the latest observation.
+    /// Takes in that it is as late as this \[s\]; true if it was earlier before.
+    pub(super) fn pass_time(&mut self, now_s: f64) -> bool {
+        let now = Time::of_stamp(now_s).filter(|&now| self.now.is_some_and(|before| before < now));
+        self.now = now.or(self.now);
+        now.is_some()
+    }
+
+    /// The latest time that was observed or told.
     pub(super) const fn now(&self) -> Option<Time> {
         self.now
     }
