@@ -34,8 +34,15 @@ const SIM: Layers =
     &[&["parallel", "worlds"], &["sim"], &["metrics"], &["report"], &["episode"], &["scene_files"]];
 
 /// All crates.
-const CRATES: [&str; 6] =
-    ["keyway", "keyway-sim", "keyway-lab", "keyway-draw", "keyway-cli", "keyway-python"];
+const CRATES: [&str; 7] = [
+    "keyway",
+    "keyway-sim",
+    "keyway-lab",
+    "keyway-draw",
+    "keyway-cli",
+    "keyway-python",
+    "keyway-ros",
+];
 
 /// A module's path below the crate, such as `["map", "field", "lookup"]`.
 type Module = Vec<String>;

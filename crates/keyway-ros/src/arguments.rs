@@ -1,0 +1,230 @@
+//! The command line and the environment, as all programs of ROS 2 have them: `--ros-args`, and the
+//! variables that choose the network.
+
+use crate::error::StartError;
+use std::path::PathBuf;
+
+/// A command line.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Arguments {
+    /// To print the help, and nothing else.
+    pub(crate) help: bool,
+    /// To print the version, and nothing else.
+    pub(crate) version: bool,
+    /// Other name of the node.
+    pub(crate) node: Option<String>,
+    pub(crate) namespace: Option<String>,
+    /// Names of topics, services and actions, and what they are in their place.
+    pub(crate) remappings: Vec<(String, String)>,
+    /// Parameters and their values, as YAML, in the order in which they were given.
+    pub(crate) parameters: Vec<(String, String)>,
+    pub(crate) parameter_files: Vec<PathBuf>,
+}
+
+impl Arguments {
+    /// Name of the node, unless it is given another one.
+    pub(crate) const NODE: &str = "keyway";
+
+    /// Parses what follows the name of the program.
+    pub(crate) fn parse(arguments: impl IntoIterator<Item = String>) -> Result<Self, StartError> {
+        let mut parsed = Self::default();
+        let mut arguments = arguments.into_iter();
+        let mut is_of_ros = false;
+        while let Some(argument) = arguments.next() {
+            let mut value = || {
+                arguments.next().ok_or_else(|| StartError::ArgumentWithoutValue(argument.clone()))
+            };
+            match (argument.as_str(), is_of_ros) {
+                ("-h" | "--help", false) => parsed.help = true,
+                ("-V" | "--version", false) => parsed.version = true,
+                ("--ros-args", _) => is_of_ros = true,
+                ("--", true) => is_of_ros = false,
+                ("-r" | "--remap", true) => {
+                    let (from, to) = rule(&value()?)?;
+                    parsed.remap(&from, to)?;
+                }
+                ("-p" | "--param", true) => {
+                    let (name, value) = rule(&value()?)?;
+                    let is_ours = for_node(&name).0.is_none_or(|node| node == parsed.node_name());
+                    if is_ours {
+                        parsed.parameters.push((for_node(&name).1.to_owned(), value));
+                    }
+                }
+                ("--params-file", true) => parsed.parameter_files.push(value()?.into()),
+                // How much is logged is not ours to choose for others; it is little.
+                ("--log-level" | "--log-config-file" | "-e" | "--enclave", true) => {
+                    value()?;
+                }
+                (flag, true) if flag.ends_with("-logs") => {}
+                _ => return Err(StartError::UnknownArgument(argument)),
+            }
+        }
+        Ok(parsed)
+    }
+
+    /// Name of the node.
+    pub(crate) fn node_name(&self) -> &str {
+        self.node.as_deref().unwrap_or(Self::NODE)
+    }
+
+    /// Takes in a rule, such as `cmd_vel:=motors/cmd_vel` or `__ns:=/robot1`.
+    fn remap(&mut self, from: &str, to: String) -> Result<(), StartError> {
+        let (node, from) = for_node(from);
+        if node.is_some_and(|node| node != self.node_name()) {
+            return Ok(());
+        }
+        match from {
+            "__node" | "__name" => self.node = Some(to),
+            "__ns" if to.starts_with('/') => self.namespace = Some(to),
+            "__ns" => return Err(StartError::RelativeNamespace(to)),
+            _ => self.remappings.push((from.to_owned(), to)),
+        }
+        Ok(())
+    }
+
+    /// The full name that a topic, a service or an action has: what the last rule for it says, or
+    /// its own.
+    pub(crate) fn remapped(&self, name: &str) -> String {
+        let full = |name| full_name(name, self.namespace.as_deref().unwrap_or("/"));
+        let rule = self.remappings.iter().rev().find(|(from, _)| full(from) == full(name));
+        full(rule.map_or(name, |(_, to)| to))
+    }
+}
+
+/// A name with its namespace.
+pub(crate) fn full_name(name: &str, namespace: &str) -> String {
+    if name.starts_with('/') {
+        return name.to_owned();
+    }
+    format!("{}/{name}", namespace.trim_end_matches('/'))
+}
+
+/// The node for which a rule is, if for one alone, and the rest.
+fn for_node(name: &str) -> (Option<&str>, &str) {
+    name.split_once(':').map_or((None, name), |(node, rest)| (Some(node), rest))
+}
+
+/// The two sides of `a:=b`.
+fn rule(text: &str) -> Result<(String, String), StartError> {
+    let (from, to) = text.split_once(":=").ok_or_else(|| StartError::NoRule(text.to_owned()))?;
+    if from.is_empty() || to.is_empty() {
+        return Err(StartError::NoRule(text.to_owned()));
+    }
+    Ok((from.to_owned(), to.to_owned()))
+}
+
+/// The network that the environment chooses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Network {
+    /// Robots of other domains do not see each other.
+    pub(crate) domain: u16,
+    /// This machine alone.
+    pub(crate) is_local: bool,
+}
+
+impl Network {
+    /// The highest domain: beyond it there are no ports for it.
+    const LAST_DOMAIN: u16 = 232;
+
+    /// From variables by their names.
+    pub(crate) fn of_environment(
+        variable: impl Fn(&str) -> Option<String>,
+    ) -> Result<Self, StartError> {
+        const DOMAIN: &str = "ROS_DOMAIN_ID";
+        const RANGE: &str = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+        const LOCAL: &str = "ROS_LOCALHOST_ONLY";
+        let set = |name| variable(name).filter(|value| !value.is_empty());
+        let wrong = |name, value: String, expected| StartError::Variable { name, value, expected };
+        let domain = match set(DOMAIN) {
+            None => 0,
+            Some(text) => match text.parse() {
+                Ok(domain) if domain <= Self::LAST_DOMAIN => domain,
+                _ => return Err(wrong(DOMAIN, text, "a whole number from 0 to 232")),
+            },
+        };
+        // As in ROS, the older variable wins where it is set.
+        let is_local = match (set(LOCAL).as_deref(), set(RANGE)) {
+            (Some("1"), _) => true,
+            (Some("0") | None, None) => false,
+            (Some("0") | None, Some(range)) => match range.as_str() {
+                "LOCALHOST" => true,
+                "SUBNET" | "SYSTEM_DEFAULT" => false,
+                _ => {
+                    let expected = "SUBNET, LOCALHOST or SYSTEM_DEFAULT";
+                    return Err(wrong(RANGE, range, expected));
+                }
+            },
+            (Some(other), _) => return Err(wrong(LOCAL, other.to_owned(), "0 or 1")),
+        };
+        Ok(Self { domain, is_local })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Arguments, StartError> {
+        Arguments::parse(text.split_whitespace().map(str::to_owned))
+    }
+
+    #[test]
+    fn rules_of_ros() {
+        let text = "--ros-args -r __ns:=/r1 --remap __node:=nav -r cmd_vel:=motors -p robot:=jackal \
+                    -p nav:rate:=10 -p other:rate:=5 --params-file a.yaml --log-level debug \
+                    --disable-rosout-logs --";
+        let parsed = parse(text).unwrap();
+        assert_eq!((parsed.node_name(), parsed.namespace.as_deref()), ("nav", Some("/r1")));
+        assert_eq!(parsed.remapped("cmd_vel"), "/r1/motors");
+        assert_eq!(parsed.remapped("/r1/cmd_vel"), "/r1/motors");
+        assert_eq!(parsed.remapped("scan"), "/r1/scan");
+        assert_eq!(parsed.remapped("/tf"), "/tf");
+        assert_eq!(Arguments::default().remapped("scan"), "/scan");
+        let expected = [("robot", "jackal"), ("rate", "10")];
+        assert!(parsed.parameters.iter().map(|(a, b)| (a.as_str(), b.as_str())).eq(expected));
+        assert_eq!(parsed.parameter_files, [PathBuf::from("a.yaml")]);
+        assert!(parse("--help").unwrap().help && parse("-V").unwrap().version);
+        assert_eq!(parse("").unwrap(), Arguments::default());
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (text, said) in [
+            ("--robot x", "--robot"),
+            ("--ros-args -r cmd_vel", "cmd_vel"),
+            ("--ros-args -r", "-r"),
+            ("--ros-args -p a:=", "a:="),
+            ("--ros-args -r __ns:=r1", "r1"),
+        ] {
+            let message = parse(text).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_environment_chooses_the_network() {
+        let network = |variables: &[(&str, &str)]| {
+            let variable = |name: &str| {
+                variables
+                    .iter()
+                    .find(|(other, _)| *other == name)
+                    .map(|(_, value)| (*value).to_owned())
+            };
+            Network::of_environment(variable)
+        };
+        assert_eq!(network(&[]).unwrap(), Network { domain: 0, is_local: false });
+        let local = network(&[("ROS_DOMAIN_ID", "7"), ("ROS_LOCALHOST_ONLY", "1")]).unwrap();
+        assert_eq!(local, Network { domain: 7, is_local: true });
+        let range = [("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")];
+        assert!(network(&range).unwrap().is_local);
+        for wrong in [
+            ("ROS_DOMAIN_ID", "233"),
+            ("ROS_DOMAIN_ID", "x"),
+            ("ROS_LOCALHOST_ONLY", "yes"),
+            ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"),
+        ] {
+            let message = network(&[wrong]).unwrap_err().to_string();
+            assert!(message.contains(wrong.0) && message.contains(wrong.1), "{message}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Errors at the start of the node.
+
+use keyway::navigate::NavigateError;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// The reason why the node cannot start.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// An argument that does not exist.
+    #[error(
+        "unknown argument `{0}`; arguments of ROS come after `--ros-args`, and `--help` lists them"
+    )]
+    UnknownArgument(String),
+    /// An argument at the end that needs a value.
+    #[error("`{0}` needs a value after it")]
+    ArgumentWithoutValue(String),
+    /// A value that is not of the form `a:=b`.
+    #[error("`{0}` is no rule of the form `name:=value`")]
+    NoRule(String),
+    /// A namespace without its slash.
+    #[error("the namespace `{0}` must begin with a slash")]
+    RelativeNamespace(String),
+    /// A variable of the environment that means nothing.
+    #[error("the variable {name} of the environment is `{value}`, and must be {expected}")]
+    Variable {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// The values that it may have.
+        expected: &'static str,
+    },
+    /// A file that cannot be read.
+    #[error("cannot read {}: {why}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The fault.
+        why: String,
+    },
+    /// A parameter that cannot be used.
+    #[error("parameter `{name}`: {why}")]
+    Parameter {
+        /// Its name.
+        name: String,
+        /// The fault.
+        why: String,
+    },
+    /// A robot and a stack that do not fit together.
+    #[error(transparent)]
+    Navigate(#[from] NavigateError),
+    /// The network does not work.
+    #[error("cannot {what}: {why}")]
+    Network {
+        /// The thing that did not work.
+        what: String,
+        /// The reason that the network gives.
+        why: String,
+    },
+}

@@ -1,0 +1,76 @@
+//! Keyway as a node of ROS 2: it takes a map, scans, odometry and transforms, and drives to goals,
+//! by the names that Nav2 gives to all of them. It needs no ROS installation.
+//!
+//! It is a shell over [`keyway::Navigator`], without any logic of driving of its own.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `arguments` | the command line and the environment of ROS |
+//! | `settings` | parameters, and what they make: a robot, a stack, names of frames and topics |
+//! | `messages` | messages of ROS as values |
+//! | `transforms` | where frames are, by time |
+//! | `pilot` | messages -> what the navigator observes -> commands and outcomes; no network |
+//! | `clock` | the time of the machine, or of a simulation |
+//! | `wire` | the only module that knows the network |
+//! | `node` | the loop between `wire` and `pilot` |
+
+mod arguments;
+mod clock;
+mod error;
+mod messages;
+mod node;
+mod pilot;
+mod settings;
+mod transforms;
+mod wire;
+
+pub use error::StartError;
+
+use arguments::{Arguments, Network};
+use node::Node;
+use settings::Settings;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Runs the node with the arguments after the name of the program, until it is told to stop (by
+/// SIGINT or SIGTERM), or prints what it was asked for.
+///
+/// # Errors
+/// An argument, a parameter or a variable of the environment that cannot be used, or a network that
+/// does not work.
+pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError> {
+    let arguments = Arguments::parse(arguments)?;
+    if arguments.help {
+        print!("{}", help());
+        return Ok(());
+    }
+    if arguments.version {
+        println!("keyway-ros {}", env!("CARGO_PKG_VERSION"));
+        return Ok(());
+    }
+    let variable = |name: &str| std::env::var(name).ok();
+    let network = Network::of_environment(variable)?;
+    let settings = Settings::of(&arguments, variable("ROS_DISTRO").as_deref())?;
+    let is_over = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
+            StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
+        })?;
+    }
+    Node::new(&arguments, network, settings)?.run(&is_over);
+    Ok(())
+}
+
+fn help() -> String {
+    format!(
+        "Keyway as a node of ROS 2: drives a robot to goals, by the names that Nav2 gives to topics and actions\n\n\
+         Usage: keyway-ros --ros-args -p robot:=NAME|FILE [ARGUMENTS OF ROS]\n\n\
+         Arguments of ROS, after --ros-args:\n  \
+         -r, --remap FROM:=TO    another name; __node and __ns for those of the node\n  \
+         -p, --param NAME:=VALUE a parameter\n  \
+         --params-file FILE      parameters from a file (YAML)\n\n\
+         Parameters, and their defaults:\n{}\n\
+         Environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_DISTRO\n",
+        settings::help()
+    )
+}

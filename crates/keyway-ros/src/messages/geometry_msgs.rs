@@ -1,0 +1,195 @@
+//! `geometry_msgs`.
+
+use super::Named;
+use super::std_msgs::Header;
+use keyway::geometry::{self, Velocity};
+use serde::{Deserialize, Serialize};
+
+/// Of a vector or a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Vector3 {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) z: f64,
+}
+
+/// A rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Quaternion {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) z: f64,
+    pub(crate) w: f64,
+}
+
+impl Default for Quaternion {
+    /// No rotation.
+    fn default() -> Self {
+        Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }
+    }
+}
+
+impl Quaternion {
+    /// Around the z axis.
+    fn of_heading(heading_rad: f64) -> Self {
+        let (z, w) = (0.5 * heading_rad).sin_cos();
+        Self { x: 0.0, y: 0.0, z, w }
+    }
+
+    /// True if what is up in the one frame is down in the other.
+    pub(crate) fn is_upside_down(self) -> bool {
+        let Self { x, y, z, w } = self;
+        w * w - x * x - y * y + z * z < 0.0
+    }
+
+    /// The angle around the z axis \[rad\], as ROS computes yaw; `None` for one that is no
+    /// rotation, such as four zeros.
+    pub(crate) fn heading_rad(self) -> Option<f64> {
+        const LEAST_NORM_SQ: f64 = 0.25;
+        let Self { x, y, z, w } = self;
+        let norm_sq = x * x + y * y + z * z + w * w;
+        (norm_sq.is_finite() && norm_sq >= LEAST_NORM_SQ)
+            .then(|| (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
+    }
+}
+
+/// A place and a rotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Pose {
+    pub(crate) position: Vector3,
+    pub(crate) orientation: Quaternion,
+}
+
+impl Pose {
+    /// On the ground; `None` for one that is not finite or has no rotation.
+    pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
+        on_ground(self.position, self.orientation)
+    }
+}
+
+/// On the ground; `None` for one that is not finite or has no rotation.
+fn on_ground(position: Vector3, orientation: Quaternion) -> Option<geometry::Pose> {
+    let heading_rad = orientation.heading_rad()?;
+    let is_place = position.x.is_finite() && position.y.is_finite();
+    is_place.then(|| geometry::Pose::new(position.x, position.y, heading_rad))
+}
+
+impl From<geometry::Pose> for Pose {
+    fn from(pose: geometry::Pose) -> Self {
+        let position = Vector3 { x: pose.x, y: pose.y, z: 0.0 };
+        Self { position, orientation: Quaternion::of_heading(pose.theta) }
+    }
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PoseStamped {
+    pub(crate) header: Header,
+    pub(crate) pose: Pose,
+}
+
+impl Named for PoseStamped {
+    const NAME: (&'static str, &'static str) = ("geometry_msgs", "PoseStamped");
+}
+
+/// Six times six, of which nothing is used.
+pub(crate) type Covariance = [[f64; 6]; 6];
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PoseWithCovariance {
+    pub(crate) pose: Pose,
+    pub(crate) covariance: Covariance,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Twist {
+    pub(crate) linear: Vector3,
+    pub(crate) angular: Vector3,
+}
+
+impl Named for Twist {
+    const NAME: (&'static str, &'static str) = ("geometry_msgs", "Twist");
+}
+
+impl From<Velocity> for Twist {
+    fn from(velocity: Velocity) -> Self {
+        Self {
+            linear: Vector3 { x: velocity.v, ..Vector3::default() },
+            angular: Vector3 { z: velocity.omega, ..Vector3::default() },
+        }
+    }
+}
+
+impl From<Twist> for Velocity {
+    fn from(twist: Twist) -> Self {
+        Self::new(twist.linear.x, twist.angular.z)
+    }
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct TwistStamped {
+    pub(crate) header: Header,
+    pub(crate) twist: Twist,
+}
+
+impl Named for TwistStamped {
+    const NAME: (&'static str, &'static str) = ("geometry_msgs", "TwistStamped");
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct TwistWithCovariance {
+    pub(crate) twist: Twist,
+    pub(crate) covariance: Covariance,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Transform {
+    pub(crate) translation: Vector3,
+    pub(crate) rotation: Quaternion,
+}
+
+/// The place of a frame in another one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct TransformStamped {
+    pub(crate) header: Header,
+    pub(crate) child_frame_id: String,
+    pub(crate) transform: Transform,
+}
+
+impl TransformStamped {
+    /// On the ground; `None` for one that is not finite or has no rotation.
+    pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
+        on_ground(self.transform.translation, self.transform.rotation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn headings_are_those_of_ros() {
+        for heading_rad in [-3.0, -FRAC_PI_2, 0.0, 0.7, 3.0] {
+            let found_rad = Quaternion::of_heading(heading_rad).heading_rad().unwrap();
+            assert!((found_rad - heading_rad).abs() < 1e-12);
+        }
+        // Around the x axis first, as of a lidar that hangs upside down: its heading stays.
+        let upside_down = Quaternion { x: 1.0, y: 0.0, z: 0.0, w: 0.0 };
+        assert_eq!(upside_down.heading_rad(), Some(0.0));
+        assert!(upside_down.is_upside_down() && !Quaternion::of_heading(2.0).is_upside_down());
+        let turned = Quaternion { x: 0.0, y: 1.0, z: 0.0, w: 0.0 };
+        assert!((turned.heading_rad().unwrap().abs() - PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_rotation_has_no_heading() {
+        let nothing = Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 0.0 };
+        assert_eq!(nothing.heading_rad(), None);
+        assert_eq!(Quaternion { w: f64::NAN, ..nothing }.heading_rad(), None);
+        let far = Pose {
+            position: Vector3 { x: f64::INFINITY, ..Vector3::default() },
+            ..Pose::default()
+        };
+        assert_eq!(far.on_ground(), None);
+    }
+}

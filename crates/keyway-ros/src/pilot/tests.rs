@@ -1,0 +1,241 @@
+//! The pilot with a robot that obeys at once, in a room that its map shows.
+
+use super::*;
+use crate::arguments::Arguments;
+use crate::messages::geometry_msgs::PoseStamped;
+use crate::messages::nav_msgs::{MapMetaData, Odometry, Path};
+use crate::messages::nav2_msgs::SpeedLimit;
+use crate::messages::sensor_msgs::LaserScan;
+use crate::messages::std_msgs::Header;
+use crate::transforms::Placement;
+use keyway::geometry::Point;
+
+/// A robot, and the frames and messages of its drivers.
+struct Robot {
+    pilot: Pilot,
+    /// In the frame `odom`, which stands 1 m to the right of the map's origin.
+    pose: Pose,
+    velocity: Velocity,
+    now_s: f64,
+}
+
+const ODOM: Pose = Pose { x: 1.0, y: 0.0, theta: 0.0 };
+
+/// A room of 6 m x 4 m in cells of 5 cm, with walls around it.
+fn room() -> OccupancyGrid {
+    let (width, height) = (120, 80);
+    let is_wall = |x: u32, y: u32| x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+    let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let info = MapMetaData { resolution: 0.05, width, height, ..MapMetaData::default() };
+    let data = cells.map(|(x, y)| if is_wall(x, y) { 100 } else { 0 }).collect();
+    OccupancyGrid { header: Header::new(0.0, "map"), info, data }
+}
+
+fn settings() -> Settings {
+    let parameters = vec![("robot".to_owned(), "waffle".to_owned())];
+    Settings::of(&Arguments { parameters, ..Arguments::default() }, None).unwrap()
+}
+
+impl Robot {
+    fn new() -> Self {
+        let (pose, velocity) = (Pose::new(0.5, 2.0, 0.0), Velocity::ZERO);
+        let mut pilot = Pilot::new(settings());
+        let mount = Placement::upright(Pose::default());
+        pilot.transforms.insert(["base_link", "base_scan"], (0.0, mount), true);
+        pilot.take_map(&room()).unwrap();
+        Self { pilot, pose, velocity, now_s: 100.0 }
+    }
+
+    /// Its drivers tell all that they know, by this stamp.
+    fn tell(&mut self, stamp_s: f64) {
+        for (names, pose) in [(["map", "odom"], ODOM), (["odom", "base_link"], self.pose)] {
+            self.pilot.transforms.insert(names, (stamp_s, Placement::upright(pose)), false);
+        }
+        let mut odometry = Odometry { header: Header::new(stamp_s, "odom"), ..Odometry::default() };
+        odometry.twist.twist = self.velocity.into();
+        self.pilot.sensing.take_odometry(&odometry);
+        let beams = 360;
+        let scan = LaserScan {
+            header: Header::new(stamp_s, "base_scan"),
+            angle_increment: std::f32::consts::TAU / beams as f32,
+            range_min: 0.1,
+            range_max: 3.5,
+            ranges: vec![f32::INFINITY; beams],
+            ..LaserScan::default()
+        };
+        self.pilot.sensing.take_scan(0, scan);
+    }
+
+    /// One cycle, whose command it obeys.
+    fn cycle(&mut self) -> Cycle {
+        self.tell(self.now_s);
+        let cycle = self.pilot.cycle(self.now_s);
+        let cycle_s = settings().stack.robot().cycle_s;
+        self.pose = self.pose.after_ramp(self.velocity, cycle.command, cycle_s);
+        (self.velocity, self.now_s) = (cycle.command, self.now_s + cycle_s);
+        cycle
+    }
+
+    /// Drives until the errand ends, for a minute at most.
+    fn drive(&mut self) -> Option<Ended> {
+        (0..600).find_map(|_| self.cycle().ended)
+    }
+}
+
+fn goal(frame: &str, pose: Pose) -> PoseStamped {
+    PoseStamped { header: Header::new(0.0, frame), pose: pose.into() }
+}
+
+#[test]
+fn it_drives_to_a_pose() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 1.0, 1.0)));
+    robot.pilot.begin(&wanted, robot.now_s).unwrap();
+    let began_s = robot.now_s;
+    assert_eq!(robot.cycle().waits, None);
+    let (way_m, _) = robot.pilot.remaining();
+    assert!((3.6..4.2).contains(&way_m), "{way_m}");
+    assert_eq!(robot.drive(), Some(Ended::Succeeded));
+    let pose = robot.pilot.pose().unwrap();
+    assert!(pose.point().distance(Point::new(5.0, 1.0)) < 0.15 && (pose.theta - 1.0).abs() < 0.2);
+    assert!(robot.now_s - began_s < 40.0 && robot.cycle().command == Velocity::ZERO);
+}
+
+/// A goal in the frame of the odometry, and one in that of the robot, are where they say.
+#[test]
+fn goals_have_frames() {
+    for (frame, pose) in
+        [("odom", Pose::new(3.0, 2.0, 0.0)), ("base_link", Pose::new(2.5, 0.0, 0.0))]
+    {
+        let mut robot = Robot::new();
+        robot.tell(robot.now_s);
+        robot.pilot.begin(&Wanted::Pose(goal(frame, pose)), robot.now_s).unwrap();
+        assert_eq!(robot.drive(), Some(Ended::Succeeded));
+        let reached = robot.pilot.pose().unwrap().point();
+        assert!(reached.distance(Point::new(4.0, 2.0)) < 0.15, "{frame}: {reached:?}");
+    }
+}
+
+#[test]
+fn it_drives_along_a_path() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let header = Header::new(0.0, "odom");
+    let corners = [Point::new(0.5, 2.0), Point::new(2.0, 3.0), Point::new(3.5, 2.0)];
+    let mut path = Path::new(&header, &corners, None);
+    // Poses without a frame are in that of the path.
+    path.poses.iter_mut().for_each(|pose| pose.header.frame_id.clear());
+    robot.pilot.begin(&Wanted::Path(path), robot.now_s).unwrap();
+    let mut highest_m = 0.0f64;
+    let ended = (0..600).find_map(|_| {
+        let ended = robot.cycle().ended;
+        highest_m = highest_m.max(robot.pose.y);
+        ended
+    });
+    assert_eq!(ended, Some(Ended::Succeeded));
+    assert!((2.6..3.2).contains(&highest_m), "{highest_m}");
+}
+
+/// Whatever is missing, the robot stands, and says what.
+#[test]
+fn without_something_it_stands() {
+    let mut pilot = Pilot::new(settings());
+    assert_eq!(pilot.cycle(100.0).waits, Some(Waits::Map));
+    pilot.take_map(&room()).unwrap();
+    let Some(Waits::Transform(error)) = pilot.cycle(100.0).waits else { panic!() };
+    assert!(error.to_string().contains("`map`"), "{error}");
+    for (names, pose) in
+        [(["map", "odom"], ODOM), (["odom", "base_link"], Pose::new(0.5, 2.0, 0.0))]
+    {
+        pilot.transforms.insert(names, (100.0, Placement::upright(pose)), false);
+    }
+    assert_eq!(pilot.cycle(100.0).waits, Some(Waits::Odometry));
+    let outcome = pilot.begin(&Wanted::Pose(goal("camera", Pose::default())), 100.0);
+    let Err(Ended::Failed { code: Code::PlannerTransform, why }) = outcome else { panic!() };
+    assert!(why.contains("camera"), "{why}");
+}
+
+/// A pose that is older than it may be stops the robot, in the first cycle in which it is.
+#[test]
+fn an_old_pose_is_none() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
+    robot.pilot.begin(&wanted, robot.now_s).unwrap();
+    (0..30).for_each(|_| drop(robot.cycle()));
+    let told_s = robot.now_s;
+    robot.tell(told_s);
+    for (age_s, is_old) in [(0.0, false), (0.1, false), (0.19, false), (0.21, true), (5.0, true)] {
+        let cycle = robot.pilot.cycle(told_s + age_s);
+        let waits = matches!(cycle.waits, Some(Waits::NewPose { .. }));
+        assert_eq!((waits, cycle.command == Velocity::ZERO), (is_old, is_old), "{age_s}");
+    }
+    robot.now_s = told_s + 6.0;
+    assert_eq!(robot.drive(), Some(Ended::Succeeded), "once there is one again");
+}
+
+#[test]
+fn goals_that_cannot_be_reached_have_numbers() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    for (pose, expected) in [
+        (Pose::new(9.0, 2.0, 0.0), Code::GoalOutsideMap),
+        (Pose::new(0.02, 2.0, 0.0), Code::GoalOccupied),
+        (Pose::new(f64::NAN, 2.0, 0.0), Code::PlannerTransform),
+    ] {
+        let outcome = robot.pilot.begin(&Wanted::Pose(goal("map", pose)), robot.now_s);
+        let Err(Ended::Failed { code, .. }) = outcome else { panic!("{outcome:?}") };
+        assert_eq!(code, expected, "{pose:?}");
+    }
+    let empty = Wanted::Path(Path::default());
+    let outcome = robot.pilot.begin(&empty, robot.now_s);
+    assert!(matches!(outcome, Err(Ended::Failed { code: Code::InvalidPath, .. })));
+}
+
+#[test]
+fn a_way_is_found_without_driving() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let to = goal("map", Pose::new(5.0, 2.0, 0.5));
+    let (points, heading_rad) = robot.pilot.path(None, &to, robot.now_s).unwrap();
+    assert!(points[0].distance(Point::new(1.5, 2.0)) < 0.06 && heading_rad == 0.5, "{points:?}");
+    let from = goal("odom", Pose::new(2.0, 1.0, 0.0));
+    let (points, _) = robot.pilot.path(Some(&from), &to, robot.now_s).unwrap();
+    assert!(points[0].distance(Point::new(3.0, 1.0)) < 0.06, "{points:?}");
+    assert_eq!(robot.cycle().command, Velocity::ZERO);
+}
+
+#[test]
+fn speed_limits_hold() {
+    let fastest = |percentage, most| {
+        let mut robot = Robot::new();
+        robot.tell(robot.now_s);
+        let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
+        robot.pilot.begin(&wanted, robot.now_s).unwrap();
+        robot.pilot.limit_speed(&SpeedLimit { percentage, most, ..SpeedLimit::default() });
+        (0..60).map(|_| robot.cycle().command.v).fold(0.0, f64::max)
+    };
+    let most_mps = settings().stack.robot().limits.v_max_mps;
+    let half_mps = fastest(true, 50.0);
+    assert!((half_mps - 0.5 * most_mps).abs() < 1e-3, "{half_mps}");
+    assert!((fastest(false, 0.1) - 0.1).abs() < 1e-3);
+    assert!((fastest(false, 0.0) - most_mps).abs() < 1e-3);
+}
+
+#[test]
+fn maps_that_cannot_be_used_change_nothing() {
+    let mut robot = Robot::new();
+    let mut short = room();
+    short.data.pop();
+    assert!(matches!(robot.pilot.take_map(&short), Err(MapError::Count { .. })));
+    let mut nowhere = room();
+    nowhere.info.origin.orientation.w = 0.0;
+    assert_eq!(robot.pilot.take_map(&nowhere), Err(MapError::Origin));
+    let mut flat = room();
+    flat.info.resolution = 0.0;
+    assert!(matches!(robot.pilot.take_map(&flat), Err(MapError::Frame(_))));
+    robot.tell(robot.now_s);
+    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
+    assert_eq!(robot.pilot.begin(&wanted, robot.now_s), Ok(()));
+}

@@ -1,0 +1,262 @@
+//! Parameters of the node: from files and the command line, as ROS has them, to a robot, a stack,
+//! and names of frames and topics.
+
+use crate::arguments::Arguments;
+use crate::error::StartError;
+use keyway::files::{find_robot, find_stack};
+use keyway::navigate::FittedStack;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use toml::Value;
+
+/// Everything that the node is told at its start.
+#[derive(Clone)]
+pub(crate) struct Settings {
+    pub(crate) stack: Arc<FittedStack>,
+    pub(crate) frames: Frames,
+    /// Topics of the lidars, in the order of the robot's sensors.
+    pub(crate) scan_topics: Vec<String>,
+    pub(crate) odom_topic: String,
+    /// Commands have a stamp.
+    pub(crate) is_cmd_vel_stamped: bool,
+    /// By the clock of a simulation.
+    pub(crate) use_sim_time: bool,
+    /// No command is computed from a pose that is older \[s\].
+    pub(crate) max_pose_age_s: f64,
+}
+
+/// Names of frames.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Frames {
+    /// Of the map and the goals.
+    pub(crate) map: String,
+    /// Of the robot.
+    pub(crate) base: String,
+}
+
+/// Parameters by their names, as they were given.
+type Parameters = BTreeMap<String, Value>;
+
+/// A parameter, and what it is for; the default is what stands in [`Settings::of`].
+const PARAMETERS: [(&str, &str); 10] = [
+    ("robot", "name of a bundled robot, or its file (TOML); required"),
+    ("stack", "name of a stack, or its file (TOML); `keyway`"),
+    ("use_sim_time", "take the time from /clock; false"),
+    ("controller_frequency", "commands per second; as the robot's cycle says"),
+    ("global_frame", "frame of the map; map"),
+    ("robot_base_frame", "frame of the robot; base_link"),
+    ("scan_topics", "topics of the lidars, in the order of the robot's sensors; [scan]"),
+    ("odom_topic", "topic of the odometry; odom"),
+    ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for ROS_DISTRO=jazzy"),
+    ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
+];
+
+/// The parameters, one a line, for the help.
+pub(crate) fn help() -> String {
+    let lines: Vec<String> =
+        PARAMETERS.iter().map(|(name, what)| format!("  {name:24}{what}")).collect();
+    lines.join("\n")
+}
+
+impl Settings {
+    /// The settings by the arguments, and by `ROS_DISTRO`.
+    pub(crate) fn of(
+        arguments: &Arguments,
+        distribution: Option<&str>,
+    ) -> Result<Self, StartError> {
+        let mut given = Given::read(arguments)?;
+        let name = given.text("robot")?.ok_or_else(|| {
+            wrong("robot", format!("is required: {}", keyway::Robot::NAMES.join(", ")))
+        })?;
+        let unusable =
+            |parameter, error: &dyn std::error::Error| wrong(parameter, error.to_string());
+        let folder = Path::new("");
+        let mut robot = find_robot(&name, folder).map_err(|error| unusable("robot", &error))?;
+        if let Some(frequency_hz) = given.positive("controller_frequency")? {
+            robot.cycle_s = 1.0 / frequency_hz;
+        }
+        let name = given.text("stack")?.unwrap_or_else(|| "keyway".to_owned());
+        let stack = find_stack(&name, folder, &robot).map_err(|error| unusable("stack", &error))?;
+        let stack = stack.fit(&robot).map_err(|error| unusable("robot", &error))?;
+        let scan_topics = given.texts("scan_topics")?.unwrap_or_else(|| vec!["scan".to_owned()]);
+        let sensors = stack.robot().sensors.len();
+        if scan_topics.len() != sensors {
+            let topics = scan_topics.len();
+            let why = format!("has {topics} topics, and the robot has {sensors} lidars");
+            return Err(wrong("scan_topics", why));
+        }
+        let text =
+            |value: Option<String>, default: &str| value.unwrap_or_else(|| default.to_owned());
+        let settings = Self {
+            stack: Arc::new(stack),
+            frames: Frames {
+                map: text(given.text("global_frame")?, "map"),
+                base: text(given.text("robot_base_frame")?, "base_link"),
+            },
+            scan_topics,
+            odom_topic: text(given.text("odom_topic")?, "odom"),
+            is_cmd_vel_stamped: given
+                .truth("enable_stamped_cmd_vel")?
+                .unwrap_or(distribution != Some("jazzy")),
+            use_sim_time: given.truth("use_sim_time")?.unwrap_or(false),
+            max_pose_age_s: given.positive("max_pose_age")?.unwrap_or(0.2),
+        };
+        given.all_known()?;
+        Ok(settings)
+    }
+}
+
+/// Parameters that were given, and have not been looked at.
+struct Given(Parameters);
+
+impl Given {
+    /// Of all files in their order, then of the command line: the last one counts.
+    fn read(arguments: &Arguments) -> Result<Self, StartError> {
+        let mut given = Parameters::new();
+        for path in &arguments.parameter_files {
+            let fault = |why: String| StartError::File { path: path.clone(), why };
+            let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
+            let nodes: Value =
+                serde_saphyr::from_str(&text).map_err(|error| fault(error.to_string()))?;
+            let Value::Table(nodes) = nodes else {
+                return Err(fault("names of nodes are missing at the top".to_owned()));
+            };
+            for (name, node) in &nodes {
+                if is_for(name, arguments)
+                    && let Some(Value::Table(parameters)) = node.get("ros__parameters")
+                {
+                    given.extend(parameters.clone());
+                }
+            }
+        }
+        for (name, text) in &arguments.parameters {
+            let value = serde_saphyr::from_str(text)
+                .map_err(|error| wrong(name, format!("`{text}` is no YAML: {error}")))?;
+            given.insert(name.clone(), value);
+        }
+        Ok(Self(given))
+    }
+
+    /// Takes a parameter out.
+    fn take<T>(
+        &mut self,
+        name: &str,
+        expected: &str,
+        convert: impl FnOnce(&Value) -> Option<T>,
+    ) -> Result<Option<T>, StartError> {
+        let Some(value) = self.0.remove(name) else { return Ok(None) };
+        let converted = convert(&value);
+        let why = || wrong(name, format!("must be {expected}, got {value}"));
+        converted.ok_or_else(why).map(Some)
+    }
+
+    fn text(&mut self, name: &str) -> Result<Option<String>, StartError> {
+        self.take(name, "a text", |value| Some(value.as_str()?.to_owned()))
+    }
+
+    fn texts(&mut self, name: &str) -> Result<Option<Vec<String>>, StartError> {
+        self.take(name, "a list of texts", |value| {
+            let text = |value: &Value| Some(value.as_str()?.to_owned());
+            value.as_array()?.iter().map(text).collect()
+        })
+    }
+
+    fn truth(&mut self, name: &str) -> Result<Option<bool>, StartError> {
+        self.take(name, "true or false", Value::as_bool)
+    }
+
+    fn positive(&mut self, name: &str) -> Result<Option<f64>, StartError> {
+        self.take(name, "a positive number", |value| {
+            let whole = value.as_integer().map(|whole| whole as f64);
+            whole.or(value.as_float()).filter(|number| *number > 0.0 && number.is_finite())
+        })
+    }
+
+    /// Refuses what is left.
+    fn all_known(self) -> Result<(), StartError> {
+        let Some(name) = self.0.into_keys().next() else { return Ok(()) };
+        let known: Vec<&str> = PARAMETERS.iter().map(|(name, _)| *name).collect();
+        Err(wrong(&name, format!("is none of this node's: {}", known.join(", "))))
+    }
+}
+
+/// True if the parameters of a file under this name are for this node: `/**`, its name, or its name
+/// with its namespace.
+fn is_for(name: &str, arguments: &Arguments) -> bool {
+    let node = arguments.node_name();
+    let namespace = arguments.namespace.as_deref().unwrap_or("/");
+    let full = crate::arguments::full_name(node, namespace);
+    let any_namespace = format!("/**/{node}");
+    [node, "/**", &full, &any_namespace].contains(&name)
+}
+
+fn wrong(name: &str, why: impl Into<String>) -> StartError {
+    StartError::Parameter { name: name.to_owned(), why: why.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(parameters: &[(&str, &str)]) -> Result<Settings, StartError> {
+        let parameters =
+            parameters.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
+        let arguments = Arguments { parameters: parameters.collect(), ..Arguments::default() };
+        Settings::of(&arguments, None)
+    }
+
+    #[test]
+    fn a_robot_is_enough() {
+        let settings = settings(&[("robot", "jackal")]).unwrap();
+        assert_eq!(settings.frames, Frames { map: "map".to_owned(), base: "base_link".to_owned() });
+        assert_eq!((settings.odom_topic.as_str(), settings.max_pose_age_s), ("odom", 0.2));
+        assert!(settings.is_cmd_vel_stamped && !settings.use_sim_time);
+    }
+
+    #[test]
+    fn what_is_given_counts() {
+        let settings = settings(&[
+            ("robot", "waffle"),
+            ("controller_frequency", "10"),
+            ("scan_topics", "[front]"),
+            ("use_sim_time", "true"),
+            ("max_pose_age", "0.5"),
+        ])
+        .unwrap();
+        assert_eq!((settings.stack.robot().cycle_s, settings.max_pose_age_s), (0.1, 0.5));
+        assert!(settings.use_sim_time && settings.scan_topics == ["front"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (parameters, said) in [
+            (vec![], "robot"),
+            (vec![("robot", "jackl")], "jackl"),
+            (vec![("robot", "jackal"), ("speed", "1")], "`speed`: is none of this node's"),
+            (vec![("robot", "jackal"), ("max_pose_age", "-1")], "a positive number, got -1"),
+            (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
+            (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
+            (vec![("robot", "[")], "YAML"),
+        ] {
+            let message = settings(&parameters).err().unwrap().to_string();
+            assert!(message.contains(said), "{message}");
+        }
+    }
+
+    #[test]
+    fn files_are_for_nodes() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let text = "/**:\n  ros__parameters:\n    robot: jackal\nkeyway:\n  ros__parameters:\n    odom_topic: odometry\n\
+                    other:\n  ros__parameters:\n    odom_topic: wrong\n";
+        std::fs::write(file.path(), text).unwrap();
+        let parameter_files = vec![file.path().to_owned()];
+        let arguments = Arguments { parameter_files, ..Arguments::default() };
+        let settings = Settings::of(&arguments, Some("jazzy")).unwrap();
+        assert_eq!(settings.odom_topic, "odometry");
+        assert!(!settings.is_cmd_vel_stamped);
+        std::fs::write(file.path(), "- 1\n").unwrap();
+        let message = Settings::of(&arguments, None).err().unwrap().to_string();
+        assert!(message.contains("names of nodes"), "{message}");
+    }
+}

@@ -1,0 +1,332 @@
+//! Places of frames: the transforms of `/tf` and `/tf_static`, by their times, on the ground.
+//!
+//! Each frame is in one other frame, its parent. A transform that was not told is between two that
+//! were, in proportion; beyond the last one nothing is known.
+
+use keyway::geometry::{Point, Pose, wrap_angle};
+use std::collections::{HashMap, VecDeque};
+use thiserror::Error;
+
+/// The place of a frame in another one: a pose, and which side is up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Placement {
+    pub(crate) pose: Pose,
+    /// Upside down, as a lidar that hangs from a ceiling: to its left is to the right.
+    pub(crate) is_flipped: bool,
+}
+
+impl Placement {
+    /// Upright.
+    pub(crate) const fn upright(pose: Pose) -> Self {
+        Self { pose, is_flipped: false }
+    }
+
+    /// The placement of a frame that is there in this one.
+    fn compose(self, inner: Self) -> Self {
+        let side = if self.is_flipped { -1.0 } else { 1.0 };
+        let Pose { x, y, theta } = inner.pose;
+        let place = self.pose.world_from_body(Point::new(x, side * y));
+        let heading_rad = wrap_angle(self.pose.theta + side * theta);
+        Self {
+            pose: Pose::new(place.x, place.y, heading_rad),
+            is_flipped: self.is_flipped != inner.is_flipped,
+        }
+    }
+
+    /// The placement of this frame's parent in it.
+    fn inverse(self) -> Self {
+        let side = if self.is_flipped { -1.0 } else { 1.0 };
+        let origin = self.pose.body_from_world(Point::new(0.0, 0.0));
+        let pose = Pose::new(origin.x, side * origin.y, -side * self.pose.theta);
+        Self { pose, is_flipped: self.is_flipped }
+    }
+}
+
+/// The reason why nobody knows where a frame is.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum TransformError {
+    #[error(
+        "no transform has told of the frame `{0}`: is its publisher running, and is its name right?"
+    )]
+    Unknown(String),
+    #[error("no chain of transforms leads from the frame `{0}` to `{1}`")]
+    Unconnected(String, String),
+    #[error(
+        "the transforms from `{child}` reach from {from_s:.3} s to {to_s:.3} s; what they are at {at_s:.3} s is unknown"
+    )]
+    OutOfTime { child: String, at_s: f64, from_s: f64, to_s: f64 },
+}
+
+/// All transforms of the last seconds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Transforms {
+    edges: HashMap<String, Edge>,
+}
+
+/// A frame in its parent.
+#[derive(Clone, Debug)]
+struct Edge {
+    parent: String,
+    /// Never moves.
+    is_fixed: bool,
+    /// By their times \[s\], the oldest first; never empty.
+    told: VecDeque<(f64, Placement)>,
+}
+
+impl Edge {
+    fn first(&self) -> (f64, Placement) {
+        *self.told.front().unwrap_or(&NOWHERE)
+    }
+
+    fn last(&self) -> (f64, Placement) {
+        *self.told.back().unwrap_or(&NOWHERE)
+    }
+
+    /// At a time \[s\]; the reach of what was told, where that is outside of it.
+    fn at(&self, at_s: f64) -> Result<Placement, [f64; 2]> {
+        let ((from_s, _), (to_s, last)) = (self.first(), self.last());
+        if self.is_fixed || at_s == to_s {
+            return Ok(last);
+        }
+        if !(from_s..=to_s).contains(&at_s) {
+            return Err([from_s, to_s]);
+        }
+        let after = self.told.partition_point(|&(stamp_s, _)| stamp_s <= at_s);
+        let ((before_s, before), (after_s, after)) = (self.told[after - 1], self.told[after]);
+        let share = (at_s - before_s) / (after_s - before_s);
+        let pose = between(before.pose, after.pose, share);
+        Ok(Placement { pose, is_flipped: before.is_flipped })
+    }
+}
+
+const NOWHERE: (f64, Placement) = (0.0, Placement::upright(Pose { x: 0.0, y: 0.0, theta: 0.0 }));
+
+impl Transforms {
+    /// The time for which a transform is kept \[s\].
+    const KEPT_S: f64 = 10.0;
+
+    /// More frames than this are one in a circle.
+    const DEEPEST: usize = 64;
+
+    /// Takes in where a frame is in its parent at a time \[s\], or always. What is older than the
+    /// last by more than is kept begins anew: the clock was set back.
+    pub(crate) fn insert(
+        &mut self,
+        [parent, child]: [&str; 2],
+        (stamp_s, placement): (f64, Placement),
+        is_fixed: bool,
+    ) {
+        let [parent, child] = [parent, child].map(without_slash);
+        if parent == child || !stamp_s.is_finite() {
+            return;
+        }
+        let edge = self.edges.entry(child.to_owned()).or_insert_with(|| Edge {
+            parent: parent.to_owned(),
+            is_fixed,
+            told: VecDeque::new(),
+        });
+        let last_s = edge.told.back().map_or(f64::NEG_INFINITY, |&(last_s, _)| last_s);
+        if edge.parent != parent || is_fixed || edge.is_fixed || stamp_s < last_s - Self::KEPT_S {
+            edge.told.clear();
+            (edge.parent, edge.is_fixed) = (parent.to_owned(), is_fixed);
+        }
+        let place = edge.told.partition_point(|&(other_s, _)| other_s < stamp_s);
+        match edge.told.get_mut(place) {
+            Some(same) if same.0 == stamp_s => same.1 = placement,
+            _ => edge.told.insert(place, (stamp_s, placement)),
+        }
+        let newest_s = edge.last().0;
+        while edge.told.len() > 1 && edge.first().0 < newest_s - Self::KEPT_S {
+            edge.told.pop_front();
+        }
+    }
+
+    /// Forgets all that move: the clock begins anew.
+    pub(crate) fn restart_clock(&mut self) {
+        self.edges.retain(|_, edge| edge.is_fixed);
+    }
+
+    /// The place of a frame in another one at a time \[s\].
+    pub(crate) fn at(
+        &self,
+        frame: &str,
+        child: &str,
+        at_s: f64,
+    ) -> Result<Placement, TransformError> {
+        let [outer, inner] = self.chains(frame, child)?;
+        let along = |chain: &[&str]| {
+            chain.iter().try_fold(Placement::default(), |placement, &name| {
+                let edge = &self.edges[name];
+                let in_parent = edge.at(at_s).map_err(|[from_s, to_s]| {
+                    TransformError::OutOfTime { child: name.to_owned(), at_s, from_s, to_s }
+                })?;
+                Ok(in_parent.compose(placement))
+            })
+        };
+        Ok(along(&outer)?.inverse().compose(along(&inner)?))
+    }
+
+    /// The latest time at which it is known where a frame is in another one \[s\]; infinite where
+    /// all between them never move.
+    pub(crate) fn latest_s(&self, frame: &str, child: &str) -> Result<f64, TransformError> {
+        let chains = self.chains(frame, child)?;
+        let moving = chains.iter().flatten().map(|&name| &self.edges[name]);
+        let latest_s = moving.filter(|edge| !edge.is_fixed).map(|edge| edge.last().0);
+        Ok(latest_s.fold(f64::INFINITY, f64::min))
+    }
+
+    /// The frames that lead from each of two to the first one that both are in, without that.
+    fn chains<'a>(
+        &'a self,
+        frame: &'a str,
+        child: &'a str,
+    ) -> Result<[Vec<&'a str>; 2], TransformError> {
+        let [frame, child] = [frame, child].map(without_slash);
+        if frame == child {
+            return Ok([Vec::new(), Vec::new()]);
+        }
+        let [mut outer, mut inner] = [frame, child].map(|name| self.up_from(name));
+        let unknown = |name: &str| TransformError::Unknown(name.to_owned());
+        let is_parent = |name: &str| self.edges.values().any(|edge| edge.parent == name);
+        if let Some(name) = [frame, child]
+            .into_iter()
+            .find(|&name| !self.edges.contains_key(name) && !is_parent(name))
+        {
+            return Err(unknown(name));
+        }
+        let shared = outer
+            .iter()
+            .find(|&name| inner.contains(name))
+            .copied()
+            .ok_or_else(|| TransformError::Unconnected(child.to_owned(), frame.to_owned()))?;
+        for chain in [&mut outer, &mut inner] {
+            let length = chain.iter().position(|&name| name == shared);
+            chain.truncate(length.unwrap_or(chain.len()));
+        }
+        Ok([outer, inner])
+    }
+
+    /// A frame, its parent, and so on.
+    fn up_from<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
+        let parent = |name: &&'a str| self.edges.get(*name).map(|edge| edge.parent.as_str());
+        std::iter::successors(Some(frame), parent).take(Self::DEEPEST).collect()
+    }
+}
+
+/// The pose a share of the way from one to another, which turns the shorter way around.
+fn between(from: Pose, to: Pose, share: f64) -> Pose {
+    let place = from.point().lerp(to.point(), share);
+    let turn_rad = wrap_angle(to.theta - from.theta);
+    Pose::new(place.x, place.y, wrap_angle(from.theta + share * turn_rad))
+}
+
+/// Names of frames began with a slash once.
+fn without_slash(name: &str) -> &str {
+    name.strip_prefix('/').unwrap_or(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn upright(x: f64, y: f64, theta: f64) -> Placement {
+        Placement::upright(Pose::new(x, y, theta))
+    }
+
+    fn robot() -> Transforms {
+        let mut transforms = Transforms::default();
+        transforms.insert(["map", "odom"], (2.0, upright(10.0, 0.0, FRAC_PI_2)), false);
+        transforms.insert(["odom", "base_link"], (1.0, upright(0.0, 0.0, 0.0)), false);
+        transforms.insert(["odom", "base_link"], (2.0, upright(2.0, 0.0, 1.0)), false);
+        transforms.insert(["base_link", "base_scan"], (0.0, upright(0.3, 0.0, PI)), true);
+        transforms
+    }
+
+    fn is_near(found: Placement, expected: Placement) -> bool {
+        let apart_m = found.pose.point().distance(expected.pose.point());
+        let apart_rad = wrap_angle(found.pose.theta - expected.pose.theta).abs();
+        apart_m < 1e-9 && apart_rad < 1e-9 && found.is_flipped == expected.is_flipped
+    }
+
+    #[test]
+    fn between_two_times_it_is_between_two_places() {
+        let transforms = robot();
+        let found = transforms.at("odom", "base_link", 1.5).unwrap();
+        assert!(is_near(found, upright(1.0, 0.0, 0.5)), "{found:?}");
+        let late = transforms.at("odom", "base_link", 2.1).unwrap_err();
+        let TransformError::OutOfTime { child, from_s, to_s, .. } = late else { panic!() };
+        assert_eq!((child.as_str(), from_s, to_s), ("base_link", 1.0, 2.0));
+    }
+
+    /// By hand: odom stands at (10, 0) and looks along y; the robot stands 2 m along its x axis.
+    #[test]
+    fn chains_lead_up_and_down() {
+        let transforms = robot();
+        let in_map = transforms.at("map", "base_link", 2.0).unwrap();
+        assert!(is_near(in_map, upright(10.0, 2.0, FRAC_PI_2 + 1.0)), "{in_map:?}");
+        let back = transforms.at("base_link", "map", 2.0).unwrap();
+        assert!(is_near(in_map.compose(back), upright(0.0, 0.0, 0.0)));
+        let scan = transforms.at("base_link", "/base_scan", 77.0).unwrap();
+        assert!(is_near(scan, upright(0.3, 0.0, PI)), "what never moves is known at all times");
+        assert_eq!(transforms.latest_s("map", "base_scan"), Ok(2.0));
+        assert_eq!(transforms.latest_s("base_link", "base_scan"), Ok(f64::INFINITY));
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let mut transforms = robot();
+        let unknown = transforms.at("map", "camera", 2.0);
+        assert_eq!(unknown, Err(TransformError::Unknown("camera".to_owned())));
+        transforms.insert(["mast", "camera"], (2.0, upright(0.0, 0.0, 0.0)), false);
+        let apart = TransformError::Unconnected("camera".to_owned(), "map".to_owned());
+        assert_eq!(transforms.at("map", "camera", 2.0), Err(apart));
+        transforms.restart_clock();
+        assert!(transforms.at("map", "base_link", 2.0).is_err());
+        assert!(transforms.at("base_link", "base_scan", 2.0).is_ok());
+    }
+
+    #[test]
+    fn frames_in_a_circle_end() {
+        let mut transforms = Transforms::default();
+        transforms.insert(["a", "b"], (0.0, upright(1.0, 0.0, 0.0)), false);
+        transforms.insert(["b", "a"], (0.0, upright(1.0, 0.0, 0.0)), false);
+        assert!(transforms.at("a", "c", 0.0).is_err());
+        assert!(transforms.at("a", "b", 0.0).is_ok());
+    }
+
+    /// A lidar that hangs upside down, turned by a quarter: what it has to its left is ahead.
+    #[test]
+    fn upside_down_left_is_right() {
+        let hangs = Placement { pose: Pose::new(0.0, 0.0, FRAC_PI_2), is_flipped: true };
+        let left = hangs.compose(upright(0.0, 1.0, 0.0));
+        assert!((left.pose.x - 1.0).abs() < 1e-12 && left.pose.y.abs() < 1e-12, "{left:?}");
+        assert!(is_near(hangs.compose(hangs.inverse()), upright(0.0, 0.0, 0.0)));
+        assert!(is_near(hangs.inverse().compose(hangs), upright(0.0, 0.0, 0.0)));
+    }
+
+    /// A clock that is set back begins anew, a transform that is a little late is put in its place.
+    #[test]
+    fn times_may_come_late_and_begin_anew() {
+        let mut transforms = robot();
+        transforms.insert(["odom", "base_link"], (1.4, upright(0.0, 1.0, 0.0)), false);
+        let found = transforms.at("odom", "base_link", 1.4).unwrap();
+        assert!(is_near(found, upright(0.0, 1.0, 0.0)));
+        transforms.insert(["odom", "base_link"], (-20.0, upright(5.0, 1.0, 0.0)), false);
+        assert_eq!(transforms.latest_s("odom", "base_link"), Ok(-20.0));
+    }
+
+    proptest! {
+        #[test]
+        fn there_and_back_is_nowhere(
+            x in -9.0..9.0f64, y in -9.0..9.0f64, theta in -3.0..3.0f64, is_flipped: bool,
+            inner in (-9.0..9.0f64, -9.0..9.0f64, -3.0..3.0f64), flipped: bool,
+        ) {
+            let outer = Placement { pose: Pose::new(x, y, theta), is_flipped };
+            let inner = Placement { pose: Pose::new(inner.0, inner.1, inner.2), is_flipped: flipped };
+            let both = outer.compose(inner);
+            prop_assert!(is_near(outer.inverse().compose(both), inner), "{:?}", both);
+        }
+    }
+}

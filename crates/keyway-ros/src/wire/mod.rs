@@ -1,0 +1,197 @@
+//! The network: the only module that knows `ros2-client`.
+//!
+//! Nothing here waits but [`Wire::wait`]: inboxes are emptied whenever something has come.
+
+mod action;
+
+pub(crate) use action::{ActionServer, GoalEvent, GoalId, GoalStatus};
+
+use crate::arguments::{Arguments, Network};
+use crate::error::StartError;
+use crate::messages::{self, Named};
+use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
+use ros2_client::qos::{Durability, History};
+use ros2_client::{
+    Context, Message, MessageTypeName, Name, NodeName, NodeOptions, Publisher, QosProfile,
+    Subscription,
+};
+use std::fmt::Display;
+use std::net::{IpAddr, Ipv4Addr};
+use std::time::Duration;
+
+macro_rules! on_the_wire {
+    ($($message:ty),+ $(,)?) => { $(impl Message for $message {})+ };
+}
+
+on_the_wire!(
+    messages::Empty,
+    messages::nav2_msgs::ComputePathToPoseGoal,
+    messages::nav2_msgs::ComputedPath,
+    messages::nav2_msgs::Ended,
+    messages::nav2_msgs::FollowPathFeedback,
+    messages::nav2_msgs::FollowPathGoal,
+    messages::nav2_msgs::FollowPathOutcome,
+    messages::nav2_msgs::NavigateToPoseFeedback,
+    messages::nav2_msgs::NavigateToPoseGoal,
+);
+
+/// A node on the network.
+pub(crate) struct Wire {
+    node: ros2_client::Node,
+    arguments: Arguments,
+    poll: mio1::Poll,
+    events: mio1::Events,
+    sources: usize,
+}
+
+/// The delivery of a topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Delivery {
+    /// A lost message stays lost: for sensors.
+    BestEffort,
+    Reliable,
+    /// A late reader gets the last message, too: for maps, and for transforms that never change.
+    Latched,
+}
+
+impl Delivery {
+    fn qos(self, depth: usize) -> QosProfile {
+        let qos = match self {
+            Self::BestEffort => QosProfile::subscription_default(),
+            Self::Reliable => QosProfile::publisher_default(),
+            Self::Latched => QosProfile::publisher_default().durability(Durability::TransientLocal),
+        };
+        qos.history(History::KeepLast { depth })
+    }
+}
+
+/// An error of the network.
+fn fault(what: impl Display, why: impl Display) -> StartError {
+    StartError::Network { what: what.to_string(), why: why.to_string() }
+}
+
+impl Wire {
+    /// Joins the network.
+    pub(crate) fn open(arguments: &Arguments, network: Network) -> Result<Self, StartError> {
+        let mut builder = DomainParticipantBuilder::new(network.domain);
+        if network.is_local {
+            builder = builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)]);
+        }
+        let participant = builder.build().map_err(|error| fault("join the network", error))?;
+        let context = Context::from_domain_participant(participant)
+            .map_err(|error| fault("join the network", error))?;
+        let namespace = arguments.namespace.as_deref().unwrap_or("/");
+        let name = NodeName::new(namespace, arguments.node_name())
+            .map_err(|error| fault("name the node", error))?;
+        let mut node = context
+            .new_node(name, NodeOptions::new().enable_rosout(true))
+            .map_err(|error| fault("make the node", error))?;
+        // Discovery and the parameter services.
+        let spinner = node.spinner().map_err(|error| fault("start discovery", error))?;
+        std::thread::Builder::new()
+            .name("discovery".to_owned())
+            .spawn(move || drop(futures::executor::block_on(spinner.spin())))
+            .map_err(|error| fault("start discovery", error))?;
+        let poll = mio1::Poll::new().map_err(|error| fault("wait for messages", error))?;
+        let events = mio1::Events::with_capacity(64);
+        Ok(Self { node, arguments: arguments.clone(), poll, events, sources: 0 })
+    }
+
+    /// Messages of a topic, as many as are kept.
+    pub(crate) fn inbox<M: Named>(
+        &mut self,
+        topic: &str,
+        delivery: Delivery,
+        depth: usize,
+    ) -> Result<Inbox<M>, StartError> {
+        let qos = delivery.qos(depth);
+        let topic_of = self.topic::<M>(topic, &qos)?;
+        let mut subscription = self
+            .node
+            .create_subscription(&topic_of, Some(qos))
+            .map_err(|error| fault(format_args!("subscribe to {topic}"), error))?;
+        self.register(&mut subscription)?;
+        Ok(Inbox { subscription })
+    }
+
+    /// A topic to publish on.
+    pub(crate) fn outbox<M: Named>(
+        &mut self,
+        topic: &str,
+        delivery: Delivery,
+        depth: usize,
+    ) -> Result<Outbox<M>, StartError> {
+        let qos = delivery.qos(depth);
+        let topic_of = self.topic::<M>(topic, &qos)?;
+        let publisher = self
+            .node
+            .create_publisher(&topic_of, Some(qos))
+            .map_err(|error| fault(format_args!("publish on {topic}"), error))?;
+        Ok(Outbox { publisher })
+    }
+
+    fn topic<M: Named>(
+        &self,
+        topic: &str,
+        qos: &QosProfile,
+    ) -> Result<ros2_client::dds::rustdds::Topic, StartError> {
+        let (package, name) = M::NAME;
+        self.node
+            .create_topic(&self.name(topic)?, MessageTypeName::new(package, name), qos)
+            .map_err(|error| fault(format_args!("make the topic {topic}"), error))
+    }
+
+    /// The name that something has by the rules of the command line.
+    fn name(&self, name: &str) -> Result<Name, StartError> {
+        let name = self.arguments.remapped(name);
+        Name::parse(&name).map_err(|error| fault(format_args!("use the name {name}"), error))
+    }
+
+    fn register(&mut self, source: &mut impl mio1::event::Source) -> Result<(), StartError> {
+        self.sources += 1;
+        self.poll
+            .registry()
+            .register(source, mio1::Token(self.sources), mio1::Interest::READABLE)
+            .map_err(|error| fault("wait for messages", error))
+    }
+
+    /// Waits until something comes, but no longer than this.
+    pub(crate) fn wait(&mut self, longest: Duration) {
+        // Interrupted by a signal, it returns early: that is as if something had come.
+        let _ = self.poll.poll(&mut self.events, Some(longest));
+    }
+}
+
+/// Messages of a topic.
+pub(crate) struct Inbox<M> {
+    subscription: Subscription<M>,
+}
+
+impl<M: Named> Inbox<M> {
+    /// All that have come, in their order. One that cannot be decoded is left out.
+    pub(crate) fn take_all(&self) -> Vec<M> {
+        let mut taken = Vec::new();
+        // An error takes its message with it; more in a row than this are no messages.
+        let mut errors = 0;
+        while errors < 16 {
+            match self.subscription.take() {
+                Ok(Some((message, _))) => taken.push(message),
+                Ok(None) => break,
+                Err(_) => errors += 1,
+            }
+        }
+        taken
+    }
+}
+
+/// A topic to publish on.
+pub(crate) struct Outbox<M: serde::Serialize> {
+    publisher: Publisher<M>,
+}
+
+impl<M: Named> Outbox<M> {
+    /// Publishes a message; one for which there is no room is lost.
+    pub(crate) fn publish(&self, message: M) {
+        drop(self.publisher.publish(message));
+    }
+}
