@@ -7,8 +7,21 @@ import time
 
 import rclpy
 from action_msgs.msg import GoalStatus
-from geometry_msgs.msg import PoseStamped
-from nav2_msgs.action import ComputePathToPose, FollowPath, NavigateToPose
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import Point, PoseStamped
+from nav2_msgs.action import (
+    BackUp,
+    ComputePathThroughPoses,
+    ComputePathToPose,
+    DriveOnHeading,
+    FollowPath,
+    FollowWaypoints,
+    NavigateThroughPoses,
+    NavigateToPose,
+    SmoothPath,
+    Spin,
+    Wait,
+)
 from rclpy.action import ActionClient
 from rclpy.executors import MultiThreadedExecutor
 from robot import Robot
@@ -60,13 +73,24 @@ class Check:
         executor = MultiThreadedExecutor()
         executor.add_node(self.robot)
         threading.Thread(target=executor.spin, daemon=True).start()
-        self.navigate = ActionClient(self.robot, NavigateToPose, "navigate_to_pose")
-        self.compute = ActionClient(self.robot, ComputePathToPose, "compute_path_to_pose")
-        self.follow = ActionClient(self.robot, FollowPath, "follow_path")
-        for client in (self.navigate, self.compute, self.follow):
-            assert client.wait_for_server(30), "the node does not serve its actions"
+        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
+        self.through = self.client(NavigateThroughPoses, "navigate_through_poses")
+        self.stops = self.client(FollowWaypoints, "follow_waypoints")
+        self.follow = self.client(FollowPath, "follow_path")
+        self.spin = self.client(Spin, "spin")
+        self.back_up = self.client(BackUp, "backup")
+        self.ahead = self.client(DriveOnHeading, "drive_on_heading")
+        self.pause = self.client(Wait, "wait")
+        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
+        self.compute_through = self.client(ComputePathThroughPoses, "compute_path_through_poses")
+        self.smooth = self.client(SmoothPath, "smooth_path")
         # The map and the static transform are latched: they may take seconds.
         assert wait(lambda: self.path(pose(6.5, 1.5)).result.error_code == 0, 30), "no map after 30 s"
+
+    def client(self, action, name: str) -> ActionClient:
+        client = ActionClient(self.robot, action, name)
+        assert client.wait_for_server(30), f"the node does not serve {name}"
+        return client
 
     def path(self, goal: PoseStamped):
         return Goal(self.compute, ComputePathToPose.Goal(goal=goal)).end()
@@ -122,6 +146,50 @@ class Check:
         assert self.robot.command == (0.0, 0.0), self.robot.command
         self.robot.is_lost = False
         assert goal.end().status == GoalStatus.STATUS_SUCCEEDED
+
+    def a_path_by_way_of_a_pose(self) -> None:
+        goal = ComputePathThroughPoses.Goal()
+        goal.goals.goals = [pose(4.0, 5.0), pose(1.5, 1.5)]
+        ended = Goal(self.compute_through, goal).end()
+        highest = max(p.pose.position.y for p in ended.result.path.poses)
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and highest > 4.95, ended.status
+        smoothed = Goal(self.smooth, SmoothPath.Goal(path=ended.result.path, check_for_collisions=True)).end()
+        assert smoothed.result.was_completed and len(smoothed.result.path.poses) > 20, smoothed.result.error_msg
+        goal.goals.goals = []
+        assert Goal(self.compute_through, goal).end().result.error_code == 309
+
+    def a_goal_by_way_of_a_pose(self) -> None:
+        goal = NavigateThroughPoses.Goal()
+        goal.poses.goals = [pose(4.0, 5.0), pose(1.5, 4.5)]
+        sent = Goal(self.through, goal)
+        ended = sent.end()
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(1.5, 4.5), ended.result
+        left = [feedback.number_of_poses_remaining for feedback in sent.feedback]
+        assert left[0] == 2 and left[-1] == 1, left
+
+    def a_stop_that_is_missed(self) -> None:
+        stops = [pose(2.5, 2.0), pose(60.0, 2.0), pose(1.5, 1.5)]
+        ended = Goal(self.stops, FollowWaypoints.Goal(poses=stops)).end()
+        missed = [(status.waypoint_index, status.error_code) for status in ended.result.missed_waypoints]
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(1.5, 1.5), ended.result
+        assert missed == [(1, 204)], missed
+
+    def a_single_motion(self) -> None:
+        allowance = Duration(sec=20)
+        before = self.robot.theta
+        ended = Goal(self.spin, Spin.Goal(target_yaw=1.57, time_allowance=allowance)).end()
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and abs(self.robot.theta - before - 1.57) < 0.1
+        x, y = self.robot.x, self.robot.y
+        goal = DriveOnHeading.Goal(target=Point(x=0.4), speed=0.2, time_allowance=allowance)
+        ended = Goal(self.ahead, goal).end()
+        driven = math.hypot(self.robot.x - x, self.robot.y - y)
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and abs(driven - 0.4) < 0.05, driven
+        # This robot has no reverse gear.
+        ended = Goal(self.back_up, BackUp.Goal(target=Point(x=0.2), speed=0.1, time_allowance=allowance)).end()
+        assert (ended.status, ended.result.error_code) == (GoalStatus.STATUS_ABORTED, 713), ended.result
+        began = time.monotonic()
+        ended = Goal(self.pause, Wait.Goal(time=Duration(sec=1))).end()
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and 0.9 < time.monotonic() - began < 2.0
 
     def nothing_was_touched(self) -> None:
         assert self.robot.contacts == 0, self.robot.contacts

@@ -10,6 +10,7 @@
 //! | `messages` | messages of ROS as values |
 //! | `transforms` | where frames are, by time |
 //! | `pilot` | messages -> what the navigator observes -> commands and outcomes; no network |
+//! | `served` | the actions: what their goals want, how their outcomes are written |
 //! | `clock` | the time of the machine, or of a simulation |
 //! | `wire` | the only module that knows the network |
 //! | `node` | the loop between `wire` and `pilot` |
@@ -20,6 +21,7 @@ mod error;
 mod messages;
 mod node;
 mod pilot;
+mod served;
 mod settings;
 mod transforms;
 mod wire;

@@ -4,21 +4,19 @@
 use crate::arguments::{Arguments, Network};
 use crate::clock::Clock;
 use crate::error::StartError;
-use crate::messages::builtin_interfaces::{Duration as RosDuration, Time};
+use crate::messages::builtin_interfaces::Time;
 use crate::messages::geometry_msgs::{PoseStamped, Twist, TwistStamped};
 use crate::messages::nav_msgs::{OccupancyGrid, Odometry, Path};
-use crate::messages::nav2_msgs::{
-    ComputePathToPose, ComputedPath, Ended as EndedMessage, FollowPath, FollowPathFeedback,
-    FollowPathOutcome, NavigateToPose, NavigateToPoseFeedback, SpeedLimit,
-};
+use crate::messages::nav2_msgs::SpeedLimit;
 use crate::messages::rosgraph_msgs::Clock as ClockMessage;
 use crate::messages::sensor_msgs::LaserScan;
 use crate::messages::std_msgs::Header;
 use crate::messages::tf2_msgs::TFMessage;
-use crate::pilot::{Cycle, Ended, Pilot, Wanted};
+use crate::pilot::{Cycle, Ended, Family, Pilot, Report, Wanted};
+use crate::served::{Answered, Served, Told, Wish, answered, served};
 use crate::settings::Settings;
 use crate::transforms::Placement;
-use crate::wire::{ActionServer, Delivery, GoalEvent, GoalId, GoalStatus, Inbox, Outbox, Wire};
+use crate::wire::{Delivery, GoalId, GoalStatus, Inbox, Outbox, Wire};
 use keyway::geometry::Velocity;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,7 +30,9 @@ pub(crate) struct Node {
     clock: Clock,
     inboxes: Inboxes,
     outboxes: Outboxes,
-    actions: Actions,
+    /// Actions for which the robot drives.
+    served: Vec<Box<dyn Served>>,
+    answered: Vec<Box<dyn Answered>>,
     /// The client that has asked for the present goal.
     drives_for: Option<Client>,
     /// The last command that was published, while it was one to move.
@@ -65,18 +65,12 @@ enum Commands {
     Stamped(Outbox<TwistStamped>),
 }
 
-struct Actions {
-    navigate: ActionServer<NavigateToPose>,
-    follow: ActionServer<FollowPath>,
-    compute: ActionServer<ComputePathToPose>,
-}
-
 /// The client for which the robot drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Client {
     Topic,
-    Navigate(GoalId),
-    Follow(GoalId),
+    /// Of an action, by its index among those that are served.
+    Action(usize, GoalId),
 }
 
 impl Node {
@@ -112,11 +106,8 @@ impl Node {
             Commands::Plain(wire.outbox("cmd_vel", Delivery::Reliable, 1)?)
         };
         let outboxes = Outboxes { command, plan: wire.outbox("plan", Delivery::Reliable, 1)? };
-        let actions = Actions {
-            navigate: wire.action("navigate_to_pose")?,
-            follow: wire.action("follow_path")?,
-            compute: wire.action("compute_path_to_pose")?,
-        };
+        let served = served(&mut wire, settings.distribution)?;
+        let answered = answered(&mut wire, settings.distribution)?;
         Ok(Self {
             wire,
             pilot: Pilot::new(settings.clone()),
@@ -124,7 +115,8 @@ impl Node {
             settings,
             inboxes,
             outboxes,
-            actions,
+            served,
+            answered,
             drives_for: None,
             moves: false,
             cycles: 0,
@@ -141,12 +133,16 @@ impl Node {
             self.wire.wait(next.saturating_duration_since(Instant::now()));
             self.receive();
             let now = Instant::now();
-            if now >= next {
+            let is_due = now >= next;
+            if is_due {
                 // A cycle that was missed is not made up for.
                 next = (next + period).max(now);
-                if let Some(now_s) = self.clock.next_cycle_s(period.as_secs_f64()) {
-                    self.cycle(now_s);
-                }
+            }
+            // A simulation may be faster than this machine's clock.
+            if (is_due || self.settings.use_sim_time)
+                && let Some(now_s) = self.clock.next_cycle_s(period.as_secs_f64())
+            {
+                self.cycle(now_s);
             }
         }
         self.command(Velocity::ZERO);
@@ -189,95 +185,58 @@ impl Node {
         }
         let Some(now_s) = self.clock.now_s() else { return };
         if let Some(goal) = self.inboxes.goal_pose.take_all().pop() {
-            self.begin(Client::Topic, &Wanted::Pose(goal), now_s);
+            self.begin(Client::Topic, Wanted::Poses(vec![goal]), now_s);
         }
         self.receive_goals(now_s);
     }
 
     /// Takes in what clients of actions want.
     fn receive_goals(&mut self, now_s: f64) {
-        let now = Time::of(now_s);
-        for event in self.actions.navigate.receive(now, |_| true) {
-            match event {
-                GoalEvent::Begin(id, goal) => {
-                    self.begin(Client::Navigate(id), &Wanted::Pose(goal.pose), now_s);
+        for index in 0..self.served.len() {
+            for wish in self.served[index].receive(Time::of(now_s)) {
+                match wish {
+                    Wish::Begin(id, wanted) => self.begin(Client::Action(index, id), wanted, now_s),
+                    Wish::Cancel(id) => self.give_up(Client::Action(index, id), now_s),
                 }
-                GoalEvent::Cancel(id) => self.give_up(Client::Navigate(id)),
             }
         }
-        for event in self.actions.follow.receive(now, |_| true) {
-            match event {
-                GoalEvent::Begin(id, goal) => {
-                    self.begin(Client::Follow(id), &Wanted::Path(goal.path), now_s);
-                }
-                GoalEvent::Cancel(id) => self.give_up(Client::Follow(id)),
-            }
-        }
-        for event in self.actions.compute.receive(now, |_| true) {
-            let GoalEvent::Begin(id, goal) = event else { continue };
-            let began = Instant::now();
-            let start = goal.use_start.then_some(&goal.start);
-            let found = self.pilot.path(start, &goal.goal, now_s);
-            let planning_time = RosDuration::of(began.elapsed().as_secs_f64());
-            let header = Header::new(now_s, &self.settings.frames.map);
-            let (status, outcome) = match found {
-                Ok((points, heading_rad)) => {
-                    let path = Path::along(&header, &points, Some(heading_rad));
-                    let outcome = ComputedPath { path, planning_time, ..ComputedPath::default() };
-                    (GoalStatus::Succeeded, outcome)
-                }
-                Err(ended) => {
-                    let (error_code, why) = ended.code();
-                    let error_msg = why.to_owned();
-                    let path = Path { header, poses: Vec::new() };
-                    (
-                        GoalStatus::Aborted,
-                        ComputedPath { path, planning_time, error_code, error_msg },
-                    )
-                }
-            };
-            self.actions.compute.end(id, status, outcome);
+        let told = Told { now_s, frame: &self.settings.frames.map };
+        for action in &mut self.answered {
+            action.answer_all(&mut self.pilot, told);
         }
     }
 
     /// Sets out for a client, in the place of the one before.
-    fn begin(&mut self, client: Client, wanted: &Wanted, now_s: f64) {
+    fn begin(&mut self, client: Client, wanted: Wanted, now_s: f64) {
         if let Some(before) = self.drives_for.take() {
             // As Nav2 does: a goal that gives way to another one was aborted, without an error.
-            self.tell(before, GoalStatus::Aborted, &Ended::Canceled);
+            let report = self.pilot.report(now_s).unwrap_or_default();
+            self.tell(before, GoalStatus::Aborted, &Ended::Canceled, &report);
         }
         match self.pilot.begin(wanted, now_s) {
             Ok(()) => self.drives_for = Some(client),
             Err(ended) => {
                 self.pilot.stop();
-                self.say(&format!("the goal is refused: {}", ended.code().1));
-                self.tell(client, GoalStatus::Aborted, &ended);
+                self.say(&format!("the goal is refused: {}", ended.code(Family::Navigate).1));
+                self.tell(client, GoalStatus::Aborted, &ended, &Report::default());
             }
         }
     }
 
     /// Gives up the goal of a client.
-    fn give_up(&mut self, client: Client) {
+    fn give_up(&mut self, client: Client, now_s: f64) {
+        let report = self.pilot.report(now_s).unwrap_or_default();
         if self.drives_for == Some(client) {
             self.pilot.stop();
             self.drives_for = None;
         }
-        self.tell(client, GoalStatus::Canceled, &Ended::Canceled);
+        self.tell(client, GoalStatus::Canceled, &Ended::Canceled, &report);
     }
 
     /// Tells a client how its goal ended.
-    fn tell(&mut self, client: Client, status: GoalStatus, ended: &Ended) {
-        let (error_code, why) = ended.code();
-        let error_msg = why.to_owned();
-        match client {
-            Client::Topic => {}
-            Client::Navigate(id) => {
-                self.actions.navigate.end(id, status, EndedMessage { error_code, error_msg });
-            }
-            Client::Follow(id) => {
-                let outcome = FollowPathOutcome { error_code, error_msg, ..Default::default() };
-                self.actions.follow.end(id, status, outcome);
-            }
+    fn tell(&mut self, client: Client, status: GoalStatus, ended: &Ended, report: &Report) {
+        if let Client::Action(index, id) = client {
+            self.served[index].end(id, status, ended, report);
         }
     }
 
@@ -295,15 +254,15 @@ impl Node {
             Some(_) => {}
             None => self.said.clear(),
         }
-        if let Some(ended) = ended
+        if let Some((ended, report)) = ended
             && let Some(client) = self.drives_for.take()
         {
-            let is_reached = matches!(ended, Ended::Succeeded);
+            let is_reached = ended == Ended::Succeeded;
             let status = if is_reached { GoalStatus::Succeeded } else { GoalStatus::Aborted };
             if !is_reached {
-                self.say(&format!("the goal is not reached: {}", ended.code().1));
+                self.say(&format!("the goal is not reached: {}", ended.code(Family::Navigate).1));
             }
-            self.tell(client, status, &ended);
+            self.tell(client, status, &ended, &report);
         }
         self.publish_route(now_s);
         self.feed_back(now_s);
@@ -336,32 +295,13 @@ impl Node {
 
     /// Tells the client how far its robot is, in every other cycle.
     fn feed_back(&self, now_s: f64) {
-        let (Some(client), Some(pose)) = (self.drives_for, self.pilot.pose()) else { return };
+        let Some(Client::Action(index, id)) = self.drives_for else { return };
         if !self.cycles.is_multiple_of(2) {
             return;
         }
-        let (way_m, time_s) = self.pilot.remaining();
-        let recoveries =
-            self.pilot.navigator().map_or(0, |navigator| navigator.recoveries().total());
-        match client {
-            Client::Topic => {}
-            Client::Navigate(id) => {
-                let header = Header::new(now_s, &self.settings.frames.map);
-                let feedback = NavigateToPoseFeedback {
-                    current_pose: PoseStamped { header, pose: pose.into() },
-                    navigation_time: RosDuration::of(self.pilot.under_way_s(now_s)),
-                    estimated_time_remaining: RosDuration::of(time_s),
-                    number_of_recoveries: i16::try_from(recoveries).unwrap_or(i16::MAX),
-                    distance_remaining: way_m as f32,
-                };
-                self.actions.navigate.feed_back(id, feedback);
-            }
-            Client::Follow(id) => {
-                let speed_mps = self.pilot.speed_mps();
-                let feedback =
-                    FollowPathFeedback { distance_to_goal: way_m as f32, speed: speed_mps as f32 };
-                self.actions.follow.feed_back(id, feedback);
-            }
+        if let Some(report) = self.pilot.report(now_s) {
+            let told = Told { now_s, frame: &self.settings.frames.map };
+            self.served[index].feed_back(id, &report, told);
         }
     }
 

@@ -3,6 +3,7 @@
 
 use crate::arguments::Arguments;
 use crate::error::StartError;
+use crate::served::Distribution;
 use keyway::files::{find_robot, find_stack};
 use keyway::navigate::FittedStack;
 use std::collections::BTreeMap;
@@ -18,6 +19,7 @@ pub(crate) struct Settings {
     /// Topics of the lidars, in the order of the robot's sensors.
     pub(crate) scan_topics: Vec<String>,
     pub(crate) odom_topic: String,
+    pub(crate) distribution: Distribution,
     /// Commands have a stamp.
     pub(crate) is_cmd_vel_stamped: bool,
     /// By the clock of a simulation.
@@ -39,7 +41,7 @@ pub(crate) struct Frames {
 type Parameters = BTreeMap<String, Value>;
 
 /// A parameter, and what it is for; the default is what stands in [`Settings::of`].
-const PARAMETERS: [(&str, &str); 10] = [
+const PARAMETERS: [(&str, &str); 11] = [
     ("robot", "name of a bundled robot, or its file (TOML); required"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
@@ -48,7 +50,8 @@ const PARAMETERS: [(&str, &str); 10] = [
     ("robot_base_frame", "frame of the robot; base_link"),
     ("scan_topics", "topics of the lidars, in the order of the robot's sensors; [scan]"),
     ("odom_topic", "topic of the odometry; odom"),
-    ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for ROS_DISTRO=jazzy"),
+    ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
+    ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
     ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
 ];
 
@@ -61,11 +64,17 @@ pub(crate) fn help() -> String {
 
 impl Settings {
     /// The settings by the arguments, and by `ROS_DISTRO`.
-    pub(crate) fn of(
-        arguments: &Arguments,
-        distribution: Option<&str>,
-    ) -> Result<Self, StartError> {
+    pub(crate) fn of(arguments: &Arguments, distro: Option<&str>) -> Result<Self, StartError> {
         let mut given = Given::read(arguments)?;
+        let distribution = given.text("distribution")?;
+        let distribution = match distribution.as_deref().or(distro) {
+            Some("jazzy") => Distribution::Jazzy,
+            Some("kilted") | None => Distribution::Kilted,
+            Some(other) => {
+                let why = format!("must be jazzy or kilted, got {other} (or ROS_DISTRO says so)");
+                return Err(wrong("distribution", why));
+            }
+        };
         let name = given.text("robot")?.ok_or_else(|| {
             wrong("robot", format!("is required: {}", keyway::Robot::NAMES.join(", ")))
         })?;
@@ -95,10 +104,11 @@ impl Settings {
                 base: text(given.text("robot_base_frame")?, "base_link"),
             },
             scan_topics,
+            distribution,
             odom_topic: text(given.text("odom_topic")?, "odom"),
             is_cmd_vel_stamped: given
                 .truth("enable_stamped_cmd_vel")?
-                .unwrap_or(distribution != Some("jazzy")),
+                .unwrap_or(distribution == Distribution::Kilted),
             use_sim_time: given.truth("use_sim_time")?.unwrap_or(false),
             max_pose_age_s: given.positive("max_pose_age")?.unwrap_or(0.2),
         };
@@ -238,6 +248,7 @@ mod tests {
             (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
             (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
             (vec![("robot", "[")], "YAML"),
+            (vec![("robot", "jackal"), ("distribution", "foxy")], "jazzy or kilted, got foxy"),
         ] {
             let message = settings(&parameters).err().unwrap().to_string();
             assert!(message.contains(said), "{message}");

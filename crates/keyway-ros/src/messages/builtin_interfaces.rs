@@ -35,6 +35,11 @@ impl Duration {
         let (sec, nanosec) = split(duration_s);
         Self { sec, nanosec }
     }
+
+    /// In seconds.
+    pub(crate) fn duration_s(self) -> f64 {
+        f64::from(self.sec) + 1e-9 * f64::from(self.nanosec)
+    }
 }
 
 /// Whole seconds, and nanoseconds after them.
@@ -53,7 +58,8 @@ mod tests {
         assert_eq!(Time::of(1.25), Time { sec: 1, nanosec: 250_000_000 });
         assert_eq!(Time::of(-0.25), Time { sec: -1, nanosec: 750_000_000 });
         assert_eq!(Time::of(2.999_999_999_9), Time { sec: 3, nanosec: 0 });
-        assert_eq!(Duration::of(-0.25), Duration { sec: -1, nanosec: 750_000_000 });
+        let before = Duration { sec: -1, nanosec: 750_000_000 };
+        assert_eq!((Duration::of(-0.25), before.duration_s()), (before, -0.25));
         let now = Time { sec: 1_800_000_000, nanosec: 123_456_789 };
         assert!((Time::of(now.stamp_s()).nanosec).abs_diff(now.nanosec) < 250);
     }

@@ -50,6 +50,13 @@ impl Named for Path {
     const NAME: (&'static str, &'static str) = ("nav_msgs", "Path");
 }
 
+/// Several poses, in their order.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Goals {
+    pub(crate) header: Header,
+    pub(crate) goals: Vec<PoseStamped>,
+}
+
 impl Path {
     /// Poses at most so far apart that their readers ask for no more \[m\].
     const STEP_M: f64 = 0.05;

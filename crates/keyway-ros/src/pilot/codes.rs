@@ -1,4 +1,4 @@
-//! Outcomes of actions, with the numbers that Nav2 gives to errors.
+//! Ends of actions, with the numbers that Nav2 gives to errors.
 
 use keyway::map::Hindrance;
 use keyway::navigate::NavigateError;
@@ -11,51 +11,78 @@ pub(crate) enum Ended {
     /// By whoever asked for it, or by the next one.
     Canceled,
     Failed {
-        code: Code,
+        fault: Fault,
         why: String,
     },
 }
 
 impl Ended {
-    /// Its number, 0 without an error, and its text.
-    pub(crate) fn code(&self) -> (u16, &str) {
+    /// Its number in a family, 0 without an error, and its text.
+    pub(crate) fn code(&self, family: Family) -> (u16, &str) {
         match self {
             Self::Succeeded | Self::Canceled => (0, ""),
-            Self::Failed { code, why } => (*code as u16, why),
+            Self::Failed { fault, why } => (fault.number(family), why),
         }
     }
 
-    pub(crate) fn failed(code: Code, why: impl Into<String>) -> Self {
-        Self::Failed { code, why: why.into() }
+    pub(crate) fn failed(fault: Fault, why: impl Into<String>) -> Self {
+        Self::Failed { fault, why: why.into() }
+    }
+
+    /// Because a robot cannot be sent to a goal, or no way is found.
+    pub(crate) fn refused(error: &NavigateError) -> Self {
+        Self::failed(Fault::of(error), error.to_string())
     }
 }
 
-/// Numbers of errors, as the definitions of Nav2's actions have them.
+/// A kind of error, whatever the action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u16)]
-pub(crate) enum Code {
-    InvalidPath = 103,
-    FailedToMakeProgress = 105,
-    PlannerUnknown = 200,
-    PlannerTransform = 202,
-    StartOutsideMap = 203,
-    GoalOutsideMap = 204,
-    StartOccupied = 205,
-    GoalOccupied = 206,
-    NoValidPath = 208,
+pub(crate) enum Fault {
+    Unknown,
+    /// A transform, or a pose, that is missing.
+    Transform,
+    StartOutsideMap,
+    GoalOutsideMap,
+    StartOccupied,
+    GoalOccupied,
+    NoPath,
+    /// A list without goals.
+    NoGoals,
+    InvalidPath,
+    InvalidInput,
+    NoProgress,
+    Timeout,
+    /// Something is in the way of a single motion.
+    NoRoom,
 }
 
-impl Code {
+/// Actions whose errors have the same numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Family {
+    Navigate,
+    NavigateThrough,
+    Plan,
+    PlanThrough,
+    Follow,
+    Smooth,
+    Waypoints,
+    Spin,
+    BackUp,
+    DriveOnHeading,
+    Wait,
+}
+
+impl Fault {
     /// For the reason why a robot cannot be sent to a goal, or no way is found.
-    pub(crate) fn of(error: &NavigateError) -> Self {
+    fn of(error: &NavigateError) -> Self {
         match error {
             NavigateError::NotFinite { end, .. }
             | NavigateError::NoRoom { end, why: Hindrance::Outside, .. } => Self::outside(*end),
             NavigateError::NoRoom { end, .. } => Self::occupied(*end),
             NavigateError::StartTouches { .. } => Self::StartOccupied,
             NavigateError::GoalHeading { .. } => Self::GoalOccupied,
-            NavigateError::NoWay { .. } => Self::NoValidPath,
-            NavigateError::PlaceUnknown => Self::PlannerTransform,
+            NavigateError::NoWay { .. } => Self::NoPath,
+            NavigateError::PlaceUnknown => Self::Transform,
             NavigateError::NoPathToFollow
             | NavigateError::PathFarAway { .. }
             | NavigateError::Misfit(_) => Self::InvalidPath,
@@ -63,10 +90,10 @@ impl Code {
             NavigateError::Plan(error) => match error {
                 PlanError::OutsideMap { end, .. } => Self::outside(*end),
                 PlanError::Blocked { end, .. } => Self::occupied(*end),
-                PlanError::NoPath { .. } | PlanError::Missed { .. } => Self::NoValidPath,
-                _ => Self::PlannerUnknown,
+                PlanError::NoPath { .. } | PlanError::Missed { .. } => Self::NoPath,
+                _ => Self::Unknown,
             },
-            _ => Self::PlannerUnknown,
+            _ => Self::Unknown,
         }
     }
 
@@ -81,6 +108,91 @@ impl Code {
         match end {
             PathEnd::Start => Self::StartOutsideMap,
             PathEnd::Goal => Self::GoalOutsideMap,
+        }
+    }
+
+    /// Its number among those of a planner, which begin at this one; `None` for what is not of
+    /// planning.
+    const fn of_planner(self, first: u16) -> Option<u16> {
+        let number = match self {
+            Self::Transform => 2,
+            Self::StartOutsideMap => 3,
+            Self::GoalOutsideMap => 4,
+            Self::StartOccupied => 5,
+            Self::GoalOccupied => 6,
+            Self::NoPath => 8,
+            _ => return None,
+        };
+        Some(first + number)
+    }
+
+    /// Its number among those of a single motion: for no error that has a name, and for a time that
+    /// was too short, a transform, something in the way, and input that makes no sense.
+    fn of_motion(self, [unknown, timeout, transform, no_room, invalid]: [u16; 5]) -> u16 {
+        match self {
+            Self::Timeout => timeout,
+            Self::Transform => transform,
+            Self::NoRoom => no_room,
+            Self::InvalidInput => invalid,
+            _ => unknown,
+        }
+    }
+
+    /// Its number in the definitions of Nav2's actions.
+    pub(crate) fn number(self, family: Family) -> u16 {
+        let of_controller = match self {
+            Self::InvalidPath => Some(103),
+            Self::NoProgress => Some(105),
+            _ => None,
+        };
+        match family {
+            Family::Navigate => self.of_planner(200).or(of_controller).unwrap_or(9000),
+            Family::NavigateThrough => {
+                let no_goals = (self == Self::NoGoals).then_some(309);
+                self.of_planner(300).or(of_controller).or(no_goals).unwrap_or(9100)
+            }
+            Family::Plan => self.of_planner(200).unwrap_or(200),
+            Family::PlanThrough if self == Self::NoGoals => 309,
+            Family::PlanThrough => self.of_planner(300).unwrap_or(300),
+            Family::Follow if self == Self::Transform => 102,
+            Family::Follow => of_controller.unwrap_or(100),
+            Family::Smooth if self == Self::InvalidPath => 505,
+            Family::Smooth if self == Self::NoRoom => 503,
+            Family::Smooth => 500,
+            Family::Waypoints if self == Self::NoGoals => 602,
+            Family::Waypoints => 600,
+            Family::Spin => self.of_motion([700, 701, 702, 703, 700]),
+            Family::BackUp => self.of_motion([710, 711, 712, 714, 713]),
+            Family::DriveOnHeading => self.of_motion([720, 721, 722, 723, 724]),
+            Family::Wait => self.of_motion([740, 741, 740, 740, 740]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As the definitions of Kilted have them.
+    #[test]
+    fn numbers_are_those_of_nav2() {
+        for (fault, family, expected) in [
+            (Fault::Transform, Family::Plan, 202),
+            (Fault::NoPath, Family::Navigate, 208),
+            (Fault::GoalOccupied, Family::PlanThrough, 306),
+            (Fault::NoProgress, Family::Navigate, 105),
+            (Fault::NoProgress, Family::Plan, 200),
+            (Fault::Timeout, Family::Navigate, 9000),
+            (Fault::NoGoals, Family::NavigateThrough, 309),
+            (Fault::NoGoals, Family::Waypoints, 602),
+            (Fault::Transform, Family::Follow, 102),
+            (Fault::InvalidPath, Family::Smooth, 505),
+            (Fault::NoRoom, Family::BackUp, 714),
+            (Fault::InvalidInput, Family::DriveOnHeading, 724),
+            (Fault::Timeout, Family::Spin, 701),
+            (Fault::Unknown, Family::Wait, 740),
+        ] {
+            assert_eq!(fault.number(family), expected, "{fault:?} {family:?}");
         }
     }
 }

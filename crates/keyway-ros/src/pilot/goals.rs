@@ -1,90 +1,178 @@
 //! Goals, paths and questions about ways, as messages ask for them.
 
 use super::Pilot;
-use super::codes::{Code, Ended};
-use super::errand::{Errand, Wanted};
+use super::codes::{Ended, Fault};
+use super::errand::{Act, Errand, Motion, Wanted};
 use super::waits::Waits;
 use crate::messages::geometry_msgs::PoseStamped;
 use crate::messages::nav_msgs::Path;
 use crate::messages::nav2_msgs::SpeedLimit;
-use keyway::geometry::{Point, Polyline, Pose};
-use keyway::navigate::{Goal, Navigator};
+use keyway::geometry::{PlannedLine, Point, Polyline, Pose};
+use keyway::navigate::{Goal, NavigateError, Navigator};
 
 impl Pilot {
     /// Sets out, in the place of what it was asked before.
-    pub(crate) fn begin(&mut self, wanted: &Wanted, now_s: f64) -> Result<(), Ended> {
+    pub(crate) fn begin(&mut self, wanted: Wanted, now_s: f64) -> Result<(), Ended> {
         // It may be the first thing that happens.
         let _ = self.look(now_s);
+        self.limit_act(None);
+        let mut errand = Errand::new(now_s, self.recoveries());
         match wanted {
-            Wanted::Pose(goal) => {
-                let pose = self.in_map(goal)?;
-                let goal = Goal { position: pose.point(), heading_rad: Some(pose.theta) };
-                self.navigate(|navigator| navigator.set_goal(goal))?;
+            Wanted::Poses(poses) => {
+                self.set_goals(&poses)?;
+                errand.poses = poses.len();
+            }
+            Wanted::Stops { poses, first, again } => {
+                errand.stop_at(&poses, first, again);
+                if !self.begin_stop(&mut errand, now_s) {
+                    let missed = errand.made.missed.into_iter().next();
+                    return Err(missed.map_or_else(no_goals, |missed| missed.ended));
+                }
             }
             Wanted::Path(path) => {
-                let points = self.points(path)?;
+                let points = self.points(&path)?;
                 self.navigate(|navigator| navigator.follow(points))?;
             }
+            Wanted::Act(act) => self.act(act)?,
+            Wanted::Wait(time_s) => {
+                self.navigate(|navigator| {
+                    navigator.cancel();
+                    Ok(())
+                })?;
+                errand.until_s = Some(now_s + time_s);
+            }
         }
-        self.errand = Some(Errand::new(now_s));
+        self.errand = Some(errand);
+        Ok(())
+    }
+
+    fn set_goals(&mut self, poses: &[PoseStamped]) -> Result<(), Ended> {
+        let in_map = |pose| self.in_map(pose);
+        let mut poses: Vec<Pose> = poses.iter().map(in_map).collect::<Result<_, Ended>>()?;
+        let last = poses.pop().ok_or_else(no_goals)?;
+        let way_points: Vec<Point> = poses.iter().map(Pose::point).collect();
+        let goal = Goal { position: last.point(), heading_rad: Some(last.theta) };
+        self.navigate(|navigator| navigator.set_goals(&way_points, goal))
+    }
+
+    /// Sets out to the first stop that is left and can be reached; false where none can. Those
+    /// before it are missed.
+    fn begin_stop(&mut self, errand: &mut Errand, now_s: f64) -> bool {
+        while let Some(pose) = errand.stops.pop_front() {
+            let Err(ended) = self.set_goals(std::slice::from_ref(&pose)) else {
+                errand.present_stop = Some(pose);
+                return true;
+            };
+            errand.miss(pose, ended);
+            errand.leave_stop(now_s);
+        }
+        false
+    }
+
+    /// Goes on to the next stop, if the errand has one; otherwise this is its end.
+    pub(super) fn next_stop(&mut self, ended: Ended, now_s: f64) -> Option<Ended> {
+        let Some(mut errand) = self.errand.take_if(|errand| errand.present_stop.is_some()) else {
+            return Some(ended);
+        };
+        if let Some(pose) = errand.present_stop.take()
+            && ended != Ended::Succeeded
+        {
+            errand.miss(pose, ended);
+        }
+        errand.leave_stop(now_s);
+        let goes_on = self.begin_stop(&mut errand, now_s);
+        self.errand = Some(errand);
+        (!goes_on).then_some(Ended::Succeeded)
+    }
+
+    /// Begins a single motion.
+    fn act(&mut self, act: Act) -> Result<(), Ended> {
+        let Act { motion, allowance_s, most_mps } = act;
+        let begun = self.navigate(|navigator| {
+            Ok(match motion {
+                Motion::Turn(angle_rad) => navigator.spin(angle_rad, allowance_s),
+                Motion::Ahead(way_m) => navigator.drive_on_heading(way_m, allowance_s),
+                Motion::Back(way_m) => navigator.back_up(way_m, allowance_s),
+            })
+        })?;
+        begun.map_err(|error| Ended::failed(Fault::InvalidInput, error.to_string()))?;
+        self.limit_act(most_mps);
         Ok(())
     }
 
     /// Gives up what it was asked to do: the robot brakes, and stands.
     pub(crate) fn stop(&mut self) {
         self.errand = None;
+        self.limit_act(None);
         if let Some(navigator) = &mut self.navigator {
             navigator.cancel();
         }
     }
 
-    /// Since it set out \[s\]; 0 without an errand.
-    pub(crate) fn under_way_s(&self, now_s: f64) -> f64 {
-        self.errand.as_ref().map_or(0.0, |errand| errand.under_way_s(now_s))
-    }
-
-    /// The rest of the way \[m\], and how long it takes at the present speed \[s\].
-    pub(crate) fn remaining(&self) -> (f64, f64) {
-        const SLOW_MPS: f64 = 0.01;
-        let guidance = self.navigator.as_ref().and_then(Navigator::guidance);
-        let way_m = guidance.map_or(0.0, |guidance| guidance.remaining_m);
-        let speed_mps = self.speed_mps().abs();
-        (way_m, if speed_mps > SLOW_MPS { way_m / speed_mps } else { 0.0 })
-    }
-
-    /// Speed by the odometry \[m/s\]; 0 before there is some.
-    pub(crate) fn speed_mps(&self) -> f64 {
-        self.sensing.velocity().map_or(0.0, |velocity| velocity.v)
-    }
-
     /// Takes in a limit of the speed. One that means nothing changes nothing.
     pub(crate) fn limit_speed(&mut self, limit: &SpeedLimit) {
-        let Some(navigator) = &mut self.navigator else { return };
-        let most_mps = navigator.stack().robot().limits.v_max_mps;
+        let most_mps = self.settings.stack.robot().limits.v_max_mps;
         let share = if limit.percentage { 0.01 * most_mps } else { 1.0 };
-        // 0 means that there is none.
-        let speed_mps = (limit.most != 0.0).then_some(share * limit.most);
-        drop(navigator.set_speed_limit(speed_mps));
+        let speed_mps = share * limit.most;
+        if speed_mps >= 0.0 && speed_mps.is_finite() {
+            // 0 means that there is none.
+            self.limit_mps = (speed_mps > 0.0).then_some(speed_mps);
+            self.limit_act(None);
+        }
     }
 
-    /// A way between two poses, or from where the robot is, on what is known and sensed.
+    /// Drives no faster than the limit, and than a single motion may \[m/s\].
+    fn limit_act(&mut self, most_mps: Option<f64>) {
+        let most_mps = most_mps.filter(|speed_mps| *speed_mps > 0.0);
+        let limits = [self.limit_mps, most_mps].into_iter().flatten();
+        let limit_mps = limits.min_by(f64::total_cmp);
+        if let Some(navigator) = &mut self.navigator {
+            // It is a positive number.
+            drop(navigator.set_speed_limit(limit_mps));
+        }
+    }
+
+    /// A way by some poses, from a start or from where the robot is, on what is known and sensed.
     pub(crate) fn path(
         &mut self,
         start: Option<&PoseStamped>,
-        goal: &PoseStamped,
+        goals: &[PoseStamped],
         now_s: f64,
     ) -> Result<(Vec<Point>, f64), Ended> {
         let _ = self.look(now_s);
         let start = match start {
             Some(start) => self.in_map(start)?,
             None => self.pose.ok_or_else(|| {
-                let why = "nobody has said where the robot is";
-                Ended::failed(Code::PlannerTransform, why)
+                Ended::failed(Fault::Transform, "nobody has said where the robot is")
             })?,
         };
-        let goal = self.in_map(goal)?;
-        let route = self.navigate(|navigator| navigator.plan(start.point(), goal.point()))?;
-        Ok((route.smoothed.points().to_vec(), goal.theta))
+        let in_map = |goal| self.in_map(goal);
+        let goals: Vec<Pose> = goals.iter().map(in_map).collect::<Result<_, Ended>>()?;
+        let heading_rad = goals.last().ok_or_else(no_goals)?.theta;
+        let mut points = Vec::new();
+        let mut from = start.point();
+        for goal in goals {
+            let route = self.navigate(|navigator| navigator.plan(from, goal.point()))?;
+            // Each leg begins where the one before ends.
+            let known = usize::from(!points.is_empty());
+            points.extend(route.smoothed.points().iter().skip(known));
+            from = goal.point();
+        }
+        Ok((points, heading_rad))
+    }
+
+    /// A path made smooth, and whether the robot fits along it.
+    pub(crate) fn smoothed(&mut self, path: &Path) -> Result<(Vec<Point>, bool), Ended> {
+        let points = self.points(path)?;
+        if points.points().len() < 2 {
+            let why = "a path to smooth has two poses at least";
+            return Err(Ended::failed(Fault::InvalidPath, why));
+        }
+        self.navigate(|navigator| {
+            let smoothed = navigator.smooth(&PlannedLine::from(points));
+            let fits = navigator.is_path_valid(&smoothed);
+            Ok((smoothed.points().to_vec(), fits))
+        })
     }
 
     /// A pose in the frame of the map. One without a frame is there already.
@@ -92,7 +180,7 @@ impl Pilot {
         let frame = &self.settings.frames.map;
         let pose = stamped.pose.on_ground().ok_or_else(|| {
             let why = "the pose is not finite, or its orientation is no rotation";
-            Ended::failed(Code::PlannerTransform, why)
+            Ended::failed(Fault::Transform, why)
         })?;
         let own = &stamped.header.frame_id;
         if own.is_empty() || own == frame {
@@ -102,7 +190,7 @@ impl Pilot {
         let at_s = self.transforms.latest_s(frame, own);
         let placement = at_s.and_then(|at_s| self.transforms.at(frame, own, at_s));
         let placement =
-            placement.map_err(|error| Ended::failed(Code::PlannerTransform, error.to_string()))?;
+            placement.map_err(|error| Ended::failed(Fault::Transform, error.to_string()))?;
         Ok(placement.pose.compose(pose))
     }
 
@@ -121,12 +209,14 @@ impl Pilot {
 
     fn navigate<T>(
         &mut self,
-        ask: impl FnOnce(&mut Navigator) -> Result<T, keyway::navigate::NavigateError>,
+        ask: impl FnOnce(&mut Navigator) -> Result<T, NavigateError>,
     ) -> Result<T, Ended> {
-        let navigator = self
-            .navigator
-            .as_mut()
-            .ok_or_else(|| Ended::failed(Code::PlannerUnknown, Waits::Map.to_string()))?;
-        ask(navigator).map_err(|error| Ended::failed(Code::of(&error), error.to_string()))
+        let no_map = || Ended::failed(Fault::Unknown, Waits::Map.to_string());
+        let navigator = self.navigator.as_mut().ok_or_else(no_map)?;
+        ask(navigator).map_err(|error| Ended::refused(&error))
     }
+}
+
+fn no_goals() -> Ended {
+    Ended::failed(Fault::NoGoals, "the list of goals is empty")
 }

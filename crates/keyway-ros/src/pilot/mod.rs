@@ -7,10 +7,8 @@ mod goals;
 mod sensing;
 mod waits;
 
-#[cfg(test)]
-pub(crate) use codes::Code;
-pub(crate) use codes::Ended;
-pub(crate) use errand::Wanted;
+pub(crate) use codes::{Ended, Family, Fault};
+pub(crate) use errand::{Act, Made, Missed, Motion, Wanted};
 pub(crate) use waits::Waits;
 
 use crate::messages::nav_msgs::OccupancyGrid;
@@ -33,16 +31,37 @@ pub(crate) struct Pilot {
     errand: Option<Errand>,
     /// Pose in the map, when it was last known.
     pose: Option<Pose>,
+    /// The speed that is not to be exceeded, whatever the errand \[m/s\].
+    limit_mps: Option<f64>,
 }
 
 /// The result of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cycle {
     pub(crate) command: Velocity,
-    /// The errand has ended in this cycle.
-    pub(crate) ended: Option<Ended>,
+    /// The errand has ended in this cycle, having come so far.
+    pub(crate) ended: Option<(Ended, Report)>,
     /// Nothing was decided.
     pub(crate) waits: Option<Waits>,
+}
+
+/// The state of an errand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Report {
+    /// Pose in the map.
+    pub(crate) pose: Pose,
+    /// Since the errand began \[s\].
+    pub(crate) under_way_s: f64,
+    /// The rest of the way \[m\].
+    pub(crate) way_m: f64,
+    /// The rest of the time \[s\], at the present speed; 0 when the robot stands.
+    pub(crate) left_s: f64,
+    pub(crate) speed_mps: f64,
+    pub(crate) recoveries: u32,
+    /// Poses to which it drives, and those of them that were passed.
+    pub(crate) poses: usize,
+    pub(crate) passed: usize,
+    pub(crate) made: Made,
 }
 
 /// A map that cannot be used.
@@ -68,6 +87,7 @@ impl Pilot {
             navigator: None,
             errand: None,
             pose: None,
+            limit_mps: None,
         }
     }
 
@@ -96,25 +116,47 @@ impl Pilot {
         self.navigator.as_ref()
     }
 
-    /// Pose in the map, when it was last known.
-    pub(crate) const fn pose(&self) -> Option<Pose> {
-        self.pose
+    /// The state of the errand; `None` without one, or where nobody has said where the robot is.
+    pub(crate) fn report(&self, now_s: f64) -> Option<Report> {
+        const SLOW_MPS: f64 = 0.01;
+        let (errand, pose) = (self.errand.as_ref()?, self.pose?);
+        let navigator = self.navigator.as_ref()?;
+        let way_m = navigator.guidance().map_or(0.0, |guidance| guidance.remaining_m);
+        let speed_mps = self.sensing.velocity().map_or(0.0, |velocity| velocity.v);
+        let is_slow = speed_mps.abs() <= SLOW_MPS;
+        let driving_s = if is_slow { 0.0 } else { way_m / speed_mps.abs() };
+        Some(Report {
+            pose,
+            under_way_s: errand.under_way_s(now_s),
+            way_m,
+            left_s: errand.until_s.map_or(driving_s, |until_s| until_s - now_s),
+            speed_mps,
+            recoveries: errand.recoveries(self.recoveries()),
+            poses: errand.poses,
+            passed: navigator.way_points_passed(),
+            made: errand.made.clone(),
+        })
+    }
+
+    /// Recoveries so far, whatever the errand.
+    fn recoveries(&self) -> u32 {
+        self.navigator.as_ref().map_or(0, |navigator| navigator.recoveries().total())
     }
 
     /// The next command, at a time \[s\]. In doubt of where it is the robot stands.
     pub(crate) fn cycle(&mut self, now_s: f64) -> Cycle {
-        let step = match self.look(now_s) {
-            Err(waits) => {
-                return Cycle { command: Velocity::ZERO, ended: None, waits: Some(waits) };
-            }
-            Ok(navigator) => navigator.step_at(now_s),
+        let step = self.look(now_s).map(|navigator| navigator.step_at(now_s));
+        let (ended, waits) = match &step {
+            Ok(step) => (self.end_of_errand(step, now_s), None),
+            Err(waits) => (self.end_of_doubt(waits, now_s), Some(waits.clone())),
         };
-        let ended = self.end_of_errand(&step, now_s);
-        if matches!(ended, Some(Ended::Failed { .. })) {
+        let is_failed = matches!(ended, Some((Ended::Failed { .. }, _)));
+        if is_failed {
             self.stop();
-            return Cycle { command: Velocity::ZERO, ended, waits: None };
         }
-        Cycle { command: step.command(), ended, waits: None }
+        let command =
+            step.ok().filter(|_| !is_failed).map_or(Velocity::ZERO, |step| step.command());
+        Cycle { command, ended, waits }
     }
 
     /// Observes what has come.
@@ -132,12 +174,21 @@ impl Pilot {
         Ok(navigator)
     }
 
-    /// The errand, if it ends by this step.
-    fn end_of_errand(&mut self, step: &Step, now_s: f64) -> Option<Ended> {
-        let navigator = self.navigator.as_ref()?;
-        let ended = self.errand.as_mut()?.end(navigator, step, now_s)?;
+    /// The end of the errand, if the robot has stood in doubt for too long.
+    fn end_of_doubt(&mut self, why: &Waits, now_s: f64) -> Option<(Ended, Report)> {
+        let ended = self.errand.as_mut()?.stand(why, now_s)?;
+        Some((ended, self.report(now_s).unwrap_or_default()))
+    }
+
+    /// The end of the errand, if this step is the last one.
+    fn end_of_errand(&mut self, step: &Step, now_s: f64) -> Option<(Ended, Report)> {
+        let (navigator, errand) = (self.navigator.as_ref()?, self.errand.as_mut()?);
+        errand.note(self.pose?);
+        let ended = errand.end(navigator, step, now_s)?;
+        let ended = self.next_stop(ended, now_s)?;
+        let report = self.report(now_s).unwrap_or_default();
         self.errand = None;
-        Some(ended)
+        Some((ended, report))
     }
 }
 

@@ -78,7 +78,7 @@ impl Robot {
 
     /// Drives until the errand ends, for a minute at most.
     fn drive(&mut self) -> Option<Ended> {
-        (0..600).find_map(|_| self.cycle().ended)
+        (0..600).find_map(|_| self.cycle().ended).map(|(ended, _)| ended)
     }
 }
 
@@ -86,18 +86,23 @@ fn goal(frame: &str, pose: Pose) -> PoseStamped {
     PoseStamped { header: Header::new(0.0, frame), pose: pose.into() }
 }
 
+/// To drive to a pose.
+fn to(frame: &str, pose: Pose) -> Wanted {
+    Wanted::Poses(vec![goal(frame, pose)])
+}
+
 #[test]
 fn it_drives_to_a_pose() {
     let mut robot = Robot::new();
     robot.tell(robot.now_s);
-    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 1.0, 1.0)));
-    robot.pilot.begin(&wanted, robot.now_s).unwrap();
+    let wanted = to("map", Pose::new(5.0, 1.0, 1.0));
+    robot.pilot.begin(wanted, robot.now_s).unwrap();
     let began_s = robot.now_s;
     assert_eq!(robot.cycle().waits, None);
-    let (way_m, _) = robot.pilot.remaining();
-    assert!((3.6..4.2).contains(&way_m), "{way_m}");
+    let report = robot.pilot.report(robot.now_s).unwrap();
+    assert!((3.6..4.2).contains(&report.way_m), "{report:?}");
     assert_eq!(robot.drive(), Some(Ended::Succeeded));
-    let pose = robot.pilot.pose().unwrap();
+    let pose = robot.pilot.pose.unwrap();
     assert!(pose.point().distance(Point::new(5.0, 1.0)) < 0.15 && (pose.theta - 1.0).abs() < 0.2);
     assert!(robot.now_s - began_s < 40.0 && robot.cycle().command == Velocity::ZERO);
 }
@@ -110,9 +115,9 @@ fn goals_have_frames() {
     {
         let mut robot = Robot::new();
         robot.tell(robot.now_s);
-        robot.pilot.begin(&Wanted::Pose(goal(frame, pose)), robot.now_s).unwrap();
+        robot.pilot.begin(to(frame, pose), robot.now_s).unwrap();
         assert_eq!(robot.drive(), Some(Ended::Succeeded));
-        let reached = robot.pilot.pose().unwrap().point();
+        let reached = robot.pilot.pose.unwrap().point();
         assert!(reached.distance(Point::new(4.0, 2.0)) < 0.15, "{frame}: {reached:?}");
     }
 }
@@ -126,14 +131,14 @@ fn it_drives_along_a_path() {
     let mut path = Path::new(&header, &corners, None);
     // Poses without a frame are in that of the path.
     path.poses.iter_mut().for_each(|pose| pose.header.frame_id.clear());
-    robot.pilot.begin(&Wanted::Path(path), robot.now_s).unwrap();
+    robot.pilot.begin(Wanted::Path(path), robot.now_s).unwrap();
     let mut highest_m = 0.0f64;
     let ended = (0..600).find_map(|_| {
         let ended = robot.cycle().ended;
         highest_m = highest_m.max(robot.pose.y);
         ended
     });
-    assert_eq!(ended, Some(Ended::Succeeded));
+    assert_eq!(ended.map(|(ended, _)| ended), Some(Ended::Succeeded));
     assert!((2.6..3.2).contains(&highest_m), "{highest_m}");
 }
 
@@ -151,8 +156,8 @@ fn without_something_it_stands() {
         pilot.transforms.insert(names, (100.0, Placement::upright(pose)), false);
     }
     assert_eq!(pilot.cycle(100.0).waits, Some(Waits::Odometry));
-    let outcome = pilot.begin(&Wanted::Pose(goal("camera", Pose::default())), 100.0);
-    let Err(Ended::Failed { code: Code::PlannerTransform, why }) = outcome else { panic!() };
+    let outcome = pilot.begin(to("camera", Pose::default()), 100.0);
+    let Err(Ended::Failed { fault: Fault::Transform, why }) = outcome else { panic!() };
     assert!(why.contains("camera"), "{why}");
 }
 
@@ -161,8 +166,8 @@ fn without_something_it_stands() {
 fn an_old_pose_is_none() {
     let mut robot = Robot::new();
     robot.tell(robot.now_s);
-    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
-    robot.pilot.begin(&wanted, robot.now_s).unwrap();
+    let wanted = to("map", Pose::new(5.0, 2.0, 0.0));
+    robot.pilot.begin(wanted, robot.now_s).unwrap();
     (0..30).for_each(|_| drop(robot.cycle()));
     let told_s = robot.now_s;
     robot.tell(told_s);
@@ -171,7 +176,13 @@ fn an_old_pose_is_none() {
         let waits = matches!(cycle.waits, Some(Waits::NewPose { .. }));
         assert_eq!((waits, cycle.command == Velocity::ZERO), (is_old, is_old), "{age_s}");
     }
-    robot.now_s = told_s + 6.0;
+    let given_up = robot.pilot.cycle(told_s + 62.0);
+    let Some((Ended::Failed { fault: Fault::Transform, .. }, _)) = given_up.ended else {
+        panic!("{given_up:?}")
+    };
+    robot.now_s = told_s + 70.0;
+    robot.tell(robot.now_s);
+    robot.pilot.begin(to("map", Pose::new(5.0, 2.0, 0.0)), robot.now_s).unwrap();
     assert_eq!(robot.drive(), Some(Ended::Succeeded), "once there is one again");
 }
 
@@ -180,28 +191,29 @@ fn goals_that_cannot_be_reached_have_numbers() {
     let mut robot = Robot::new();
     robot.tell(robot.now_s);
     for (pose, expected) in [
-        (Pose::new(9.0, 2.0, 0.0), Code::GoalOutsideMap),
-        (Pose::new(0.02, 2.0, 0.0), Code::GoalOccupied),
-        (Pose::new(f64::NAN, 2.0, 0.0), Code::PlannerTransform),
+        (Pose::new(9.0, 2.0, 0.0), Fault::GoalOutsideMap),
+        (Pose::new(0.02, 2.0, 0.0), Fault::GoalOccupied),
+        (Pose::new(f64::NAN, 2.0, 0.0), Fault::Transform),
     ] {
-        let outcome = robot.pilot.begin(&Wanted::Pose(goal("map", pose)), robot.now_s);
-        let Err(Ended::Failed { code, .. }) = outcome else { panic!("{outcome:?}") };
-        assert_eq!(code, expected, "{pose:?}");
+        let outcome = robot.pilot.begin(to("map", pose), robot.now_s);
+        let Err(Ended::Failed { fault, .. }) = outcome else { panic!("{outcome:?}") };
+        assert_eq!(fault, expected, "{pose:?}");
     }
     let empty = Wanted::Path(Path::default());
-    let outcome = robot.pilot.begin(&empty, robot.now_s);
-    assert!(matches!(outcome, Err(Ended::Failed { code: Code::InvalidPath, .. })));
+    let outcome = robot.pilot.begin(empty, robot.now_s);
+    assert!(matches!(outcome, Err(Ended::Failed { fault: Fault::InvalidPath, .. })));
 }
 
 #[test]
 fn a_way_is_found_without_driving() {
     let mut robot = Robot::new();
     robot.tell(robot.now_s);
-    let to = goal("map", Pose::new(5.0, 2.0, 0.5));
-    let (points, heading_rad) = robot.pilot.path(None, &to, robot.now_s).unwrap();
+    let end = goal("map", Pose::new(5.0, 2.0, 0.5));
+    let (points, heading_rad) =
+        robot.pilot.path(None, std::slice::from_ref(&end), robot.now_s).unwrap();
     assert!(points[0].distance(Point::new(1.5, 2.0)) < 0.06 && heading_rad == 0.5, "{points:?}");
     let from = goal("odom", Pose::new(2.0, 1.0, 0.0));
-    let (points, _) = robot.pilot.path(Some(&from), &to, robot.now_s).unwrap();
+    let (points, _) = robot.pilot.path(Some(&from), &[end], robot.now_s).unwrap();
     assert!(points[0].distance(Point::new(3.0, 1.0)) < 0.06, "{points:?}");
     assert_eq!(robot.cycle().command, Velocity::ZERO);
 }
@@ -211,8 +223,8 @@ fn speed_limits_hold() {
     let fastest = |percentage, most| {
         let mut robot = Robot::new();
         robot.tell(robot.now_s);
-        let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
-        robot.pilot.begin(&wanted, robot.now_s).unwrap();
+        let wanted = to("map", Pose::new(5.0, 2.0, 0.0));
+        robot.pilot.begin(wanted, robot.now_s).unwrap();
         robot.pilot.limit_speed(&SpeedLimit { percentage, most, ..SpeedLimit::default() });
         (0..60).map(|_| robot.cycle().command.v).fold(0.0, f64::max)
     };
@@ -236,6 +248,89 @@ fn maps_that_cannot_be_used_change_nothing() {
     flat.info.resolution = 0.0;
     assert!(matches!(robot.pilot.take_map(&flat), Err(MapError::Frame(_))));
     robot.tell(robot.now_s);
-    let wanted = Wanted::Pose(goal("map", Pose::new(5.0, 2.0, 0.0)));
-    assert_eq!(robot.pilot.begin(&wanted, robot.now_s), Ok(()));
+    let wanted = to("map", Pose::new(5.0, 2.0, 0.0));
+    assert_eq!(robot.pilot.begin(wanted, robot.now_s), Ok(()));
+}
+
+/// By way of a pose, and with stops, of which one cannot be reached, from there on and once more.
+#[test]
+fn it_drives_to_several_poses() {
+    let poses = [Pose::new(3.0, 3.2, 0.0), Pose::new(9.0, 2.0, 0.0), Pose::new(4.0, 1.0, 0.0)];
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let by_way_of = [poses[0], poses[2]].map(|pose| goal("map", pose)).to_vec();
+    robot.pilot.begin(Wanted::Poses(by_way_of), robot.now_s).unwrap();
+    let mut highest_m = 0.0f64;
+    let ended = (0..600).find_map(|_| {
+        highest_m = highest_m.max(robot.pose.y);
+        robot.cycle().ended
+    });
+    let Some((Ended::Succeeded, report)) = ended else { panic!("{ended:?}") };
+    assert!(highest_m > 2.9 && report.passed == 1, "{highest_m} {report:?}");
+
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let stops = |poses: &[Pose]| poses.iter().map(|&pose| goal("map", pose)).collect();
+    let twice = Wanted::Stops { poses: stops(&poses), first: 1, again: 1 };
+    robot.pilot.begin(twice, robot.now_s).unwrap();
+    let ended = (0..1200).find_map(|_| robot.cycle().ended);
+    let Some((Ended::Succeeded, report)) = ended else { panic!("{ended:?}") };
+    let missed: Vec<usize> = report.made.missed.iter().map(|missed| missed.stop).collect();
+    assert_eq!((report.made.stop, missed), (0, vec![1, 1]));
+    assert!(report.pose.point().distance(poses[2].point()) < 0.15, "{report:?}");
+    let no_stops = Wanted::Stops { poses: Vec::new(), first: 0, again: 3 };
+    for empty in [Wanted::Poses(Vec::new()), no_stops] {
+        let outcome = robot.pilot.begin(empty, robot.now_s);
+        assert!(matches!(outcome, Err(Ended::Failed { fault: Fault::NoGoals, .. })));
+    }
+}
+
+/// Turns, drives, waits; and one that a wall does not let through.
+#[test]
+fn it_does_single_motions() {
+    let act = |motion, allowance_s| Wanted::Act(Act { motion, allowance_s, most_mps: Some(0.1) });
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let mut does = |wanted| {
+        robot.pilot.begin(wanted, robot.now_s).unwrap();
+        let (began, began_s, mut fastest_mps) = (robot.pose, robot.now_s, 0.0f64);
+        let (ended, report) = (0..900)
+            .find_map(|_| {
+                let cycle = robot.cycle();
+                fastest_mps = fastest_mps.max(cycle.command.v.abs());
+                cycle.ended
+            })
+            .unwrap();
+        let moved_m = robot.pose.point().distance(began.point());
+        (ended, report.made, moved_m, robot.now_s - began_s, fastest_mps)
+    };
+    let (ended, made, moved_m, ..) = does(act(Motion::Turn(2.0), 20.0));
+    assert_eq!(ended, Ended::Succeeded);
+    assert!((made.turned_rad - 2.0).abs() < 0.05 && moved_m < 0.01, "{made:?}");
+    let (ended, made, moved_m, _, fastest_mps) = does(act(Motion::Ahead(0.4), 20.0));
+    assert_eq!(ended, Ended::Succeeded);
+    assert!((moved_m - 0.4).abs() < 0.02 && (made.driven_m - 0.4).abs() < 0.02, "{made:?}");
+    assert!(fastest_mps < 0.11, "{fastest_mps}");
+    let (ended, _, _, passed_s, _) = does(Wanted::Wait(2.0));
+    assert!(ended == Ended::Succeeded && (1.9..2.3).contains(&passed_s), "{passed_s}");
+    let (ended, ..) = does(act(Motion::Ahead(30.0), 20.0));
+    assert!(matches!(ended, Ended::Failed { fault: Fault::NoRoom, .. }), "{ended:?}");
+    let (ended, ..) = does(act(Motion::Ahead(0.5), 0.5));
+    assert!(matches!(ended, Ended::Failed { fault: Fault::Timeout, .. }), "{ended:?}");
+    let outcome = robot.pilot.begin(act(Motion::Ahead(-1.0), 5.0), robot.now_s);
+    assert!(matches!(outcome, Err(Ended::Failed { fault: Fault::InvalidInput, .. })));
+}
+
+#[test]
+fn a_path_is_made_smooth() {
+    let mut robot = Robot::new();
+    let header = Header::new(0.0, "map");
+    let zigzag = [[1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [2.0, 3.0], [5.0, 3.0]].map(Point::from);
+    let (points, fits) = robot.pilot.smoothed(&Path::new(&header, &zigzag, None)).unwrap();
+    let length_m: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    assert!(fits && length_m < 5.5 && points[0] == zigzag[0], "{length_m} {points:?}");
+    let wall = [Point::new(1.0, 1.0), Point::new(1.0, 3.99)];
+    assert!(!robot.pilot.smoothed(&Path::new(&header, &wall, None)).unwrap().1);
+    let nothing = robot.pilot.smoothed(&Path::default());
+    assert!(matches!(nothing, Err(Ended::Failed { fault: Fault::InvalidPath, .. })));
 }

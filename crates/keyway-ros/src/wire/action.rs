@@ -37,13 +37,16 @@ pub(crate) enum GoalEvent<G> {
     Cancel(GoalId),
 }
 
-/// A server of an action.
-pub(crate) struct ActionServer<A: Action>
-where
-    A::Goal: Message,
-    A::Outcome: Message,
-    A::Feedback: Message,
+/// An action whose messages can be sent.
+pub(crate) trait Wired:
+    Action<Goal: Message, Outcome: Message + Default, Feedback: Message>
 {
+}
+
+impl<A> Wired for A where A: Action<Goal: Message, Outcome: Message + Default, Feedback: Message> {}
+
+/// A server of an action.
+pub(crate) struct ActionServer<A: Wired> {
     server: ros2_client::ActionServer<A::Goal, A::Outcome, A::Feedback>,
     /// The oldest first.
     goals: VecDeque<GoalRecord<A::Outcome>>,
@@ -83,12 +86,7 @@ impl CancelRequest {
 
 impl Wire {
     /// A server of an action.
-    pub(crate) fn action<A: Action>(&mut self, name: &str) -> Result<ActionServer<A>, StartError>
-    where
-        A::Goal: Message,
-        A::Outcome: Message,
-        A::Feedback: Message,
-    {
+    pub(crate) fn action<A: Wired>(&mut self, name: &str) -> Result<ActionServer<A>, StartError> {
         let service = Delivery::Reliable.qos(10);
         let qos = ActionServerQosPolicies {
             goal_service: service.clone(),
@@ -111,25 +109,16 @@ impl Wire {
     }
 }
 
-impl<A: Action> ActionServer<A>
-where
-    A::Goal: Message,
-    A::Outcome: Message + Default,
-    A::Feedback: Message,
-{
+impl<A: Wired> ActionServer<A> {
     /// Outcomes that are kept for who asks late.
     const KEPT: usize = 32;
 
-    /// Everything that clients want since the last call; `is_wanted` accepts goals.
-    pub(crate) fn receive(
-        &mut self,
-        now: Time,
-        mut is_wanted: impl FnMut(&A::Goal) -> bool,
-    ) -> Vec<GoalEvent<A::Goal>> {
+    /// Everything that clients want since the last call.
+    pub(crate) fn events(&mut self, now: Time) -> Vec<GoalEvent<A::Goal>> {
         let mut events = Vec::new();
         while let Ok(Some((request, asked))) = self.server.receive_goal() {
-            let is_known = self.goals.iter().any(|goal| goal.info.goal_id == asked.goal_id);
-            let accepted = !is_known && is_wanted(&asked.goal);
+            // A number is for one goal alone.
+            let accepted = !self.goals.iter().any(|goal| goal.info.goal_id == asked.goal_id);
             let stamp = builtin_interfaces::Time::new(now.sec, now.nanosec);
             if accepted {
                 let info = GoalInfo { goal_id: asked.goal_id, stamp };
@@ -194,7 +183,7 @@ where
     }
 
     /// A goal has come to its end.
-    pub(crate) fn end(&mut self, id: GoalId, status: GoalStatus, outcome: A::Outcome) {
+    pub(crate) fn finish(&mut self, id: GoalId, status: GoalStatus, outcome: A::Outcome) {
         let Some(goal) = self.goals.iter_mut().find(|goal| goal.info.goal_id == id) else { return };
         goal.status = match status {
             GoalStatus::Succeeded => GoalStatusEnum::Succeeded,
@@ -213,7 +202,7 @@ where
     }
 
     /// Tells the client of a goal how far it is.
-    pub(crate) fn feed_back(&self, id: GoalId, feedback: A::Feedback) {
+    pub(crate) fn publish_feedback(&self, id: GoalId, feedback: A::Feedback) {
         drop(self.server.send_feedback(id, feedback));
     }
 

@@ -4,10 +4,11 @@
 
 mod action;
 
-pub(crate) use action::{ActionServer, GoalEvent, GoalId, GoalStatus};
+pub(crate) use action::{ActionServer, GoalEvent, GoalId, GoalStatus, Wired};
 
 use crate::arguments::{Arguments, Network};
 use crate::error::StartError;
+use crate::messages::nav2_msgs::{self, jazzy, kilted};
 use crate::messages::{self, Named};
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
 use ros2_client::qos::{Durability, History};
@@ -25,14 +26,35 @@ macro_rules! on_the_wire {
 
 on_the_wire!(
     messages::Empty,
-    messages::nav2_msgs::ComputePathToPoseGoal,
-    messages::nav2_msgs::ComputedPath,
-    messages::nav2_msgs::Ended,
-    messages::nav2_msgs::FollowPathFeedback,
-    messages::nav2_msgs::FollowPathGoal,
-    messages::nav2_msgs::FollowPathOutcome,
-    messages::nav2_msgs::NavigateToPoseFeedback,
-    messages::nav2_msgs::NavigateToPoseGoal,
+    nav2_msgs::ComputePathToPoseGoal,
+    nav2_msgs::ComputedPath,
+    nav2_msgs::Distance,
+    nav2_msgs::FollowPathFeedback,
+    nav2_msgs::FollowPathGoal,
+    nav2_msgs::FollowPathOutcome,
+    nav2_msgs::NavigateToPoseFeedback,
+    nav2_msgs::NavigateToPoseGoal,
+    nav2_msgs::Outcome,
+    nav2_msgs::SmoothPathGoal,
+    nav2_msgs::SmoothPathOutcome,
+    nav2_msgs::TimedOutcome,
+    nav2_msgs::WaitFeedback,
+    nav2_msgs::WaitGoal,
+    jazzy::ComputePathThroughPosesGoal,
+    jazzy::DriveGoal,
+    jazzy::FollowWaypointsFeedback,
+    jazzy::FollowWaypointsGoal,
+    jazzy::FollowWaypointsOutcome,
+    jazzy::NavigateThroughPosesFeedback,
+    jazzy::NavigateThroughPosesGoal,
+    jazzy::SpinGoal,
+    kilted::ComputePathThroughPosesGoal,
+    kilted::DriveGoal,
+    kilted::FollowWaypointsOutcome,
+    kilted::NavigateThroughPosesFeedback,
+    kilted::NavigateThroughPosesGoal,
+    kilted::NavigateThroughPosesOutcome,
+    kilted::SpinGoal,
 );
 
 /// A node on the network.

@@ -1,0 +1,150 @@
+//! The actions that the node serves: those for which the robot drives, and those that only ask.
+//! Each is a few lines that say what its goal wants and how its outcome is written.
+
+mod asks;
+mod drives;
+
+use crate::error::StartError;
+use crate::messages::Action;
+use crate::messages::builtin_interfaces::Time;
+use crate::messages::nav2_msgs::{self, jazzy, kilted};
+use crate::pilot::{Ended, Pilot, Report, Wanted};
+use crate::wire::{ActionServer, GoalEvent, GoalId, GoalStatus, Wire, Wired};
+
+/// Versions of ROS whose messages differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Distribution {
+    Jazzy,
+    Kilted,
+}
+
+/// The time and the frame of what is told.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Told<'a> {
+    pub(crate) now_s: f64,
+    pub(crate) frame: &'a str,
+}
+
+/// An action for which the robot drives.
+trait Drives: Action {
+    /// The errand that a goal asks for.
+    fn wanted(goal: Self::Goal) -> Wanted;
+
+    /// The message of the end.
+    fn outcome(ended: &Ended, report: &Report) -> Self::Outcome;
+
+    /// The message on the way.
+    fn feedback(report: &Report, told: Told<'_>) -> Self::Feedback;
+}
+
+/// An action that is answered at once.
+trait Asks: Action {
+    /// Its outcome, and how it ended.
+    fn answer(pilot: &mut Pilot, goal: Self::Goal, told: Told<'_>) -> (Ended, Self::Outcome);
+}
+
+/// A wish of a client.
+pub(crate) enum Wish {
+    Begin(GoalId, Wanted),
+    Cancel(GoalId),
+}
+
+/// A server of an action for which the robot drives.
+pub(crate) trait Served {
+    /// All that clients want since the last call.
+    fn receive(&mut self, now: Time) -> Vec<Wish>;
+
+    /// A goal has come to its end.
+    fn end(&mut self, id: GoalId, status: GoalStatus, ended: &Ended, report: &Report);
+
+    /// Tells the client of a goal how far it is.
+    fn feed_back(&self, id: GoalId, report: &Report, told: Told<'_>);
+}
+
+/// A server of an action that is answered at once.
+pub(crate) trait Answered {
+    /// Answers all that clients ask since the last call.
+    fn answer_all(&mut self, pilot: &mut Pilot, told: Told<'_>);
+}
+
+impl<A: Drives + Wired> Served for ActionServer<A> {
+    fn receive(&mut self, now: Time) -> Vec<Wish> {
+        let wish = |event| match event {
+            GoalEvent::Begin(id, goal) => Wish::Begin(id, A::wanted(goal)),
+            GoalEvent::Cancel(id) => Wish::Cancel(id),
+        };
+        self.events(now).into_iter().map(wish).collect()
+    }
+
+    fn end(&mut self, id: GoalId, status: GoalStatus, ended: &Ended, report: &Report) {
+        self.finish(id, status, A::outcome(ended, report));
+    }
+
+    fn feed_back(&self, id: GoalId, report: &Report, told: Told<'_>) {
+        self.publish_feedback(id, A::feedback(report, told));
+    }
+}
+
+impl<A: Asks + Wired> Answered for ActionServer<A> {
+    fn answer_all(&mut self, pilot: &mut Pilot, told: Told<'_>) {
+        for event in self.events(Time::of(told.now_s)) {
+            // An answer has been given before it can be given up.
+            let GoalEvent::Begin(id, goal) = event else { continue };
+            let (ended, outcome) = A::answer(pilot, goal, told);
+            let is_found = ended == Ended::Succeeded;
+            let status = if is_found { GoalStatus::Succeeded } else { GoalStatus::Aborted };
+            self.finish(id, status, outcome);
+        }
+    }
+}
+
+/// All actions for which the robot drives.
+pub(crate) fn served(
+    wire: &mut Wire,
+    distribution: Distribution,
+) -> Result<Vec<Box<dyn Served>>, StartError> {
+    let mut served: Vec<Box<dyn Served>> = vec![
+        Box::new(wire.action::<nav2_msgs::NavigateToPose>("navigate_to_pose")?),
+        Box::new(wire.action::<nav2_msgs::FollowPath>("follow_path")?),
+        Box::new(wire.action::<nav2_msgs::Wait>("wait")?),
+    ];
+    match distribution {
+        Distribution::Jazzy => {
+            let through = "navigate_through_poses";
+            served.push(Box::new(wire.action::<jazzy::NavigateThroughPoses>(through)?));
+            served.push(Box::new(wire.action::<jazzy::FollowWaypoints>("follow_waypoints")?));
+            served.push(Box::new(wire.action::<jazzy::Spin>("spin")?));
+            served.push(Box::new(wire.action::<jazzy::BackUp>("backup")?));
+            served.push(Box::new(wire.action::<jazzy::DriveOnHeading>("drive_on_heading")?));
+        }
+        Distribution::Kilted => {
+            let through = "navigate_through_poses";
+            served.push(Box::new(wire.action::<kilted::NavigateThroughPoses>(through)?));
+            served.push(Box::new(wire.action::<kilted::FollowWaypoints>("follow_waypoints")?));
+            served.push(Box::new(wire.action::<kilted::Spin>("spin")?));
+            served.push(Box::new(wire.action::<kilted::BackUp>("backup")?));
+            served.push(Box::new(wire.action::<kilted::DriveOnHeading>("drive_on_heading")?));
+        }
+    }
+    Ok(served)
+}
+
+/// All actions that are answered at once.
+pub(crate) fn answered(
+    wire: &mut Wire,
+    distribution: Distribution,
+) -> Result<Vec<Box<dyn Answered>>, StartError> {
+    let through = "compute_path_through_poses";
+    Ok(vec![
+        Box::new(wire.action::<nav2_msgs::ComputePathToPose>("compute_path_to_pose")?),
+        Box::new(wire.action::<nav2_msgs::SmoothPath>("smooth_path")?),
+        match distribution {
+            Distribution::Jazzy => {
+                Box::new(wire.action::<jazzy::ComputePathThroughPoses>(through)?)
+            }
+            Distribution::Kilted => {
+                Box::new(wire.action::<kilted::ComputePathThroughPoses>(through)?)
+            }
+        },
+    ])
+}
