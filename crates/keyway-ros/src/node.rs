@@ -107,7 +107,7 @@ impl Node {
         };
         let outboxes = Outboxes { command, plan: wire.outbox("plan", Delivery::Reliable, 1)? };
         let served = served(&mut wire, settings.distribution)?;
-        let answered = answered(&mut wire, settings.distribution)?;
+        let answered = answered(&mut wire, settings.distribution, &settings.stands_for)?;
         Ok(Self {
             wire,
             pilot: Pilot::new(settings.clone()),

@@ -20,6 +20,8 @@ pub(crate) struct Settings {
     pub(crate) scan_topics: Vec<String>,
     pub(crate) odom_topic: String,
     pub(crate) distribution: Distribution,
+    /// Nodes of Nav2 in whose place this one answers whether they are active.
+    pub(crate) stands_for: Vec<String>,
     /// Commands have a stamp.
     pub(crate) is_cmd_vel_stamped: bool,
     /// By the clock of a simulation.
@@ -41,7 +43,7 @@ pub(crate) struct Frames {
 type Parameters = BTreeMap<String, Value>;
 
 /// A parameter, and what it is for; the default is what stands in [`Settings::of`].
-const PARAMETERS: [(&str, &str); 11] = [
+const PARAMETERS: [(&str, &str); 12] = [
     ("robot", "name of a bundled robot, or its file (TOML); required"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
@@ -52,6 +54,7 @@ const PARAMETERS: [(&str, &str); 11] = [
     ("odom_topic", "topic of the odometry; odom"),
     ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
     ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
+    ("stands_for", "nodes of Nav2 in whose place it answers, such as map_server; [bt_navigator]"),
     ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
 ];
 
@@ -105,6 +108,9 @@ impl Settings {
             },
             scan_topics,
             distribution,
+            stands_for: given
+                .texts("stands_for")?
+                .unwrap_or_else(|| vec!["bt_navigator".to_owned()]),
             odom_topic: text(given.text("odom_topic")?, "odom"),
             is_cmd_vel_stamped: given
                 .truth("enable_stamped_cmd_vel")?

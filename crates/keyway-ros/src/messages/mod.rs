@@ -6,6 +6,7 @@
 
 pub(crate) mod builtin_interfaces;
 pub(crate) mod geometry_msgs;
+pub(crate) mod lifecycle_msgs;
 pub(crate) mod nav2_msgs;
 pub(crate) mod nav_msgs;
 pub(crate) mod rosgraph_msgs;
@@ -30,6 +31,29 @@ pub(crate) trait Action: 'static {
     type Outcome: Clone + Serialize + DeserializeOwned + Send + 'static;
     type Feedback: Clone + Serialize + DeserializeOwned + Send + 'static;
 }
+
+/// A service: a request and its response.
+pub(crate) trait Service: 'static {
+    /// Its package and its name in there.
+    const NAME: (&'static str, &'static str);
+    type Request: Clone + Serialize + DeserializeOwned + Send + 'static;
+    type Response: Clone + Serialize + DeserializeOwned + Send + 'static;
+}
+
+/// Makes a service of its parts.
+macro_rules! service {
+    ($(#[$doc:meta])* $package:literal, $service:ident: $request:ty => $response:ty) => {
+        $(#[$doc])*
+        pub(crate) struct $service;
+
+        impl Service for $service {
+            const NAME: (&'static str, &'static str) = ($package, stringify!($service));
+            type Request = $request;
+            type Response = $response;
+        }
+    };
+}
+use service;
 
 /// A definition without fields: it has one byte, as C knows no empty structs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]

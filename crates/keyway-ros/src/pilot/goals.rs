@@ -13,6 +13,9 @@ use keyway::navigate::{Goal, NavigateError, Navigator};
 impl Pilot {
     /// Sets out, in the place of what it was asked before.
     pub(crate) fn begin(&mut self, wanted: Wanted, now_s: f64) -> Result<(), Ended> {
+        if !self.is_active {
+            return Err(Ended::failed(Fault::Unknown, super::INACTIVE));
+        }
         // It may be the first thing that happens.
         let _ = self.look(now_s);
         self.limit_act(None);

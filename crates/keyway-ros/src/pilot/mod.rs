@@ -4,22 +4,23 @@
 mod codes;
 mod errand;
 mod goals;
+mod maps;
 mod sensing;
 mod waits;
 
 pub(crate) use codes::{Ended, Family, Fault};
 pub(crate) use errand::{Act, Made, Missed, Motion, Wanted};
+#[cfg(test)]
+use maps::MapError;
+pub(crate) use maps::UrlError;
 pub(crate) use waits::Waits;
 
-use crate::messages::nav_msgs::OccupancyGrid;
 use crate::settings::Settings;
 use crate::transforms::Transforms;
 use errand::Errand;
 use keyway::geometry::{Pose, Velocity};
-use keyway::map::{CellState, GridFrame};
-use keyway::navigate::{NavigateError, Navigator, Step};
+use keyway::navigate::{Navigator, Step};
 use sensing::Sensing;
-use thiserror::Error;
 
 /// A robot that drives by messages.
 pub(crate) struct Pilot {
@@ -33,6 +34,8 @@ pub(crate) struct Pilot {
     pose: Option<Pose>,
     /// The speed that is not to be exceeded, whatever the errand \[m/s\].
     limit_mps: Option<f64>,
+    /// It may drive.
+    is_active: bool,
 }
 
 /// The result of a cycle.
@@ -64,18 +67,8 @@ pub(crate) struct Report {
     pub(crate) made: Made,
 }
 
-/// A map that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum MapError {
-    #[error("a map of {width} x {height} cells has {values} values")]
-    Count { width: u32, height: u32, values: usize },
-    #[error("the origin of the map is no pose")]
-    Origin,
-    #[error("{0}")]
-    Frame(String),
-    #[error(transparent)]
-    Navigate(#[from] NavigateError),
-}
+/// The reason why it does not drive when it is not active.
+const INACTIVE: &str = "the node is not active: its lifecycle was ended";
 
 impl Pilot {
     pub(crate) fn new(settings: Settings) -> Self {
@@ -88,17 +81,8 @@ impl Pilot {
             errand: None,
             pose: None,
             limit_mps: None,
+            is_active: true,
         }
-    }
-
-    /// Takes in a map, in the place of the last one. Where it cannot be used, that one stays.
-    pub(crate) fn take_map(&mut self, message: &OccupancyGrid) -> Result<(), MapError> {
-        let map = map_of(message)?;
-        match &mut self.navigator {
-            Some(navigator) => navigator.set_map(&map)?,
-            None => self.navigator = Some(Navigator::new(&map, &self.settings.stack)?),
-        }
-        Ok(())
     }
 
     /// The clock begins anew, such as that of a simulation.
@@ -109,6 +93,16 @@ impl Pilot {
         if let Some(navigator) = &mut self.navigator {
             navigator.restart_clock();
         }
+    }
+
+    /// True if it may drive, and has a map to drive on.
+    pub(crate) const fn is_active(&self) -> bool {
+        self.is_active && self.navigator.is_some()
+    }
+
+    /// Lets the robot drive, or not: what it was asked for is then given up in the next cycle.
+    pub(crate) const fn set_active(&mut self, is_active: bool) {
+        self.is_active = is_active;
     }
 
     /// The navigator, once there is a map.
@@ -146,6 +140,12 @@ impl Pilot {
     /// The next command, at a time \[s\]. In doubt of where it is the robot stands.
     pub(crate) fn cycle(&mut self, now_s: f64) -> Cycle {
         let step = self.look(now_s).map(|navigator| navigator.step_at(now_s));
+        if !self.is_active && self.errand.is_some() {
+            let report = self.report(now_s).unwrap_or_default();
+            self.stop();
+            let ended = Some((Ended::failed(Fault::Unknown, INACTIVE), report));
+            return Cycle { command: Velocity::ZERO, ended, waits: None };
+        }
         let (ended, waits) = match &step {
             Ok(step) => (self.end_of_errand(step, now_s), None),
             Err(waits) => (self.end_of_doubt(waits, now_s), Some(waits.clone())),
@@ -190,28 +190,6 @@ impl Pilot {
         self.errand = None;
         Some((ended, report))
     }
-}
-
-/// A map of values: 65 and more are occupied, as map servers have it; below 0 nothing is known.
-fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
-    const OCCUPIED: i8 = 65;
-    let info = &message.info;
-    let (width, height) = (info.width, info.height);
-    let values = message.data.len();
-    if u64::from(width) * u64::from(height) != values as u64 {
-        return Err(MapError::Count { width, height, values });
-    }
-    let origin = info.origin.on_ground().ok_or(MapError::Origin)?;
-    // 0.05 in single precision is not 0.05; nobody makes cells of a part of a micrometre.
-    let resolution_m = (f64::from(info.resolution) * 1e6).round() / 1e6;
-    let frame = GridFrame::new(u64::from(width), u64::from(height), resolution_m, origin)
-        .map_err(|error| MapError::Frame(error.to_string()))?;
-    let mut values = message.data.iter();
-    Ok(keyway::OccupancyGrid::from_fn(frame, |_| match values.next() {
-        Some(&value) if value >= OCCUPIED => CellState::Occupied,
-        Some(&value) if value >= 0 => CellState::Free,
-        _ => CellState::Unknown,
-    }))
 }
 
 #[cfg(test)]

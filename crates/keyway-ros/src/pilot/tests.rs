@@ -3,7 +3,7 @@
 use super::*;
 use crate::arguments::Arguments;
 use crate::messages::geometry_msgs::PoseStamped;
-use crate::messages::nav_msgs::{MapMetaData, Odometry, Path};
+use crate::messages::nav_msgs::{MapMetaData, OccupancyGrid, Odometry, Path};
 use crate::messages::nav2_msgs::SpeedLimit;
 use crate::messages::sensor_msgs::LaserScan;
 use crate::messages::std_msgs::Header;
@@ -333,4 +333,49 @@ fn a_path_is_made_smooth() {
     assert!(!robot.pilot.smoothed(&Path::new(&header, &wall, None)).unwrap().1);
     let nothing = robot.pilot.smoothed(&Path::default());
     assert!(matches!(nothing, Err(Ended::Failed { fault: Fault::InvalidPath, .. })));
+}
+
+/// What was asked for ends when the node is stopped, and nothing is begun until it is started.
+#[test]
+fn a_node_that_is_stopped_does_not_drive() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let wanted = to("map", Pose::new(5.0, 2.0, 0.0));
+    robot.pilot.begin(wanted.clone(), robot.now_s).unwrap();
+    (0..10).for_each(|_| drop(robot.cycle()));
+    robot.pilot.set_active(false);
+    let cycle = robot.cycle();
+    assert!(matches!(cycle.ended, Some((Ended::Failed { .. }, _))), "{cycle:?}");
+    assert!(!robot.pilot.is_active() && robot.pilot.begin(wanted.clone(), robot.now_s).is_err());
+    (0..20).for_each(|_| drop(robot.cycle()));
+    assert_eq!(robot.velocity, Velocity::ZERO);
+    robot.pilot.set_active(true);
+    robot.pilot.begin(wanted, robot.now_s).unwrap();
+    assert_eq!(robot.drive(), Some(Ended::Succeeded));
+}
+
+/// 254 is a wall, 253 where the middle of the robot touches one, 0 far from all.
+#[test]
+fn costs_are_those_of_nav2() {
+    let robot = Robot::new();
+    let costmap = robot.pilot.costmap(1.0).unwrap();
+    assert_eq!((costmap.metadata.size_x, costmap.metadata.size_y), (120, 80));
+    let cost = |x: usize, y: usize| costmap.data[y * 120 + x];
+    assert_eq!((cost(0, 40), cost(1, 40), cost(60, 40)), (254, 253, 0));
+    assert!((1..253).contains(&cost(8, 40)), "{}", cost(8, 40));
+}
+
+#[test]
+fn maps_come_from_files() {
+    let mut robot = Robot::new();
+    let file = tempfile::Builder::new().suffix(".map").tempfile().unwrap();
+    std::fs::write(file.path(), "type octile\nheight 2\nwidth 3\nmap\n..@\n...\n").unwrap();
+    let url = format!("file://{}", file.path().display());
+    let loaded = robot.pilot.load_map(&url, 1.0).unwrap();
+    assert_eq!((loaded.info.width, loaded.info.height), (3, 2));
+    assert_eq!(loaded.data, [0, 0, 0, 0, 0, 100]);
+    let missing = robot.pilot.load_map("/nowhere.yaml", 1.0);
+    assert!(matches!(missing, Err(UrlError::Missing(_))));
+    std::fs::write(file.path(), "nonsense").unwrap();
+    assert!(matches!(robot.pilot.load_map(&url, 1.0), Err(UrlError::File(_))));
 }

@@ -1,12 +1,18 @@
-//! The actions that the node serves: those for which the robot drives, and those that only ask.
+//! The actions and services of the node: those for which the robot drives, and those that only ask.
 //! Each is a few lines that say what its goal wants and how its outcome is written.
 
 mod asks;
 mod drives;
+mod services;
 
 use crate::error::StartError;
 use crate::messages::Action;
 use crate::messages::builtin_interfaces::Time;
+use crate::messages::lifecycle_msgs::GetState;
+use crate::messages::nav2_msgs::services::{
+    ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap, GetCostmap, LoadMap,
+    ManageLifecycleNodes,
+};
 use crate::messages::nav2_msgs::{self, jazzy, kilted};
 use crate::pilot::{Ended, Pilot, Report, Wanted};
 use crate::wire::{ActionServer, GoalEvent, GoalId, GoalStatus, Wire, Wired};
@@ -129,13 +135,15 @@ pub(crate) fn served(
     Ok(served)
 }
 
-/// All actions that are answered at once.
+/// All actions and services that are answered at once. The node stands for others of Nav2, whose
+/// names are given.
 pub(crate) fn answered(
     wire: &mut Wire,
     distribution: Distribution,
+    stands_for: &[String],
 ) -> Result<Vec<Box<dyn Answered>>, StartError> {
     let through = "compute_path_through_poses";
-    Ok(vec![
+    let mut answered: Vec<Box<dyn Answered>> = vec![
         Box::new(wire.action::<nav2_msgs::ComputePathToPose>("compute_path_to_pose")?),
         Box::new(wire.action::<nav2_msgs::SmoothPath>("smooth_path")?),
         match distribution {
@@ -146,5 +154,27 @@ pub(crate) fn answered(
                 Box::new(wire.action::<kilted::ComputePathThroughPoses>(through)?)
             }
         },
-    ])
+        Box::new(
+            wire.service::<ManageLifecycleNodes>("lifecycle_manager_navigation/manage_nodes")?,
+        ),
+        Box::new(
+            wire.service::<ClearCostmapExceptRegion>("local_costmap/clear_costmap_except_region")?,
+        ),
+        Box::new(
+            wire.service::<ClearCostmapAroundRobot>("local_costmap/clear_costmap_around_robot")?,
+        ),
+    ];
+    for costmap in ["global_costmap", "local_costmap"] {
+        let clear = format!("{costmap}/clear_entirely_{costmap}");
+        answered.push(Box::new(wire.service::<ClearEntireCostmap>(&clear)?));
+        let get = format!("{costmap}/get_costmap");
+        answered.push(Box::new(wire.service::<GetCostmap>(&get)?));
+    }
+    for node in stands_for {
+        answered.push(Box::new(wire.service::<GetState>(&format!("{node}/get_state"))?));
+        if node == "map_server" {
+            answered.push(Box::new(wire.service::<LoadMap>("map_server/load_map")?));
+        }
+    }
+    Ok(answered)
 }

@@ -3,12 +3,14 @@
 //! Nothing here waits but [`Wire::wait`]: inboxes are emptied whenever something has come.
 
 mod action;
+mod service;
 
 pub(crate) use action::{ActionServer, GoalEvent, GoalId, GoalStatus, Wired};
+pub(crate) use service::{ServiceServer, WiredService};
 
 use crate::arguments::{Arguments, Network};
 use crate::error::StartError;
-use crate::messages::nav2_msgs::{self, jazzy, kilted};
+use crate::messages::nav2_msgs::{self, jazzy, kilted, services};
 use crate::messages::{self, Named};
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
 use ros2_client::qos::{Durability, History};
@@ -26,6 +28,14 @@ macro_rules! on_the_wire {
 
 on_the_wire!(
     messages::Empty,
+    messages::lifecycle_msgs::State,
+    services::Command,
+    services::Costmap,
+    services::CostmapMetaData,
+    services::LoadedMap,
+    services::MapUrl,
+    services::ResetDistance,
+    services::Success,
     nav2_msgs::ComputePathToPoseGoal,
     nav2_msgs::ComputedPath,
     nav2_msgs::Distance,

@@ -2,6 +2,7 @@
 
 pub(crate) mod jazzy;
 pub(crate) mod kilted;
+pub(crate) mod services;
 
 use super::builtin_interfaces::Duration;
 use super::geometry_msgs::{PoseStamped, Vector3};
