@@ -9,6 +9,7 @@ import rclpy
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Point, PoseStamped
+from lifecycle_msgs.srv import GetState
 from nav2_msgs.action import (
     BackUp,
     ComputePathThroughPoses,
@@ -22,6 +23,7 @@ from nav2_msgs.action import (
     Spin,
     Wait,
 )
+from nav2_msgs.srv import ClearEntireCostmap, GetCostmap, LoadMap, ManageLifecycleNodes
 from rclpy.action import ActionClient
 from rclpy.executors import MultiThreadedExecutor
 from robot import Robot
@@ -190,6 +192,33 @@ class Check:
         began = time.monotonic()
         ended = Goal(self.pause, Wait.Goal(time=Duration(sec=1))).end()
         assert ended.status == GoalStatus.STATUS_SUCCEEDED and 0.9 < time.monotonic() - began < 2.0
+
+    def call(self, service, name: str, request):
+        client = self.robot.create_client(service, name)
+        assert client.wait_for_service(20), f"the node does not serve {name}"
+        answered = client.call_async(request)
+        assert wait(answered.done, 20), f"no answer of {name}"
+        return answered.result()
+
+    def a_service_is_answered(self) -> None:
+        state = self.call(GetState, "bt_navigator/get_state", GetState.Request()).current_state
+        assert (state.id, state.label) == (3, "active"), state
+        costmap = self.call(GetCostmap, "global_costmap/get_costmap", GetCostmap.Request()).map
+        assert (costmap.metadata.size_x, costmap.metadata.size_y) == (160, 120), costmap.metadata
+        assert costmap.data[0] == 254 and costmap.data[60 * 160 + 20] == 0
+        self.call(ClearEntireCostmap, "local_costmap/clear_entirely_local_costmap", ClearEntireCostmap.Request())
+        loaded = self.call(LoadMap, "map_server/load_map", LoadMap.Request(map_url="/nowhere.yaml"))
+        assert loaded.result == 1, loaded.result
+
+    def a_node_is_stopped_and_started(self) -> None:
+        manage = "lifecycle_manager_navigation/manage_nodes"
+        goal = Goal(self.navigate, NavigateToPose.Goal(pose=pose(6.5, 4.5)))
+        assert wait(lambda: self.robot.v > 0.1, 10)
+        assert self.call(ManageLifecycleNodes, manage, ManageLifecycleNodes.Request(command=4)).success
+        assert goal.end().status == GoalStatus.STATUS_ABORTED and self.stands()
+        assert self.call(ManageLifecycleNodes, manage, ManageLifecycleNodes.Request(command=0)).success
+        ended = Goal(self.navigate, NavigateToPose.Goal(pose=pose(2.5, 2.0))).end()
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED, ended.result
 
     def nothing_was_touched(self) -> None:
         assert self.robot.contacts == 0, self.robot.contacts
