@@ -71,7 +71,7 @@ fn help() -> String {
          -r, --remap FROM:=TO    another name; __node and __ns for those of the node\n  \
          -p, --param NAME:=VALUE a parameter\n  \
          --params-file FILE      parameters from a file (YAML)\n\n\
-         Parameters, and their defaults:\n{}\n\
+         Parameters, and their defaults:\n{}\n\n\
          Environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_DISTRO\n",
         settings::help()
     )

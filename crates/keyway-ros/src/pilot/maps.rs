@@ -88,7 +88,7 @@ impl Pilot {
         }
     }
 
-    /// What is known and sensed, as costs of Nav2; `None` before there is a map. The robot does not
+    /// Costs of Nav2 for all that is known and sensed; `None` before there is a map. The robot does not
     /// drive by them.
     pub(crate) fn costmap(&self, now_s: f64) -> Option<Costmap> {
         let navigator = self.navigator.as_ref()?;

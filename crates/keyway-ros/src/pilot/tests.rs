@@ -335,7 +335,7 @@ fn a_path_is_made_smooth() {
     assert!(matches!(nothing, Err(Ended::Failed { fault: Fault::InvalidPath, .. })));
 }
 
-/// What was asked for ends when the node is stopped, and nothing is begun until it is started.
+/// An errand ends when the node is stopped, and nothing is begun until it is started.
 #[test]
 fn a_node_that_is_stopped_does_not_drive() {
     let mut robot = Robot::new();
