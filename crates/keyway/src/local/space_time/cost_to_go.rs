@@ -35,7 +35,7 @@ pub(super) struct CostToGo {
     /// What a straight step to each point counts as \[m\].
     steps_m: Vec<f32>,
     /// What is left from each point that is done for those who come from elsewhere \[m\]; infinite
-    /// from the others.
+    /// from the others, and [`Self::NO_WAY_ON`] from the edge.
     leaving_m: Vec<f32>,
     open: Buckets,
     end: Point,
@@ -91,6 +91,10 @@ impl Weighing {
 impl CostToGo {
     /// What a metre through something that blocks counts as.
     const THROUGH: f32 = 200.0;
+
+    /// No way leads along the edge of the lattice: only its inner side is known, so what is found
+    /// there would depend on the order in which points are done.
+    const NO_WAY_ON: f32 = f32::MAX;
 
     /// On open ground values are too large by no more than this part of the distance.
     const EXCESS: f32 = 0.03;
@@ -202,17 +206,18 @@ impl CostToGo {
             if value > most {
                 continue;
             }
-            let is_blocked = self.weights[index].is_infinite();
-            self.leaving_m[index] = value + if is_blocked { through_m } else { 0.0 };
             farthest = farthest.max(value);
             if Some(index) == robot {
                 most = value + beyond_m;
             }
             let (x, y) = (index % side, index / side);
-            // No way leads along the edge of the lattice.
-            if x > 0 && y > 0 && x + 1 < side && y + 1 < side {
-                self.pass_on(index);
+            if x == 0 || y == 0 || x + 1 == side || y + 1 == side {
+                self.leaving_m[index] = Self::NO_WAY_ON;
+                continue;
             }
+            let is_blocked = self.weights[index].is_infinite();
+            self.leaving_m[index] = value + if is_blocked { through_m } else { 0.0 };
+            self.pass_on(index);
         }
         let all = self.values.iter_mut().zip(&self.leaving_m);
         all.filter(|(_, leaving_m)| leaving_m.is_infinite())
@@ -394,6 +399,34 @@ mod tests {
         let found_m = cost_to_go.at(at);
         assert!((found_m / around_m - 1.0).abs() < 0.03, "{found_m}");
         assert!(cost_to_go.way(at).1.y > 0.0);
+    }
+
+    /// Blocks, some of them at the edge, and an end beside the edge.
+    #[test]
+    fn a_mirror_changes_nothing() {
+        let blocks: Vec<(i32, i32)> =
+            (0..60).map(|i| (20 + (i * 37) % 163, 20 + (i * i * 11 + i * 29) % 163)).collect();
+        let middle = 10.05;
+        let values = |side: f64| {
+            let mirrored = |at: Point| Point::new(at.x, middle + side * (at.y - middle));
+            let room = |at: Point| {
+                let at = mirrored(at) * 10.0;
+                let off_m = |&(x, y): &(i32, i32)| {
+                    0.1 * at.distance(Point::new(f64::from(x) + 0.53, f64::from(y) + 0.53))
+                };
+                blocks.iter().map(off_m).fold(9.0, f64::min)
+            };
+            let route = [Point::new(10.0, 10.0), Point::new(4.33, 2.14)].map(mirrored);
+            filled(room, route[0], &route).values
+        };
+        let (left, right) = (values(1.0), values(-1.0));
+        let side = 163;
+        assert_eq!(left.len(), side * side);
+        for (index, value) in left.iter().enumerate() {
+            let (x, y) = (index % side, index / side);
+            let other = right[(side - 1 - y) * side + x];
+            assert!((value - other).abs() < 2e-5 * value, "({x}, {y}): {value}, mirrored {other}");
+        }
     }
 
     #[test]
