@@ -273,6 +273,23 @@ fn an_explanation_is_of_the_speed_limit() {
     assert!(life.navigator.explain().candidates.is_empty(), "something has changed since");
 }
 
+/// On open ground it leads straight on, as fast as the robot drives.
+#[test]
+fn a_course_is_that_of_the_last_decision() {
+    let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
+    life.navigator.set_goal(Point::new(10.0, 4.0)).unwrap();
+    assert!(life.navigator.course().is_empty(), "nothing was decided yet");
+    life.drive_for(3.0);
+    let (course, pose) = (life.navigator.course(), life.pose);
+    assert!(course[0].point().distance(pose.point()) < 0.1, "{:?} {pose:?}", course[0]);
+    let length_m: f64 = course.windows(2).map(|ends| ends[0].point().distance(ends[1].point())).sum();
+    let limits = &life.navigator.stack().robot().limits;
+    assert!((0.5..=3.1).contains(&(length_m / limits.v_max_mps)), "{length_m}");
+    assert!(course.iter().all(|pose| (pose.y - 4.0).abs() < 0.05), "{course:?}");
+    life.observe();
+    assert!(life.navigator.course().is_empty(), "something has changed since");
+}
+
 /// A clock that begins anew has no doubts of before, and a route from where the robot then is.
 #[test]
 fn a_clock_that_begins_anew_begins_anew() {

@@ -1,7 +1,7 @@
 //! Views of what a navigator knows and does, for pictures and reports.
 
 use super::Navigator;
-use crate::geometry::{Disc, Point};
+use crate::geometry::{Disc, Point, Pose};
 use crate::guide::Guidance;
 use crate::local::{Evaluation, Explanation, Refusal, RefusalCounts};
 use crate::map::{BitGrid, OccupancyGrid};
@@ -111,6 +111,29 @@ impl Navigator {
         let scene = self.world.scene(task, (asked.pose, asked.velocity), asked.smoothed());
         let local = self.slow.as_ref().map_or(&self.parts.local, |slow| &slow.local);
         local.explain(&scene, &asked.memory)
+    }
+
+    /// Poses along the course that the last decision began, the first one where its command acts;
+    /// empty for local planners that plan no farther than their command, and once something has
+    /// changed since.
+    pub fn course(&self) -> Vec<Pose> {
+        const PARTS: u32 = 4;
+        let (Some(asked), Some(task)) = (&self.record.asked, self.task()) else {
+            return Vec::new();
+        };
+        let Some(course) = task.memory.course() else { return Vec::new() };
+        let (mut pose, mut from) = (asked.pose, asked.velocity);
+        let mut poses = vec![pose];
+        for &to in &course.velocities {
+            let at = |part: u32| from.lerp(to, f64::from(part) / f64::from(PARTS));
+            for part in 0..PARTS {
+                let part_s = course.stretch_s / f64::from(PARTS);
+                pose = pose.after_ramp(at(part), at(part + 1), part_s);
+                poses.push(pose);
+            }
+            from = to;
+        }
+        poses
     }
 
     /// Searches for a route, those that found none or the same way again included: the first one
