@@ -17,9 +17,11 @@
 
 mod arguments;
 mod clock;
+mod costmaps;
 mod error;
 mod messages;
 mod node;
+mod pictures;
 mod pilot;
 mod served;
 mod settings;

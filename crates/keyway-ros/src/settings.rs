@@ -6,7 +6,9 @@ use crate::error::StartError;
 use crate::served::Distribution;
 use keyway::files::{find_robot, find_stack};
 use keyway::navigate::FittedStack;
+use keyway::sense::SensorPoints;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 use toml::Value;
@@ -18,6 +20,11 @@ pub(crate) struct Settings {
     pub(crate) frames: Frames,
     /// Topics of the lidars, in the order of the robot's sensors.
     pub(crate) scan_topics: Vec<String>,
+    /// Topics of other sensors, which give clouds of points.
+    pub(crate) cloud_topics: Vec<String>,
+    pub(crate) points_taken: PointsTaken,
+    /// Topics that tell of masks of ground.
+    pub(crate) filter_info_topics: Vec<String>,
     pub(crate) odom_topic: String,
     pub(crate) distribution: Distribution,
     /// Nodes of Nav2 in whose place this one answers whether they are active.
@@ -39,11 +46,20 @@ pub(crate) struct Frames {
     pub(crate) base: String,
 }
 
+/// The points of clouds that are obstacles.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PointsTaken {
+    /// Above the ground \[m\].
+    pub(crate) heights_m: RangeInclusive<f64>,
+    /// Farther from the sensor they do not count \[m\].
+    pub(crate) range_m: f64,
+}
+
 /// Parameters by their names, as they were given.
 type Parameters = BTreeMap<String, Value>;
 
 /// A parameter, and what it is for; the default is what stands in [`Settings::of`].
-const PARAMETERS: [(&str, &str); 12] = [
+const PARAMETERS: [(&str, &str); 17] = [
     ("robot", "name of a bundled robot, or its file (TOML); required"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
@@ -51,6 +67,11 @@ const PARAMETERS: [(&str, &str); 12] = [
     ("global_frame", "frame of the map; map"),
     ("robot_base_frame", "frame of the robot; base_link"),
     ("scan_topics", "topics of the lidars, in the order of the robot's sensors; [scan]"),
+    ("cloud_topics", "topics of other sensors, as PointCloud2; []"),
+    ("min_obstacle_height", "points of clouds that are lower are ground [m]; 0.05"),
+    ("max_obstacle_height", "points of clouds that are higher are overhead [m]; 2.0"),
+    ("obstacle_max_range", "points of clouds that are farther do not count [m]; 2.5"),
+    ("filter_info_topics", "topics of Nav2's filters; costmap_filter_info, and with a prefix"),
     ("odom_topic", "topic of the odometry; odom"),
     ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
     ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
@@ -98,6 +119,11 @@ impl Settings {
             let why = format!("has {topics} topics, and the robot has {sensors} lidars");
             return Err(wrong("scan_topics", why));
         }
+        let cloud_topics = given.texts("cloud_topics")?.unwrap_or_default();
+        if cloud_topics.len() > SensorPoints::MOST_SENSORS {
+            let why = format!("has more topics than {}", SensorPoints::MOST_SENSORS);
+            return Err(wrong("cloud_topics", why));
+        }
         let text =
             |value: Option<String>, default: &str| value.unwrap_or_else(|| default.to_owned());
         let settings = Self {
@@ -107,6 +133,15 @@ impl Settings {
                 base: text(given.text("robot_base_frame")?, "base_link"),
             },
             scan_topics,
+            cloud_topics,
+            points_taken: PointsTaken {
+                heights_m: given.number("min_obstacle_height")?.unwrap_or(0.05)
+                    ..=given.number("max_obstacle_height")?.unwrap_or(2.0),
+                range_m: given.positive("obstacle_max_range")?.unwrap_or(2.5),
+            },
+            filter_info_topics: given.texts("filter_info_topics")?.unwrap_or_else(|| {
+                ["", "keepout_", "speed_"].map(|kind| format!("{kind}costmap_filter_info")).to_vec()
+            }),
             distribution,
             stands_for: given
                 .texts("stands_for")?
@@ -183,10 +218,11 @@ impl Given {
     }
 
     fn positive(&mut self, name: &str) -> Result<Option<f64>, StartError> {
-        self.take(name, "a positive number", |value| {
-            let whole = value.as_integer().map(|whole| whole as f64);
-            whole.or(value.as_float()).filter(|number| *number > 0.0 && number.is_finite())
-        })
+        self.take(name, "a positive number", |value| number(value).filter(|&number| number > 0.0))
+    }
+
+    fn number(&mut self, name: &str) -> Result<Option<f64>, StartError> {
+        self.take(name, "a number", number)
     }
 
     /// Refuses what is left.
@@ -195,6 +231,12 @@ impl Given {
         let known: Vec<&str> = PARAMETERS.iter().map(|(name, _)| *name).collect();
         Err(wrong(&name, format!("is none of this node's: {}", known.join(", "))))
     }
+}
+
+/// A number that is finite.
+fn number(value: &Value) -> Option<f64> {
+    let whole = value.as_integer().map(|whole| whole as f64);
+    whole.or(value.as_float()).filter(|number| number.is_finite())
 }
 
 /// True if the parameters of a file under this name are for this node: `/**`, its name, or its name

@@ -2,6 +2,7 @@
 
 use super::Named;
 use super::std_msgs::Header;
+use crate::transforms::Placement;
 use keyway::geometry::{self, Velocity};
 use serde::{Deserialize, Serialize};
 
@@ -36,12 +37,6 @@ impl Quaternion {
         Self { x: 0.0, y: 0.0, z, w }
     }
 
-    /// True if what is up in the one frame is down in the other.
-    pub(crate) fn is_upside_down(self) -> bool {
-        let Self { x, y, z, w } = self;
-        w * w - x * x - y * y + z * z < 0.0
-    }
-
     /// The angle around the z axis \[rad\], as ROS computes yaw; `None` for one that is no
     /// rotation, such as four zeros.
     pub(crate) fn heading_rad(self) -> Option<f64> {
@@ -63,15 +58,11 @@ pub(crate) struct Pose {
 impl Pose {
     /// On the ground; `None` for one that is not finite or has no rotation.
     pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
-        on_ground(self.position, self.orientation)
+        let Self { position, orientation } = self;
+        let heading_rad = orientation.heading_rad()?;
+        let is_place = position.x.is_finite() && position.y.is_finite();
+        is_place.then(|| geometry::Pose::new(position.x, position.y, heading_rad))
     }
-}
-
-/// On the ground; `None` for one that is not finite or has no rotation.
-fn on_ground(position: Vector3, orientation: Quaternion) -> Option<geometry::Pose> {
-    let heading_rad = orientation.heading_rad()?;
-    let is_place = position.x.is_finite() && position.y.is_finite();
-    is_place.then(|| geometry::Pose::new(position.x, position.y, heading_rad))
 }
 
 impl From<geometry::Pose> for Pose {
@@ -89,6 +80,39 @@ pub(crate) struct PoseStamped {
 
 impl Named for PoseStamped {
     const NAME: (&'static str, &'static str) = ("geometry_msgs", "PoseStamped");
+}
+
+/// A pose that a user has set, or a localisation has found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PoseWithCovarianceStamped {
+    pub(crate) header: Header,
+    pub(crate) pose: PoseWithCovariance,
+}
+
+impl Named for PoseWithCovarianceStamped {
+    const NAME: (&'static str, &'static str) = ("geometry_msgs", "PoseWithCovarianceStamped");
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Point32 {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) z: f32,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Polygon {
+    pub(crate) points: Vec<Point32>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PolygonStamped {
+    pub(crate) header: Header,
+    pub(crate) polygon: Polygon,
+}
+
+impl Named for PolygonStamped {
+    const NAME: (&'static str, &'static str) = ("geometry_msgs", "PolygonStamped");
 }
 
 /// Six times six, of which nothing is used.
@@ -156,9 +180,11 @@ pub(crate) struct TransformStamped {
 }
 
 impl TransformStamped {
-    /// On the ground; `None` for one that is not finite or has no rotation.
-    pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
-        on_ground(self.transform.translation, self.transform.rotation)
+    /// `None` for one that is not finite or has no rotation.
+    pub(crate) fn placement(&self) -> Option<Placement> {
+        let Transform { translation, rotation } = self.transform;
+        let at = [translation.x, translation.y, translation.z];
+        Placement::new(at, [rotation.x, rotation.y, rotation.z, rotation.w])
     }
 }
 
@@ -176,7 +202,6 @@ mod tests {
         // Around the x axis first, as of a lidar that hangs upside down: its heading stays.
         let upside_down = Quaternion { x: 1.0, y: 0.0, z: 0.0, w: 0.0 };
         assert_eq!(upside_down.heading_rad(), Some(0.0));
-        assert!(upside_down.is_upside_down() && !Quaternion::of_heading(2.0).is_upside_down());
         let turned = Quaternion { x: 0.0, y: 1.0, z: 0.0, w: 0.0 };
         assert!((turned.heading_rad().unwrap().abs() - PI).abs() < 1e-12);
     }

@@ -5,14 +5,17 @@
 //! written once for each of them.
 
 pub(crate) mod builtin_interfaces;
+pub(crate) mod diagnostic_msgs;
 pub(crate) mod geometry_msgs;
 pub(crate) mod lifecycle_msgs;
+pub(crate) mod map_msgs;
 pub(crate) mod nav2_msgs;
 pub(crate) mod nav_msgs;
 pub(crate) mod rosgraph_msgs;
 pub(crate) mod sensor_msgs;
 pub(crate) mod std_msgs;
 pub(crate) mod tf2_msgs;
+pub(crate) mod visualization_msgs;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -23,6 +23,47 @@ impl Named for LaserScan {
     const NAME: (&'static str, &'static str) = ("sensor_msgs", "LaserScan");
 }
 
+/// A picture in a format such as PNG.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct CompressedImage {
+    pub(crate) header: Header,
+    pub(crate) format: String,
+    pub(crate) data: Vec<u8>,
+}
+
+/// Points in rows, each of a number of bytes in which its fields stand.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct PointCloud2 {
+    pub(crate) header: Header,
+    pub(crate) height: u32,
+    pub(crate) width: u32,
+    pub(crate) fields: Vec<PointField>,
+    pub(crate) is_bigendian: bool,
+    pub(crate) point_step: u32,
+    pub(crate) row_step: u32,
+    pub(crate) data: Vec<u8>,
+    pub(crate) is_dense: bool,
+}
+
+impl Named for PointCloud2 {
+    const NAME: (&'static str, &'static str) = ("sensor_msgs", "PointCloud2");
+}
+
+/// A field of the points of a cloud.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct PointField {
+    pub(crate) name: String,
+    /// Bytes before it.
+    pub(crate) offset: u32,
+    pub(crate) datatype: u8,
+    pub(crate) count: u32,
+}
+
+impl PointField {
+    pub(crate) const FLOAT32: u8 = 7;
+    pub(crate) const FLOAT64: u8 = 8;
+}
+
 impl From<LaserScan> for Scan<Vec<f32>> {
     fn from(scan: LaserScan) -> Self {
         Self {

@@ -15,3 +15,12 @@ impl Header {
         Self { stamp: Time::of(stamp_s), frame_id: frame.to_owned() }
     }
 }
+
+/// Each from 0 to 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ColorRgba {
+    pub(crate) r: f32,
+    pub(crate) g: f32,
+    pub(crate) b: f32,
+    pub(crate) a: f32,
+}

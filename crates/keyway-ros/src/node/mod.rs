@@ -1,26 +1,25 @@
 //! The loop of the node: what comes from the network goes to the pilot, and in every cycle what the
 //! pilot says goes to the network.
 
+mod inboxes;
+mod outboxes;
+mod timing;
+
 use crate::arguments::{Arguments, Network};
 use crate::clock::Clock;
 use crate::error::StartError;
 use crate::messages::builtin_interfaces::Time;
-use crate::messages::geometry_msgs::{PoseStamped, Twist, TwistStamped};
-use crate::messages::nav_msgs::{OccupancyGrid, Odometry, Path};
-use crate::messages::nav2_msgs::SpeedLimit;
-use crate::messages::rosgraph_msgs::Clock as ClockMessage;
-use crate::messages::sensor_msgs::LaserScan;
-use crate::messages::std_msgs::Header;
-use crate::messages::tf2_msgs::TFMessage;
 use crate::pilot::{Cycle, Ended, Family, Pilot, Report, Wanted};
 use crate::served::{Answered, Served, Told, Wish, answered, served};
 use crate::settings::Settings;
-use crate::transforms::Placement;
-use crate::wire::{Delivery, GoalId, GoalStatus, Inbox, Outbox, Wire};
+use crate::wire::{GoalId, GoalStatus, Inbox, Wire};
+use inboxes::Inboxes;
 use keyway::geometry::Velocity;
+use outboxes::Outboxes;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use timing::Timing;
 
 /// Everything that the node is.
 pub(crate) struct Node {
@@ -38,31 +37,9 @@ pub(crate) struct Node {
     /// The last command that was published, while it was one to move.
     moves: bool,
     cycles: u64,
-    /// Routes that were planned when the last one was published.
-    routes_published: u32,
+    timing: Timing,
     /// The last thing that was said of standing still.
     said: String,
-}
-
-struct Inboxes {
-    map: Inbox<OccupancyGrid>,
-    scans: Vec<Inbox<LaserScan>>,
-    odometry: Inbox<Odometry>,
-    transforms: [Inbox<TFMessage>; 2],
-    goal_pose: Inbox<PoseStamped>,
-    speed_limit: Inbox<SpeedLimit>,
-    clock: Option<Inbox<ClockMessage>>,
-}
-
-struct Outboxes {
-    command: Commands,
-    plan: Outbox<Path>,
-}
-
-/// Commands, with and without a stamp.
-enum Commands {
-    Plain(Outbox<Twist>),
-    Stamped(Outbox<TwistStamped>),
 }
 
 /// The client for which the robot drives.
@@ -81,33 +58,11 @@ impl Node {
         settings: Settings,
     ) -> Result<Self, StartError> {
         let mut wire = Wire::open(arguments, network)?;
-        let scan = |topic: &String| wire.inbox(topic, Delivery::BestEffort, 4);
-        let scans = settings.scan_topics.iter().map(scan).collect::<Result<_, _>>()?;
-        let clock = if settings.use_sim_time {
-            Some(wire.inbox("/clock", Delivery::BestEffort, 1)?)
-        } else {
-            None
-        };
-        let inboxes = Inboxes {
-            map: wire.inbox("map", Delivery::Latched, 1)?,
-            scans,
-            odometry: wire.inbox(&settings.odom_topic, Delivery::BestEffort, 4)?,
-            transforms: [
-                wire.inbox("/tf", Delivery::Reliable, 100)?,
-                wire.inbox("/tf_static", Delivery::Latched, 100)?,
-            ],
-            goal_pose: wire.inbox("goal_pose", Delivery::Reliable, 1)?,
-            speed_limit: wire.inbox("speed_limit", Delivery::Reliable, 1)?,
-            clock,
-        };
-        let command = if settings.is_cmd_vel_stamped {
-            Commands::Stamped(wire.outbox("cmd_vel", Delivery::Reliable, 1)?)
-        } else {
-            Commands::Plain(wire.outbox("cmd_vel", Delivery::Reliable, 1)?)
-        };
-        let outboxes = Outboxes { command, plan: wire.outbox("plan", Delivery::Reliable, 1)? };
+        let inboxes = Inboxes::new(&mut wire, &settings)?;
+        let outboxes = Outboxes::new(&mut wire, &settings)?;
         let served = served(&mut wire, settings.distribution)?;
         let answered = answered(&mut wire, settings.distribution, &settings.stands_for)?;
+        let timing = Timing::new(settings.stack.robot().cycle_s);
         Ok(Self {
             wire,
             pilot: Pilot::new(settings.clone()),
@@ -120,14 +75,14 @@ impl Node {
             drives_for: None,
             moves: false,
             cycles: 0,
-            routes_published: 0,
+            timing,
             said: String::new(),
         })
     }
 
     /// Runs until it is told to stop; then the robot is told to stand.
     pub(crate) fn run(&mut self, is_over: &Arc<AtomicBool>) {
-        let period = Duration::from_secs_f64(self.settings.stack.robot().cycle_s);
+        let period = Duration::from_secs_f64(self.timing.period_s());
         let mut next = Instant::now();
         while !is_over.load(Ordering::Relaxed) {
             self.wire.wait(next.saturating_duration_since(Instant::now()));
@@ -135,6 +90,7 @@ impl Node {
             let now = Instant::now();
             let is_due = now >= next;
             if is_due {
+                self.timing.note_delay(now - next);
                 // A cycle that was missed is not made up for.
                 next = (next + period).max(now);
             }
@@ -157,31 +113,9 @@ impl Node {
             self.say("the clock was set: what was sensed by the old one no longer counts");
             self.pilot.restart_clock();
         }
-        for (inbox, is_fixed) in self.inboxes.transforms.iter().zip([false, true]) {
-            for message in inbox.take_all().iter().flat_map(|message| &message.transforms) {
-                let Some(pose) = message.on_ground() else { continue };
-                let is_flipped = message.transform.rotation.is_upside_down();
-                let stamp_s = message.header.stamp.stamp_s();
-                let names = [message.header.frame_id.as_str(), &message.child_frame_id];
-                let placement = Placement { pose, is_flipped };
-                self.pilot.transforms.insert(names, (stamp_s, placement), is_fixed);
-            }
-        }
-        for message in self.inboxes.odometry.take_all() {
-            self.pilot.sensing.take_odometry(&message);
-        }
-        for (sensor, inbox) in self.inboxes.scans.iter().enumerate() {
-            for message in inbox.take_all() {
-                self.pilot.sensing.take_scan(sensor, message);
-            }
-        }
-        if let Some(message) = self.inboxes.map.take_all().pop()
-            && let Err(error) = self.pilot.take_map(&message)
-        {
-            self.say(&format!("the map cannot be used: {error}"));
-        }
-        for message in self.inboxes.speed_limit.take_all() {
-            self.pilot.limit_speed(&message);
+        self.inboxes.receive_sensed(&mut self.pilot);
+        for fault in self.inboxes.receive_known(&mut self.pilot, &mut self.wire) {
+            self.say(&fault);
         }
         let Some(now_s) = self.clock.now_s() else { return };
         if let Some(goal) = self.inboxes.goal_pose.take_all().pop() {
@@ -242,7 +176,9 @@ impl Node {
 
     /// One cycle of control.
     fn cycle(&mut self, now_s: f64) {
+        let began = Instant::now();
         let Cycle { command, ended, waits } = self.pilot.cycle(now_s);
+        self.timing.note(began.elapsed(), waits.clone());
         self.cycles += 1;
         if self.drives_for.is_some() || self.moves {
             self.command(command);
@@ -264,33 +200,14 @@ impl Node {
             }
             self.tell(client, status, &ended, &report);
         }
-        self.publish_route(now_s);
         self.feed_back(now_s);
+        self.outboxes.show(&self.pilot, &self.wire, &mut self.timing, now_s);
     }
 
     fn command(&mut self, command: Velocity) {
         self.moves = command != Velocity::ZERO;
-        match &self.outboxes.command {
-            Commands::Plain(outbox) => outbox.publish(command.into()),
-            Commands::Stamped(outbox) => {
-                let stamp_s = self.clock.now_s().unwrap_or_default();
-                let header = Header::new(stamp_s, &self.settings.frames.base);
-                outbox.publish(TwistStamped { header, twist: command.into() });
-            }
-        }
-    }
-
-    /// Publishes the route, if it is a new one.
-    fn publish_route(&mut self, now_s: f64) {
-        let Some(navigator) = self.pilot.navigator() else { return };
-        let planned = navigator.routes_planned();
-        let Some(route) = navigator.route().filter(|_| planned != self.routes_published) else {
-            return;
-        };
-        self.routes_published = planned;
-        let header = Header::new(now_s, &self.settings.frames.map);
-        let heading_rad = navigator.goal().and_then(|goal| goal.heading_rad);
-        self.outboxes.plan.publish(Path::along(&header, route.smoothed.points(), heading_rad));
+        let stamp_s = self.clock.now_s().unwrap_or_default();
+        self.outboxes.command(command, (stamp_s, &self.settings.frames.base));
     }
 
     /// Tells the client how far its robot is, in every other cycle.

@@ -194,7 +194,7 @@ impl Pilot {
         let placement = at_s.and_then(|at_s| self.transforms.at(frame, own, at_s));
         let placement =
             placement.map_err(|error| Ended::failed(Fault::Transform, error.to_string()))?;
-        Ok(placement.pose.compose(pose))
+        Ok(placement.on_ground().compose(pose))
     }
 
     /// The points of a path in the frame of the map. Poses without a frame are in that of the path.

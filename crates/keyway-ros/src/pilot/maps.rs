@@ -1,12 +1,14 @@
 //! Maps: from messages and files, and what the robot knows as a costmap.
 
 use super::Pilot;
+use crate::costmaps::{Known, info_of};
 use crate::messages::builtin_interfaces::Time;
-use crate::messages::nav_msgs::{MapMetaData, OccupancyGrid};
-use crate::messages::nav2_msgs::services::{Costmap, CostmapMetaData};
+use crate::messages::map_msgs::OccupancyGridUpdate;
+use crate::messages::nav_msgs::OccupancyGrid;
+use crate::messages::nav2_msgs::services::Costmap;
 use crate::messages::std_msgs::Header;
 use keyway::map::formats::{MapFileError, read_map};
-use keyway::map::{self, Cell, CellState, CostmapConfig, Edit, GridFrame};
+use keyway::map::{Cell, CellState, Edit, GridFrame};
 use keyway::navigate::{NavigateError, Navigator};
 use std::path::PathBuf;
 use thiserror::Error;
@@ -43,9 +45,34 @@ impl Pilot {
     }
 
     fn drive_on(&mut self, map: &keyway::OccupancyGrid) -> Result<(), MapError> {
-        match &mut self.navigator {
-            Some(navigator) => navigator.set_map(map)?,
-            None => self.navigator = Some(Navigator::new(map, &self.settings.stack)?),
+        if let Some(navigator) = &mut self.navigator {
+            return Ok(navigator.set_map(map)?);
+        }
+        self.navigator = Some(Navigator::new(map, &self.settings.stack)?);
+        self.set_masks();
+        Ok(())
+    }
+
+    /// Takes in a rectangle of the map that has changed. One that came before the map is part of
+    /// it.
+    pub(crate) fn take_update(&mut self, update: &OccupancyGridUpdate) -> Result<(), MapError> {
+        let &OccupancyGridUpdate { x, y, width, height, ref data, .. } = update;
+        if u64::from(width) * u64::from(height) != data.len() as u64 {
+            return Err(MapError::Count { width, height, values: data.len() });
+        }
+        let Some(navigator) = &mut self.navigator else { return Ok(()) };
+        let map = navigator.map();
+        let cells = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let edit = |((column, row), &value): ((u32, u32), &i8)| {
+            let along = |from: i32, steps: u32| from.checked_add_unsigned(steps);
+            let cell = Cell::new(along(x, column)?, along(y, row)?);
+            let state = state_of(value);
+            // Most of what comes is as it was.
+            map.state(cell).filter(|&before| before != state).map(|_| Edit { cell, state })
+        };
+        let edits: Vec<Edit> = cells.zip(data).filter_map(edit).collect();
+        if !edits.is_empty() {
+            navigator.edit_map(&edits);
         }
         Ok(())
     }
@@ -70,13 +97,7 @@ impl Pilot {
         };
         OccupancyGrid {
             header: Header::new(now_s, &self.settings.frames.map),
-            info: MapMetaData {
-                map_load_time: Time::of(now_s),
-                resolution: frame.resolution_m() as f32,
-                width: frame.width(),
-                height: frame.height(),
-                origin: frame.origin().into(),
-            },
+            info: info_of(frame, Time::of(now_s)),
             data: frame.cells().map(value).collect(),
         }
     }
@@ -88,39 +109,25 @@ impl Pilot {
         }
     }
 
-    /// Costs of Nav2 for all that is known and sensed; `None` before there is a map. The robot does not
-    /// drive by them.
+    /// Costs of Nav2 for all that is known and sensed; `None` before there is a map. The robot does
+    /// not drive by them.
     pub(crate) fn costmap(&self, now_s: f64) -> Option<Costmap> {
-        let navigator = self.navigator.as_ref()?;
-        let mut map = navigator.map().clone();
-        let occupied = |cell| Edit { cell, state: CellState::Occupied };
-        let is_sensed = |cell: &Cell| navigator.sensed().get(*cell);
-        let sensed: Vec<Edit> = map.frame().cells().filter(is_sensed).map(occupied).collect();
-        map.apply(&sensed);
-        let footprint = &self.settings.stack.robot().footprint;
-        let (inscribed_radius_m, config) =
-            (footprint.inscribed_radius_m(), CostmapConfig::default());
-        let inflation_radius_m = config.inflation_radius_m.max(inscribed_radius_m);
-        let config = CostmapConfig { inscribed_radius_m, inflation_radius_m, ..config };
-        let costs = map::Costmap::new(&map, config).ok()?;
-        let (frame, time) = (map.frame(), Time::of(now_s));
-        let metadata = CostmapMetaData {
-            map_load_time: time,
-            update_time: time,
-            layer: "master".to_owned(),
-            resolution: frame.resolution_m() as f32,
-            size_x: frame.width(),
-            size_y: frame.height(),
-            origin: frame.origin().into(),
-        };
+        let known = Known::of(self.navigator.as_ref()?);
         let header = Header::new(now_s, &self.settings.frames.map);
-        Some(Costmap { header, metadata, data: costs.costs().to_vec() })
+        Some(known.costs(known.everything())?.costmap(header))
     }
 }
 
-/// A map of values: 65 and more are occupied, as map servers have it; below 0 nothing is known.
+/// A map of values.
 fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
-    const OCCUPIED: i8 = 65;
+    let mut values = message.data.iter();
+    Ok(keyway::OccupancyGrid::from_fn(frame_of(message)?, |_| {
+        values.next().map_or(CellState::Unknown, |&value| state_of(value))
+    }))
+}
+
+/// Where a message's grid lies, which must have a value for each of its cells.
+pub(super) fn frame_of(message: &OccupancyGrid) -> Result<GridFrame, MapError> {
     let info = &message.info;
     let (width, height) = (info.width, info.height);
     let values = message.data.len();
@@ -130,12 +137,16 @@ fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
     let origin = info.origin.on_ground().ok_or(MapError::Origin)?;
     // 0.05 in single precision is not 0.05; nobody makes cells of a part of a micrometre.
     let resolution_m = (f64::from(info.resolution) * 1e6).round() / 1e6;
-    let frame = GridFrame::new(u64::from(width), u64::from(height), resolution_m, origin)
-        .map_err(|error| MapError::Frame(error.to_string()))?;
-    let mut values = message.data.iter();
-    Ok(keyway::OccupancyGrid::from_fn(frame, |_| match values.next() {
-        Some(&value) if value >= OCCUPIED => CellState::Occupied,
-        Some(&value) if value >= 0 => CellState::Free,
+    GridFrame::new(u64::from(width), u64::from(height), resolution_m, origin)
+        .map_err(|error| MapError::Frame(error.to_string()))
+}
+
+/// 65 and more is occupied, as map servers have it; below 0 nothing is known.
+const fn state_of(value: i8) -> CellState {
+    const OCCUPIED: i8 = 65;
+    match value {
+        OCCUPIED.. => CellState::Occupied,
+        0.. => CellState::Free,
         _ => CellState::Unknown,
-    }))
+    }
 }

@@ -1,11 +1,14 @@
 //! The robot between messages and commands: what came in is observed by the navigator, and in every
 //! cycle it says what to do. It knows no network and reads no clock.
 
+mod clouds;
 mod codes;
 mod errand;
 mod goals;
 mod maps;
+mod masks;
 mod sensing;
+mod views;
 mod waits;
 
 pub(crate) use codes::{Ended, Family, Fault};
@@ -19,7 +22,7 @@ use crate::settings::Settings;
 use crate::transforms::Transforms;
 use errand::Errand;
 use keyway::geometry::{Pose, Velocity};
-use keyway::navigate::{Navigator, Step};
+use keyway::navigate::{Masks, Navigator, Step};
 use sensing::Sensing;
 
 /// A robot that drives by messages.
@@ -30,6 +33,8 @@ pub(crate) struct Pilot {
     /// Nothing can be done before there is a map.
     navigator: Option<Navigator>,
     errand: Option<Errand>,
+    /// Ground to keep out of, and to be slow on.
+    masks: Masks,
     /// Pose in the map, when it was last known.
     pose: Option<Pose>,
     /// The speed that is not to be exceeded, whatever the errand \[m/s\].
@@ -72,13 +77,14 @@ const INACTIVE: &str = "the node is not active: its lifecycle was ended";
 
 impl Pilot {
     pub(crate) fn new(settings: Settings) -> Self {
-        let sensing = Sensing::new(settings.scan_topics.len());
+        let sensing = Sensing::new(&settings);
         Self {
             settings,
             transforms: Transforms::default(),
             sensing,
             navigator: None,
             errand: None,
+            masks: Masks::default(),
             pose: None,
             limit_mps: None,
             is_active: true,
@@ -108,6 +114,16 @@ impl Pilot {
     /// The navigator, once there is a map.
     pub(crate) const fn navigator(&self) -> Option<&Navigator> {
         self.navigator.as_ref()
+    }
+
+    /// True while it has something to do.
+    pub(crate) const fn drives(&self) -> bool {
+        self.errand.is_some()
+    }
+
+    /// The pose in the map, when it was last known.
+    pub(crate) const fn pose(&self) -> Option<Pose> {
+        self.pose
     }
 
     /// The state of the errand; `None` without one, or where nobody has said where the robot is.
@@ -164,7 +180,7 @@ impl Pilot {
         let Settings { frames, max_pose_age_s, .. } = &self.settings;
         let navigator = self.navigator.as_mut().ok_or(Waits::Map)?;
         let stamp_s = self.transforms.latest_s(&frames.map, &frames.base)?.min(now_s);
-        let pose = self.transforms.at(&frames.map, &frames.base, stamp_s)?.pose;
+        let pose = self.transforms.at(&frames.map, &frames.base, stamp_s)?.on_ground();
         self.pose = Some(pose);
         let age_s = now_s - stamp_s;
         if age_s > *max_pose_age_s {

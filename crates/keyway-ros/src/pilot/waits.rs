@@ -1,5 +1,6 @@
 //! Reasons to stand in doubt.
 
+use super::clouds::CloudError;
 use crate::transforms::TransformError;
 use thiserror::Error;
 
@@ -12,6 +13,8 @@ pub(crate) enum Waits {
     Odometry,
     #[error(transparent)]
     Transform(#[from] TransformError),
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
     #[error("the pose is {age_s:.2} s old, by transforms that are late or have ended")]
     NewPose { age_s: f64 },
 }

@@ -187,6 +187,11 @@ impl Wire {
             .map_err(|error| fault("wait for messages", error))
     }
 
+    /// True if somebody has subscribed to a topic.
+    pub(crate) fn is_heard<M: Named>(&self, outbox: &Outbox<M>) -> bool {
+        outbox.publisher.get_subscription_count(&self.node) > 0
+    }
+
     /// Waits until something comes, but no longer than this.
     pub(crate) fn wait(&mut self, longest: Duration) {
         // Interrupted by a signal, it returns early: that is as if something had come.

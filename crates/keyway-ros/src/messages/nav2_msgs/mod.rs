@@ -41,6 +41,29 @@ impl Named for SpeedLimit {
     const NAME: (&'static str, &'static str) = ("nav2_msgs", "SpeedLimit");
 }
 
+/// A mask of ground, and how its values are meant.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct CostmapFilterInfo {
+    pub(crate) header: Header,
+    /// `type` in the definition.
+    pub(crate) kind: u8,
+    pub(crate) filter_mask_topic: String,
+    pub(crate) base: f32,
+    pub(crate) multiplier: f32,
+}
+
+impl Named for CostmapFilterInfo {
+    const NAME: (&'static str, &'static str) = ("nav2_msgs", "CostmapFilterInfo");
+}
+
+impl CostmapFilterInfo {
+    pub(crate) const KEEP_OUT: u8 = 0;
+    /// Values are parts of the full speed in percent: base + multiplier times the value.
+    pub(crate) const SPEED_PERCENT: u8 = 1;
+    /// The same in metres per second.
+    pub(crate) const SPEED: u8 = 2;
+}
+
 /// The outcome of an action that has no other.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Outcome {

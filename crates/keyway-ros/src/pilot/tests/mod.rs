@@ -1,5 +1,7 @@
 //! The pilot with a robot that obeys at once, in a room that its map shows.
 
+mod ground;
+
 use super::*;
 use crate::arguments::Arguments;
 use crate::messages::geometry_msgs::PoseStamped;
@@ -32,18 +34,33 @@ fn room() -> OccupancyGrid {
 }
 
 fn settings() -> Settings {
-    let parameters = vec![("robot".to_owned(), "waffle".to_owned())];
+    settings_with(&[])
+}
+
+fn settings_with(parameters: &[(&str, &str)]) -> Settings {
+    let given = [("robot", "waffle")].iter().chain(parameters);
+    let parameters = given.map(|&(name, value)| (name.to_owned(), value.to_owned())).collect();
     Settings::of(&Arguments { parameters, ..Arguments::default() }, None).unwrap()
 }
 
 impl Robot {
     fn new() -> Self {
+        Self::with(&[])
+    }
+
+    /// With these parameters.
+    fn with(parameters: &[(&str, &str)]) -> Self {
         let (pose, velocity) = (Pose::new(0.5, 2.0, 0.0), Velocity::ZERO);
-        let mut pilot = Pilot::new(settings());
+        let mut pilot = Pilot::new(settings_with(parameters));
         let mount = Placement::upright(Pose::default());
         pilot.transforms.insert(["base_link", "base_scan"], (0.0, mount), true);
         pilot.take_map(&room()).unwrap();
         Self { pilot, pose, velocity, now_s: 100.0 }
+    }
+
+    /// The true pose in the map.
+    fn in_map(&self) -> Pose {
+        ODOM.compose(self.pose)
     }
 
     /// Its drivers tell all that they know, by this stamp.

@@ -1,46 +1,14 @@
-//! Places of frames: the transforms of `/tf` and `/tf_static`, by their times, on the ground.
+//! Places of frames: the transforms of `/tf` and `/tf_static`, by their times.
 //!
 //! Each frame is in one other frame, its parent. A transform that was not told is between two that
 //! were, in proportion; beyond the last one nothing is known.
 
-use keyway::geometry::{Point, Pose, wrap_angle};
+mod placement;
+
+pub(crate) use placement::Placement;
+
 use std::collections::{HashMap, VecDeque};
 use thiserror::Error;
-
-/// The place of a frame in another one: a pose, and which side is up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Placement {
-    pub(crate) pose: Pose,
-    /// Upside down, as a lidar that hangs from a ceiling: to its left is to the right.
-    pub(crate) is_flipped: bool,
-}
-
-impl Placement {
-    /// Upright.
-    pub(crate) const fn upright(pose: Pose) -> Self {
-        Self { pose, is_flipped: false }
-    }
-
-    /// The placement of a frame that is there in this one.
-    fn compose(self, inner: Self) -> Self {
-        let side = if self.is_flipped { -1.0 } else { 1.0 };
-        let Pose { x, y, theta } = inner.pose;
-        let place = self.pose.world_from_body(Point::new(x, side * y));
-        let heading_rad = wrap_angle(self.pose.theta + side * theta);
-        Self {
-            pose: Pose::new(place.x, place.y, heading_rad),
-            is_flipped: self.is_flipped != inner.is_flipped,
-        }
-    }
-
-    /// The placement of this frame's parent in it.
-    fn inverse(self) -> Self {
-        let side = if self.is_flipped { -1.0 } else { 1.0 };
-        let origin = self.pose.body_from_world(Point::new(0.0, 0.0));
-        let pose = Pose::new(origin.x, side * origin.y, -side * self.pose.theta);
-        Self { pose, is_flipped: self.is_flipped }
-    }
-}
 
 /// The reason why nobody knows where a frame is.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -75,11 +43,11 @@ struct Edge {
 
 impl Edge {
     fn first(&self) -> (f64, Placement) {
-        *self.told.front().unwrap_or(&NOWHERE)
+        self.told.front().copied().unwrap_or_default()
     }
 
     fn last(&self) -> (f64, Placement) {
-        *self.told.back().unwrap_or(&NOWHERE)
+        self.told.back().copied().unwrap_or_default()
     }
 
     /// At a time \[s\]; the reach of what was told, where that is outside of it.
@@ -94,12 +62,9 @@ impl Edge {
         let after = self.told.partition_point(|&(stamp_s, _)| stamp_s <= at_s);
         let ((before_s, before), (after_s, after)) = (self.told[after - 1], self.told[after]);
         let share = (at_s - before_s) / (after_s - before_s);
-        let pose = between(before.pose, after.pose, share);
-        Ok(Placement { pose, is_flipped: before.is_flipped })
+        Ok(before.lerp(&after, share))
     }
 }
-
-const NOWHERE: (f64, Placement) = (0.0, Placement::upright(Pose { x: 0.0, y: 0.0, theta: 0.0 }));
 
 impl Transforms {
     /// The time for which a transform is kept \[s\].
@@ -160,10 +125,10 @@ impl Transforms {
                 let in_parent = edge.at(at_s).map_err(|[from_s, to_s]| {
                     TransformError::OutOfTime { child: name.to_owned(), at_s, from_s, to_s }
                 })?;
-                Ok(in_parent.compose(placement))
+                Ok(in_parent.compose(&placement))
             })
         };
-        Ok(along(&outer)?.inverse().compose(along(&inner)?))
+        Ok(along(&outer)?.inverse().compose(&along(&inner)?))
     }
 
     /// The latest time at which it is known where a frame is in another one \[s\]; infinite where
@@ -213,13 +178,6 @@ impl Transforms {
     }
 }
 
-/// The pose a share of the way from one to another, which turns the shorter way around.
-fn between(from: Pose, to: Pose, share: f64) -> Pose {
-    let place = from.point().lerp(to.point(), share);
-    let turn_rad = wrap_angle(to.theta - from.theta);
-    Pose::new(place.x, place.y, wrap_angle(from.theta + share * turn_rad))
-}
-
 /// Names of frames began with a slash once.
 fn without_slash(name: &str) -> &str {
     name.strip_prefix('/').unwrap_or(name)
@@ -228,7 +186,7 @@ fn without_slash(name: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
+    use keyway::geometry::{Pose, wrap_angle};
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn upright(x: f64, y: f64, theta: f64) -> Placement {
@@ -245,9 +203,9 @@ mod tests {
     }
 
     fn is_near(found: Placement, expected: Placement) -> bool {
-        let apart_m = found.pose.point().distance(expected.pose.point());
-        let apart_rad = wrap_angle(found.pose.theta - expected.pose.theta).abs();
-        apart_m < 1e-9 && apart_rad < 1e-9 && found.is_flipped == expected.is_flipped
+        let [found, expected] = [found, expected].map(|placement| placement.on_ground());
+        let apart_m = found.point().distance(expected.point());
+        apart_m < 1e-9 && wrap_angle(found.theta - expected.theta).abs() < 1e-9
     }
 
     #[test]
@@ -267,7 +225,7 @@ mod tests {
         let in_map = transforms.at("map", "base_link", 2.0).unwrap();
         assert!(is_near(in_map, upright(10.0, 2.0, FRAC_PI_2 + 1.0)), "{in_map:?}");
         let back = transforms.at("base_link", "map", 2.0).unwrap();
-        assert!(is_near(in_map.compose(back), upright(0.0, 0.0, 0.0)));
+        assert!(is_near(in_map.compose(&back), upright(0.0, 0.0, 0.0)));
         let scan = transforms.at("base_link", "/base_scan", 77.0).unwrap();
         assert!(is_near(scan, upright(0.3, 0.0, PI)), "what never moves is known at all times");
         assert_eq!(transforms.latest_s("map", "base_scan"), Ok(2.0));
@@ -296,16 +254,6 @@ mod tests {
         assert!(transforms.at("a", "b", 0.0).is_ok());
     }
 
-    /// A lidar that hangs upside down, turned by a quarter: what it has to its left is ahead.
-    #[test]
-    fn upside_down_left_is_right() {
-        let hangs = Placement { pose: Pose::new(0.0, 0.0, FRAC_PI_2), is_flipped: true };
-        let left = hangs.compose(upright(0.0, 1.0, 0.0));
-        assert!((left.pose.x - 1.0).abs() < 1e-12 && left.pose.y.abs() < 1e-12, "{left:?}");
-        assert!(is_near(hangs.compose(hangs.inverse()), upright(0.0, 0.0, 0.0)));
-        assert!(is_near(hangs.inverse().compose(hangs), upright(0.0, 0.0, 0.0)));
-    }
-
     /// A clock that is set back begins anew, a transform that is a little late is put in its place.
     #[test]
     fn times_may_come_late_and_begin_anew() {
@@ -315,18 +263,5 @@ mod tests {
         assert!(is_near(found, upright(0.0, 1.0, 0.0)));
         transforms.insert(["odom", "base_link"], (-20.0, upright(5.0, 1.0, 0.0)), false);
         assert_eq!(transforms.latest_s("odom", "base_link"), Ok(-20.0));
-    }
-
-    proptest! {
-        #[test]
-        fn there_and_back_is_nowhere(
-            x in -9.0..9.0f64, y in -9.0..9.0f64, theta in -3.0..3.0f64, is_flipped: bool,
-            inner in (-9.0..9.0f64, -9.0..9.0f64, -3.0..3.0f64), flipped: bool,
-        ) {
-            let outer = Placement { pose: Pose::new(x, y, theta), is_flipped };
-            let inner = Placement { pose: Pose::new(inner.0, inner.1, inner.2), is_flipped: flipped };
-            let both = outer.compose(inner);
-            prop_assert!(is_near(outer.inverse().compose(both), inner), "{:?}", both);
-        }
     }
 }

@@ -1,0 +1,159 @@
+//! What the node publishes.
+
+use super::timing::Timing;
+use crate::costmaps::Known;
+use crate::error::StartError;
+use crate::messages::diagnostic_msgs::DiagnosticArray;
+use crate::messages::geometry_msgs::{PolygonStamped, Twist, TwistStamped};
+use crate::messages::nav_msgs::{OccupancyGrid, Path};
+use crate::messages::std_msgs::Header;
+use crate::messages::visualization_msgs::MarkerArray;
+use crate::pictures::{Order, Pictures, Shown};
+use crate::pilot::Pilot;
+use crate::settings::Settings;
+use crate::wire::{Delivery, Outbox, Wire};
+use keyway::geometry::Velocity;
+
+/// All topics that go out.
+pub(super) struct Outboxes {
+    command: Commands,
+    plan: Outbox<Path>,
+    local_plan: Outbox<Path>,
+    footprint: Outbox<PolygonStamped>,
+    costmaps: [(Shown, Outbox<OccupancyGrid>); 2],
+    markers: Outbox<MarkerArray>,
+    fan: Outbox<MarkerArray>,
+    diagnostics: Outbox<DiagnosticArray>,
+    pictures: Pictures,
+    /// Routes that were planned when the last one was published.
+    routes_published: u32,
+    /// Cycles since the beginning.
+    cycles: u64,
+}
+
+/// Commands, with and without a stamp.
+enum Commands {
+    Plain(Outbox<Twist>),
+    Stamped(Outbox<TwistStamped>),
+}
+
+impl Outboxes {
+    /// Seconds from one picture to the next.
+    const PICTURES_S: f64 = 0.5;
+
+    /// The same of global costmaps.
+    const GLOBAL_S: f64 = 2.0;
+
+    /// The same of diagnostics.
+    const DIAGNOSTICS_S: f64 = 1.0;
+
+    pub(super) fn new(wire: &mut Wire, settings: &Settings) -> Result<Self, StartError> {
+        let command = if settings.is_cmd_vel_stamped {
+            Commands::Stamped(wire.outbox("cmd_vel", Delivery::Reliable, 1)?)
+        } else {
+            Commands::Plain(wire.outbox("cmd_vel", Delivery::Reliable, 1)?)
+        };
+        let costmap = |wire: &mut Wire, name| wire.outbox(name, Delivery::Latched, 1);
+        Ok(Self {
+            command,
+            plan: wire.outbox("plan", Delivery::Reliable, 1)?,
+            local_plan: wire.outbox("local_plan", Delivery::Reliable, 1)?,
+            footprint: wire.outbox("local_costmap/published_footprint", Delivery::Reliable, 1)?,
+            costmaps: [
+                (Shown::Local, costmap(wire, "local_costmap/costmap")?),
+                (Shown::Global, costmap(wire, "global_costmap/costmap")?),
+            ],
+            markers: wire.outbox("markers", Delivery::Reliable, 1)?,
+            fan: wire.outbox("fan", Delivery::Reliable, 1)?,
+            diagnostics: wire.outbox("/diagnostics", Delivery::Reliable, 1)?,
+            pictures: Pictures::new().map_err(|error| StartError::Network {
+                what: "start the thread that draws costmaps".to_owned(),
+                why: error.to_string(),
+            })?,
+            routes_published: 0,
+            cycles: 0,
+        })
+    }
+
+    /// Publishes a command, at a time \[s\].
+    pub(super) fn command(&self, command: Velocity, (stamp_s, frame): (f64, &str)) {
+        match &self.command {
+            Commands::Plain(outbox) => outbox.publish(command.into()),
+            Commands::Stamped(outbox) => {
+                let header = Header::new(stamp_s, frame);
+                outbox.publish(TwistStamped { header, twist: command.into() });
+            }
+        }
+    }
+
+    /// At the end of a cycle: all that others may look at, where somebody does.
+    pub(super) fn show(&mut self, pilot: &Pilot, wire: &Wire, timing: &mut Timing, now_s: f64) {
+        self.cycles += 1;
+        self.show_route(pilot, now_s);
+        if self.is_time_for(Self::DIAGNOSTICS_S, timing) {
+            self.diagnostics.publish(timing.diagnostics(pilot, now_s));
+        }
+        if self.is_time_for(Self::PICTURES_S, timing) {
+            self.show_pictures(pilot, wire, now_s);
+        }
+        for (shown, outbox) in &self.costmaps {
+            let every_s = match shown {
+                Shown::Local => Self::PICTURES_S,
+                Shown::Global => Self::GLOBAL_S,
+            };
+            if self.is_time_for(every_s, timing) && wire.is_heard(outbox) {
+                self.order(*shown, pilot, now_s);
+            }
+        }
+        for (drawn, grid) in self.pictures.take_all() {
+            let outbox = self.costmaps.iter().find(|(shown, _)| *shown == drawn);
+            if let Some((_, outbox)) = outbox {
+                outbox.publish(grid);
+            }
+        }
+    }
+
+    /// True in the cycles that are so many seconds apart.
+    fn is_time_for(&self, every_s: f64, timing: &Timing) -> bool {
+        let every = (every_s / timing.period_s()).round().max(1.0) as u64;
+        self.cycles.is_multiple_of(every)
+    }
+
+    /// Publishes the route, if it is a new one.
+    fn show_route(&mut self, pilot: &Pilot, now_s: f64) {
+        let Some(navigator) = pilot.navigator() else { return };
+        let planned = navigator.routes_planned();
+        if planned != self.routes_published
+            && let Some(route) = pilot.route(now_s)
+        {
+            self.routes_published = planned;
+            self.plan.publish(route);
+        }
+    }
+
+    fn show_pictures(&self, pilot: &Pilot, wire: &Wire, now_s: f64) {
+        show(&self.local_plan, wire, || pilot.local_plan(now_s));
+        show(&self.footprint, wire, || pilot.footprint(now_s));
+        show(&self.markers, wire, || pilot.markers(now_s));
+        show(&self.fan, wire, || pilot.fan(now_s));
+    }
+
+    fn order(&self, shown: Shown, pilot: &Pilot, now_s: f64) {
+        let (Some(navigator), Some(pose)) = (pilot.navigator(), pilot.pose()) else { return };
+        let (known, header) = (Known::of(navigator), pilot.header(now_s));
+        self.pictures.order(Order { shown, known, place: pose.point(), header });
+    }
+}
+
+/// Publishes what there is, if somebody listens.
+fn show<M: crate::messages::Named>(
+    outbox: &Outbox<M>,
+    wire: &Wire,
+    made: impl FnOnce() -> Option<M>,
+) {
+    if wire.is_heard(outbox)
+        && let Some(message) = made()
+    {
+        outbox.publish(message);
+    }
+}

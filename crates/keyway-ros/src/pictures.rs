@@ -1,0 +1,112 @@
+//! Costmaps for those who look on, made beside the control of the robot: it never waits for them.
+
+use crate::costmaps::Known;
+use crate::messages::nav_msgs::OccupancyGrid;
+use crate::messages::std_msgs::Header;
+use keyway::geometry::Point;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+/// A costmap that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shown {
+    /// Around the robot.
+    Local,
+    /// As much of the map as one message may hold.
+    Global,
+}
+
+impl Shown {
+    /// The reach around the robot, along both axes \[m\].
+    fn reach_m(self, resolution_m: f64) -> f64 {
+        /// Larger messages do not reach those who read with the usual buffers.
+        const MOST_CELLS: f64 = 1000.0;
+        const LOCAL_M: f64 = 3.0;
+        let most_m = 0.5 * (MOST_CELLS - 1.0) * resolution_m;
+        match self {
+            Self::Local => most_m.min(LOCAL_M),
+            Self::Global => most_m,
+        }
+    }
+}
+
+/// An order to draw.
+pub(crate) struct Order {
+    pub(crate) shown: Shown,
+    pub(crate) known: Known,
+    /// The robot's place.
+    pub(crate) place: Point,
+    pub(crate) header: Header,
+}
+
+impl Order {
+    fn draw(self) -> Option<(Shown, OccupancyGrid)> {
+        let reach_m = self.shown.reach_m(self.known.resolution_m());
+        let window = match self.shown {
+            Shown::Global if self.known.reaches_m() <= 2.0 * reach_m => self.known.everything(),
+            _ => self.known.around(self.place, reach_m),
+        };
+        Some((self.shown, self.known.costs(window)?.grid(self.header)))
+    }
+}
+
+/// The thread that draws.
+pub(crate) struct Pictures {
+    orders: SyncSender<Order>,
+    drawn: Receiver<(Shown, OccupancyGrid)>,
+}
+
+impl Pictures {
+    /// Starts it; it ends with the last order.
+    pub(crate) fn new() -> std::io::Result<Self> {
+        let (orders, received) = sync_channel::<Order>(2);
+        let (sent, drawn) = sync_channel(4);
+        std::thread::Builder::new().name("pictures".to_owned()).spawn(move || {
+            for picture in received.into_iter().filter_map(Order::draw) {
+                if sent.send(picture).is_err() {
+                    break;
+                }
+            }
+        })?;
+        Ok(Self { orders, drawn })
+    }
+
+    /// Has something drawn, unless too much waits already.
+    pub(crate) fn order(&self, order: Order) {
+        drop(self.orders.try_send(order));
+    }
+
+    /// All that has been drawn since the last call.
+    pub(crate) fn take_all(&self) -> impl Iterator<Item = (Shown, OccupancyGrid)> + '_ {
+        self.drawn.try_iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use keyway::Robot;
+    use keyway::geometry::Pose;
+    use keyway::map::GridFrame;
+    use keyway::navigate::{Navigator, Stack};
+
+    fn size(shown: Shown, cells: u64) -> (u32, u32) {
+        let robot = Robot::small();
+        let frame = GridFrame::new(cells, 50, 0.05, Pose::default()).unwrap();
+        let map = keyway::OccupancyGrid::all_free(frame);
+        let stack = Stack::keyway(&robot).fit(&robot).unwrap();
+        let known = Known::of(&Navigator::new(&map, &stack).unwrap());
+        let pictures = Pictures::new().unwrap();
+        let header = Header::new(1.0, "map");
+        pictures.order(Order { shown, known, place: Point::new(30.01, 1.01), header });
+        let (drawn, grid) = pictures.drawn.recv().unwrap();
+        assert_eq!(drawn, shown);
+        (grid.info.width, grid.info.height)
+    }
+
+    #[test]
+    fn a_local_one_is_around_the_robot_and_a_global_one_as_large_as_can_be() {
+        assert_eq!(size(Shown::Local, 900), (121, 50));
+        assert_eq!(size(Shown::Global, 900), (900, 50), "all of it");
+        assert_eq!(size(Shown::Global, 2000), (1000, 50), "a part around the robot");
+    }
+}
