@@ -1,8 +1,10 @@
 //! The actions and services of the node: those for which the robot drives, and those that only ask.
-//! Each is a few lines that say what its goal wants and how its outcome is written.
+//! Each is a few lines that say what its goal wants and how its outcome is written. What Nav2 has
+//! and this node has not is refused.
 
 mod asks;
 mod drives;
+mod refused;
 mod services;
 
 use crate::error::StartError;
@@ -143,7 +145,8 @@ pub(crate) fn answered(
     stands_for: &[String],
 ) -> Result<Vec<Box<dyn Answered>>, StartError> {
     let through = "compute_path_through_poses";
-    let mut answered: Vec<Box<dyn Answered>> = vec![
+    let mut answered = refused::refused(wire)?;
+    let others: [Box<dyn Answered>; 6] = [
         Box::new(wire.action::<nav2_msgs::ComputePathToPose>("compute_path_to_pose")?),
         Box::new(wire.action::<nav2_msgs::SmoothPath>("smooth_path")?),
         match distribution {
@@ -164,6 +167,7 @@ pub(crate) fn answered(
             wire.service::<ClearCostmapAroundRobot>("local_costmap/clear_costmap_around_robot")?,
         ),
     ];
+    answered.extend(others);
     for costmap in ["global_costmap", "local_costmap"] {
         let clear = format!("{costmap}/clear_entirely_{costmap}");
         answered.push(Box::new(wire.service::<ClearEntireCostmap>(&clear)?));

@@ -152,6 +152,14 @@ impl<A: Wired> ActionServer<A> {
         events
     }
 
+    /// Refuses all goals that clients have since the last call.
+    pub(crate) fn refuse_all(&mut self) {
+        while let Ok(Some((request, _))) = self.server.receive_goal() {
+            let (accepted, stamp) = (false, builtin_interfaces::Time::new(0, 0));
+            drop(self.server.send_goal_response(request, SendGoalResponse { accepted, stamp }));
+        }
+    }
+
     /// The goals that a request gives up, and the answer to it.
     fn cancel(&mut self, request: &CancelGoalRequest) -> (CancelGoalResponse, Vec<GoalId>) {
         let refused = |return_code| {

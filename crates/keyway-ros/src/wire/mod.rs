@@ -48,6 +48,7 @@ on_the_wire!(
     nav2_msgs::SmoothPathGoal,
     nav2_msgs::SmoothPathOutcome,
     nav2_msgs::TimedOutcome,
+    nav2_msgs::Unread,
     nav2_msgs::WaitFeedback,
     nav2_msgs::WaitGoal,
     jazzy::ComputePathThroughPosesGoal,

@@ -2,7 +2,13 @@
 
 pub(crate) mod jazzy;
 pub(crate) mod kilted;
+mod refused;
 pub(crate) mod services;
+
+pub(crate) use refused::{
+    AssistedTeleop, ComputeAndTrackRoute, ComputeRoute, DockRobot, FollowGpsWaypoints, UndockRobot,
+    Unread,
+};
 
 use super::builtin_interfaces::Duration;
 use super::geometry_msgs::{PoseStamped, Vector3};

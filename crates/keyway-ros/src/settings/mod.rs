@@ -1,12 +1,16 @@
 //! Parameters of the node: from files and the command line, as ROS has them, to a robot, a stack,
 //! and names of frames and topics.
 
+mod nav2;
+
 use crate::arguments::Arguments;
 use crate::error::StartError;
 use crate::served::Distribution;
+use keyway::Robot;
 use keyway::files::{find_robot, find_stack};
 use keyway::navigate::FittedStack;
 use keyway::sense::SensorPoints;
+use nav2::Nav2;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -60,7 +64,7 @@ type Parameters = BTreeMap<String, Value>;
 
 /// A parameter, and what it is for; the default is what stands in [`Settings::of`].
 const PARAMETERS: [(&str, &str); 17] = [
-    ("robot", "name of a bundled robot, or its file (TOML); required"),
+    ("robot", "name of a bundled robot, or its file (TOML); required without a file of Nav2"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
     ("controller_frequency", "commands per second; as the robot's cycle says"),
@@ -99,18 +103,29 @@ impl Settings {
                 return Err(wrong("distribution", why));
             }
         };
-        let name = given.text("robot")?.ok_or_else(|| {
-            wrong("robot", format!("is required: {}", keyway::Robot::NAMES.join(", ")))
-        })?;
         let unusable =
             |parameter, error: &dyn std::error::Error| wrong(parameter, error.to_string());
         let folder = Path::new("");
-        let mut robot = find_robot(&name, folder).map_err(|error| unusable("robot", &error))?;
+        let mut robot = match given.text("robot")? {
+            Some(name) => {
+                given.nav2.forget_robot();
+                find_robot(&name, folder).map_err(|error| unusable("robot", &error))?
+            }
+            None => given.nav2_robot()?,
+        };
         if let Some(frequency_hz) = given.positive("controller_frequency")? {
             robot.cycle_s = 1.0 / frequency_hz;
         }
         let name = given.text("stack")?.unwrap_or_else(|| "keyway".to_owned());
-        let stack = find_stack(&name, folder, &robot).map_err(|error| unusable("stack", &error))?;
+        let mut stack =
+            find_stack(&name, folder, &robot).map_err(|error| unusable("stack", &error))?;
+        let controller = &mut stack.controller;
+        if let Some(tolerance_m) = given.nav2.goal_tolerance_m {
+            controller.goal_tolerance_m = tolerance_m;
+        }
+        if let Some(tolerance_rad) = given.nav2.goal_yaw_tolerance_rad {
+            controller.goal_yaw_tolerance_rad = tolerance_rad;
+        }
         let stack = stack.fit(&robot).map_err(|error| unusable("robot", &error))?;
         let scan_topics = given.texts("scan_topics")?.unwrap_or_else(|| vec!["scan".to_owned()]);
         let sensors = stack.robot().sensors.len();
@@ -153,18 +168,24 @@ impl Settings {
             use_sim_time: given.truth("use_sim_time")?.unwrap_or(false),
             max_pose_age_s: given.positive("max_pose_age")?.unwrap_or(0.2),
         };
+        for line in given.nav2.report() {
+            eprintln!("keyway-ros: {line}");
+        }
         given.all_known()?;
         Ok(settings)
     }
 }
 
 /// Parameters that were given, and have not been looked at.
-struct Given(Parameters);
+struct Given {
+    own: Parameters,
+    nav2: Nav2,
+}
 
 impl Given {
     /// Of all files in their order, then of the command line: the last one counts.
     fn read(arguments: &Arguments) -> Result<Self, StartError> {
-        let mut given = Parameters::new();
+        let (mut given, mut nav2) = (Parameters::new(), Nav2::default());
         for path in &arguments.parameter_files {
             let fault = |why: String| StartError::File { path: path.clone(), why };
             let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
@@ -173,6 +194,11 @@ impl Given {
             let Value::Table(nodes) = nodes else {
                 return Err(fault("names of nodes are missing at the top".to_owned()));
             };
+            // What is given to this node itself counts more, wherever it stands.
+            let of_file = Nav2::of(&nodes);
+            if !of_file.is_empty() {
+                nav2 = of_file;
+            }
             for (name, node) in &nodes {
                 if is_for(name, arguments)
                     && let Some(Value::Table(parameters)) = node.get("ros__parameters")
@@ -186,7 +212,28 @@ impl Given {
                 .map_err(|error| wrong(name, format!("`{text}` is no YAML: {error}")))?;
             given.insert(name.clone(), value);
         }
-        Ok(Self(given))
+        let mut own = nav2.own.clone();
+        own.extend(given);
+        Ok(Self { own, nav2 })
+    }
+
+    /// The robot as files of Nav2 describe it.
+    fn nav2_robot(&mut self) -> Result<Robot, StartError> {
+        let names = Robot::NAMES.join(", ");
+        if self.nav2.is_empty() {
+            return Err(wrong("robot", format!("is required: {names}, a file, or a file of Nav2")));
+        }
+        let described = std::mem::take(&mut self.nav2.robot).robot();
+        let mut robot = described.map_err(|error| {
+            let why =
+                format!("is not given, and what Nav2's parameters say is not enough: {error}");
+            wrong("robot", why)
+        })?;
+        // Nothing is said of the lidars but their topics.
+        let lidar = robot.sensors[0].clone();
+        let scans = self.own.get("scan_topics").and_then(Value::as_array).map_or(1, Vec::len);
+        robot.sensors = vec![lidar; scans.clamp(1, Robot::MOST_SENSORS)];
+        Ok(robot)
     }
 
     /// Takes a parameter out.
@@ -196,7 +243,7 @@ impl Given {
         expected: &str,
         convert: impl FnOnce(&Value) -> Option<T>,
     ) -> Result<Option<T>, StartError> {
-        let Some(value) = self.0.remove(name) else { return Ok(None) };
+        let Some(value) = self.own.remove(name) else { return Ok(None) };
         let converted = convert(&value);
         let why = || wrong(name, format!("must be {expected}, got {value}"));
         converted.ok_or_else(why).map(Some)
@@ -227,7 +274,7 @@ impl Given {
 
     /// Refuses what is left.
     fn all_known(self) -> Result<(), StartError> {
-        let Some(name) = self.0.into_keys().next() else { return Ok(()) };
+        let Some(name) = self.own.into_keys().next() else { return Ok(()) };
         let known: Vec<&str> = PARAMETERS.iter().map(|(name, _)| *name).collect();
         Err(wrong(&name, format!("is none of this node's: {}", known.join(", "))))
     }
@@ -301,6 +348,34 @@ mod tests {
             let message = settings(&parameters).err().unwrap().to_string();
             assert!(message.contains(said), "{message}");
         }
+    }
+
+    #[test]
+    fn a_file_of_nav2_is_enough() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let text = "controller_server:\n  ros__parameters:\n    controller_frequency: 10.0\n    \
+                    FollowPath:\n      max_vel_x: 0.3\n";
+        let with_size = format!(
+            "{text}local_costmap:\n  local_costmap:\n    ros__parameters:\n      robot_radius: 0.2\n"
+        );
+        let read = |text: &str, parameters: &[(&str, &str)]| {
+            std::fs::write(file.path(), text).unwrap();
+            let parameters = parameters.iter().map(|&(name, value)| (name.into(), value.into()));
+            let parameter_files = vec![file.path().to_owned()];
+            let parameters = parameters.collect();
+            let arguments = Arguments { parameters, parameter_files, ..Arguments::default() };
+            Settings::of(&arguments, None)
+        };
+        let settings = read(&with_size, &[]).unwrap();
+        let robot = settings.stack.robot();
+        assert_eq!((robot.limits.v_max_mps, robot.cycle_s), (0.3, 0.1));
+        // What is given to this node itself counts more.
+        let given = [("robot", "jackal"), ("controller_frequency", "20")];
+        let settings = read(&with_size, &given).unwrap();
+        let robot = settings.stack.robot();
+        assert_eq!((robot.limits.v_max_mps, robot.cycle_s), (2.0, 0.05));
+        let message = read(text, &[]).err().unwrap().to_string();
+        assert!(message.contains("not enough"), "{message}");
     }
 
     #[test]

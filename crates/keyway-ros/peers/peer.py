@@ -1,0 +1,134 @@
+"""What the tests share: the node as a process, goals, and waiting."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import rclpy
+from geometry_msgs.msg import PoseStamped
+from rclpy.action import ActionClient
+from rclpy.executors import MultiThreadedExecutor
+from robot import IS_JAZZY, Robot
+
+LONGEST_S = 90.0
+
+
+def pose(x: float, y: float, theta: float = 0.0) -> PoseStamped:
+    message = PoseStamped()
+    message.header.frame_id = "map"
+    message.pose.position.x, message.pose.position.y = float(x), float(y)
+    message.pose.orientation.z, message.pose.orientation.w = math.sin(theta / 2), math.cos(theta / 2)
+    return message
+
+
+def several(poses: list[PoseStamped]):
+    """Poses as goals have them: Kilted has a message of its own for them."""
+    if IS_JAZZY:
+        return poses
+    from nav_msgs.msg import Goals
+
+    return Goals(goals=poses)
+
+
+def wait(is_over, longest_s: float = LONGEST_S) -> bool:
+    end = time.monotonic() + longest_s
+    while not is_over() and time.monotonic() < end:
+        time.sleep(0.01)
+    return is_over()
+
+
+class Keyway:
+    """The node, as a process."""
+
+    def __init__(self, *arguments: str, robot: str = "small") -> None:
+        program = os.environ["KEYWAY_NODE"]
+        given = [argument for parameter in (f"robot:={robot}", *arguments) for argument in ("-p", parameter)]
+        self.process = subprocess.Popen([program, "--ros-args", *given])
+
+    def cpu_s(self) -> float:
+        with open(f"/proc/{self.process.pid}/stat") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def memory_mb(self) -> float:
+        with open(f"/proc/{self.process.pid}/status") as file:
+            return next(int(line.split()[1]) for line in file if line.startswith("VmRSS")) / 1024
+
+    def stop(self) -> None:
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(10)
+
+
+class Goal:
+    """A goal that was sent to an action."""
+
+    def __init__(self, client: ActionClient, goal) -> None:
+        self.feedback: list = []
+        sent = client.send_goal_async(goal, feedback_callback=lambda message: self.feedback.append(message.feedback))
+        assert wait(sent.done, 20), "no answer to a goal"
+        self.handle = sent.result()
+        assert self.handle.accepted
+        self.result_later = self.handle.get_result_async()
+
+    def cancel(self) -> int:
+        answered = self.handle.cancel_goal_async()
+        assert wait(answered.done, 10), "no answer to a cancellation"
+        return answered.result().return_code
+
+    def end(self, longest_s: float = LONGEST_S):
+        assert wait(self.result_later.done, longest_s), "no result"
+        return self.result_later.result()
+
+
+class Checks:
+    """A robot, the node, and checks in the order of their definition: where the robot is after one is where it begins the next."""
+
+    def __init__(self, robot: Robot, keyway: Keyway) -> None:
+        self.robot, self.keyway = robot, keyway
+        executor = MultiThreadedExecutor()
+        executor.add_node(robot)
+        threading.Thread(target=executor.spin, daemon=True).start()
+
+    def client(self, action, name: str) -> ActionClient:
+        client = ActionClient(self.robot, action, name)
+        assert client.wait_for_server(30), f"the node does not serve {name}"
+        return client
+
+    def call(self, service, name: str, request):
+        client = self.robot.create_client(service, name)
+        assert client.wait_for_service(20), f"the node does not serve {name}"
+        answered = client.call_async(request)
+        assert wait(answered.done, 20), f"no answer of {name}"
+        return answered.result()
+
+    def is_at(self, x: float, y: float) -> bool:
+        return math.hypot(self.robot.x - x, self.robot.y - y) < 0.2
+
+    def run(self) -> int:
+        names = [name for name in vars(type(self)) if name.startswith(("a_", "what_", "nothing_", "who_"))]
+        failed = 0
+        for name in names:
+            try:
+                getattr(self, name)()
+                print(f"{name} ... ok", flush=True)
+            except AssertionError as error:
+                failed += 1
+                print(f"{name} ... FAILED: {error}", flush=True)
+        print(f"{len(names) - failed} passed, {failed} failed", flush=True)
+        return min(failed, 1)
+
+
+def leave(code: int, keyway: Keyway | None = None) -> None:
+    """Ends the program: the executor's thread never ends, and its end is not what is checked here."""
+    if keyway is not None:
+        keyway.stop()
+    sys.stdout.flush()
+    os._exit(code)
+
+
+def begin() -> None:
+    rclpy.init()

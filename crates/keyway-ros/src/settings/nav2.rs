@@ -1,0 +1,382 @@
+//! Parameters of Nav2's nodes, as far as they have a meaning here: so that its files say what a
+//! robot is.
+
+use super::Parameters;
+use keyway::files::RobotFile;
+use keyway::geometry::Point;
+use keyway::robot::Footprint;
+use std::collections::{BTreeMap, BTreeSet};
+use toml::{Table, Value};
+
+/// What a file of Nav2 says.
+#[derive(Debug, Default)]
+pub(super) struct Nav2 {
+    /// The robot, as far as it is described.
+    pub(super) robot: RobotFile,
+    pub(super) goal_tolerance_m: Option<f64>,
+    pub(super) goal_yaw_tolerance_rad: Option<f64>,
+    /// Parameters of this node that follow from others.
+    pub(super) own: Parameters,
+    /// Names that were taken, and all there are, each after its node.
+    taken: BTreeSet<String>,
+    all: BTreeSet<String>,
+    /// Those that were taken for the robot.
+    of_robot: BTreeSet<String>,
+}
+
+/// Nodes by their names, as a file has them.
+struct Nodes<'a> {
+    parameters: BTreeMap<&'a str, &'a Table>,
+    taken: BTreeSet<String>,
+}
+
+impl Nav2 {
+    /// Of the nodes of a file; nothing where none of them is Nav2's.
+    pub(super) fn of(file: &Table) -> Self {
+        let mut nodes = Nodes::of(file);
+        let mut found = Self { all: nodes.names(), ..Self::default() };
+        found.take_size(&mut nodes);
+        found.take_limits(&mut nodes);
+        found.of_robot = nodes.taken.clone();
+        found.take_tolerances(&mut nodes);
+        found.take_names(&mut nodes);
+        found.take_sources(&mut nodes);
+        found.taken = nodes.taken;
+        found
+    }
+
+    /// The robot is described elsewhere.
+    pub(super) fn forget_robot(&mut self) {
+        self.taken.retain(|name| !self.of_robot.contains(name));
+    }
+
+    /// True if it says nothing.
+    pub(super) fn is_empty(&self) -> bool {
+        self.taken.is_empty()
+    }
+
+    /// What was taken, and what was not, for the one who starts the node; empty without a file of
+    /// Nav2.
+    pub(super) fn report(&self) -> Vec<String> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let mut lines = vec!["parameters of Nav2 that say something here:".to_owned()];
+        lines.extend(self.taken.iter().map(|name| format!("  {name}")));
+        let mut left: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for (node, name) in
+            self.all.difference(&self.taken).filter_map(|name| name.split_once(": "))
+        {
+            left.entry(node).or_default().push(name);
+        }
+        lines.push("those that say nothing here:".to_owned());
+        lines.extend(left.iter().map(|(node, names)| format!("  {node}: {}", names.join(", "))));
+        lines
+    }
+
+    fn take_size(&mut self, nodes: &mut Nodes<'_>) {
+        for costmap in ["local_costmap", "global_costmap"] {
+            let corners = nodes.text(costmap, "footprint").and_then(|text| polygon(&text));
+            if let Some(footprint) = corners {
+                self.robot.footprint = Some(footprint);
+                return;
+            }
+            if let Some(radius_m) = nodes.number(costmap, "robot_radius") {
+                self.robot.radius_m = Some(radius_m);
+                return;
+            }
+        }
+    }
+
+    /// The limits of the first controller, whichever it is, and of the smoother of velocities: the
+    /// lower one of both counts.
+    fn take_limits(&mut self, nodes: &mut Nodes<'_>) {
+        const CONTROLLER: &str = "controller_server";
+        const SMOOTHER: &str = "velocity_smoother";
+        let plugin = nodes.first_text(CONTROLLER, "controller_plugins");
+        let plugin = plugin.unwrap_or_else(|| "FollowPath".to_owned());
+        let mut of_controller = |names: &[&str]| {
+            let mut number = |name: &&str| nodes.number(CONTROLLER, &format!("{plugin}.{name}"));
+            names.iter().find_map(&mut number)
+        };
+        // DWB, MPPI, regulated pure pursuit, the graceful controller.
+        let speed = of_controller(&["max_vel_x", "vx_max", "desired_linear_vel", "v_linear_max"]);
+        let slowest = of_controller(&["min_vel_x", "vx_min"]);
+        let turn = of_controller(&[
+            "max_vel_theta",
+            "wz_max",
+            "rotate_to_heading_angular_vel",
+            "v_angular_max",
+        ]);
+        let faster = of_controller(&["acc_lim_x", "ax_max"]);
+        let slower = of_controller(&["decel_lim_x", "ax_min"]);
+        let turn_faster = of_controller(&["acc_lim_theta", "az_max", "max_angular_accel"]);
+        let turn_slower = of_controller(&["decel_lim_theta"]);
+        let mut of_smoother = |name: &str| {
+            let list = nodes.numbers(SMOOTHER, name).filter(|list| list.len() == 3);
+            let at = |index: usize| list.as_ref().map(|list| list[index].abs());
+            [at(0), at(2)]
+        };
+        let [top, top_turn] = of_smoother("max_velocity");
+        let [gain, turn_gain] = of_smoother("max_accel");
+        let [brake, turn_brake] = of_smoother("max_decel");
+        let lower = |a: Option<f64>, b: Option<f64>| match (a.map(f64::abs), b) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+        self.robot.v_max_mps = lower(speed, top);
+        let limits = &mut self.robot.limits;
+        limits.v_min_mps = slowest.map(|v_mps| v_mps.min(0.0));
+        limits.omega_max_radps = lower(turn, top_turn);
+        limits.acceleration_mps2 = lower(faster, gain);
+        limits.deceleration_mps2 = lower(slower, brake).or(limits.acceleration_mps2);
+        limits.angular_acceleration_radps2 = lower(turn_faster, turn_gain);
+        limits.angular_deceleration_radps2 =
+            lower(turn_slower, turn_brake).or(limits.angular_acceleration_radps2);
+    }
+
+    fn take_tolerances(&mut self, nodes: &mut Nodes<'_>) {
+        let server = "controller_server";
+        let checker = nodes.first_text(server, "goal_checker_plugins");
+        let checker = checker.unwrap_or_else(|| "goal_checker".to_owned());
+        self.goal_tolerance_m = nodes.number(server, &format!("{checker}.xy_goal_tolerance"));
+        self.goal_yaw_tolerance_rad =
+            nodes.number(server, &format!("{checker}.yaw_goal_tolerance"));
+    }
+
+    /// The names of frames and topics, the frequency, and the kind of time.
+    fn take_names(&mut self, nodes: &mut Nodes<'_>) {
+        for (own, places) in [
+            ("controller_frequency", &["controller_server"][..]),
+            ("odom_topic", &["controller_server", "bt_navigator"]),
+            ("global_frame", &["bt_navigator", "global_costmap"]),
+            ("robot_base_frame", &["bt_navigator", "local_costmap"]),
+            ("use_sim_time", &["controller_server", "bt_navigator", "local_costmap"]),
+            ("enable_stamped_cmd_vel", &["controller_server"]),
+        ] {
+            let value = places.iter().find_map(|node| nodes.take(node, own).cloned());
+            self.own.extend(value.map(|value| (own.to_owned(), value)));
+        }
+    }
+
+    /// The topics of lidars and of clouds, of the costmap around the robot.
+    fn take_sources(&mut self, nodes: &mut Nodes<'_>) {
+        let costmap = "local_costmap";
+        let (mut scans, mut clouds) = (Vec::new(), Vec::new());
+        for layer in nodes.texts(costmap, "plugins").unwrap_or_default() {
+            let Some(sources) = nodes.text(costmap, &format!("{layer}.observation_sources")) else {
+                continue;
+            };
+            for source in sources.split_whitespace() {
+                let mut of = |name: &str| nodes.take(costmap, &format!("{layer}.{source}.{name}"));
+                let is_cloud = of("data_type").and_then(Value::as_str) == Some("PointCloud2");
+                let topic = of("topic").and_then(Value::as_str).unwrap_or(source).to_owned();
+                let topics = if is_cloud { &mut clouds } else { &mut scans };
+                topics.push(topic);
+                for name in ["min_obstacle_height", "max_obstacle_height", "obstacle_max_range"] {
+                    let value = is_cloud.then(|| of(name).cloned()).flatten();
+                    self.own.extend(value.map(|value| (name.to_owned(), value)));
+                }
+            }
+        }
+        for (own, topics) in [("scan_topics", scans), ("cloud_topics", clouds)] {
+            if !topics.is_empty() {
+                let topics = topics.into_iter().map(Value::String).collect();
+                self.own.insert(own.to_owned(), Value::Array(topics));
+            }
+        }
+    }
+}
+
+impl<'a> Nodes<'a> {
+    /// Nodes that Nav2 has.
+    const NAMES: [&'static str; 12] = [
+        "amcl",
+        "behavior_server",
+        "bt_navigator",
+        "collision_monitor",
+        "controller_server",
+        "docking_server",
+        "global_costmap",
+        "local_costmap",
+        "planner_server",
+        "smoother_server",
+        "velocity_smoother",
+        "waypoint_follower",
+    ];
+
+    fn of(file: &'a Table) -> Self {
+        let parameters = Self::NAMES.into_iter().filter_map(|name| {
+            let node = file.get(name)?;
+            // Nodes of costmaps stand in a namespace that is called as they are.
+            let node = node.get(name).unwrap_or(node);
+            Some((name, node.get("ros__parameters")?.as_table()?))
+        });
+        Self { parameters: parameters.collect(), taken: BTreeSet::new() }
+    }
+
+    /// The names of all parameters, each after its node.
+    fn names(&self) -> BTreeSet<String> {
+        let mut names = BTreeSet::new();
+        for (node, parameters) in &self.parameters {
+            add_names(&mut names, &format!("{node}: "), parameters);
+        }
+        names
+    }
+
+    /// A parameter by its name with dots, which a file may have as tables or as it is.
+    fn take(&mut self, node: &str, name: &str) -> Option<&'a Value> {
+        let parameters = *self.parameters.get(node)?;
+        let nested = || {
+            let (parts, last) = name.rsplit_once('.').unwrap_or(("", name));
+            let mut parts = parts.split('.').filter(|part| !part.is_empty());
+            let into = |table: &'a Table, part: &str| table.get(part)?.as_table();
+            parts.try_fold(parameters, into)?.get(last)
+        };
+        let value = parameters.get(name).or_else(nested).filter(|value| !value.is_table())?;
+        self.taken.insert(format!("{node}: {name}"));
+        Some(value)
+    }
+
+    fn number(&mut self, node: &str, name: &str) -> Option<f64> {
+        super::number(self.take(node, name)?)
+    }
+
+    fn numbers(&mut self, node: &str, name: &str) -> Option<Vec<f64>> {
+        self.take(node, name)?.as_array()?.iter().map(super::number).collect()
+    }
+
+    fn text(&mut self, node: &str, name: &str) -> Option<String> {
+        Some(self.take(node, name)?.as_str()?.to_owned())
+    }
+
+    fn texts(&mut self, node: &str, name: &str) -> Option<Vec<String>> {
+        let list = self.take(node, name)?.as_array()?;
+        list.iter().map(|text| Some(text.as_str()?.to_owned())).collect()
+    }
+
+    fn first_text(&mut self, node: &str, name: &str) -> Option<String> {
+        self.texts(node, name)?.into_iter().next()
+    }
+}
+
+fn add_names(names: &mut BTreeSet<String>, before: &str, parameters: &Table) {
+    for (name, value) in parameters {
+        match value {
+            Value::Table(inner) => add_names(names, &format!("{before}{name}."), inner),
+            _ => drop(names.insert(format!("{before}{name}"))),
+        }
+    }
+}
+
+/// A footprint as Nav2 writes it: a text such as `[[0.2, 0.1], [-0.2, 0.1], [0.0, -0.1]]`.
+fn polygon(text: &str) -> Option<Footprint> {
+    let corners: Vec<[f64; 2]> = serde_saphyr::from_str(text).ok()?;
+    Footprint::polygon(corners.into_iter().map(Point::from).collect()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Nav2 {
+        Nav2::of(&serde_saphyr::from_str(text).unwrap())
+    }
+
+    /// As Nav2's own files are laid out, with MPPI.
+    const MPPI: &str = r#"
+amcl:
+  ros__parameters:
+    scan_topic: scan
+bt_navigator:
+  ros__parameters:
+    global_frame: world
+    robot_base_frame: base_footprint
+    odom_topic: odometry
+controller_server:
+  ros__parameters:
+    controller_frequency: 20.0
+    goal_checker_plugins: ["general_goal_checker"]
+    controller_plugins: ["FollowPath"]
+    general_goal_checker:
+      xy_goal_tolerance: 0.25
+      yaw_goal_tolerance: 0.3
+    FollowPath:
+      plugin: "nav2_mppi_controller::MPPIController"
+      vx_max: 0.5
+      vx_min: -0.35
+      wz_max: 1.9
+      ax_max: 3.0
+      ax_min: -2.0
+      az_max: 3.5
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      robot_radius: 0.22
+      plugins: ["voxel_layer", "inflation_layer"]
+      inflation_layer:
+        inflation_radius: 0.7
+      voxel_layer:
+        observation_sources: scan depth
+        scan:
+          topic: /front/scan
+          data_type: "LaserScan"
+          obstacle_max_range: 2.5
+        depth:
+          topic: /depth/points
+          data_type: "PointCloud2"
+          max_obstacle_height: 1.2
+velocity_smoother:
+  ros__parameters:
+    max_velocity: [0.4, 0.0, 2.5]
+    max_accel: [2.5, 0.0, 3.2]
+    max_decel: [-2.5, 0.0, -3.2]
+"#;
+
+    #[test]
+    fn a_file_of_nav2_describes_a_robot() {
+        let nav2 = of(MPPI);
+        let robot = nav2.robot.clone().robot().unwrap();
+        assert_eq!(robot.footprint, Footprint::circle(0.22).unwrap());
+        let limits = &robot.limits;
+        assert_eq!((limits.v_max_mps, limits.v_min_mps), (0.4, -0.35), "the smoother is slower");
+        assert_eq!((limits.acceleration_mps2, limits.deceleration_mps2), (2.5, 2.0));
+        assert_eq!((limits.omega_max_radps, limits.angular_acceleration_radps2), (1.9, 3.2));
+        assert_eq!(limits.angular_deceleration_radps2, 3.2);
+        assert_eq!((nav2.goal_tolerance_m, nav2.goal_yaw_tolerance_rad), (Some(0.25), Some(0.3)));
+        let texts = |name: &str| nav2.own[name].to_string();
+        assert_eq!(texts("scan_topics"), r#"["/front/scan"]"#);
+        assert_eq!(texts("cloud_topics"), r#"["/depth/points"]"#);
+        assert_eq!(texts("max_obstacle_height"), "1.2");
+        assert!(!nav2.own.contains_key("obstacle_max_range"), "that was of a lidar");
+        assert_eq!(texts("global_frame"), r#""world""#);
+        assert_eq!(texts("controller_frequency"), "20.0");
+    }
+
+    #[test]
+    fn what_was_taken_is_told() {
+        let mut nav2 = of(MPPI);
+        let report = nav2.report().join("\n");
+        let (taken, left) = report.split_once("those that say nothing").unwrap();
+        for name in ["controller_server: FollowPath.vx_max", "local_costmap: robot_radius"] {
+            assert!(taken.contains(name), "{report}");
+        }
+        assert!(left.contains("  amcl: scan_topic\n"), "{report}");
+        assert!(left.contains("inflation_layer.inflation_radius") && left.contains("plugin"));
+        nav2.forget_robot();
+        let report = nav2.report().join("\n");
+        let (taken, left) = report.split_once("those that say nothing").unwrap();
+        assert!(!taken.contains("robot_radius") && left.contains("robot_radius"), "{report}");
+        assert!(taken.contains("xy_goal_tolerance"));
+        assert!(of("keyway:\n  ros__parameters:\n    robot: jackal\n").report().is_empty());
+    }
+
+    #[test]
+    fn names_may_have_dots_and_footprints_are_texts() {
+        let nav2 = of("controller_server:\n  ros__parameters:\n    FollowPath.max_vel_x: 0.3\n\
+                       local_costmap:\n  local_costmap:\n    ros__parameters:\n      footprint: \
+                       \"[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]]\"\n      robot_radius: 0.1\n");
+        let robot = nav2.robot.robot().unwrap();
+        assert_eq!((robot.limits.v_max_mps, robot.footprint.inscribed_radius_m()), (0.3, 0.2));
+    }
+}
