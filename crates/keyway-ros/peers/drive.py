@@ -42,13 +42,16 @@ class Drive(Checks):
         self.through = self.client(NavigateThroughPoses, "navigate_through_poses")
         self.stops = self.client(FollowWaypoints, "follow_waypoints")
         self.follow = self.client(FollowPath, "follow_path")
-        self.spin = self.client(Spin, "spin")
+        self.turn = self.client(Spin, "spin")
         self.back_up = self.client(BackUp, "backup")
         self.ahead = self.client(DriveOnHeading, "drive_on_heading")
         self.pause = self.client(Wait, "wait")
         self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
         self.compute_through = self.client(ComputePathThroughPoses, "compute_path_through_poses")
         self.smooth = self.client(SmoothPath, "smooth_path")
+        refused = {"assisted_teleop": AssistedTeleop, "compute_route": ComputeRoute, "dock_robot": DockRobot, "undock_robot": UndockRobot}
+        self.refused = {name: (action, self.client(action, name)) for name, action in refused.items()}
+        self.spin()
         # The map and the static transform are latched: they may take seconds.
         assert wait(lambda: self.path(pose(6.5, 1.5)).result.error_code == 0, 30), "no map after 30 s"
 
@@ -134,7 +137,7 @@ class Drive(Checks):
     def a_single_motion(self) -> None:
         allowance = Duration(sec=20)
         before = self.robot.theta
-        ended = Goal(self.spin, Spin.Goal(target_yaw=1.57, time_allowance=allowance)).end()
+        ended = Goal(self.turn, Spin.Goal(target_yaw=1.57, time_allowance=allowance)).end()
         assert ended.status == GoalStatus.STATUS_SUCCEEDED and abs(self.robot.theta - before - 1.57) < 0.1
         x, y = self.robot.x, self.robot.y
         goal = DriveOnHeading.Goal(target=Point(x=0.4), speed=0.2, time_allowance=allowance)
@@ -169,9 +172,8 @@ class Drive(Checks):
         assert ended.status == GoalStatus.STATUS_SUCCEEDED, ended.result
 
     def what_is_not_there_is_refused(self) -> None:
-        actions = {"assisted_teleop": AssistedTeleop, "compute_route": ComputeRoute, "dock_robot": DockRobot, "undock_robot": UndockRobot}
-        for name, action in actions.items():
-            sent = self.client(action, name).send_goal_async(action.Goal())
+        for name, (action, client) in self.refused.items():
+            sent = client.send_goal_async(action.Goal())
             assert wait(sent.done, 10) and not sent.result().accepted, name
 
     def what_it_does_is_shown(self) -> None:

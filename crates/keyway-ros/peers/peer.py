@@ -89,8 +89,11 @@ class Checks:
 
     def __init__(self, robot: Robot, keyway: Keyway) -> None:
         self.robot, self.keyway = robot, keyway
+
+    def spin(self) -> None:
+        """Lets the robot live. Clients of actions must be there before: an executor may meet them half made."""
         executor = MultiThreadedExecutor()
-        executor.add_node(robot)
+        executor.add_node(self.robot)
         threading.Thread(target=executor.spin, daemon=True).start()
 
     def client(self, action, name: str) -> ActionClient:

@@ -20,11 +20,13 @@ class Standing(Checks):
     def __init__(self) -> None:
         super().__init__(Robot(), Keyway())
         self.robot.watchdog_s = 0.5
+        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
+        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
+        self.spin()
         self.connect()
 
     def connect(self) -> None:
-        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
-        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
+        assert self.navigate.wait_for_server(30) and self.compute.wait_for_server(30)
         path = lambda: Goal(self.compute, ComputePathToPose.Goal(goal=pose(*RIGHT))).end().result
         assert wait(lambda: path().error_code == 0, 30), "no map after 30 s"
 

@@ -282,7 +282,8 @@ fn a_course_is_that_of_the_last_decision() {
     life.drive_for(3.0);
     let (course, pose) = (life.navigator.course(), life.pose);
     assert!(course[0].point().distance(pose.point()) < 0.1, "{:?} {pose:?}", course[0]);
-    let length_m: f64 = course.windows(2).map(|ends| ends[0].point().distance(ends[1].point())).sum();
+    let length_m: f64 =
+        course.windows(2).map(|ends| ends[0].point().distance(ends[1].point())).sum();
     let limits = &life.navigator.stack().robot().limits;
     assert!((0.5..=3.1).contains(&(length_m / limits.v_max_mps)), "{length_m}");
     assert!(course.iter().all(|pose| (pose.y - 4.0).abs() < 0.05), "{course:?}");
