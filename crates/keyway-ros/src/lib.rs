@@ -32,6 +32,7 @@ pub use error::StartError;
 
 use arguments::{Arguments, Network};
 use node::Node;
+use pilot::Pilot;
 use settings::Settings;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -61,7 +62,10 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
             StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
         })?;
     }
-    Node::new(&arguments, network, settings)?.run(&is_over);
+    let mut pilot = Some(Pilot::new(settings));
+    while let Some(present) = pilot {
+        pilot = Node::new(&arguments, network, present)?.run(&is_over);
+    }
     Ok(())
 }
 

@@ -51,13 +51,14 @@ enum Client {
 }
 
 impl Node {
-    /// Joins the network.
+    /// Joins the network, for a pilot.
     pub(crate) fn new(
         arguments: &Arguments,
         network: Network,
-        settings: Settings,
+        pilot: Pilot,
     ) -> Result<Self, StartError> {
-        let mut wire = Wire::open(arguments, network)?;
+        let mut wire = Wire::open(arguments, network, &pilot.settings().declared())?;
+        let settings = pilot.settings().clone();
         let inboxes = Inboxes::new(&mut wire, &settings)?;
         let outboxes = Outboxes::new(&mut wire, &settings)?;
         let served = served(&mut wire, settings.distribution)?;
@@ -65,7 +66,7 @@ impl Node {
         let timing = Timing::new(settings.stack.robot().cycle_s);
         Ok(Self {
             wire,
-            pilot: Pilot::new(settings.clone()),
+            pilot,
             clock: Clock::new(settings.use_sim_time),
             settings,
             inboxes,
@@ -80,11 +81,20 @@ impl Node {
         })
     }
 
-    /// Runs until it is told to stop; then the robot is told to stand.
-    pub(crate) fn run(&mut self, is_over: &Arc<AtomicBool>) {
+    /// Runs until it is told to stop; then the robot is told to stand. After a halt of the process
+    /// it gives its pilot back, to join the network anew: whoever was halted does not drive on by
+    /// itself.
+    pub(crate) fn run(mut self, is_over: &Arc<AtomicBool>) -> Option<Pilot> {
         let period = Duration::from_secs_f64(self.timing.period_s());
         let mut next = Instant::now();
         while !is_over.load(Ordering::Relaxed) {
+            if self.wire.is_dead() {
+                eprintln!(
+                    "keyway-ros: the process was halted: it joins the network anew, without a goal"
+                );
+                self.pilot.stop();
+                return Some(self.pilot);
+            }
             self.wire.wait(next.saturating_duration_since(Instant::now()));
             self.receive();
             let now = Instant::now();
@@ -102,6 +112,7 @@ impl Node {
             }
         }
         self.command(Velocity::ZERO);
+        None
     }
 
     /// Takes in all that has come.
@@ -112,6 +123,9 @@ impl Node {
         if self.clock.take_restart() {
             self.say("the clock was set: what was sensed by the old one no longer counts");
             self.pilot.restart_clock();
+        }
+        for change in self.wire.changes() {
+            self.pilot.change(&change);
         }
         self.inboxes.receive_sensed(&mut self.pilot);
         for fault in self.inboxes.receive_known(&mut self.pilot, &mut self.wire) {

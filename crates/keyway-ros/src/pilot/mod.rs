@@ -18,7 +18,7 @@ use maps::MapError;
 pub(crate) use maps::UrlError;
 pub(crate) use waits::Waits;
 
-use crate::settings::Settings;
+use crate::settings::{Change, Settings};
 use crate::transforms::Transforms;
 use errand::Errand;
 use keyway::geometry::{Pose, Velocity};
@@ -114,6 +114,16 @@ impl Pilot {
     /// The navigator, once there is a map.
     pub(crate) const fn navigator(&self) -> Option<&Navigator> {
         self.navigator.as_ref()
+    }
+
+    pub(crate) const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Makes a change of its settings.
+    pub(crate) fn change(&mut self, change: &Change) {
+        self.settings.change(change);
+        self.sensing.points_taken = self.settings.points_taken.clone();
     }
 
     /// True while it has something to do.

@@ -22,7 +22,7 @@ pub(crate) struct Sensing {
     /// The last cloud of a sensor, where it could not be read: until one can, nobody knows what is
     /// there.
     unreadable: Vec<Option<CloudError>>,
-    points_taken: PointsTaken,
+    pub(super) points_taken: PointsTaken,
 }
 
 /// A scan in the robot's frame.

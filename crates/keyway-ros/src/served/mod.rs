@@ -26,6 +26,16 @@ pub(crate) enum Distribution {
     Kilted,
 }
 
+impl Distribution {
+    /// Its name, as in `ROS_DISTRO`.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Jazzy => "jazzy",
+            Self::Kilted => "kilted",
+        }
+    }
+}
+
 /// The time and the frame of what is told.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told<'a> {

@@ -1,7 +1,10 @@
 //! Parameters of the node: from files and the command line, as ROS has them, to a robot, a stack,
 //! and names of frames and topics.
 
+mod declared;
 mod nav2;
+
+pub(crate) use declared::Change;
 
 use crate::arguments::Arguments;
 use crate::error::StartError;
@@ -21,6 +24,9 @@ use toml::Value;
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub(crate) stack: Arc<FittedStack>,
+    /// As they were asked for; empty where the robot is that of a file of Nav2.
+    robot_name: String,
+    stack_name: String,
     pub(crate) frames: Frames,
     /// Topics of the lidars, in the order of the robot's sensors.
     pub(crate) scan_topics: Vec<String>,
@@ -106,19 +112,20 @@ impl Settings {
         let unusable =
             |parameter, error: &dyn std::error::Error| wrong(parameter, error.to_string());
         let folder = Path::new("");
-        let mut robot = match given.text("robot")? {
+        let robot_name = given.text("robot")?;
+        let mut robot = match &robot_name {
             Some(name) => {
                 given.nav2.forget_robot();
-                find_robot(&name, folder).map_err(|error| unusable("robot", &error))?
+                find_robot(name, folder).map_err(|error| unusable("robot", &error))?
             }
             None => given.nav2_robot()?,
         };
         if let Some(frequency_hz) = given.positive("controller_frequency")? {
             robot.cycle_s = 1.0 / frequency_hz;
         }
-        let name = given.text("stack")?.unwrap_or_else(|| "keyway".to_owned());
+        let stack_name = given.text("stack")?.unwrap_or_else(|| "keyway".to_owned());
         let mut stack =
-            find_stack(&name, folder, &robot).map_err(|error| unusable("stack", &error))?;
+            find_stack(&stack_name, folder, &robot).map_err(|error| unusable("stack", &error))?;
         let controller = &mut stack.controller;
         if let Some(tolerance_m) = given.nav2.goal_tolerance_m {
             controller.goal_tolerance_m = tolerance_m;
@@ -143,17 +150,15 @@ impl Settings {
             |value: Option<String>, default: &str| value.unwrap_or_else(|| default.to_owned());
         let settings = Self {
             stack: Arc::new(stack),
+            robot_name: robot_name.unwrap_or_default(),
+            stack_name,
             frames: Frames {
                 map: text(given.text("global_frame")?, "map"),
                 base: text(given.text("robot_base_frame")?, "base_link"),
             },
             scan_topics,
             cloud_topics,
-            points_taken: PointsTaken {
-                heights_m: given.number("min_obstacle_height")?.unwrap_or(0.05)
-                    ..=given.number("max_obstacle_height")?.unwrap_or(2.0),
-                range_m: given.positive("obstacle_max_range")?.unwrap_or(2.5),
-            },
+            points_taken: given.points_taken()?,
             filter_info_topics: given.texts("filter_info_topics")?.unwrap_or_else(|| {
                 ["", "keepout_", "speed_"].map(|kind| format!("{kind}costmap_filter_info")).to_vec()
             }),
@@ -215,6 +220,18 @@ impl Given {
         let mut own = nav2.own.clone();
         own.extend(given);
         Ok(Self { own, nav2 })
+    }
+
+    /// The points of clouds that count.
+    fn points_taken(&mut self) -> Result<PointsTaken, StartError> {
+        let lowest_m = self.number("min_obstacle_height")?.unwrap_or(0.05);
+        let highest_m = self.number("max_obstacle_height")?.unwrap_or(2.0);
+        if lowest_m > highest_m {
+            let why = format!("must not be above max_obstacle_height, {highest_m}, got {lowest_m}");
+            return Err(wrong("min_obstacle_height", why));
+        }
+        let range_m = self.positive("obstacle_max_range")?.unwrap_or(2.5);
+        Ok(PointsTaken { heights_m: lowest_m..=highest_m, range_m })
     }
 
     /// The robot as files of Nav2 describe it.
@@ -342,6 +359,7 @@ mod tests {
             (vec![("robot", "jackal"), ("max_pose_age", "-1")], "a positive number, got -1"),
             (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
             (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
+            (vec![("robot", "jackal"), ("min_obstacle_height", "3")], "above max_obstacle_height"),
             (vec![("robot", "[")], "YAML"),
             (vec![("robot", "jackal"), ("distribution", "foxy")], "jazzy or kilted, got foxy"),
         ] {

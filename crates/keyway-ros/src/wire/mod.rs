@@ -3,6 +3,8 @@
 //! Nothing here waits but [`Wire::wait`]: inboxes are emptied whenever something has come.
 
 mod action;
+mod halts;
+mod parameters;
 mod service;
 
 pub(crate) use action::{ActionServer, GoalEvent, GoalId, GoalStatus, Wired};
@@ -12,15 +14,18 @@ use crate::arguments::{Arguments, Network};
 use crate::error::StartError;
 use crate::messages::nav2_msgs::{self, jazzy, kilted, services};
 use crate::messages::{self, Named};
+use crate::settings::Change;
+use halts::Halts;
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
 use ros2_client::qos::{Durability, History};
 use ros2_client::{
-    Context, Message, MessageTypeName, Name, NodeName, NodeOptions, Publisher, QosProfile,
-    Subscription,
+    Context, Message, MessageTypeName, Name, NodeName, Publisher, QosProfile, Subscription,
 };
 use std::fmt::Display;
 use std::net::{IpAddr, Ipv4Addr};
+use std::sync::mpsc::Receiver;
 use std::time::Duration;
+use toml::Value;
 
 macro_rules! on_the_wire {
     ($($message:ty),+ $(,)?) => { $(impl Message for $message {})+ };
@@ -75,6 +80,15 @@ pub(crate) struct Wire {
     poll: mio1::Poll,
     events: mio1::Events,
     sources: usize,
+    halts: Halts,
+    changed: Receiver<Change>,
+}
+
+impl Drop for Wire {
+    fn drop(&mut self) {
+        // It holds the network.
+        self.node.stop_spinner();
+    }
 }
 
 /// The delivery of a topic.
@@ -105,7 +119,11 @@ fn fault(what: impl Display, why: impl Display) -> StartError {
 
 impl Wire {
     /// Joins the network.
-    pub(crate) fn open(arguments: &Arguments, network: Network) -> Result<Self, StartError> {
+    pub(crate) fn open(
+        arguments: &Arguments,
+        network: Network,
+        parameters: &[(&str, Value)],
+    ) -> Result<Self, StartError> {
         let mut builder = DomainParticipantBuilder::new(network.domain);
         if network.is_local {
             builder = builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)]);
@@ -116,9 +134,9 @@ impl Wire {
         let namespace = arguments.namespace.as_deref().unwrap_or("/");
         let name = NodeName::new(namespace, arguments.node_name())
             .map_err(|error| fault("name the node", error))?;
-        let mut node = context
-            .new_node(name, NodeOptions::new().enable_rosout(true))
-            .map_err(|error| fault("make the node", error))?;
+        let (options, changed) = parameters::with_parameters(parameters);
+        let mut node =
+            context.new_node(name, options).map_err(|error| fault("make the node", error))?;
         // Discovery and the parameter services.
         let spinner = node.spinner().map_err(|error| fault("start discovery", error))?;
         std::thread::Builder::new()
@@ -127,7 +145,11 @@ impl Wire {
             .map_err(|error| fault("start discovery", error))?;
         let poll = mio1::Poll::new().map_err(|error| fault("wait for messages", error))?;
         let events = mio1::Events::with_capacity(64);
-        Ok(Self { node, arguments: arguments.clone(), poll, events, sources: 0 })
+        // Sources have higher numbers.
+        let halts = mio1::Waker::new(poll.registry(), mio1::Token(0)).and_then(Halts::watch);
+        let halts = halts.map_err(|error| fault("watch for halts", error))?;
+        let arguments = arguments.clone();
+        Ok(Self { node, arguments, poll, events, sources: 0, halts, changed })
     }
 
     /// Messages of a topic, as many as are kept.
@@ -186,6 +208,16 @@ impl Wire {
             .registry()
             .register(source, mio1::Token(self.sources), mio1::Interest::READABLE)
             .map_err(|error| fault("wait for messages", error))
+    }
+
+    /// The parameters that others have set since the last call.
+    pub(crate) fn changes(&self) -> impl Iterator<Item = Change> + '_ {
+        self.changed.try_iter()
+    }
+
+    /// True once the process was halted: nothing will come any more, nor go out.
+    pub(crate) fn is_dead(&self) -> bool {
+        self.halts.happened()
     }
 
     /// True if somebody has subscribed to a topic.

@@ -1,0 +1,119 @@
+//! The parameters as other nodes see them, and what they may change while the node runs.
+
+use super::Settings;
+use toml::Value;
+
+/// A parameter that another node has set.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Change {
+    name: String,
+    number: f64,
+}
+
+impl Change {
+    /// One that may be made; otherwise the reason why it may not.
+    pub(crate) fn of(name: &str, value: &Value) -> Result<Self, String> {
+        let number = super::number(value).ok_or_else(|| format!("must be a number, got {value}"));
+        match name {
+            "max_pose_age" | "obstacle_max_range" => {
+                let number = number?;
+                if number <= 0.0 {
+                    return Err(format!("must be a positive number, got {number}"));
+                }
+                Ok(Self { name: name.to_owned(), number })
+            }
+            "min_obstacle_height" | "max_obstacle_height" => {
+                Ok(Self { name: name.to_owned(), number: number? })
+            }
+            _ => Err("can be given at the start only".to_owned()),
+        }
+    }
+}
+
+impl Settings {
+    /// All parameters with their values, but for `use_sim_time`, which every node has.
+    pub(crate) fn declared(&self) -> Vec<(&'static str, Value)> {
+        let texts = |texts: &[String]| texts.iter().cloned().map(Value::String).collect();
+        let heights_m = &self.points_taken.heights_m;
+        vec![
+            ("robot", Value::String(self.robot_name.clone())),
+            ("stack", Value::String(self.stack_name.clone())),
+            ("controller_frequency", Value::Float(1.0 / self.stack.robot().cycle_s)),
+            ("global_frame", Value::String(self.frames.map.clone())),
+            ("robot_base_frame", Value::String(self.frames.base.clone())),
+            ("scan_topics", Value::Array(texts(&self.scan_topics))),
+            ("cloud_topics", Value::Array(texts(&self.cloud_topics))),
+            ("min_obstacle_height", Value::Float(*heights_m.start())),
+            ("max_obstacle_height", Value::Float(*heights_m.end())),
+            ("obstacle_max_range", Value::Float(self.points_taken.range_m)),
+            ("filter_info_topics", Value::Array(texts(&self.filter_info_topics))),
+            ("odom_topic", Value::String(self.odom_topic.clone())),
+            ("distribution", Value::String(self.distribution.name().to_owned())),
+            ("enable_stamped_cmd_vel", Value::Boolean(self.is_cmd_vel_stamped)),
+            ("stands_for", Value::Array(texts(&self.stands_for))),
+            ("max_pose_age", Value::Float(self.max_pose_age_s)),
+        ]
+    }
+
+    /// Makes a change.
+    pub(crate) fn change(&mut self, change: &Change) {
+        let taken = &mut self.points_taken;
+        let (lowest_m, highest_m) = taken.heights_m.clone().into_inner();
+        match change.name.as_str() {
+            "max_pose_age" => self.max_pose_age_s = change.number,
+            "obstacle_max_range" => taken.range_m = change.number,
+            // One that passes the other takes it along.
+            "min_obstacle_height" => {
+                taken.heights_m = change.number..=highest_m.max(change.number);
+            }
+            "max_obstacle_height" => {
+                taken.heights_m = lowest_m.min(change.number)..=change.number;
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arguments::Arguments;
+    use crate::settings::PARAMETERS;
+
+    fn settings() -> Settings {
+        let parameters = vec![("robot".to_owned(), "jackal".to_owned())];
+        Settings::of(&Arguments { parameters, ..Arguments::default() }, None).unwrap()
+    }
+
+    #[test]
+    fn all_are_declared() {
+        let settings = settings();
+        let declared = settings.declared();
+        let names = PARAMETERS.iter().map(|(name, _)| *name).filter(|&name| name != "use_sim_time");
+        assert_eq!(
+            declared.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+            names.collect::<Vec<_>>()
+        );
+        assert_eq!(declared[0].1.as_str(), Some("jackal"));
+    }
+
+    #[test]
+    fn some_may_be_changed() {
+        let mut settings = settings();
+        for (name, value) in
+            [("max_pose_age", 0.4), ("max_obstacle_height", 1.1), ("min_obstacle_height", 0.2)]
+        {
+            settings.change(&Change::of(name, &Value::Float(value)).unwrap());
+            let declared = settings.declared();
+            let (_, now) = declared.iter().find(|(declared, _)| *declared == name).unwrap();
+            assert_eq!(now.as_float(), Some(value));
+        }
+        for (name, value, why) in [
+            ("robot", Value::String("small".to_owned()), "at the start"),
+            ("max_pose_age", Value::Float(-1.0), "positive"),
+            ("obstacle_max_range", Value::Boolean(true), "a number"),
+        ] {
+            assert!(Change::of(name, &value).unwrap_err().contains(why));
+        }
+    }
+}

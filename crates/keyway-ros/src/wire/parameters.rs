@@ -1,0 +1,49 @@
+//! Parameters, as other nodes see and set them.
+
+use crate::settings::Change;
+use ros2_client::NodeOptions;
+use ros2_client::parameters::ParameterValue;
+use std::sync::mpsc::{Receiver, channel};
+use toml::Value;
+
+/// The options of a node that has these parameters, and what others change of them.
+pub(super) fn with_parameters(declared: &[(&str, Value)]) -> (NodeOptions, Receiver<Change>) {
+    let (changes, changed) = channel();
+    let mut options = NodeOptions::new().enable_rosout(true);
+    for (name, value) in declared {
+        options = options.declare_parameter(name, sent(value));
+    }
+    let options = options
+        .parameter_validator(Box::new(|name, value| Change::of(name, &received(value)).map(drop)))
+        .parameter_set_action(Box::new(move |name, value| {
+            // Nobody receives it while the node ends.
+            drop(changes.send(Change::of(name, &received(value))?));
+            Ok(())
+        }));
+    (options, changed)
+}
+
+fn sent(value: &Value) -> ParameterValue {
+    match value {
+        Value::Boolean(truth) => ParameterValue::Boolean(*truth),
+        Value::Integer(whole) => ParameterValue::Integer(*whole),
+        Value::Float(number) => ParameterValue::Double(*number),
+        Value::String(text) => ParameterValue::String(text.clone()),
+        Value::Array(texts) => {
+            let text = |value: &Value| Some(value.as_str()?.to_owned());
+            ParameterValue::StringArray(texts.iter().filter_map(text).collect())
+        }
+        Value::Datetime(_) | Value::Table(_) => ParameterValue::NotSet,
+    }
+}
+
+fn received(value: &ParameterValue) -> Value {
+    match value {
+        ParameterValue::Boolean(truth) => Value::Boolean(*truth),
+        ParameterValue::Integer(whole) => Value::Integer(*whole),
+        ParameterValue::Double(number) => Value::Float(*number),
+        ParameterValue::String(text) => Value::String(text.clone()),
+        // No parameter that may change has such a value.
+        _ => Value::Array(Vec::new()),
+    }
+}
