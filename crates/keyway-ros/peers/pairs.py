@@ -13,7 +13,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from lifecycle_msgs.srv import GetState
 from maps import places, read_map
 from nav2_msgs.action import NavigateToPose
-from peer import Checks, Goal, Keyway, begin, leave, pose, wait
+from peer import Checks, Goal, Keyway, begin, leave, pose, several, wait
 from rclpy.executors import SingleThreadedExecutor
 from robot import LATCHED, Robot
 
@@ -79,7 +79,7 @@ class BasicNavigator:
         assert len(navigator.smoothPath(path).poses) > 10
         navigator.followPath(path)
         assert self.end() == "", "followPath"
-        navigator.goThroughPoses([here, there])
+        navigator.goThroughPoses(several([here, there]))
         assert self.end() == "", "goThroughPoses"
         navigator.followWaypoints([here])
         assert self.end() == "", "followWaypoints"

@@ -13,11 +13,22 @@ pub(super) fn with_parameters(declared: &[(&str, Value)]) -> (NodeOptions, Recei
     for (name, value) in declared {
         options = options.declare_parameter(name, sent(value));
     }
+    // Values are checked and set at the start, too.
+    let first: Vec<(String, Value)> =
+        declared.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
+    let is_first = move |name: &str, value: &Value| {
+        first.iter().any(|(declared, given)| declared == name && given == value)
+    };
     let options = options
-        .parameter_validator(Box::new(|name, value| Change::of(name, &received(value)).map(drop)))
+        .parameter_validator(Box::new(move |name, value| {
+            let value = received(value);
+            if is_first(name, &value) { Ok(()) } else { Change::of(name, &value).map(drop) }
+        }))
         .parameter_set_action(Box::new(move |name, value| {
-            // Nobody receives it while the node ends.
-            drop(changes.send(Change::of(name, &received(value))?));
+            if let Ok(change) = Change::of(name, &received(value)) {
+                // Nobody receives it while the node ends.
+                drop(changes.send(change));
+            }
             Ok(())
         }));
     (options, changed)
@@ -43,7 +54,10 @@ fn received(value: &ParameterValue) -> Value {
         ParameterValue::Integer(whole) => Value::Integer(*whole),
         ParameterValue::Double(number) => Value::Float(*number),
         ParameterValue::String(text) => Value::String(text.clone()),
-        // No parameter that may change has such a value.
+        ParameterValue::StringArray(texts) => {
+            Value::Array(texts.iter().cloned().map(Value::String).collect())
+        }
+        // No parameter has such a value.
         _ => Value::Array(Vec::new()),
     }
 }

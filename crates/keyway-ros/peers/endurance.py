@@ -1,0 +1,63 @@
+"""Drives to and fro for a time: endurance.py MINUTES. At 20 Hz, on a map of 2000 x 2000 cells, with a lidar of 720 beams; how
+even the commands come, and what the node takes of the machine."""
+
+import sys
+import time
+
+import numpy as np
+from nav2_msgs.action import NavigateToPose
+from peer import Checks, Goal, Keyway, begin, leave, pose, wait
+from robot import Grid, Robot
+
+
+def field() -> Grid:
+    """100 m x 100 m with pillars."""
+    random = np.random.default_rng(20)
+    cells = np.zeros((2000, 2000), np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = 100
+    for x, y in random.integers(20, 1980, (1500, 2)):
+        if abs(x - 1000) > 30 or abs(y - 1000) > 30:
+            cells[y : y + 6, x : x + 6] = 100
+    return Grid(cells, 0.05, (-50.0, -50.0))
+
+
+class Endurance(Checks):
+    def __init__(self) -> None:
+        robot = Robot(field(), (0.0, 0.0, 0.0), latency_s=0.05, beams=720, range_m=10.0)
+        began = time.monotonic()
+        super().__init__(robot, Keyway("controller_frequency:=20.0"))
+        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
+        self.spin()
+        self.began = began
+
+    def measure(self, minutes: float) -> int:
+        random, end = np.random.default_rng(1), time.monotonic() + 60 * minutes
+        reached = sent = 0
+        cpu_s, at, memory = self.keyway.cpu_s(), time.monotonic(), []
+        while time.monotonic() < end:
+            x, y = random.uniform(-8.0, 8.0, 2)
+            if self.robot.grid.touches(x, y, 0.35):
+                continue
+            sent += 1
+            ended = Goal(self.navigate, NavigateToPose.Goal(pose=pose(x, y))).end(180)
+            reached += ended.status == 4
+            memory.append(self.keyway.memory_mb())
+            if sent == 1:
+                print(f"first command {self.robot.commanded_at[0] - self.began:.1f} s after the start", flush=True)
+            if ended.status == 5 and ended.result.error_code == 205:
+                wait(self.robot.stands, 3)
+        share = (self.keyway.cpu_s() - cpu_s) / (time.monotonic() - at)
+        periods = np.diff(self.robot.commanded_at)
+        # Between two goals there are none.
+        periods = periods[periods < 0.5]
+        middle, late, most = np.percentile(periods, [50, 99, 100])
+        print(f"{reached} of {sent} goals, {self.robot.contacts} contacts")
+        print(f"period {1e3 * middle:.1f} ms, p99 {1e3 * late:.1f} ms, longest {1e3 * most:.1f} ms, of {len(periods)}")
+        print(f"{100 * share:.1f} % of a core, {memory[0]:.1f} MB after the first goal, {memory[-1]:.1f} MB after the last", flush=True)
+        return int(self.robot.contacts > 0)
+
+
+if __name__ == "__main__":
+    begin()
+    endurance = Endurance()
+    leave(endurance.measure(float(sys.argv[1])), endurance.keyway)
