@@ -67,6 +67,14 @@ class Keyway:
             raise
 
 
+class Simulator(Keyway):
+    """The simulator of the node, as a process."""
+
+    def __init__(self, scene: str, *arguments: str) -> None:
+        given = [argument for parameter in arguments for argument in ("-p", parameter)]
+        self.process = subprocess.Popen([os.environ["KEYWAY_NODE"], "sim", scene, "--ros-args", *given])
+
+
 class Goal:
     """A goal that was sent to an action."""
 

@@ -1,6 +1,5 @@
 //! Costmaps to look at: Nav2's costs of what a robot knows and senses. It does not drive by them.
 
-use crate::messages::builtin_interfaces::Time;
 use crate::messages::nav_msgs::{MapMetaData, OccupancyGrid};
 use crate::messages::nav2_msgs::services::{Costmap, CostmapMetaData};
 use crate::messages::std_msgs::Header;
@@ -121,19 +120,8 @@ impl Costs {
 
     /// As occupancies, which is what topics show.
     pub(crate) fn grid(&self, header: Header) -> OccupancyGrid {
-        let info = info_of(&self.frame, header.stamp);
+        let info = MapMetaData::of(&self.frame, header.stamp);
         OccupancyGrid { header, info, data: self.costs.iter().map(|&cost| shown(cost)).collect() }
-    }
-}
-
-/// The size and the place of a grid, in a message.
-pub(crate) fn info_of(frame: &GridFrame, map_load_time: Time) -> MapMetaData {
-    MapMetaData {
-        map_load_time,
-        resolution: frame.resolution_m() as f32,
-        width: frame.width(),
-        height: frame.height(),
-        origin: frame.origin().into(),
     }
 }
 

@@ -25,6 +25,7 @@ mod pictures;
 mod pilot;
 mod served;
 mod settings;
+mod simulator;
 mod transforms;
 mod wire;
 
@@ -33,7 +34,9 @@ pub use error::StartError;
 use arguments::{Arguments, Network};
 use node::Node;
 use pilot::Pilot;
-use settings::Settings;
+use settings::{Settings, SimulatorSettings};
+use simulator::Simulator;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -44,6 +47,10 @@ use std::sync::atomic::AtomicBool;
 /// An argument, a parameter or a variable of the environment that cannot be used, or a network that
 /// does not work.
 pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError> {
+    let mut arguments = arguments.into_iter().peekable();
+    let is_simulator = arguments.next_if(|first| first == "sim").is_some();
+    let is_scene = |argument: &String| is_simulator && !argument.starts_with('-');
+    let scene = arguments.next_if(is_scene);
     let arguments = Arguments::parse(arguments)?;
     if arguments.help {
         print!("{}", help());
@@ -53,32 +60,44 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
         println!("keyway-ros {}", env!("CARGO_PKG_VERSION"));
         return Ok(());
     }
-    let variable = |name: &str| std::env::var(name).ok();
+    let distro = variable("ROS_DISTRO");
     let network = Network::of_environment(variable)?;
-    let settings = Settings::of(&arguments, variable("ROS_DISTRO").as_deref())?;
     let is_over = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
         signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
             StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
         })?;
     }
-    let mut pilot = Some(Pilot::new(settings));
+    if is_simulator {
+        let scene = scene.ok_or_else(|| StartError::ArgumentWithoutValue("sim".to_owned()))?;
+        let node = arguments.node.clone().or_else(|| Some("simulator".to_owned()));
+        let arguments = Arguments { node, ..arguments };
+        let settings = SimulatorSettings::of(&arguments, distro.as_deref())?;
+        return Simulator::new(Path::new(&scene), &arguments, network, settings)?.run(&is_over);
+    }
+    let mut pilot = Some(Pilot::new(Settings::of(&arguments, distro.as_deref())?));
     while let Some(present) = pilot {
         pilot = Node::new(&arguments, network, present)?.run(&is_over);
     }
     Ok(())
 }
 
+fn variable(name: &str) -> Option<String> {
+    std::env::var(name).ok()
+}
+
 fn help() -> String {
+    let [parameters, of_simulator] = settings::help();
     format!(
         "Keyway as a node of ROS 2: drives a robot to goals, by the names that Nav2 gives to topics and actions\n\n\
-         Usage: keyway-ros --ros-args -p robot:=NAME|FILE [ARGUMENTS OF ROS]\n\n\
+         Usage: keyway-ros --ros-args -p robot:=NAME|FILE [ARGUMENTS OF ROS]\n       \
+         keyway-ros sim SCENE.toml [--ros-args ARGUMENTS OF ROS]: a robot in a simulated world\n\n\
          Arguments of ROS, after --ros-args:\n  \
          -r, --remap FROM:=TO    another name; __node and __ns for those of the node\n  \
          -p, --param NAME:=VALUE a parameter\n  \
          --params-file FILE      parameters from a file (YAML)\n\n\
-         Parameters, and their defaults:\n{}\n\n\
-         Environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_DISTRO\n",
-        settings::help()
+         Parameters, and their defaults:\n{parameters}\n\n\
+         Parameters of the simulator:\n{of_simulator}\n\n\
+         Environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_DISTRO\n"
     )
 }

@@ -5,6 +5,7 @@ use super::builtin_interfaces::Time;
 use super::geometry_msgs::{Pose, PoseStamped, PoseWithCovariance, TwistWithCovariance};
 use super::std_msgs::Header;
 use keyway::geometry::{self, Point};
+use keyway::map::{self, CellState, GridFrame};
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -26,6 +27,33 @@ pub(crate) struct OccupancyGrid {
 
 impl Named for OccupancyGrid {
     const NAME: (&'static str, &'static str) = ("nav_msgs", "OccupancyGrid");
+}
+
+impl MapMetaData {
+    /// The size and the place of a grid.
+    pub(crate) fn of(frame: &GridFrame, map_load_time: Time) -> Self {
+        Self {
+            map_load_time,
+            resolution: frame.resolution_m() as f32,
+            width: frame.width(),
+            height: frame.height(),
+            origin: frame.origin().into(),
+        }
+    }
+}
+
+impl OccupancyGrid {
+    /// A map.
+    pub(crate) fn of(map: &map::OccupancyGrid, header: Header) -> Self {
+        let value = |cell| match map.state(cell) {
+            Some(CellState::Free) => 0,
+            Some(CellState::Occupied) => 100,
+            _ => -1,
+        };
+        let frame = map.frame();
+        let info = MapMetaData::of(frame, header.stamp);
+        Self { header, info, data: frame.cells().map(value).collect() }
+    }
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

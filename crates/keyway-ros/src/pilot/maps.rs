@@ -1,8 +1,7 @@
 //! Maps: from messages and files, and what the robot knows as a costmap.
 
 use super::Pilot;
-use crate::costmaps::{Known, info_of};
-use crate::messages::builtin_interfaces::Time;
+use crate::costmaps::Known;
 use crate::messages::map_msgs::OccupancyGridUpdate;
 use crate::messages::nav_msgs::OccupancyGrid;
 use crate::messages::nav2_msgs::services::Costmap;
@@ -85,21 +84,7 @@ impl Pilot {
         }
         let map = read_map(&path, None)?.grid;
         self.drive_on(&map)?;
-        Ok(self.message_of(&map, now_s))
-    }
-
-    fn message_of(&self, map: &keyway::OccupancyGrid, now_s: f64) -> OccupancyGrid {
-        let frame = map.frame();
-        let value = |cell| match map.state(cell) {
-            Some(CellState::Free) => 0,
-            Some(CellState::Occupied) => 100,
-            _ => -1,
-        };
-        OccupancyGrid {
-            header: Header::new(now_s, &self.settings.frames.map),
-            info: info_of(frame, Time::of(now_s)),
-            data: frame.cells().map(value).collect(),
-        }
+        Ok(OccupancyGrid::of(&map, Header::new(now_s, &self.settings.frames.map)))
     }
 
     /// Forgets all that was sensed.

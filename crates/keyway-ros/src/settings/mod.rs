@@ -3,8 +3,10 @@
 
 mod declared;
 mod nav2;
+mod simulator;
 
 pub(crate) use declared::Change;
+pub(crate) use simulator::SimulatorSettings;
 
 use crate::arguments::Arguments;
 use crate::error::StartError;
@@ -65,6 +67,18 @@ pub(crate) struct PointsTaken {
     pub(crate) range_m: f64,
 }
 
+/// The distribution, by the parameter or by `ROS_DISTRO`.
+fn distribution_of(given: &mut Given, distro: Option<&str>) -> Result<Distribution, StartError> {
+    match given.text("distribution")?.as_deref().or(distro) {
+        Some("jazzy") => Ok(Distribution::Jazzy),
+        Some("kilted") | None => Ok(Distribution::Kilted),
+        Some(other) => {
+            let why = format!("must be jazzy or kilted, got {other} (or ROS_DISTRO says so)");
+            Err(wrong("distribution", why))
+        }
+    }
+}
+
 /// Parameters by their names, as they were given.
 type Parameters = BTreeMap<String, Value>;
 
@@ -89,26 +103,19 @@ const PARAMETERS: [(&str, &str); 17] = [
     ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
 ];
 
-/// The parameters, one a line, for the help.
-pub(crate) fn help() -> String {
-    let lines: Vec<String> =
-        PARAMETERS.iter().map(|(name, what)| format!("  {name:24}{what}")).collect();
-    lines.join("\n")
+/// The parameters of the node and of the simulator, one a line, for the help.
+pub(crate) fn help() -> [String; 2] {
+    [&PARAMETERS[..], &simulator::PARAMETERS].map(|parameters| {
+        let line = |(name, what): &(&str, &str)| format!("  {name:24}{what}");
+        parameters.iter().map(line).collect::<Vec<_>>().join("\n")
+    })
 }
 
 impl Settings {
     /// The settings by the arguments, and by `ROS_DISTRO`.
     pub(crate) fn of(arguments: &Arguments, distro: Option<&str>) -> Result<Self, StartError> {
         let mut given = Given::read(arguments)?;
-        let distribution = given.text("distribution")?;
-        let distribution = match distribution.as_deref().or(distro) {
-            Some("jazzy") => Distribution::Jazzy,
-            Some("kilted") | None => Distribution::Kilted,
-            Some(other) => {
-                let why = format!("must be jazzy or kilted, got {other} (or ROS_DISTRO says so)");
-                return Err(wrong("distribution", why));
-            }
-        };
+        let distribution = distribution_of(&mut given, distro)?;
         let unusable =
             |parameter, error: &dyn std::error::Error| wrong(parameter, error.to_string());
         let folder = Path::new("");
@@ -176,7 +183,7 @@ impl Settings {
         for line in given.nav2.report() {
             eprintln!("keyway-ros: {line}");
         }
-        given.all_known()?;
+        given.all_known(&PARAMETERS)?;
         Ok(settings)
     }
 }
@@ -290,9 +297,9 @@ impl Given {
     }
 
     /// Refuses what is left.
-    fn all_known(self) -> Result<(), StartError> {
+    fn all_known(self, known: &[(&str, &str)]) -> Result<(), StartError> {
         let Some(name) = self.own.into_keys().next() else { return Ok(()) };
-        let known: Vec<&str> = PARAMETERS.iter().map(|(name, _)| *name).collect();
+        let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
         Err(wrong(&name, format!("is none of this node's: {}", known.join(", "))))
     }
 }

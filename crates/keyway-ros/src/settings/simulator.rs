@@ -1,0 +1,43 @@
+//! Parameters of the simulator.
+
+use super::{Given, distribution_of};
+use crate::arguments::Arguments;
+use crate::error::StartError;
+use crate::served::Distribution;
+
+/// Everything that the simulator is told at its start.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SimulatorSettings {
+    /// So many times faster than a clock.
+    pub(crate) rate: f64,
+    /// Stamps begin at 0; otherwise they are those of the machine.
+    pub(crate) use_sim_time: bool,
+    /// Commands have a stamp.
+    pub(crate) is_cmd_vel_stamped: bool,
+}
+
+/// A parameter, and what it is for; the default is what stands in [`SimulatorSettings::of`].
+pub(super) const PARAMETERS: [(&str, &str); 4] = [
+    ("rate", "so many times faster than a clock; 1"),
+    ("use_sim_time", "stamps begin at 0, and /clock tells of them; false"),
+    ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
+    ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
+];
+
+impl SimulatorSettings {
+    /// The settings by the arguments, and by `ROS_DISTRO`.
+    pub(crate) fn of(arguments: &Arguments, distro: Option<&str>) -> Result<Self, StartError> {
+        let mut given = Given::read(arguments)?;
+        let distribution = distribution_of(&mut given, distro)?;
+        let use_sim_time = given.truth("use_sim_time")?.unwrap_or(false);
+        let rate = given.positive("rate")?.unwrap_or(1.0);
+        if rate != 1.0 && !use_sim_time {
+            let why = "needs use_sim_time: the clock of the machine is as fast as it is";
+            return Err(super::wrong("rate", why));
+        }
+        let stamped = given.truth("enable_stamped_cmd_vel")?;
+        let is_cmd_vel_stamped = stamped.unwrap_or(distribution == Distribution::Kilted);
+        given.all_known(&PARAMETERS)?;
+        Ok(Self { rate, use_sim_time, is_cmd_vel_stamped })
+    }
+}
