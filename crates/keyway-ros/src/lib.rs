@@ -75,9 +75,10 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
         let settings = SimulatorSettings::of(&arguments, distro.as_deref())?;
         return Simulator::new(Path::new(&scene), &arguments, network, settings)?.run(&is_over);
     }
-    let mut pilot = Some(Pilot::new(Settings::of(&arguments, distro.as_deref())?));
-    while let Some(present) = pilot {
-        pilot = Node::new(&arguments, network, present)?.run(&is_over);
+    let pilot = Pilot::new(Settings::of(&arguments, distro.as_deref())?);
+    let mut halted = Node::new(&arguments, network, pilot, false)?.run(&is_over);
+    while let Some(pilot) = halted {
+        halted = Node::new(&arguments, network, pilot, true)?.run(&is_over);
     }
     Ok(())
 }

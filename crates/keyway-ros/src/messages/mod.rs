@@ -14,6 +14,7 @@ pub(crate) mod nav_msgs;
 pub(crate) mod rosgraph_msgs;
 pub(crate) mod sensor_msgs;
 pub(crate) mod std_msgs;
+pub(crate) mod std_srvs;
 pub(crate) mod tf2_msgs;
 pub(crate) mod visualization_msgs;
 

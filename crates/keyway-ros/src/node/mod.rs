@@ -37,6 +37,9 @@ pub(crate) struct Node {
     /// The last command that was published, while it was one to move.
     moves: bool,
     cycles: u64,
+    /// In so many cycles at the beginning the robot is told to stand.
+    zeros: u64,
+    began: Instant,
     timing: Timing,
     /// The last thing that was said of standing still.
     said: String,
@@ -51,11 +54,19 @@ enum Client {
 }
 
 impl Node {
-    /// Joins the network, for a pilot.
+    /// The base may take a while to be found.
+    const ZEROS: u64 = 50;
+
+    /// Whoever waits longer for the time of a simulation is told so.
+    const NO_CLOCK: Duration = Duration::from_secs(5);
+
+    /// Joins the network, for a pilot, or joins it again: then the base may still obey a command
+    /// from before.
     pub(crate) fn new(
         arguments: &Arguments,
         network: Network,
         pilot: Pilot,
+        is_again: bool,
     ) -> Result<Self, StartError> {
         let mut wire = Wire::open(arguments, network, &pilot.settings().declared())?;
         let settings = pilot.settings().clone();
@@ -76,6 +87,8 @@ impl Node {
             drives_for: None,
             moves: false,
             cycles: 0,
+            zeros: if is_again { Self::ZEROS } else { 0 },
+            began: Instant::now(),
             timing,
             said: String::new(),
         })
@@ -112,6 +125,10 @@ impl Node {
             }
         }
         self.command(Velocity::ZERO);
+        if let Some(client) = self.drives_for.take() {
+            let report = Report::default();
+            self.tell(client, GoalStatus::Aborted, &Ended::Canceled, &report);
+        }
         None
     }
 
@@ -131,7 +148,12 @@ impl Node {
         for fault in self.inboxes.receive_known(&mut self.pilot, &mut self.wire) {
             self.say(&fault);
         }
-        let Some(now_s) = self.clock.now_s() else { return };
+        let Some(now_s) = self.clock.now_s() else {
+            if self.began.elapsed() > Self::NO_CLOCK {
+                self.say("no /clock has come, and `use_sim_time` is set: nothing can be done");
+            }
+            return;
+        };
         if let Some(goal) = self.inboxes.goal_pose.take_all().pop() {
             self.begin(Client::Topic, Wanted::Poses(vec![goal]), now_s);
         }
@@ -194,7 +216,7 @@ impl Node {
         let Cycle { command, ended, waits } = self.pilot.cycle(now_s);
         self.timing.note(began.elapsed(), waits.clone());
         self.cycles += 1;
-        if self.drives_for.is_some() || self.moves {
+        if self.drives_for.is_some() || self.moves || self.cycles <= self.zeros {
             self.command(command);
         }
         match waits {

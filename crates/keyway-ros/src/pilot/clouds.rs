@@ -31,14 +31,15 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Of a cloud whose frame is there in that of the robot.
+    /// Of a cloud whose frame is there in that of the robot, and there in that of the map, in which
+    /// heights are measured.
     pub(super) fn of(
         sensor: usize,
         cloud: &PointCloud2,
-        placement: &Placement,
+        [in_robot, in_map]: [&Placement; 2],
         taken: &PointsTaken,
     ) -> Result<Self, CloudError> {
-        let at = placement.on_ground().point();
+        let at = in_robot.on_ground().point();
         let mount = Pose::new(at.x, at.y, 0.0);
         let (mut view, mut points, mut squares) = (View::default(), Vec::new(), HashSet::new());
         for point in Reader::new(cloud)?.points() {
@@ -46,12 +47,14 @@ impl Seen {
             if point == [0.0; 3] || !point.iter().all(|value| value.is_finite()) {
                 continue;
             }
-            let [x, y, height_m] = placement.point(point);
+            let ([x, y, _], [.., height_m]) = (in_robot.point(point), in_map.point(point));
             let point = mount.body_from_world(Point::new(x, y));
-            if point.norm() > taken.range_m {
+            let range_m = point.norm();
+            // It sees past what is nearer than that.
+            view.look_at(point.heading(), range_m.min(taken.range_m));
+            if range_m > taken.range_m {
                 continue;
             }
-            view.look_at(point);
             if taken.heights_m.contains(&height_m) && squares.insert(near(point)) {
                 points.push(point);
             }
@@ -90,10 +93,9 @@ impl Default for View {
 impl View {
     const PARTS: usize = 180;
 
-    fn look_at(&mut self, point: Point) {
-        let part = point.heading().rem_euclid(TAU) / TAU * Self::PARTS as f64;
+    fn look_at(&mut self, bearing_rad: f64, range_m: f64) {
+        let part = bearing_rad.rem_euclid(TAU) / TAU * Self::PARTS as f64;
         self.bearings[(part as usize).min(Self::PARTS - 1)] = true;
-        let range_m = point.norm();
         self.nearest_m = self.nearest_m.min(range_m);
         self.farthest_m = self.farthest_m.max(range_m);
     }
@@ -185,7 +187,7 @@ mod tests {
     use super::*;
     use crate::messages::std_msgs::Header;
 
-    const TAKEN: PointsTaken = PointsTaken { heights_m: 0.05..=1.5, range_m: 5.0 };
+    const TAKEN: PointsTaken = PointsTaken { heights_m: 0.05..=1.5, range_m: 5.0, timeout_s: 0.0 };
 
     /// A cloud of two rows, each with four bytes behind its points.
     fn cloud(points: &[[f32; 3]], is_bigendian: bool) -> PointCloud2 {
@@ -241,7 +243,7 @@ mod tests {
         ];
         for is_bigendian in [false, true] {
             let cloud = cloud(&points, is_bigendian);
-            let seen = Seen::of(1, &cloud, &camera(), &TAKEN).unwrap();
+            let seen = Seen::of(1, &cloud, [&camera(); 2], &TAKEN).unwrap();
             let expected = [Point::new(2.0, 0.0), Point::new(1.0, -1.0)];
             assert_eq!(seen.points.len(), expected.len(), "{:?}", seen.points);
             let apart = |(found, expected): (&Point, Point)| found.distance(expected);
@@ -252,7 +254,7 @@ mod tests {
             let view = shown.clears.unwrap();
             assert!((view.from_rad - (TAU - TAU / 8.0)).abs() < 0.04, "{view:?}");
             assert!((view.to_rad - TAU).abs() < 0.04, "{view:?}");
-            assert!((view.range_max_m - 2.0).abs() < 1e-6 && view.range_min_m < 1.5);
+            assert!((view.range_max_m - 5.0).abs() < 1e-6 && view.range_min_m < 1.5);
         }
     }
 
@@ -263,16 +265,16 @@ mod tests {
             [2.0 * cos as f32, 2.0 * sin as f32, 0.3]
         };
         let points: Vec<[f32; 3]> = (0..360).map(around).collect();
-        let seen = Seen::of(0, &cloud(&points, false), &Placement::default(), &TAKEN).unwrap();
+        let seen = Seen::of(0, &cloud(&points, false), [&Placement::default(); 2], &TAKEN).unwrap();
         let view = seen.clears.unwrap();
         assert!(view.to_rad - view.from_rad > 0.98 * TAU, "{view:?}");
-        let alone = Seen::of(0, &cloud(&[points[0]; 2], false), &Placement::default(), &TAKEN);
+        let alone = Seen::of(0, &cloud(&[points[0]; 2], false), [&Placement::default(); 2], &TAKEN);
         assert_eq!(alone.unwrap().clears, None, "a single point shows where it is alone");
     }
 
     #[test]
     fn what_cannot_be_read_is_named() {
-        let seen = |cloud: &PointCloud2| Seen::of(0, cloud, &camera(), &TAKEN).unwrap_err();
+        let seen = |cloud: &PointCloud2| Seen::of(0, cloud, [&camera(); 2], &TAKEN).unwrap_err();
         let whole = cloud(&[[1.0; 3]; 6], false);
         let mut without = whole.clone();
         without.fields[2].name = "v".to_owned();
@@ -285,6 +287,6 @@ mod tests {
         assert_eq!(seen(&outside), CloudError::Field('z'));
         let absurd = PointCloud2 { width: u32::MAX, height: u32::MAX, ..whole };
         assert!(matches!(seen(&absurd), CloudError::Size { .. }));
-        assert!(Seen::of(0, &cloud(&[], false), &camera(), &TAKEN).unwrap().points.is_empty());
+        assert!(Seen::of(0, &cloud(&[], false), [&camera(); 2], &TAKEN).unwrap().points.is_empty());
     }
 }

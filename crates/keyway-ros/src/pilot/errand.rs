@@ -6,7 +6,6 @@ use crate::messages::geometry_msgs::PoseStamped;
 use crate::messages::nav_msgs::Path;
 use keyway::geometry::{Pose, wrap_angle};
 use keyway::navigate::{Blocked, Navigator, Step, WayLeft, WayProgress};
-use std::collections::VecDeque;
 
 /// Something that the robot is asked to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,13 +22,23 @@ pub(crate) enum Wanted {
     Wait(f64),
 }
 
-/// A single motion, the time that it may take \[s\], and the speed that is not to be exceeded
+/// A single motion, the time that it may take \[s\] (0: an hour), and the speed that is not to be exceeded
 /// \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Act {
     pub(crate) motion: Motion,
     pub(crate) allowance_s: f64,
     pub(crate) most_mps: Option<f64>,
+    /// The reason why it cannot be done by anybody.
+    pub(crate) fault: Option<&'static str>,
+}
+
+impl Act {
+    /// The time that it may take \[s\].
+    pub(super) const fn allowed_s(&self) -> f64 {
+        const HOUR_S: f64 = 3600.0;
+        if self.allowance_s == 0.0 { HOUR_S } else { self.allowance_s }
+    }
 }
 
 /// A motion.
@@ -57,13 +66,39 @@ pub(super) struct Errand {
     pub(super) until_s: Option<f64>,
     /// The stop to which it drives, if it has some, and those after it.
     pub(super) present_stop: Option<PoseStamped>,
-    pub(super) stops: VecDeque<PoseStamped>,
+    stops: Stops,
+    /// A single motion has to end until then \[s\].
+    pub(super) deadline_s: Option<f64>,
+    /// The speed that a single motion may have \[m/s\].
+    pub(super) most_mps: Option<f64>,
     /// Poses to which it drives.
     pub(super) poses: usize,
     /// Recoveries before it.
     recoveries: u32,
     pub(super) made: Made,
     last: Option<Pose>,
+}
+
+/// Stops, in their order.
+#[derive(Clone, Debug, Default)]
+struct Stops {
+    poses: Vec<PoseStamped>,
+    next: usize,
+    /// So many times at all of them, once these are done.
+    again: usize,
+}
+
+impl Iterator for Stops {
+    type Item = PoseStamped;
+
+    fn next(&mut self) -> Option<PoseStamped> {
+        if self.next >= self.poses.len() && self.again > 0 {
+            (self.next, self.again) = (0, self.again - 1);
+        }
+        let pose = self.poses.get(self.next)?.clone();
+        self.next += 1;
+        Some(pose)
+    }
 }
 
 /// The part of an errand that is done.
@@ -103,7 +138,9 @@ impl Errand {
             in_doubt_s: None,
             until_s: None,
             present_stop: None,
-            stops: VecDeque::new(),
+            stops: Stops::default(),
+            deadline_s: None,
+            most_mps: None,
             poses: 0,
             recoveries,
             made: Made::default(),
@@ -125,13 +162,20 @@ impl Errand {
     pub(super) fn stop_at(&mut self, poses: &[PoseStamped], first: usize, again: usize) {
         self.poses = poses.len();
         self.made.stop = first;
-        let all = poses.iter().cycle().take(poses.len() * again);
-        self.stops = poses.iter().skip(first).chain(all).cloned().collect();
+        self.stops = Stops { poses: poses.to_vec(), next: first, again };
     }
 
-    /// The stop to which it has driven is missed.
+    /// The next stop, if one is left.
+    pub(super) fn next_stop(&mut self) -> Option<PoseStamped> {
+        self.stops.next()
+    }
+
+    /// The stop to which it has driven is missed. Of very many the last ones are not counted.
     pub(super) fn miss(&mut self, pose: PoseStamped, ended: Ended) {
-        self.made.missed.push(Missed { stop: self.made.stop, pose, ended });
+        const MOST: usize = 1000;
+        if self.made.missed.len() < MOST {
+            self.made.missed.push(Missed { stop: self.made.stop, pose, ended });
+        }
     }
 
     /// Goes on to the next stop.
@@ -160,6 +204,12 @@ impl Errand {
         self.in_doubt_s = None;
         if let Some(until_s) = self.until_s {
             return (now_s >= until_s).then_some(Ended::Succeeded);
+        }
+        // Nothing counts the time of a motion that cannot even begin, such as beside the map.
+        if self.deadline_s.is_some_and(|deadline_s| now_s > deadline_s) {
+            let why =
+                step.why().map_or_else(|| Blocked::OutOfTime.to_string(), ToString::to_string);
+            return Some(Ended::failed(Fault::Timeout, why));
         }
         match step {
             Step::Arrived => return Some(Ended::Succeeded),

@@ -36,7 +36,11 @@ impl Pilot {
                 let points = self.points(&path)?;
                 self.navigate(|navigator| navigator.follow(points))?;
             }
-            Wanted::Act(act) => self.act(act)?,
+            Wanted::Act(act) => {
+                self.act(act)?;
+                errand.deadline_s = Some(now_s + act.allowed_s() + Self::GRACE_S);
+                errand.most_mps = act.most_mps;
+            }
             Wanted::Wait(time_s) => {
                 self.navigate(|navigator| {
                     navigator.cancel();
@@ -48,6 +52,9 @@ impl Pilot {
         self.errand = Some(errand);
         Ok(())
     }
+
+    /// A single motion that is not over so long after its time is given up \[s\].
+    const GRACE_S: f64 = 1.0;
 
     fn set_goals(&mut self, poses: &[PoseStamped]) -> Result<(), Ended> {
         let in_map = |pose| self.in_map(pose);
@@ -61,7 +68,9 @@ impl Pilot {
     /// Sets out to the first stop that is left and can be reached; false where none can. Those
     /// before it are missed.
     fn begin_stop(&mut self, errand: &mut Errand, now_s: f64) -> bool {
-        while let Some(pose) = errand.stops.pop_front() {
+        // Where none of a whole round can be reached, another round is in vain.
+        for _ in 0..errand.poses {
+            let Some(pose) = errand.next_stop() else { return false };
             let Err(ended) = self.set_goals(std::slice::from_ref(&pose)) else {
                 errand.present_stop = Some(pose);
                 return true;
@@ -90,7 +99,11 @@ impl Pilot {
 
     /// Begins a single motion.
     fn act(&mut self, act: Act) -> Result<(), Ended> {
-        let Act { motion, allowance_s, most_mps } = act;
+        let Act { motion, most_mps, fault, .. } = act;
+        let allowance_s = act.allowed_s();
+        if let Some(why) = fault {
+            return Err(Ended::failed(Fault::InvalidInput, why));
+        }
         let begun = self.navigate(|navigator| {
             Ok(match motion {
                 Motion::Turn(angle_rad) => navigator.spin(angle_rad, allowance_s),
@@ -120,7 +133,7 @@ impl Pilot {
         if speed_mps >= 0.0 && speed_mps.is_finite() {
             // 0 means that there is none.
             self.limit_mps = (speed_mps > 0.0).then_some(speed_mps);
-            self.limit_act(None);
+            self.limit_act(self.errand.as_ref().and_then(|errand| errand.most_mps));
         }
     }
 

@@ -39,8 +39,21 @@ pub(crate) enum UrlError {
 impl Pilot {
     /// Takes in a map, in the place of the last one. Where it cannot be used, that one stays.
     pub(crate) fn take_map(&mut self, message: &OccupancyGrid) -> Result<(), MapError> {
+        self.check_frame(&message.header.frame_id)?;
         let map = map_of(message)?;
         self.drive_on(&map)
+    }
+
+    /// Refuses what is in another frame than the map; without a name it is in that.
+    pub(super) fn check_frame(&self, own: &str) -> Result<(), MapError> {
+        let frame = self.settings.frames.map.trim_start_matches('/');
+        let own = own.trim_start_matches('/');
+        if own.is_empty() || own == frame {
+            return Ok(());
+        }
+        Err(MapError::Frame(format!(
+            "its frame is `{own}`, and the parameter `global_frame` says `{frame}`"
+        )))
     }
 
     fn drive_on(&mut self, map: &keyway::OccupancyGrid) -> Result<(), MapError> {
@@ -59,17 +72,18 @@ impl Pilot {
         if u64::from(width) * u64::from(height) != data.len() as u64 {
             return Err(MapError::Count { width, height, values: data.len() });
         }
+        self.check_frame(&update.header.frame_id)?;
         let Some(navigator) = &mut self.navigator else { return Ok(()) };
         let map = navigator.map();
         let cells = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
-        let edit = |((column, row), &value): ((u32, u32), &i8)| {
+        let edit = |(&value, (column, row)): (&i8, (u32, u32))| {
             let along = |from: i32, steps: u32| from.checked_add_unsigned(steps);
             let cell = Cell::new(along(x, column)?, along(y, row)?);
             let state = state_of(value);
             // Most of what comes is as it was.
             map.state(cell).filter(|&before| before != state).map(|_| Edit { cell, state })
         };
-        let edits: Vec<Edit> = cells.zip(data).filter_map(edit).collect();
+        let edits: Vec<Edit> = data.iter().zip(cells).filter_map(edit).collect();
         if !edits.is_empty() {
             navigator.edit_map(&edits);
         }

@@ -15,11 +15,7 @@ impl Pilot {
         info: &CostmapFilterInfo,
         mask: &OccupancyGrid,
     ) -> Result<(), MapError> {
-        let own = &mask.header.frame_id;
-        let frame = &self.settings.frames.map;
-        if !own.is_empty() && own != frame {
-            return Err(MapError::Frame(format!("its frame is `{own}` instead of `{frame}`")));
-        }
+        self.check_frame(&mask.header.frame_id)?;
         let full_mps = self.settings.stack.robot().limits.v_max_mps;
         match info.kind {
             CostmapFilterInfo::KEEP_OUT => self.masks.keep_out = Some(keep_out(mask)?),

@@ -196,7 +196,8 @@ impl Pilot {
         if age_s > *max_pose_age_s {
             return Err(Waits::NewPose { age_s });
         }
-        self.sensing.observe(navigator, (stamp_s, pose), (&self.transforms, &frames.base))?;
+        let age = (now_s, *max_pose_age_s);
+        self.sensing.observe(navigator, (stamp_s, pose), &self.transforms, age)?;
         Ok(navigator)
     }
 

@@ -1,28 +1,111 @@
 //! Measurements since the last cycle.
 
-use super::clouds::{CloudError, Seen};
+use super::clouds::Seen;
 use super::waits::Waits;
 use crate::messages::nav_msgs::Odometry;
 use crate::messages::sensor_msgs::{LaserScan, PointCloud2};
 use crate::messages::std_msgs::Header;
-use crate::settings::{PointsTaken, Settings};
-use crate::transforms::Transforms;
+use crate::settings::{Frames, PointsTaken, Settings};
+use crate::transforms::{TransformError, Transforms};
 use keyway::geometry::{Pose, Velocity};
 use keyway::navigate::Navigator;
 use keyway::sense::{Observation, Scan, SensorPoints, SensorScan};
 use std::collections::VecDeque;
 
-/// The latest odometry, and the scans that were not observed yet.
+/// The latest odometry, and what was sensed and not observed yet.
 pub(crate) struct Sensing {
-    velocity: Option<Velocity>,
-    /// Scans of each lidar, the oldest first: those that are newer than the pose wait for one.
-    scans: Vec<VecDeque<LaserScan>>,
-    /// The same of sensors that give clouds.
-    clouds: Vec<VecDeque<PointCloud2>>,
-    /// The last cloud of a sensor, where it could not be read: until one can, nobody knows what is
-    /// there.
-    unreadable: Vec<Option<CloudError>>,
+    /// With its time \[s\].
+    velocity: Option<(f64, Velocity)>,
+    scans: Vec<Waiting<LaserScan>>,
+    /// Of sensors that give clouds.
+    clouds: Vec<Waiting<PointCloud2>>,
     pub(super) points_taken: PointsTaken,
+    frames: Frames,
+}
+
+/// A message of a sensor.
+trait Sensed {
+    fn header(&self) -> &Header;
+}
+
+impl Sensed for LaserScan {
+    fn header(&self) -> &Header {
+        &self.header
+    }
+}
+
+impl Sensed for PointCloud2 {
+    fn header(&self) -> &Header {
+        &self.header
+    }
+}
+
+/// Messages of a sensor, the oldest first: those that are newer than what the transforms tell wait
+/// for it.
+struct Waiting<M> {
+    messages: VecDeque<M>,
+    most: usize,
+    /// The time of the last one that came \[s\].
+    last_s: Option<f64>,
+    /// The reason why the last one could not be used: until one can, nobody knows what is there.
+    fault: Option<Waits>,
+}
+
+impl<M: Sensed> Waiting<M> {
+    /// For so many at most: of more, the oldest is forgotten.
+    fn new(most: usize) -> Self {
+        Self { messages: VecDeque::new(), most, last_s: None, fault: None }
+    }
+
+    fn push(&mut self, message: M) {
+        self.last_s = Some(message.header().stamp.stamp_s());
+        self.messages.push_back(message);
+        while self.messages.len() > self.most {
+            self.messages.pop_front();
+        }
+    }
+
+    fn clear(&mut self) {
+        *self = Self::new(self.most);
+    }
+
+    /// The oldest one, if it was made until a time \[s\] and it is known where its sensor was then.
+    fn pop(
+        &mut self,
+        until_s: f64,
+        (transforms, base): (&Transforms, &str),
+    ) -> Result<Option<M>, TransformError> {
+        let Some(oldest) = self.messages.front() else { return Ok(None) };
+        let until_s = until_s.min(transforms.latest_s(base, &oldest.header().frame_id)?);
+        Ok(self.messages.pop_front_if(|oldest| oldest.header().stamp.stamp_s() <= until_s))
+    }
+
+    /// Uses all that are due. One from before the first transform shows nothing.
+    fn use_due<T>(
+        &mut self,
+        until_s: f64,
+        (transforms, base): (&Transforms, &str),
+        read: impl Fn(M) -> Result<T, Waits>,
+    ) -> Vec<T> {
+        let mut used = Vec::new();
+        loop {
+            match self.pop(until_s, (transforms, base)) {
+                Ok(Some(message)) => match read(message) {
+                    Ok(one) => {
+                        self.fault = None;
+                        used.push(one);
+                    }
+                    Err(Waits::Transform(TransformError::OutOfTime { .. })) => {}
+                    Err(fault) => self.fault = Some(fault),
+                },
+                Ok(None) => return used,
+                Err(error) => {
+                    self.fault = Some(error.into());
+                    return used;
+                }
+            }
+        }
+    }
 }
 
 /// A scan in the robot's frame.
@@ -35,99 +118,106 @@ struct Placed {
 
 impl Sensing {
     pub(crate) fn new(settings: &Settings) -> Self {
+        const MOST_SCANS: usize = 16;
+        /// They are large.
+        const MOST_CLOUDS: usize = 4;
+        let scans = settings.scan_topics.iter().map(|_| Waiting::new(MOST_SCANS));
+        let clouds = settings.cloud_topics.iter().map(|_| Waiting::new(MOST_CLOUDS));
         Self {
             velocity: None,
-            scans: vec![VecDeque::new(); settings.scan_topics.len()],
-            clouds: vec![VecDeque::new(); settings.cloud_topics.len()],
-            unreadable: vec![None; settings.cloud_topics.len()],
+            scans: scans.collect(),
+            clouds: clouds.collect(),
             points_taken: settings.points_taken.clone(),
+            frames: settings.frames.clone(),
         }
     }
 
+    /// Takes in a velocity, if it is one.
     pub(crate) fn take_odometry(&mut self, message: &Odometry) {
-        self.velocity = Some(message.twist.twist.into());
+        let velocity = Velocity::from(message.twist.twist);
+        if velocity.v.is_finite() && velocity.omega.is_finite() {
+            self.velocity = Some((message.header.stamp.stamp_s(), velocity));
+        }
     }
-
-    /// Scans of a lidar that wait at most: of more, the oldest is forgotten.
-    const MOST_WAITING: usize = 16;
 
     /// Takes in a scan.
     pub(crate) fn take_scan(&mut self, sensor: usize, message: LaserScan) {
         if let Some(scans) = self.scans.get_mut(sensor) {
-            scans.push_back(message);
-            while scans.len() > Self::MOST_WAITING {
-                scans.pop_front();
-            }
+            scans.push(message);
         }
     }
-
-    /// Clouds of a sensor that wait at most: they are large.
-    const MOST_CLOUDS: usize = 4;
 
     /// Takes in a cloud.
     pub(crate) fn take_cloud(&mut self, sensor: usize, message: PointCloud2) {
         if let Some(clouds) = self.clouds.get_mut(sensor) {
-            clouds.push_back(message);
-            while clouds.len() > Self::MOST_CLOUDS {
-                clouds.pop_front();
-            }
+            clouds.push(message);
         }
     }
 
     pub(super) fn restart_clock(&mut self) {
         self.velocity = None;
-        self.scans.iter_mut().for_each(VecDeque::clear);
-        self.clouds.iter_mut().for_each(VecDeque::clear);
+        self.scans.iter_mut().for_each(Waiting::clear);
+        self.clouds.iter_mut().for_each(Waiting::clear);
     }
 
     /// The latest velocity, once there is odometry.
-    pub(super) const fn velocity(&self) -> Option<Velocity> {
-        self.velocity
+    pub(super) fn velocity(&self) -> Option<Velocity> {
+        self.velocity.map(|(_, velocity)| velocity)
     }
 
     /// Lets the navigator observe a pose, which was at a time \[s\], and what was sensed until then.
+    /// An error where, at the present time \[s\], something is too old or cannot be used.
     pub(super) fn observe(
         &mut self,
         navigator: &mut Navigator,
         (stamp_s, pose): (f64, Pose),
-        (transforms, base): (&Transforms, &str),
+        transforms: &Transforms,
+        (now_s, max_age_s): (f64, f64),
     ) -> Result<(), Waits> {
-        let velocity = self.velocity.ok_or(Waits::Odometry)?;
+        let (told_s, velocity) = self.velocity.ok_or(Waits::Odometry)?;
+        let Frames { map, base } = &self.frames;
         let mut placed = Vec::new();
         for (sensor, scans) in self.scans.iter_mut().enumerate() {
-            let is_due = |scan: &mut LaserScan| scan.header.stamp.stamp_s() <= stamp_s;
-            while let Some(message) = scans.pop_front_if(is_due) {
-                placed.push(Placed::new(sensor, message, (transforms, base))?);
-            }
+            placed.extend(scans.use_due(stamp_s, (transforms, base), |scan| {
+                Placed::new(sensor, scan, (transforms, base))
+            }));
         }
-        let seen = self.take_seen(stamp_s, (transforms, base))?;
+        let mut seen = Vec::new();
+        for (sensor, clouds) in self.clouds.iter_mut().enumerate() {
+            seen.extend(clouds.use_due(stamp_s, (transforms, base), |cloud| {
+                let Header { stamp, frame_id } = &cloud.header;
+                let at = |frame| transforms.at(frame, frame_id, stamp.stamp_s());
+                let placements = [&at(base)?, &at(map)?];
+                Ok(Seen::of(sensor, &cloud, placements, &self.points_taken)?)
+            }));
+        }
+        seen.sort_by(|a, b| a.stamp_s.total_cmp(&b.stamp_s));
         let scans: Vec<SensorScan<'_>> = placed.iter().map(Placed::borrowed).collect();
         let points: Vec<SensorPoints<'_>> = seen.iter().map(Seen::borrowed).collect();
         let observation = Observation::new(stamp_s, pose, velocity, &scans);
         navigator.observe(&observation.with_points(&points));
-        let unreadable = self.unreadable.iter().flatten().next();
-        unreadable.map_or(Ok(()), |error| Err(error.clone().into()))
+        let age_s = now_s - told_s;
+        if age_s > max_age_s {
+            return Err(Waits::NewOdometry { age_s });
+        }
+        self.fault(now_s).map_or(Ok(()), Err)
     }
 
-    /// What the clouds until a time \[s\] show.
-    fn take_seen(
-        &mut self,
-        stamp_s: f64,
-        (transforms, base): (&Transforms, &str),
-    ) -> Result<Vec<Seen>, Waits> {
-        let mut seen = Vec::new();
-        for (sensor, clouds) in self.clouds.iter_mut().enumerate() {
-            let is_due = |cloud: &mut PointCloud2| cloud.header.stamp.stamp_s() <= stamp_s;
-            while let Some(cloud) = clouds.pop_front_if(is_due) {
-                let Header { stamp, frame_id } = &cloud.header;
-                let placement = transforms.at(base, frame_id, stamp.stamp_s())?;
-                let read = Seen::of(sensor, &cloud, &placement, &self.points_taken);
-                self.unreadable[sensor] = read.as_ref().err().cloned();
-                seen.extend(read);
-            }
-        }
-        seen.sort_by(|a, b| a.stamp_s.total_cmp(&b.stamp_s));
-        Ok(seen)
+    /// The reason why the robot does not see what it should.
+    fn fault(&self, now_s: f64) -> Option<Waits> {
+        let of_scans = self.scans.iter().find_map(|scans| scans.fault.clone());
+        let of_clouds = || self.clouds.iter().find_map(|clouds| clouds.fault.clone());
+        of_scans.or_else(of_clouds).or_else(|| self.silence(now_s))
+    }
+
+    /// A sensor with clouds that is silent. Of lidars the navigator knows that itself.
+    fn silence(&self, now_s: f64) -> Option<Waits> {
+        let timeout_s = self.points_taken.timeout_s;
+        let silent = |clouds: &Waiting<PointCloud2>| {
+            timeout_s > 0.0 && clouds.last_s.is_none_or(|last_s| now_s - last_s > timeout_s)
+        };
+        let sensor = self.clouds.iter().position(silent)?;
+        Some(Waits::Silent { cloud: sensor, after_s: timeout_s })
     }
 }
 
@@ -141,6 +231,7 @@ impl Placed {
         let stamp_s = message.header.stamp.stamp_s();
         let placement = transforms.at(base, &message.header.frame_id, stamp_s)?;
         let (mount, mut scan) = (placement.on_ground(), Scan::from(message));
+        scan.check()?;
         if placement.is_upside_down() {
             scan.angle_min_rad = -scan.angle_min_rad;
             scan.angle_increment_rad = -scan.angle_increment_rad;

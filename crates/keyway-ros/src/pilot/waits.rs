@@ -2,6 +2,7 @@
 
 use super::clouds::CloudError;
 use crate::transforms::TransformError;
+use keyway::sense::ScanError;
 use thiserror::Error;
 
 /// The reason why a robot stands and nothing is decided.
@@ -13,8 +14,14 @@ pub(crate) enum Waits {
     Odometry,
     #[error(transparent)]
     Transform(#[from] TransformError),
+    #[error("a scan cannot be used: {0}")]
+    Scan(#[from] ScanError),
     #[error(transparent)]
     Cloud(#[from] CloudError),
+    #[error("cloud_topics[{cloud}] has been silent for more than {after_s} s (`cloud_timeout`)")]
+    Silent { cloud: usize, after_s: f64 },
+    #[error("the odometry is {age_s:.2} s old")]
+    NewOdometry { age_s: f64 },
     #[error("the pose is {age_s:.2} s old, by transforms that are late or have ended")]
     NewPose { age_s: f64 },
 }

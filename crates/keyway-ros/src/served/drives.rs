@@ -5,7 +5,7 @@ use crate::messages::builtin_interfaces::Duration;
 use crate::messages::geometry_msgs::PoseStamped;
 use crate::messages::nav2_msgs::{
     Distance, FollowPath, FollowPathFeedback, FollowPathGoal, FollowPathOutcome, NavigateToPose,
-    NavigateToPoseFeedback, NavigateToPoseGoal, Outcome, TimedOutcome, Wait, WaitFeedback,
+    NavigateToPoseFeedback, NavigateToPoseGoal, Outcome, Target, TimedOutcome, Wait, WaitFeedback,
     WaitGoal, jazzy, kilted,
 };
 use crate::messages::std_msgs::Header;
@@ -72,6 +72,7 @@ macro_rules! single_motions {
                     motion: Motion::Turn(f64::from(goal.target_yaw)),
                     allowance_s: goal.time_allowance.duration_s(),
                     most_mps: None,
+                    fault: None,
                 })
             }
 
@@ -86,8 +87,9 @@ macro_rules! single_motions {
 
         impl Drives for $distribution::BackUp {
             fn wanted(goal: $distribution::DriveGoal) -> Wanted {
-                // As Nav2 has it, the sign says nothing.
-                straight(Motion::Back(goal.target.x.abs()), goal.speed, goal.time_allowance)
+                // As Nav2 has it, signs say nothing.
+                let way_m = -goal.target.x.abs();
+                straight(Target { x: way_m, ..goal.target }, -goal.speed.abs(), goal.time_allowance)
             }
 
             fn outcome(ended: &Ended, report: &Report) -> TimedOutcome {
@@ -101,7 +103,7 @@ macro_rules! single_motions {
 
         impl Drives for $distribution::DriveOnHeading {
             fn wanted(goal: $distribution::DriveGoal) -> Wanted {
-                straight(Motion::Ahead(goal.target.x), goal.speed, goal.time_allowance)
+                straight(goal.target, goal.speed, goal.time_allowance)
             }
 
             fn outcome(ended: &Ended, report: &Report) -> TimedOutcome {
@@ -117,9 +119,21 @@ macro_rules! single_motions {
 
 single_motions!(jazzy, kilted);
 
-fn straight(motion: Motion, speed_mps: f32, allowance: Duration) -> Wanted {
-    let most_mps = Some(f64::from(speed_mps.abs()));
-    Wanted::Act(Act { motion, allowance_s: allowance.duration_s(), most_mps })
+/// A drive ahead, or back where the target is behind.
+fn straight(target: Target, speed_mps: f32, allowance: Duration) -> Wanted {
+    let (way_m, speed_mps) = (target.x, f64::from(speed_mps));
+    let fault = if target.y != 0.0 || target.z != 0.0 {
+        Some("the target must lie straight ahead or behind")
+    } else if speed_mps.is_nan() || speed_mps == 0.0 {
+        Some("the speed must not be 0")
+    } else if way_m * speed_mps < 0.0 {
+        Some("the speed must have the sign of the target")
+    } else {
+        None
+    };
+    let motion = if way_m < 0.0 { Motion::Back(-way_m) } else { Motion::Ahead(way_m) };
+    let (allowance_s, most_mps) = (allowance.duration_s(), Some(speed_mps.abs()));
+    Wanted::Act(Act { motion, allowance_s, most_mps, fault })
 }
 
 impl Drives for jazzy::NavigateThroughPoses {

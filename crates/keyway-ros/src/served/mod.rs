@@ -16,6 +16,7 @@ use crate::messages::nav2_msgs::services::{
     ManageLifecycleNodes,
 };
 use crate::messages::nav2_msgs::{self, jazzy, kilted};
+use crate::messages::std_srvs::IsActive;
 use crate::pilot::{Ended, Pilot, Report, Wanted};
 use crate::wire::{ActionServer, GoalEvent, GoalId, GoalStatus, Wire, Wired};
 
@@ -156,7 +157,8 @@ pub(crate) fn answered(
 ) -> Result<Vec<Box<dyn Answered>>, StartError> {
     let through = "compute_path_through_poses";
     let mut answered = refused::refused(wire)?;
-    let others: [Box<dyn Answered>; 6] = [
+    let others: [Box<dyn Answered>; 7] = [
+        Box::new(wire.service::<IsActive>("lifecycle_manager_navigation/is_active")?),
         Box::new(wire.action::<nav2_msgs::ComputePathToPose>("compute_path_to_pose")?),
         Box::new(wire.action::<nav2_msgs::SmoothPath>("smooth_path")?),
         match distribution {
@@ -181,6 +183,10 @@ pub(crate) fn answered(
     for costmap in ["global_costmap", "local_costmap"] {
         let clear = format!("{costmap}/clear_entirely_{costmap}");
         answered.push(Box::new(wire.service::<ClearEntireCostmap>(&clear)?));
+        let except = format!("{costmap}/clear_except_{costmap}");
+        answered.push(Box::new(wire.service::<ClearCostmapExceptRegion>(&except)?));
+        let around = format!("{costmap}/clear_around_{costmap}");
+        answered.push(Box::new(wire.service::<ClearCostmapAroundRobot>(&around)?));
         let get = format!("{costmap}/get_costmap");
         answered.push(Box::new(wire.service::<GetCostmap>(&get)?));
     }

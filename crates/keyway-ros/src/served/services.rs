@@ -7,6 +7,7 @@ use crate::messages::nav2_msgs::services::{
     CostmapMetaData, GetCostmap, LoadMap, LoadedMap, ManageLifecycleNodes, MapUrl, ResetDistance,
     Success,
 };
+use crate::messages::std_srvs::{IsActive, Triggered};
 use crate::messages::{Empty, Service};
 use crate::pilot::{Pilot, UrlError};
 use crate::wire::{ServiceServer, WiredService};
@@ -25,6 +26,13 @@ impl<S: Serves + WiredService> Answered for ServiceServer<S> {
 impl Serves for GetState {
     fn answer(pilot: &mut Pilot, _: Empty, _: Told<'_>) -> State {
         State::of(pilot.is_active())
+    }
+}
+
+impl Serves for IsActive {
+    fn answer(pilot: &mut Pilot, _: Empty, _: Told<'_>) -> Triggered {
+        let success = pilot.is_active();
+        Triggered { success, message: State::of(success).label }
     }
 }
 

@@ -46,6 +46,7 @@ impl Settings {
             ("min_obstacle_height", Value::Float(*heights_m.start())),
             ("max_obstacle_height", Value::Float(*heights_m.end())),
             ("obstacle_max_range", Value::Float(self.points_taken.range_m)),
+            ("cloud_timeout", Value::Float(self.points_taken.timeout_s)),
             ("filter_info_topics", Value::Array(texts(&self.filter_info_topics))),
             ("odom_topic", Value::String(self.odom_topic.clone())),
             ("distribution", Value::String(self.distribution.name().to_owned())),

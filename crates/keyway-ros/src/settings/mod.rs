@@ -65,6 +65,8 @@ pub(crate) struct PointsTaken {
     pub(crate) heights_m: RangeInclusive<f64>,
     /// Farther from the sensor they do not count \[m\].
     pub(crate) range_m: f64,
+    /// The robot stands when one of these sensors is silent for longer \[s\]; 0: never.
+    pub(crate) timeout_s: f64,
 }
 
 /// The distribution, by the parameter or by `ROS_DISTRO`.
@@ -83,7 +85,7 @@ fn distribution_of(given: &mut Given, distro: Option<&str>) -> Result<Distributi
 type Parameters = BTreeMap<String, Value>;
 
 /// A parameter, and what it is for; the default is what stands in [`Settings::of`].
-const PARAMETERS: [(&str, &str); 17] = [
+const PARAMETERS: [(&str, &str); 18] = [
     ("robot", "name of a bundled robot, or its file (TOML); required without a file of Nav2"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
@@ -95,6 +97,10 @@ const PARAMETERS: [(&str, &str); 17] = [
     ("min_obstacle_height", "points of clouds that are lower are ground [m]; 0.05"),
     ("max_obstacle_height", "points of clouds that are higher are overhead [m]; 2.0"),
     ("obstacle_max_range", "points of clouds that are farther do not count [m]; 2.5"),
+    (
+        "cloud_timeout",
+        "the robot stands when one of these is silent for longer [s]; 1.0, 0 for ever",
+    ),
     ("filter_info_topics", "topics of Nav2's filters; costmap_filter_info, and with a prefix"),
     ("odom_topic", "topic of the odometry; odom"),
     ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
@@ -238,7 +244,8 @@ impl Given {
             return Err(wrong("min_obstacle_height", why));
         }
         let range_m = self.positive("obstacle_max_range")?.unwrap_or(2.5);
-        Ok(PointsTaken { heights_m: lowest_m..=highest_m, range_m })
+        let timeout_s = self.number("cloud_timeout")?.unwrap_or(1.0);
+        Ok(PointsTaken { heights_m: lowest_m..=highest_m, range_m, timeout_s })
     }
 
     /// The robot as files of Nav2 describe it.
@@ -246,6 +253,12 @@ impl Given {
         let names = Robot::NAMES.join(", ");
         if self.nav2.is_empty() {
             return Err(wrong("robot", format!("is required: {names}, a file, or a file of Nav2")));
+        }
+        if let Some(why) = self.nav2.fault.take() {
+            return Err(wrong(
+                "robot",
+                format!("is not given, and Nav2's parameters are wrong: {why}"),
+            ));
         }
         let described = std::mem::take(&mut self.nav2.robot).robot();
         let mut robot = described.map_err(|error| {

@@ -17,6 +17,8 @@ pub(super) struct Nav2 {
     pub(super) goal_yaw_tolerance_rad: Option<f64>,
     /// Parameters of this node that follow from others.
     pub(super) own: Parameters,
+    /// The reason why the robot cannot be what the file says.
+    pub(super) fault: Option<String>,
     /// Names that were taken, and all there are, each after its node.
     taken: BTreeSet<String>,
     all: BTreeSet<String>,
@@ -76,9 +78,14 @@ impl Nav2 {
 
     fn take_size(&mut self, nodes: &mut Nodes<'_>) {
         for costmap in ["local_costmap", "global_costmap"] {
-            let corners = nodes.text(costmap, "footprint").and_then(|text| polygon(&text));
-            if let Some(footprint) = corners {
-                self.robot.footprint = Some(footprint);
+            // Without corners it is the radius that counts, as in Nav2.
+            let text =
+                nodes.text(costmap, "footprint").filter(|text| text.contains(char::is_numeric));
+            if let Some(text) = text {
+                match polygon(&text) {
+                    Ok(footprint) => self.robot.footprint = Some(footprint),
+                    Err(why) => self.fault = Some(format!("{costmap}: footprint: {why}")),
+                }
                 return;
             }
             if let Some(radius_m) = nodes.number(costmap, "robot_radius") {
@@ -100,7 +107,13 @@ impl Nav2 {
             names.iter().find_map(&mut number)
         };
         // DWB, MPPI, regulated pure pursuit, the graceful controller.
-        let speed = of_controller(&["max_vel_x", "vx_max", "desired_linear_vel", "v_linear_max"]);
+        let speed = of_controller(&[
+            "max_vel_x",
+            "vx_max",
+            "desired_linear_vel",
+            "max_linear_vel",
+            "v_linear_max",
+        ]);
         let slowest = of_controller(&["min_vel_x", "vx_min"]);
         let turn = of_controller(&[
             "max_vel_theta",
@@ -120,13 +133,15 @@ impl Nav2 {
         let [top, top_turn] = of_smoother("max_velocity");
         let [gain, turn_gain] = of_smoother("max_accel");
         let [brake, turn_brake] = of_smoother("max_decel");
+        let [back, _] = of_smoother("min_velocity");
         let lower = |a: Option<f64>, b: Option<f64>| match (a.map(f64::abs), b) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
         self.robot.v_max_mps = lower(speed, top);
         let limits = &mut self.robot.limits;
-        limits.v_min_mps = slowest.map(|v_mps| v_mps.min(0.0));
+        // The smoother says what the base can, a controller what it likes.
+        limits.v_min_mps = slowest.filter(|&v_mps| v_mps < 0.0).or(back.map(|back_mps| -back_mps));
         limits.omega_max_radps = lower(turn, top_turn);
         limits.acceleration_mps2 = lower(faster, gain);
         limits.deceleration_mps2 = lower(slower, brake).or(limits.acceleration_mps2);
@@ -144,14 +159,14 @@ impl Nav2 {
             nodes.number(server, &format!("{checker}.yaw_goal_tolerance"));
     }
 
-    /// The names of frames and topics, the frequency, and the kind of time.
+    /// The names of frames and topics, and the frequency. Whether time is simulated is for the
+    /// launch file to say: Nav2's own overrides what stands here.
     fn take_names(&mut self, nodes: &mut Nodes<'_>) {
         for (own, places) in [
             ("controller_frequency", &["controller_server"][..]),
             ("odom_topic", &["controller_server", "bt_navigator"]),
             ("global_frame", &["bt_navigator", "global_costmap"]),
             ("robot_base_frame", &["bt_navigator", "local_costmap"]),
-            ("use_sim_time", &["controller_server", "bt_navigator", "local_costmap"]),
             ("enable_stamped_cmd_vel", &["controller_server"]),
         ] {
             let value = places.iter().find_map(|node| nodes.take(node, own).cloned());
@@ -164,10 +179,20 @@ impl Nav2 {
         let costmap = "local_costmap";
         let (mut scans, mut clouds) = (Vec::new(), Vec::new());
         for layer in nodes.texts(costmap, "plugins").unwrap_or_default() {
+            let is_off = |nodes: &mut Nodes<'_>, name: &str| {
+                nodes.take(costmap, &format!("{layer}.{name}")).and_then(Value::as_bool)
+                    == Some(false)
+            };
+            if is_off(nodes, "enabled") {
+                continue;
+            }
             let Some(sources) = nodes.text(costmap, &format!("{layer}.observation_sources")) else {
                 continue;
             };
             for source in sources.split_whitespace() {
+                if is_off(nodes, &format!("{source}.marking")) {
+                    continue;
+                }
                 let mut of = |name: &str| nodes.take(costmap, &format!("{layer}.{source}.{name}"));
                 let is_cloud = of("data_type").and_then(Value::as_str) == Some("PointCloud2");
                 let topic = of("topic").and_then(Value::as_str).unwrap_or(source).to_owned();
@@ -269,10 +294,15 @@ fn add_names(names: &mut BTreeSet<String>, before: &str, parameters: &Table) {
     }
 }
 
-/// A footprint as Nav2 writes it: a text such as `[[0.2, 0.1], [-0.2, 0.1], [0.0, -0.1]]`.
-fn polygon(text: &str) -> Option<Footprint> {
-    let corners: Vec<[f64; 2]> = serde_saphyr::from_str(text).ok()?;
-    Footprint::polygon(corners.into_iter().map(Point::from).collect()).ok()
+/// A footprint as Nav2 writes it: a text such as `[[0.2, 0.1], [-0.2, 0.1], [0.0, -0.1]]`. The first
+/// corner may stand at the end once more.
+fn polygon(text: &str) -> Result<Footprint, String> {
+    let corners: Vec<[f64; 2]> = serde_saphyr::from_str(text).map_err(|error| error.to_string())?;
+    let mut corners: Vec<Point> = corners.into_iter().map(Point::from).collect();
+    if corners.len() > 1 && corners.first() == corners.last() {
+        corners.pop();
+    }
+    Footprint::polygon(corners).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
@@ -369,6 +399,35 @@ velocity_smoother:
         assert!(!taken.contains("robot_radius") && left.contains("robot_radius"), "{report}");
         assert!(taken.contains("xy_goal_tolerance"));
         assert!(of("keyway:\n  ros__parameters:\n    robot: jackal\n").report().is_empty());
+    }
+
+    /// A robot must not be made smaller by a slip of the pen.
+    #[test]
+    fn a_footprint_that_cannot_be_is_no_footprint() {
+        let with = |footprint: &str| {
+            of(&format!(
+                "local_costmap:\n  local_costmap:\n    ros__parameters:\n      footprint: \
+                 \"{footprint}\"\n      robot_radius: 0.1\n"
+            ))
+        };
+        for wrong in ["[[0.3, 0.2], [0.3]]", "[[0.3, 0.2], [-0.3, 0.2]]", "0.3, 0.2"] {
+            let nav2 = with(wrong);
+            assert!(nav2.fault.unwrap().contains("footprint"), "{wrong}");
+            assert_eq!(nav2.robot.radius_m, None);
+        }
+        let closed = with("[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2], [0.3, 0.2]]");
+        assert!(closed.fault.is_none() && closed.robot.footprint.is_some());
+        assert_eq!(with("[]").robot.radius_m, Some(0.1));
+    }
+
+    #[test]
+    fn what_is_switched_off_is_not_there() {
+        let text = MPPI.replace("        depth:\n", "        depth:\n          marking: false\n");
+        let nav2 = of(&text);
+        assert!(!nav2.own.contains_key("cloud_topics") && nav2.own.contains_key("scan_topics"));
+        let off =
+            MPPI.replace("      voxel_layer:\n", "      voxel_layer:\n        enabled: false\n");
+        assert!(!of(&off).own.contains_key("scan_topics"));
     }
 
     #[test]

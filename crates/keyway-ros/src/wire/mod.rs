@@ -34,6 +34,7 @@ macro_rules! on_the_wire {
 on_the_wire!(
     messages::Empty,
     messages::lifecycle_msgs::State,
+    messages::std_srvs::Triggered,
     services::Command,
     services::Costmap,
     services::CostmapMetaData,

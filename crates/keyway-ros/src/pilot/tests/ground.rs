@@ -102,7 +102,7 @@ fn it_is_slow_where_a_mask_says_so() {
 }
 
 /// A cloud of points in the frame of the robot.
-fn cloud(stamp_s: f64, points: &[[f32; 3]]) -> PointCloud2 {
+pub(super) fn cloud(stamp_s: f64, points: &[[f32; 3]]) -> PointCloud2 {
     let field = |(name, offset): (&str, u32)| PointField {
         name: name.to_owned(),
         offset,

@@ -1,5 +1,6 @@
 //! The pilot with a robot that obeys at once, in a room that its map shows.
 
+mod faults;
 mod ground;
 
 use super::*;
@@ -305,7 +306,9 @@ fn it_drives_to_several_poses() {
 /// Turns, drives, waits; and one that a wall does not let through.
 #[test]
 fn it_does_single_motions() {
-    let act = |motion, allowance_s| Wanted::Act(Act { motion, allowance_s, most_mps: Some(0.1) });
+    let act = |motion, allowance_s| {
+        Wanted::Act(Act { motion, allowance_s, most_mps: Some(0.1), fault: None })
+    };
     let mut robot = Robot::new();
     robot.tell(robot.now_s);
     let mut does = |wanted| {

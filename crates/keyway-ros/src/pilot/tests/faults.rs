@@ -1,0 +1,187 @@
+//! Sensors that fail, and goals that ask for too much.
+
+use super::ground::cloud;
+use super::{Act, Ended, Fault, MapError, Motion, ODOM, Robot, Wanted, goal, room, to};
+use crate::messages::map_msgs::OccupancyGridUpdate;
+use crate::messages::nav_msgs::Odometry;
+use crate::messages::nav2_msgs::SpeedLimit;
+use crate::messages::sensor_msgs::LaserScan;
+use crate::messages::std_msgs::Header;
+use crate::pilot::Waits;
+use crate::transforms::Placement;
+use keyway::geometry::{Pose, Velocity};
+
+/// One that has set out across the room.
+fn under_way(parameters: &[(&str, &str)]) -> Robot {
+    let mut robot = Robot::with(parameters);
+    robot.tell(robot.now_s);
+    robot.pilot.begin(to("map", Pose::new(5.0, 2.0, 0.0)), robot.now_s).unwrap();
+    robot
+}
+
+/// Transforms and scans go on, odometry does not.
+#[test]
+fn a_velocity_from_before_is_none() {
+    let mut robot = under_way(&[]);
+    for _ in 0..20 {
+        assert_eq!(robot.cycle().waits, None);
+    }
+    let ended_s = robot.now_s;
+    for _ in 0..20 {
+        let now_s = robot.now_s;
+        for (names, pose) in [(["map", "odom"], ODOM), (["odom", "base_link"], robot.pose)] {
+            robot.pilot.transforms.insert(names, (now_s, Placement::upright(pose)), false);
+        }
+        let cycle = robot.pilot.cycle(now_s);
+        if now_s > ended_s + 0.2 {
+            assert!(matches!(cycle.waits, Some(Waits::NewOdometry { .. })), "{:?}", cycle.waits);
+            assert_eq!(cycle.command, Velocity::ZERO);
+        }
+        robot.now_s += 0.05;
+    }
+    let mut none = Odometry { header: Header::new(robot.now_s, "odom"), ..Odometry::default() };
+    none.twist.twist.linear.x = f64::NAN;
+    robot.pilot.sensing.take_odometry(&none);
+    assert!(robot.pilot.cycle(robot.now_s).waits.is_some(), "that is no velocity");
+}
+
+#[test]
+fn a_scan_whose_bearings_cannot_be_stops_the_robot() {
+    for increment in [0.0, f32::NAN, 1.0] {
+        let mut robot = under_way(&[]);
+        robot.cycle();
+        let broken = LaserScan {
+            header: Header::new(robot.now_s - 0.01, "base_scan"),
+            angle_increment: increment,
+            range_max: 3.5,
+            ranges: vec![f32::INFINITY; 360],
+            ..LaserScan::default()
+        };
+        robot.tell(robot.now_s);
+        robot.pilot.sensing.take_scan(0, broken);
+        // A good one before it changes nothing.
+        let cycle = robot.pilot.cycle(robot.now_s);
+        assert!(matches!(cycle.waits, Some(Waits::Scan(_))), "{:?}", cycle.waits);
+        robot.now_s += 0.1;
+        robot.cycle();
+        assert_eq!(robot.cycle().waits, None, "until one can be used");
+    }
+}
+
+#[test]
+fn a_camera_that_is_silent_or_nowhere_stops_the_robot() {
+    let mut silent = under_way(&[("cloud_topics", "[camera]")]);
+    assert!(matches!(silent.cycle().waits, Some(Waits::Silent { cloud: 0, .. })));
+    let camera = Placement::upright(Pose::new(0.1, 0.0, 0.0));
+    silent.pilot.transforms.insert(["base_link", "camera"], (0.0, camera), true);
+    silent.pilot.sensing.take_cloud(0, cloud(silent.now_s, &[[2.0, 0.0, 0.0]]));
+    assert_eq!(silent.cycle().waits, None);
+    let waits: Vec<_> = (0..40).map(|_| silent.cycle().waits).collect();
+    assert!(matches!(waits.last(), Some(Some(Waits::Silent { .. }))), "{waits:?}");
+
+    // Clouds come in every other cycle.
+    let mut nowhere = under_way(&[("cloud_topics", "[camera]")]);
+    for cycle in 0..10 {
+        if cycle % 2 == 0 {
+            nowhere.pilot.sensing.take_cloud(0, cloud(nowhere.now_s - 0.01, &[[2.0, 0.0, 0.0]]));
+        }
+        let waits = nowhere.cycle().waits;
+        assert!(matches!(waits, Some(Waits::Transform(_))), "{cycle}: {waits:?}");
+    }
+    let mut without = under_way(&[("cloud_topics", "[bumper]"), ("cloud_timeout", "0")]);
+    assert_eq!(without.cycle().waits, None, "a bumper says nothing where it meets nothing");
+}
+
+/// A frame that moves on the robot, and is told of less often than scans are made.
+#[test]
+fn scans_wait_for_their_frame() {
+    let mut robot = under_way(&[]);
+    let moving = Placement::upright(Pose::new(0.05, 0.0, 0.0));
+    robot.pilot.transforms.insert(["base_link", "base_scan"], (robot.now_s, moving), false);
+    for cycle in 0..40 {
+        if cycle % 3 == 0 {
+            let frames = ["base_link", "base_scan"];
+            robot.pilot.transforms.insert(frames, (robot.now_s, moving), false);
+        }
+        let cycle = robot.cycle();
+        assert_eq!(cycle.waits, None);
+    }
+    assert!(robot.velocity.v > 0.1, "it drives: {:?}", robot.velocity);
+}
+
+/// The robot's frame is at the height of its axles.
+#[test]
+fn heights_are_above_the_ground() {
+    let mut robot = Robot::with(&[("cloud_topics", "[camera]")]);
+    let camera = Placement::default();
+    robot.pilot.transforms.insert(["base_link", "camera"], (0.0, camera), true);
+    let axles = Placement::new([0.5, 2.0, 0.13], [0.0, 0.0, 0.0, 1.0]).unwrap();
+    // 2 cm and 10 cm above the ground.
+    let points = [[1.02, 0.48, 0.02 - 0.13], [1.02, -0.48, 0.10 - 0.13]];
+    for _ in 0..3 {
+        robot.tell(robot.now_s);
+        robot.pilot.transforms.insert(["odom", "base_link"], (robot.now_s, axles), false);
+        robot.pilot.sensing.take_cloud(0, cloud(robot.now_s - 0.01, &points));
+        robot.pilot.cycle(robot.now_s);
+        robot.now_s += 0.1;
+    }
+    let navigator = robot.pilot.navigator().unwrap();
+    let is_sensed = |x, y| navigator.sensed().get(navigator.map().frame().cell_near([x, y].into()));
+    assert!(is_sensed(2.52, 1.52) && !is_sensed(2.52, 2.48));
+}
+
+#[test]
+fn rounds_without_an_end_take_no_memory_and_end_where_nothing_can_be_reached() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let stops = |poses: &[Pose]| poses.iter().map(|&pose| goal("map", pose)).collect();
+    let (far, near) = (Pose::new(9.0, 2.0, 0.0), Pose::new(2.0, 2.0, 0.0));
+    let for_ever =
+        |poses: &[Pose]| Wanted::Stops { poses: stops(poses), first: 0, again: u32::MAX as usize };
+    robot.pilot.begin(for_ever(&[near, far]), robot.now_s).unwrap();
+    let outcome = robot.pilot.begin(for_ever(&[far, far]), robot.now_s);
+    assert!(matches!(outcome, Err(Ended::Failed { .. })), "{outcome:?}");
+}
+
+/// Beside the map nothing moves, but time passes.
+#[test]
+fn a_motion_that_cannot_begin_ends() {
+    let mut robot = Robot::new();
+    robot.pose = Pose::new(-30.0, 2.0, 0.0);
+    robot.tell(robot.now_s);
+    let turn = Act { motion: Motion::Turn(1.0), allowance_s: 2.0, most_mps: None, fault: None };
+    robot.pilot.begin(Wanted::Act(turn), robot.now_s).unwrap();
+    let began_s = robot.now_s;
+    let ended = (0..200).find_map(|_| robot.cycle().ended).map(|(ended, _)| ended);
+    assert!(matches!(ended, Some(Ended::Failed { fault: Fault::Timeout, .. })), "{ended:?}");
+    assert!((2.0..4.0).contains(&(robot.now_s - began_s)));
+    let refused = Act { fault: Some("of a reason"), ..turn };
+    let outcome = robot.pilot.begin(Wanted::Act(refused), robot.now_s);
+    assert!(matches!(outcome, Err(Ended::Failed { fault: Fault::InvalidInput, .. })));
+}
+
+/// A limit for all leaves that of a motion.
+#[test]
+fn a_slow_motion_stays_slow() {
+    let mut robot = Robot::new();
+    robot.tell(robot.now_s);
+    let slow =
+        Act { motion: Motion::Ahead(1.0), allowance_s: 0.0, most_mps: Some(0.05), fault: None };
+    robot.pilot.begin(Wanted::Act(slow), robot.now_s).unwrap();
+    robot.pilot.limit_speed(&SpeedLimit::default());
+    let fastest_mps = (0..60).map(|_| robot.cycle().command.v).fold(0.0, f64::max);
+    assert!((0.04..0.051).contains(&fastest_mps), "{fastest_mps}");
+}
+
+#[test]
+fn maps_of_other_frames_and_empty_updates_are_nothing() {
+    let mut robot = Robot::new();
+    let mut elsewhere = room();
+    elsewhere.header.frame_id = "odom".to_owned();
+    let outcome = robot.pilot.take_map(&elsewhere);
+    assert!(matches!(&outcome, Err(MapError::Frame(why)) if why.contains("global_frame")));
+    elsewhere.header.frame_id = "/map".to_owned();
+    assert_eq!(robot.pilot.take_map(&elsewhere), Ok(()));
+    let empty = OccupancyGridUpdate { height: u32::MAX, ..OccupancyGridUpdate::default() };
+    assert_eq!(robot.pilot.take_update(&empty), Ok(()));
+}
