@@ -60,6 +60,7 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
         println!("keyway-ros {}", env!("CARGO_PKG_VERSION"));
         return Ok(());
     }
+    wire::notice_panics();
     let distro = variable("ROS_DISTRO");
     let network = Network::of_environment(variable)?;
     let is_over = Arc::new(AtomicBool::new(false));

@@ -103,7 +103,7 @@ impl Node {
         while !is_over.load(Ordering::Relaxed) {
             if self.wire.is_dead() {
                 eprintln!(
-                    "keyway-ros: the process was halted: it joins the network anew, without a goal"
+                    "keyway-ros: the network has ended, as after a halt of the process: it is joined anew, without a goal"
                 );
                 self.pilot.stop();
                 return Some(self.pilot);

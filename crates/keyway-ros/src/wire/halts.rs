@@ -1,12 +1,24 @@
 //! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP.
 //!
-//! The threads of `rustdds` end when a wait of theirs is interrupted, which a halt does. They do so in
-//! silence: nothing comes any more, and nothing goes out.
+//! The threads of `rustdds` end when a wait of theirs is interrupted, which a halt does, and when
+//! they panic. They do so in silence: nothing comes any more, and nothing goes out.
 
 use ros2_client::dds::rustdds::mio1;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Some thread of the process has panicked.
+static HAS_PANICKED: AtomicBool = AtomicBool::new(false);
+
+/// From now on threads that panic are noticed; what they say is printed as before.
+pub(crate) fn notice_panics() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        HAS_PANICKED.store(true, Ordering::Relaxed);
+        before(panic);
+    }));
+}
 
 /// A thread that waits as those do, and tells when it was interrupted.
 pub(super) struct Halts {
@@ -28,8 +40,8 @@ impl Halts {
         Ok(Self { happened })
     }
 
-    /// True once there was one.
+    /// True once there was one, or a thread has panicked since the last call.
     pub(super) fn happened(&self) -> bool {
-        self.happened.load(Ordering::Relaxed)
+        self.happened.load(Ordering::Relaxed) || HAS_PANICKED.swap(false, Ordering::Relaxed)
     }
 }

@@ -16,6 +16,7 @@ use crate::messages::nav2_msgs::{self, jazzy, kilted, services};
 use crate::messages::{self, Named};
 use crate::settings::Change;
 use halts::Halts;
+pub(crate) use halts::notice_panics;
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
 use ros2_client::qos::{Durability, History};
 use ros2_client::{
@@ -216,7 +217,8 @@ impl Wire {
         self.changed.try_iter()
     }
 
-    /// True once the process was halted: nothing will come any more, nor go out.
+    /// True once the process was halted, or a thread of the network has panicked: nothing will come
+    /// any more, nor go out.
     pub(crate) fn is_dead(&self) -> bool {
         self.halts.happened()
     }
