@@ -12,8 +12,10 @@
 //! | `pilot` | messages -> what the navigator observes -> commands and outcomes; no network |
 //! | `served` | the actions: what their goals want, how their outcomes are written |
 //! | `clock` | the time of the machine, or of a simulation |
+//! | `costmaps`, `pictures` | costmaps to look at, drawn beside control |
 //! | `wire` | the only module that knows the network |
 //! | `node` | the loop between `wire` and `pilot` |
+//! | `simulator` | a robot in the world of a scene, in the place of a real one |
 
 mod arguments;
 mod clock;
