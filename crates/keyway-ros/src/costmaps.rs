@@ -7,6 +7,34 @@ use keyway::geometry::{Point, Pose};
 use keyway::map::{self, BitGrid, Cell, CellState, CellWindow, CostmapConfig, GridFrame};
 use keyway::navigate::Navigator;
 
+/// A costmap that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shown {
+    /// Around the robot.
+    Local,
+    /// As much of the map as one message may hold.
+    Global,
+}
+
+impl Shown {
+    /// Cells along a side.
+    const MOST_CELLS: f64 = 400.0;
+
+    /// Larger messages do not fit into the usual buffers of their readers, and what is lost of them
+    /// is not sent again.
+    pub(crate) const MOST_BYTES: usize = 160_000;
+
+    /// The reach around the robot, along both axes \[m\].
+    fn reach_m(self, resolution_m: f64) -> f64 {
+        const LOCAL_M: f64 = 3.0;
+        let most_m = 0.5 * (Self::MOST_CELLS - 1.0) * resolution_m;
+        match self {
+            Self::Local => most_m.min(LOCAL_M),
+            Self::Global => most_m,
+        }
+    }
+}
+
 /// A copy of what a robot knows and senses.
 pub(crate) struct Known {
     map: keyway::OccupancyGrid,
@@ -32,26 +60,21 @@ impl Known {
     }
 
     /// All of its cells.
-    pub(crate) fn everything(&self) -> CellWindow {
+    fn everything(&self) -> CellWindow {
         let frame = self.map.frame();
         let high = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
         CellWindow { low: Cell::new(0, 0), high }
     }
 
-    /// The side of a cell \[m\].
-    pub(crate) const fn resolution_m(&self) -> f64 {
-        self.map.frame().resolution_m()
-    }
-
-    /// The longer one of its sides \[m\].
-    pub(crate) fn reaches_m(&self) -> f64 {
+    /// The cells that are shown of a robot at a place.
+    pub(crate) fn window(&self, shown: Shown, place: Point) -> CellWindow {
         let frame = self.map.frame();
-        f64::from(frame.width().max(frame.height())) * frame.resolution_m()
-    }
-
-    /// The cells within a distance of a place along both axes.
-    pub(crate) fn around(&self, place: Point, reach_m: f64) -> CellWindow {
-        CellWindow::around(self.map.frame(), place, reach_m)
+        let reach_m = shown.reach_m(frame.resolution_m());
+        let longer_m = f64::from(frame.width().max(frame.height())) * frame.resolution_m();
+        if shown == Shown::Global && longer_m <= 2.0 * reach_m {
+            return self.everything();
+        }
+        CellWindow::around(frame, place, reach_m)
     }
 
     /// The costs of a window, by what is in it and around it; `None` for one without cells.
@@ -181,9 +204,9 @@ mod tests {
     #[test]
     fn around_the_border_there_is_less() {
         let known = field();
-        let costs = known.costs(known.around(Point::new(-2.0, 1.0), 1.5)).unwrap();
-        let grid = costs.grid(Header::new(1.0, "map"));
-        assert_eq!((grid.info.width, grid.info.height, grid.data.len()), (16, 16, 256));
-        assert!(known.costs(known.around(Point::new(-9.0, 1.0), 1.5)).is_none(), "beside the map");
+        let local = |x| known.costs(known.window(Shown::Local, Point::new(x, 1.0)));
+        let grid = local(-2.0).unwrap().grid(Header::new(1.0, "map"));
+        assert_eq!((grid.info.width, grid.info.height, grid.data.len()), (31, 31, 961));
+        assert!(local(-9.0).is_none(), "beside the map");
     }
 }

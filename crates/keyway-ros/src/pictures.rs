@@ -1,33 +1,10 @@
 //! Costmaps for those who look on, made beside the control of the robot: it never waits for them.
 
-use crate::costmaps::Known;
+use crate::costmaps::{Known, Shown};
 use crate::messages::nav_msgs::OccupancyGrid;
 use crate::messages::std_msgs::Header;
 use keyway::geometry::Point;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-
-/// A costmap that is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shown {
-    /// Around the robot.
-    Local,
-    /// As much of the map as one message may hold.
-    Global,
-}
-
-impl Shown {
-    /// The reach around the robot, along both axes \[m\].
-    fn reach_m(self, resolution_m: f64) -> f64 {
-        /// Larger messages do not reach those who read with the usual buffers.
-        const MOST_CELLS: f64 = 1000.0;
-        const LOCAL_M: f64 = 3.0;
-        let most_m = 0.5 * (MOST_CELLS - 1.0) * resolution_m;
-        match self {
-            Self::Local => most_m.min(LOCAL_M),
-            Self::Global => most_m,
-        }
-    }
-}
 
 /// An order to draw.
 pub(crate) struct Order {
@@ -40,11 +17,7 @@ pub(crate) struct Order {
 
 impl Order {
     fn draw(self) -> Option<(Shown, OccupancyGrid)> {
-        let reach_m = self.shown.reach_m(self.known.resolution_m());
-        let window = match self.shown {
-            Shown::Global if self.known.reaches_m() <= 2.0 * reach_m => self.known.everything(),
-            _ => self.known.around(self.place, reach_m),
-        };
+        let window = self.known.window(self.shown, self.place);
         Some((self.shown, self.known.costs(window)?.grid(self.header)))
     }
 }
@@ -106,7 +79,7 @@ mod tests {
     #[test]
     fn a_local_one_is_around_the_robot_and_a_global_one_as_large_as_can_be() {
         assert_eq!(size(Shown::Local, 900), (121, 50));
-        assert_eq!(size(Shown::Global, 900), (900, 50), "all of it");
-        assert_eq!(size(Shown::Global, 2000), (1000, 50), "a part around the robot");
+        assert_eq!(size(Shown::Global, 390), (390, 50), "all of it");
+        assert_eq!(size(Shown::Global, 2000), (400, 50), "a part around the robot");
     }
 }

@@ -1,14 +1,14 @@
 //! What the node publishes.
 
 use super::timing::Timing;
-use crate::costmaps::Known;
+use crate::costmaps::{Known, Shown};
 use crate::error::StartError;
 use crate::messages::diagnostic_msgs::DiagnosticArray;
 use crate::messages::geometry_msgs::{PolygonStamped, Twist, TwistStamped};
 use crate::messages::nav_msgs::{OccupancyGrid, Path};
 use crate::messages::std_msgs::Header;
 use crate::messages::visualization_msgs::MarkerArray;
-use crate::pictures::{Order, Pictures, Shown};
+use crate::pictures::{Order, Pictures};
 use crate::pilot::Pilot;
 use crate::settings::Settings;
 use crate::wire::{Delivery, Outbox, Wire};

@@ -1,11 +1,11 @@
 //! Maps: from messages and files, and what the robot knows as a costmap.
 
 use super::Pilot;
-use crate::costmaps::Known;
+use crate::costmaps::{Known, Shown};
 use crate::messages::map_msgs::OccupancyGridUpdate;
 use crate::messages::nav_msgs::OccupancyGrid;
 use crate::messages::nav2_msgs::services::Costmap;
-use crate::messages::std_msgs::Header;
+use keyway::geometry::Point;
 use keyway::map::formats::{MapFileError, read_map};
 use keyway::map::{Cell, CellState, Edit, GridFrame};
 use keyway::navigate::{NavigateError, Navigator};
@@ -90,7 +90,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Drives on the map of a file from now on; its message.
+    /// Drives on the map of a file from now on; its message, without cells where they are many.
     pub(crate) fn load_map(&mut self, url: &str, now_s: f64) -> Result<OccupancyGrid, UrlError> {
         let path = PathBuf::from(url.strip_prefix("file://").unwrap_or(url));
         if !path.exists() {
@@ -98,7 +98,12 @@ impl Pilot {
         }
         let map = read_map(&path, None)?.grid;
         self.drive_on(&map)?;
-        Ok(OccupancyGrid::of(&map, Header::new(now_s, &self.settings.frames.map)))
+        let mut message = OccupancyGrid::of(&map, self.header(now_s));
+        // A larger answer may never come: better one without cells.
+        if message.data.len() > Shown::MOST_BYTES {
+            message.data = Vec::new();
+        }
+        Ok(message)
     }
 
     /// Forgets all that was sensed.
@@ -108,12 +113,15 @@ impl Pilot {
         }
     }
 
-    /// Costs of Nav2 for all that is known and sensed; `None` before there is a map. The robot does
-    /// not drive by them.
-    pub(crate) fn costmap(&self, now_s: f64) -> Option<Costmap> {
-        let known = Known::of(self.navigator.as_ref()?);
-        let header = Header::new(now_s, &self.settings.frames.map);
-        Some(known.costs(known.everything())?.costmap(header))
+    /// Costs of Nav2 for what is known and sensed; `None` before there is a map. The robot does not
+    /// drive by them.
+    pub(crate) fn costmap(&self, shown: Shown, now_s: f64) -> Option<Costmap> {
+        let navigator = self.navigator.as_ref()?;
+        let frame = navigator.map().frame();
+        let middle = Point::new(0.5 * f64::from(frame.width()), 0.5 * f64::from(frame.height()));
+        let place = self.pose.map_or_else(|| frame.world_from_grid(middle), |pose| pose.point());
+        let known = Known::of(navigator);
+        Some(known.costs(known.window(shown, place))?.costmap(self.header(now_s)))
     }
 }
 

@@ -12,8 +12,8 @@ use crate::messages::Action;
 use crate::messages::builtin_interfaces::Time;
 use crate::messages::lifecycle_msgs::GetState;
 use crate::messages::nav2_msgs::services::{
-    ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap, GetCostmap, LoadMap,
-    ManageLifecycleNodes,
+    ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap, GetCostmap,
+    GetLocalCostmap, LoadMap, ManageLifecycleNodes,
 };
 use crate::messages::nav2_msgs::{self, jazzy, kilted};
 use crate::messages::std_srvs::IsActive;
@@ -187,9 +187,9 @@ pub(crate) fn answered(
         answered.push(Box::new(wire.service::<ClearCostmapExceptRegion>(&except)?));
         let around = format!("{costmap}/clear_around_{costmap}");
         answered.push(Box::new(wire.service::<ClearCostmapAroundRobot>(&around)?));
-        let get = format!("{costmap}/get_costmap");
-        answered.push(Box::new(wire.service::<GetCostmap>(&get)?));
     }
+    answered.push(Box::new(wire.service::<GetCostmap>("global_costmap/get_costmap")?));
+    answered.push(Box::new(wire.service::<GetLocalCostmap>("local_costmap/get_costmap")?));
     for node in stands_for {
         answered.push(Box::new(wire.service::<GetState>(&format!("{node}/get_state"))?));
         if node == "map_server" {

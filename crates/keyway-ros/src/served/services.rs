@@ -1,11 +1,12 @@
 //! Services, which are answered at once.
 
 use super::{Answered, Told};
+use crate::costmaps::Shown;
 use crate::messages::lifecycle_msgs::{GetState, State};
 use crate::messages::nav2_msgs::services::{
     ClearCostmapAroundRobot, ClearCostmapExceptRegion, ClearEntireCostmap, Command, Costmap,
-    CostmapMetaData, GetCostmap, LoadMap, LoadedMap, ManageLifecycleNodes, MapUrl, ResetDistance,
-    Success,
+    CostmapMetaData, GetCostmap, GetLocalCostmap, LoadMap, LoadedMap, ManageLifecycleNodes, MapUrl,
+    ResetDistance, Success,
 };
 use crate::messages::std_srvs::{IsActive, Triggered};
 use crate::messages::{Empty, Service};
@@ -68,7 +69,13 @@ impl Serves for ClearCostmapAroundRobot {
 
 impl Serves for GetCostmap {
     fn answer(pilot: &mut Pilot, _: CostmapMetaData, told: Told<'_>) -> Costmap {
-        pilot.costmap(told.now_s).unwrap_or_default()
+        pilot.costmap(Shown::Global, told.now_s).unwrap_or_default()
+    }
+}
+
+impl Serves for GetLocalCostmap {
+    fn answer(pilot: &mut Pilot, _: CostmapMetaData, told: Told<'_>) -> Costmap {
+        pilot.costmap(Shown::Local, told.now_s).unwrap_or_default()
     }
 }
 

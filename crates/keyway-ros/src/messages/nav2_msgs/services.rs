@@ -32,6 +32,15 @@ service! {
     "nav2_msgs", GetCostmap: CostmapMetaData => Costmap
 }
 
+/// The same of those around the robot.
+pub(crate) struct GetLocalCostmap;
+
+impl Service for GetLocalCostmap {
+    const NAME: (&'static str, &'static str) = GetCostmap::NAME;
+    type Request = CostmapMetaData;
+    type Response = Costmap;
+}
+
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CostmapMetaData {
     pub(crate) map_load_time: Time,

@@ -378,7 +378,7 @@ fn a_node_that_is_stopped_does_not_drive() {
 #[test]
 fn costs_are_those_of_nav2() {
     let robot = Robot::new();
-    let costmap = robot.pilot.costmap(1.0).unwrap();
+    let costmap = robot.pilot.costmap(crate::costmaps::Shown::Global, 1.0).unwrap();
     assert_eq!((costmap.metadata.size_x, costmap.metadata.size_y), (120, 80));
     let cost = |x: usize, y: usize| costmap.data[y * 120 + x];
     assert_eq!((cost(0, 40), cost(1, 40), cost(60, 40)), (254, 253, 0));
