@@ -18,11 +18,10 @@ pub(crate) enum Shown {
 
 impl Shown {
     /// Cells along a side.
-    const MOST_CELLS: f64 = 400.0;
+    const MOST_CELLS: f64 = 240.0;
 
-    /// Larger messages do not fit into the usual buffers of their readers, and what is lost of them
-    /// is not sent again.
-    pub(crate) const MOST_BYTES: usize = 160_000;
+    /// Larger messages are sent in parts, and what is lost of these is not sent again.
+    pub(crate) const MOST_BYTES: usize = 57_600;
 
     /// The reach around the robot, along both axes \[m\].
     fn reach_m(self, resolution_m: f64) -> f64 {
