@@ -178,7 +178,7 @@ mod tests {
         known
     }
 
-    /// What is beside the window counts as well, so a part has the costs that the whole has there.
+    /// Obstacles beside the window count as well: a part has the costs that the whole has there.
     #[test]
     fn a_part_is_a_part_of_the_whole() {
         let known = field();

@@ -61,6 +61,7 @@ mod tests {
     use keyway::geometry::Pose;
     use keyway::map::GridFrame;
     use keyway::navigate::{Navigator, Stack};
+    use std::time::Duration;
 
     fn size(shown: Shown, cells: u64) -> (u32, u32) {
         let robot = Robot::small();
@@ -71,7 +72,7 @@ mod tests {
         let pictures = Pictures::new().unwrap();
         let header = Header::new(1.0, "map");
         pictures.order(Order { shown, known, place: Point::new(30.01, 1.01), header });
-        let (drawn, grid) = pictures.drawn.recv().unwrap();
+        let (drawn, grid) = pictures.drawn.recv_timeout(Duration::from_secs(20)).unwrap();
         assert_eq!(drawn, shown);
         (grid.info.width, grid.info.height)
     }

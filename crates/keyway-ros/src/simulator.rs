@@ -41,7 +41,7 @@ pub(crate) struct Simulator {
     transforms: Outbox<TFMessage>,
     fixed: Outbox<TFMessage>,
     clock: Outbox<Clock>,
-    /// Who sets its pose is told that it was set.
+    /// It is answered by the pose that the robot has.
     initial_pose: Inbox<PoseWithCovarianceStamped>,
     amcl_pose: Outbox<PoseWithCovarianceStamped>,
     /// Of the run \[s\], from the time of the run to that of the network.

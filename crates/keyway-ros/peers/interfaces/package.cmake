@@ -1,5 +1,5 @@
-# Builds the interfaces of a package: those in it, those of its folder `both`, and those of the folder
-# that is called as the distribution.
+# Builds the interfaces of a package: those in it, in its folder `both`, and in the folder that is
+# called as the distribution.
 foreach(dependency ${dependencies} ament_cmake rosidl_default_generators)
   find_package(${dependency} REQUIRED)
 endforeach()

@@ -1,4 +1,4 @@
-//! What the node subscribes to.
+//! Topics that come in.
 
 use crate::error::StartError;
 use crate::messages::geometry_msgs::{PoseStamped, PoseWithCovarianceStamped};

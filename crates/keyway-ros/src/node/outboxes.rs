@@ -1,4 +1,4 @@
-//! What the node publishes.
+//! Topics that go out.
 
 use super::timing::Timing;
 use crate::costmaps::{Known, Shown};

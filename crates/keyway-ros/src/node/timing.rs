@@ -1,4 +1,4 @@
-//! How the node keeps its time, and what it says of itself.
+//! The times of cycles, and the diagnostics of the node.
 
 use crate::messages::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use crate::pilot::{Pilot, Waits};

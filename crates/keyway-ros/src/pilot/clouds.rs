@@ -19,7 +19,7 @@ pub(crate) enum CloudError {
     Size { points: u64, step: u32, bytes: usize },
 }
 
-/// What a cloud shows, seen from where its sensor is on the ground.
+/// The obstacles of a cloud, seen from where its sensor is on the ground.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Seen {
     pub(super) sensor: usize,
@@ -100,7 +100,7 @@ impl View {
         self.farthest_m = self.farthest_m.max(range_m);
     }
 
-    /// What is left of a turn without its widest gap; `None` for less than two bearings.
+    /// The rest of a turn without its widest gap; `None` for less than two bearings.
     fn field_of_view(&self) -> Option<FieldOfView> {
         let seen: Vec<usize> = (0..Self::PARTS).filter(|&part| self.bearings[part]).collect();
         let gap = |at: usize| {
@@ -126,7 +126,7 @@ impl View {
 /// The coordinates in the bytes of a cloud.
 struct Reader<'a> {
     cloud: &'a PointCloud2,
-    /// Where each coordinate begins, and whether it is in double precision.
+    /// The beginning of each coordinate, and true for one in double precision.
     fields: [(usize, bool); 3],
 }
 

@@ -22,8 +22,8 @@ pub(crate) enum Wanted {
     Wait(f64),
 }
 
-/// A single motion, the time that it may take \[s\] (0: an hour), and the speed that is not to be exceeded
-/// \[m/s\].
+/// A single motion, the time that it may take \[s\] (0: an hour), and the speed that is not to be
+/// exceeded \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Act {
     pub(crate) motion: Motion,

@@ -133,7 +133,7 @@ fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
     }))
 }
 
-/// Where a message's grid lies, which must have a value for each of its cells.
+/// The frame of a message's grid, which must have a value for each of its cells.
 pub(super) fn frame_of(message: &OccupancyGrid) -> Result<GridFrame, MapError> {
     let info = &message.info;
     let (width, height) = (info.width, info.height);

@@ -244,3 +244,36 @@ impl Placed {
         SensorScan { stamp_s, sensor, mount, scan: self.scan.borrowed() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transforms::Placement;
+
+    /// A frame that moves on the robot, and is told of less often than scans are made.
+    #[test]
+    fn scans_wait_for_their_frame() {
+        let mut transforms = Transforms::default();
+        let tell = |transforms: &mut Transforms, stamp_s| {
+            transforms.insert(["base", "scan"], (stamp_s, Placement::default()), false);
+        };
+        let mut waiting = Waiting::new(16);
+        for tenth in 1..=9 {
+            let header = Header::new(0.1 * f64::from(tenth), "scan");
+            waiting.push(LaserScan { header, ..LaserScan::default() });
+        }
+        let mut due = |transforms: &Transforms, until_s| {
+            let stamp_s = |scan: LaserScan| Ok(scan.header.stamp.stamp_s());
+            let due = waiting.use_due(until_s, (transforms, "base"), stamp_s);
+            (due.len(), waiting.fault.is_some())
+        };
+        assert_eq!(due(&transforms, 1.0), (0, true), "nobody knows its frame");
+        tell(&mut transforms, 0.0);
+        tell(&mut transforms, 0.45);
+        assert_eq!(due(&transforms, 1.0), (4, false));
+        assert_eq!(due(&transforms, 1.0), (0, false), "the others wait");
+        tell(&mut transforms, 2.0);
+        assert_eq!(due(&transforms, 0.65), (2, false), "no newer than the pose");
+        assert_eq!(due(&transforms, 1.0), (3, false), "none was lost");
+    }
+}

@@ -103,7 +103,7 @@ impl Pilot {
     }
 }
 
-/// What all markers of a picture share.
+/// The header that all markers of a picture share.
 struct Drawing {
     header: Header,
 }

@@ -8,7 +8,7 @@ use keyway::robot::Footprint;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::{Table, Value};
 
-/// What a file of Nav2 says.
+/// The parameters of a file of Nav2 that say something here.
 #[derive(Debug, Default)]
 pub(super) struct Nav2 {
     /// The robot, as far as it is described.
@@ -57,8 +57,8 @@ impl Nav2 {
         self.taken.is_empty()
     }
 
-    /// What was taken, and what was not, for the one who starts the node; empty without a file of
-    /// Nav2.
+    /// The names that were taken, and those that were not, for the one who starts the node; empty
+    /// without a file of Nav2.
     pub(super) fn report(&self) -> Vec<String> {
         if self.is_empty() {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! Where a frame is in another one.
+//! The place of a frame in another one.
 
 use keyway::geometry::Pose;
 

@@ -92,23 +92,6 @@ fn a_camera_that_is_silent_or_nowhere_stops_the_robot() {
     assert_eq!(without.cycle().waits, None, "a bumper says nothing where it meets nothing");
 }
 
-/// A frame that moves on the robot, and is told of less often than scans are made.
-#[test]
-fn scans_wait_for_their_frame() {
-    let mut robot = under_way(&[]);
-    let moving = Placement::upright(Pose::new(0.05, 0.0, 0.0));
-    robot.pilot.transforms.insert(["base_link", "base_scan"], (robot.now_s, moving), false);
-    for cycle in 0..40 {
-        if cycle % 3 == 0 {
-            let frames = ["base_link", "base_scan"];
-            robot.pilot.transforms.insert(frames, (robot.now_s, moving), false);
-        }
-        let cycle = robot.cycle();
-        assert_eq!(cycle.waits, None);
-    }
-    assert!(robot.velocity.v > 0.1, "it drives: {:?}", robot.velocity);
-}
-
 /// The robot's frame is at the height of its axles.
 #[test]
 fn heights_are_above_the_ground() {

@@ -1,4 +1,4 @@
-//! What is known of the ground and what is shown of it: updates, masks, clouds, pictures.
+//! Updates, masks and clouds of the ground, and pictures of it.
 
 use super::{MapError, Robot, room, settings, to};
 use crate::messages::map_msgs::OccupancyGridUpdate;
