@@ -51,6 +51,9 @@ pub enum StartError {
     /// A robot and a stack that do not fit together.
     #[error(transparent)]
     Navigate(#[from] NavigateError),
+    /// A scene that cannot be driven in.
+    #[error("{0}")]
+    Scene(String),
     /// The network does not work.
     #[error("cannot {what}: {why}")]
     Network {

@@ -68,8 +68,8 @@ impl Simulator {
         network: Network,
         settings: SimulatorSettings,
     ) -> Result<Self, StartError> {
-        let fault = |why| StartError::File { path: scene.to_owned(), why };
-        let episode = episode(scene).map_err(fault)?;
+        let episode = episode(scene).map_err(StartError::Scene)?;
+        let fault = |why| StartError::Scene(format!("{}: {why}", scene.display()));
         let run = stepper(&episode).map_err(fault)?;
         let mut wire = Wire::open(arguments, network, &[])?;
         let sensors = episode.robots[0].robot.sensors.len();
@@ -216,20 +216,22 @@ impl Simulator {
 fn episode(path: &Path) -> Result<Episode, String> {
     const EVER_S: f64 = 1e9;
     let folder = path.parent().unwrap_or(Path::new(""));
+    // Errors of files name them themselves.
+    let in_scene = |why: String| format!("{}: {why}", path.display());
     let scene = read_scene(path).map_err(|error| error.to_string())?;
     let map = match (scene.generated_map(), &scene.map) {
-        (Some(map), _) => map.map_err(|error| error.to_string())?,
+        (Some(map), _) => map.map_err(|error| in_scene(error.to_string()))?,
         (None, Some(map)) => {
             SceneMap::from(read_map(&folder.join(map), None).map_err(|error| error.to_string())?)
         }
-        (None, None) => return Err("the scene has no map".to_owned()),
+        (None, None) => return Err(in_scene("the scene has no map".to_owned())),
     };
     let find = |robot: &str, stack: &str| {
         let robot = find_robot(robot, folder).map_err(|error| error.to_string())?;
         let stack = find_stack(stack, folder, &robot).map_err(|error| error.to_string())?;
         Ok::<_, Fault>((robot, stack))
     };
-    let mut episode = scene.episode(map, find).map_err(|Fault(why)| why)?;
+    let mut episode = scene.episode(map, find).map_err(|Fault(why)| in_scene(why))?;
     episode.rules.time_limit_s = Some(EVER_S);
     episode.rules.stuck_window_s = EVER_S;
     Ok(episode)
