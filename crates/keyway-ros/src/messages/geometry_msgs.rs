@@ -39,13 +39,16 @@ impl Quaternion {
 
     /// The angle around the z axis \[rad\], as ROS computes yaw; `None` for one that is no
     /// rotation, such as four zeros.
+    #[cfg(test)]
     pub(crate) fn heading_rad(self) -> Option<f64> {
-        const LEAST_NORM_SQ: f64 = 0.25;
-        let Self { x, y, z, w } = self;
-        let norm_sq = x * x + y * y + z * z + w * w;
-        (norm_sq.is_finite() && norm_sq >= LEAST_NORM_SQ)
-            .then(|| (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z))
+        Some(placement(Vector3::default(), self)?.on_ground().theta)
     }
+}
+
+/// A frame that is there; `None` for one that is not finite or has no rotation.
+fn placement(position: Vector3, orientation: Quaternion) -> Option<Placement> {
+    let (Vector3 { x, y, z }, turn) = (position, orientation);
+    Placement::new([x, y, z], [turn.x, turn.y, turn.z, turn.w])
 }
 
 /// A place and a rotation.
@@ -58,10 +61,7 @@ pub(crate) struct Pose {
 impl Pose {
     /// On the ground; `None` for one that is not finite or has no rotation.
     pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
-        let Self { position, orientation } = self;
-        let heading_rad = orientation.heading_rad()?;
-        let is_place = position.x.is_finite() && position.y.is_finite();
-        is_place.then(|| geometry::Pose::new(position.x, position.y, heading_rad))
+        Some(placement(self.position, self.orientation)?.on_ground())
     }
 }
 
@@ -182,9 +182,7 @@ pub(crate) struct TransformStamped {
 impl TransformStamped {
     /// `None` for one that is not finite or has no rotation.
     pub(crate) fn placement(&self) -> Option<Placement> {
-        let Transform { translation, rotation } = self.transform;
-        let at = [translation.x, translation.y, translation.z];
-        Placement::new(at, [rotation.x, rotation.y, rotation.z, rotation.w])
+        placement(self.transform.translation, self.transform.rotation)
     }
 }
 

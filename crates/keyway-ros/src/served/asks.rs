@@ -86,7 +86,7 @@ impl Asks for SmoothPath {
         let last = goal.path.poses.last();
         match smoothed {
             Ok(points) => {
-                let heading_rad = last.and_then(|last| last.pose.orientation.heading_rad());
+                let heading_rad = last.and_then(|last| Some(last.pose.on_ground()?.theta));
                 let path = Path::along(&header, &points, heading_rad);
                 let was_completed = true;
                 let outcome = SmoothPathOutcome {
