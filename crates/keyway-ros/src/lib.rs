@@ -79,11 +79,7 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
         return Simulator::new(Path::new(&scene), &arguments, network, settings)?.run(&is_over);
     }
     let pilot = Pilot::new(Settings::of(&arguments, distro.as_deref())?);
-    let mut halted = Node::new(&arguments, network, pilot, false)?.run(&is_over);
-    while let Some(pilot) = halted {
-        halted = Node::new(&arguments, network, pilot, true)?.run(&is_over);
-    }
-    Ok(())
+    Node::new(&arguments, network, pilot)?.run(&is_over)
 }
 
 fn variable(name: &str) -> Option<String> {

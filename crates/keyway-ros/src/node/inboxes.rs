@@ -49,7 +49,7 @@ impl Inboxes {
             clouds,
             odometry: wire.inbox(&settings.odom_topic, Delivery::BestEffort, 4)?,
             transforms: [
-                wire.inbox("/tf", Delivery::Reliable, 100)?,
+                wire.inbox("/tf", Delivery::BestEffort, 100)?,
                 wire.inbox("/tf_static", Delivery::Latched, 100)?,
             ],
             goal_pose: wire.inbox("goal_pose", Delivery::Reliable, 1)?,

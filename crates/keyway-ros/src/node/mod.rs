@@ -9,7 +9,7 @@ use crate::arguments::{Arguments, Network};
 use crate::clock::Clock;
 use crate::error::StartError;
 use crate::messages::builtin_interfaces::Time;
-use crate::pilot::{Cycle, Ended, Family, Pilot, Report, Wanted};
+use crate::pilot::{Cycle, Ended, Family, Fault, Pilot, Report, Wanted};
 use crate::served::{Answered, Served, Told, Wish, answered, served};
 use crate::settings::Settings;
 use crate::wire::{GoalId, GoalStatus, Inbox, Wire};
@@ -37,8 +37,6 @@ pub(crate) struct Node {
     /// The last command that was published, while it was one to move.
     moves: bool,
     cycles: u64,
-    /// In so many cycles at the beginning the robot is told to stand.
-    zeros: u64,
     began: Instant,
     timing: Timing,
     /// The last thing that was said of standing still.
@@ -54,19 +52,14 @@ enum Client {
 }
 
 impl Node {
-    /// The base may take a while to be found.
-    const ZEROS: u64 = 50;
-
     /// Whoever waits longer for the time of a simulation is told so.
     const NO_CLOCK: Duration = Duration::from_secs(5);
 
-    /// Joins the network, for a pilot, or joins it again: then the base may still obey a command
-    /// from before.
+    /// Joins the network, for a pilot.
     pub(crate) fn new(
         arguments: &Arguments,
         network: Network,
         pilot: Pilot,
-        is_again: bool,
     ) -> Result<Self, StartError> {
         let mut wire = Wire::open(arguments, network, &pilot.settings().declared())?;
         let settings = pilot.settings().clone();
@@ -87,26 +80,23 @@ impl Node {
             drives_for: None,
             moves: false,
             cycles: 0,
-            zeros: if is_again { Self::ZEROS } else { 0 },
             began: Instant::now(),
             timing,
             said: String::new(),
         })
     }
 
-    /// Runs until it is told to stop; then the robot is told to stand. After a halt of the process
-    /// it gives its pilot back, to join the network anew: whoever was halted does not drive on by
-    /// itself.
-    pub(crate) fn run(mut self, is_over: &Arc<AtomicBool>) -> Option<Pilot> {
+    /// Runs until it is told to stop; then the robot is told to stand.
+    ///
+    /// # Errors
+    /// When the network has ended.
+    pub(crate) fn run(mut self, is_over: &Arc<AtomicBool>) -> Result<(), StartError> {
         let period = Duration::from_secs_f64(self.timing.period_s());
         let mut next = Instant::now();
         while !is_over.load(Ordering::Relaxed) {
-            if self.wire.is_dead() {
-                eprintln!(
-                    "keyway-ros: the network has ended, as after a halt of the process: it is joined anew, without a goal"
-                );
-                self.pilot.stop();
-                return Some(self.pilot);
+            Wire::check()?;
+            if self.wire.take_halt() {
+                self.end_after_halt();
             }
             self.wire.wait(next.saturating_duration_since(Instant::now()));
             self.receive();
@@ -129,7 +119,19 @@ impl Node {
             let report = Report::default();
             self.tell(client, GoalStatus::Aborted, &Ended::Canceled, &report);
         }
-        None
+        Ok(())
+    }
+
+    /// Stands after a halt of the process: nobody who comes to a robot that stands expects that it
+    /// drives on by itself.
+    fn end_after_halt(&mut self) {
+        self.say("the process was halted: the robot stands, and its goal is given up");
+        self.pilot.stop();
+        self.command(Velocity::ZERO);
+        if let Some(client) = self.drives_for.take() {
+            let ended = Ended::failed(Fault::Unknown, "the process was halted");
+            self.tell(client, GoalStatus::Aborted, &ended, &Report::default());
+        }
     }
 
     /// Takes in all that has come.
@@ -216,7 +218,7 @@ impl Node {
         let Cycle { command, ended, waits } = self.pilot.cycle(now_s);
         self.timing.note(began.elapsed(), waits.clone());
         self.cycles += 1;
-        if self.drives_for.is_some() || self.moves || self.cycles <= self.zeros {
+        if self.drives_for.is_some() || self.moves {
             self.command(command);
         }
         match waits {

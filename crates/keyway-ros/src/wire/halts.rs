@@ -1,7 +1,5 @@
-//! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP.
-//!
-//! The threads of `rustdds` end when a wait of theirs is interrupted, which a halt does, and when
-//! they panic. They do so in silence: nothing comes any more, and nothing goes out.
+//! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP; and threads
+//! of the network that panic, after which nothing comes any more, and nothing goes out.
 
 use ros2_client::dds::rustdds::mio1;
 use std::io;
@@ -20,28 +18,35 @@ pub(crate) fn notice_panics() {
     }));
 }
 
-/// A thread that waits as those do, and tells when it was interrupted.
+/// True once a thread has panicked.
+pub(super) fn has_panicked() -> bool {
+    HAS_PANICKED.load(Ordering::Relaxed)
+}
+
+/// A thread that waits for nothing: a halt interrupts it.
 pub(super) struct Halts {
     happened: Arc<AtomicBool>,
 }
 
 impl Halts {
-    /// Starts it. When it is interrupted it ends, and wakes who waits.
+    /// Starts it. When it is interrupted it wakes who waits.
     pub(super) fn watch(wakes: mio1::Waker) -> io::Result<Self> {
         let happened = Arc::new(AtomicBool::new(false));
         let tells = Arc::clone(&happened);
         let mut poll = mio1::Poll::new()?;
         std::thread::Builder::new().name("halts".to_owned()).spawn(move || {
             let mut events = mio1::Events::with_capacity(1);
-            while poll.poll(&mut events, None).is_ok() {}
-            tells.store(true, Ordering::Relaxed);
-            drop(wakes.wake());
+            let is_halt = |error: io::Error| error.kind() == io::ErrorKind::Interrupted;
+            while poll.poll(&mut events, None).map_or_else(is_halt, |()| true) {
+                tells.store(true, Ordering::Relaxed);
+                drop(wakes.wake());
+            }
         })?;
         Ok(Self { happened })
     }
 
-    /// True once there was one, or a thread has panicked since the last call.
-    pub(super) fn happened(&self) -> bool {
-        self.happened.load(Ordering::Relaxed) || HAS_PANICKED.swap(false, Ordering::Relaxed)
+    /// True if there was one since the last call.
+    pub(super) fn take(&self) -> bool {
+        self.happened.swap(false, Ordering::Relaxed)
     }
 }

@@ -217,10 +217,18 @@ impl Wire {
         self.changed.try_iter()
     }
 
-    /// True once the process was halted, or a thread of the network has panicked: nothing will come
-    /// any more, nor go out.
-    pub(crate) fn is_dead(&self) -> bool {
-        self.halts.happened()
+    /// True if the process was halted since the last call.
+    pub(crate) fn take_halt(&self) -> bool {
+        self.halts.take()
+    }
+
+    /// # Errors
+    /// When one of its threads has panicked: nothing may come any more, nor go out.
+    pub(crate) fn check() -> Result<(), StartError> {
+        if halts::has_panicked() {
+            return Err(fault("go on", "a thread of the network has panicked"));
+        }
+        Ok(())
     }
 
     /// True if somebody has subscribed to a topic.
