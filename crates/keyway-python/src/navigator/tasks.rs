@@ -134,7 +134,8 @@ impl Navigator {
     }
 
     /// A route between two positions on what is known and sensed: a read-only array of float64 of
-    /// shape (n, 2) [m]. Nothing changes by it.
+    /// shape (n, 2) [m]. Nothing changes by it. An error where the robot touches something at the
+    /// start.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)

@@ -209,4 +209,6 @@ fn ways_are_asked_for_without_driving() {
     assert!(smoothed.length_m() <= route.line.polyline().length_m() + 1e-9);
     assert!(navigator.is_path_valid(&smoothed) && navigator.goal().is_none());
     assert!(navigator.plan(Point::new(2.0, 4.0), Point::new(6.0, 4.0)).is_err());
+    let in_the_wall = navigator.plan(Point::new(6.0, 4.0), Point::new(2.0, 4.0)).unwrap_err();
+    assert!(matches!(in_the_wall, NavigateError::StartTouches { .. }), "{in_the_wall}");
 }

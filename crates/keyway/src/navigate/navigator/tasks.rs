@@ -7,7 +7,7 @@ use crate::navigate::act::Act;
 use crate::navigate::plan_job::{PlanJob, Planned};
 use crate::navigate::recovery::Motion;
 use crate::navigate::task::Task;
-use crate::navigate::{Goal, Misfit, NavigateError};
+use crate::navigate::{FittedStack, Goal, Misfit, NavigateError};
 use crate::route::{Route, smooth_line};
 
 impl Navigator {
@@ -168,18 +168,23 @@ impl Navigator {
     /// A route between two positions on what is known and sensed. Nothing changes by it.
     ///
     /// # Errors
-    /// When there is none.
+    /// When there is none, or the robot touches something at the start, by more than
+    /// [`start_error_m`](crate::navigate::ControllerConfig::start_error_m).
     pub fn plan(&mut self, start: Point, goal: Point) -> Result<Route, NavigateError> {
-        self.world.router.again(start, goal, u64::MAX)
+        let FittedStack { robot, stack, .. } = &self.parts;
+        let router = &mut self.world.router;
+        router.check_start(start, &robot.footprint, stack.controller.start_error_m)?;
+        router.again(start, goal, u64::MAX)
     }
 
     /// The place nearest to a goal that can be reached from a start, on what is known and sensed:
     /// the goal itself, where there is a route to it; `None` where nothing can be reached.
     pub fn nearest_reachable(&mut self, start: Point, goal: Point) -> Option<Point> {
-        if self.plan(start, goal).is_ok() {
+        let router = &mut self.world.router;
+        if router.again(start, goal, u64::MAX).is_ok() {
             return Some(goal);
         }
-        self.world.router.nearest_reachable(start, goal)
+        router.nearest_reachable(start, goal)
     }
 
     /// A line of positions, smoothed as its routes are: where it is clear it stays so, by the same
