@@ -32,7 +32,7 @@ from nav_msgs.msg import OccupancyGrid, Path
 from peer import Checks, Goal, Keyway, begin, leave, pose, several, wait
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
-from robot import IS_JAZZY, LATCHED, Robot
+from robot import IS_JAZZY, LATCHED, Robot, map_of
 from visualization_msgs.msg import MarkerArray
 
 
@@ -233,11 +233,11 @@ class Drive(Checks):
             return found[-1] == 208
 
         assert wait(is_closed, 10), f"the door is not closed: {found}"
-        self.robot.maps.publish(self.robot.grid.message())
+        self.robot.publish_map()
         assert wait(lambda: self.path(pose(1.5, 1.5)).result.error_code == 0, 10), "the door is not open"
 
     def a_mask_is_kept_to(self) -> None:
-        mask = self.robot.grid.message()
+        mask = map_of(self.robot.grid)
         columns, rows = mask.info.width, mask.info.height
         mask.data = [100 if 60 < index % columns < 100 and index // columns > 95 else 0 for index in range(columns * rows)]
         info = CostmapFilterInfo(type=0, filter_mask_topic="/keepout_mask", base=0.0, multiplier=1.0)
@@ -247,7 +247,7 @@ class Drive(Checks):
         infos.publish(info)
         lowest = lambda: max((p.pose.position.y for p in self.path(pose(1.5, 1.5)).result.path.poses), default=9.0)
         assert wait(lambda: lowest() < 4.75, 15), lowest()
-        masks.publish(self.robot.grid.message())
+        masks.publish(map_of(self.robot.grid))
 
     def nothing_was_touched(self) -> None:
         assert self.robot.contacts == 0, self.robot.contacts

@@ -7,7 +7,8 @@ import time
 import numpy as np
 from nav2_msgs.action import NavigateToPose
 from peer import Checks, Goal, Keyway, begin, leave, pose, wait
-from robot import Grid, Robot
+from robot import Robot
+from world import Grid
 
 
 def field() -> Grid:

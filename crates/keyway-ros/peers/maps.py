@@ -5,7 +5,7 @@ from collections import deque
 from pathlib import Path
 
 import numpy as np
-from robot import Grid
+from world import Grid
 
 
 def read_map(path: Path) -> Grid:

@@ -44,10 +44,10 @@ def wait(is_over, longest_s: float = LONGEST_S) -> bool:
 class Keyway:
     """The node, as a process."""
 
-    def __init__(self, *arguments: str, robot: str = "small") -> None:
+    def __init__(self, *arguments: str, robot: str = "small", start=subprocess.Popen) -> None:
         program = os.environ["KEYWAY_NODE"]
         given = [argument for parameter in (f"robot:={robot}", *arguments) for argument in ("-p", parameter)]
-        self.process = subprocess.Popen([program, "--ros-args", *given])
+        self.process = start([program, "--ros-args", *given])
 
     def cpu_s(self) -> float:
         with open(f"/proc/{self.process.pid}/stat") as file:

@@ -86,10 +86,10 @@ class Standing(Checks):
         before = grid.cells
         grid.cells = before.copy()
         grid.cells[100:, 78:82] = 100
-        self.robot.maps.publish(grid.message())
+        self.robot.publish_map()
         self.arrives(goal, place)
         grid.cells = before
-        self.robot.maps.publish(grid.message())
+        self.robot.publish_map()
 
     def a_client_that_dies_leaves_its_goal(self) -> None:
         place = self.far()

@@ -74,19 +74,19 @@ impl Arguments {
             return Ok(());
         }
         match from {
-            "__node" | "__name" => self.node = Some(to),
-            "__ns" if to.starts_with('/') => self.namespace = Some(to),
+            "__node" | "__name" => drop(self.node.get_or_insert(to)),
+            "__ns" if to.starts_with('/') => drop(self.namespace.get_or_insert(to)),
             "__ns" => return Err(StartError::RelativeNamespace(to)),
             _ => self.remappings.push((from.to_owned(), to)),
         }
         Ok(())
     }
 
-    /// The full name that a topic, a service or an action has: what the last rule for it says, or
+    /// The full name that a topic, a service or an action has: what the first rule for it says, or
     /// its own.
     pub(crate) fn remapped(&self, name: &str) -> String {
         let full = |name| full_name(name, self.namespace.as_deref().unwrap_or("/"));
-        let rule = self.remappings.iter().rev().find(|(from, _)| full(from) == full(name));
+        let rule = self.remappings.iter().find(|(from, _)| full(from) == full(name));
         full(rule.map_or(name, |(_, to)| to))
     }
 }
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn rules_of_ros() {
-        let text = "--ros-args -r __ns:=/r1 --remap __node:=nav -r cmd_vel:=motors -p robot:=jackal \
+        let text = "--ros-args -r __ns:=/r1 --remap __node:=nav -r cmd_vel:=motors -r cmd_vel:=wheels -p robot:=jackal \
                     -p nav:rate:=10 -p other:rate:=5 --params-file a.yaml --log-level debug \
                     --disable-rosout-logs --";
         let parsed = parse(text).unwrap();

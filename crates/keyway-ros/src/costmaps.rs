@@ -18,10 +18,11 @@ pub(crate) enum Shown {
 
 impl Shown {
     /// Cells along a side.
-    const MOST_CELLS: f64 = 240.0;
+    const MOST_CELLS: f64 = 400.0;
 
-    /// Larger messages are sent in parts, and what is lost of these is not sent again.
-    pub(crate) const MOST_BYTES: usize = 57_600;
+    /// More at once does not fit into the buffers with which others receive (208 kB, where nobody has
+    /// set them): it comes seconds later, or never.
+    pub(crate) const MOST_BYTES: usize = 160_000;
 
     /// The reach around the robot, along both axes \[m\].
     fn reach_m(self, resolution_m: f64) -> f64 {

@@ -81,6 +81,6 @@ mod tests {
     fn a_local_one_is_around_the_robot_and_a_global_one_as_large_as_can_be() {
         assert_eq!(size(Shown::Local, 900), (121, 50));
         assert_eq!(size(Shown::Global, 230), (230, 50), "all of it");
-        assert_eq!(size(Shown::Global, 2000), (240, 50), "a part around the robot");
+        assert_eq!(size(Shown::Global, 2000), (400, 50), "a part around the robot");
     }
 }

@@ -155,7 +155,9 @@ impl Pilot {
         goals: &[PoseStamped],
         now_s: f64,
     ) -> Result<(Vec<Point>, f64), Ended> {
-        let _ = self.look(now_s);
+        if let Err(why @ Waits::Map) = self.look(now_s) {
+            return Err(Ended::failed(Fault::Unknown, why.to_string()));
+        }
         let start = match start {
             Some(start) => self.in_map(start)?,
             None => self.pose.ok_or_else(|| {

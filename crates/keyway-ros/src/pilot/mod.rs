@@ -220,4 +220,4 @@ impl Pilot {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -198,3 +198,6 @@ pub(crate) fn answered(
     }
     Ok(answered)
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,13 +31,14 @@ impl Change {
 }
 
 impl Settings {
-    /// All parameters with their values, but for `use_sim_time`, which every node has.
+    /// All parameters with their values.
     pub(crate) fn declared(&self) -> Vec<(&'static str, Value)> {
         let texts = |texts: &[String]| texts.iter().cloned().map(Value::String).collect();
         let heights_m = &self.points_taken.heights_m;
         vec![
             ("robot", Value::String(self.robot_name.clone())),
             ("stack", Value::String(self.stack_name.clone())),
+            ("use_sim_time", Value::Boolean(self.use_sim_time)),
             ("controller_frequency", Value::Float(1.0 / self.stack.robot().cycle_s)),
             ("global_frame", Value::String(self.frames.map.clone())),
             ("robot_base_frame", Value::String(self.frames.base.clone())),
@@ -90,7 +91,7 @@ mod tests {
     fn all_are_declared() {
         let settings = settings();
         let declared = settings.declared();
-        let names = PARAMETERS.iter().map(|(name, _)| *name).filter(|&name| name != "use_sim_time");
+        let names = PARAMETERS.iter().map(|(name, _)| *name);
         assert_eq!(
             declared.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
             names.collect::<Vec<_>>()

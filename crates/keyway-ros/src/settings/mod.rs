@@ -16,7 +16,7 @@ use keyway::files::{find_robot, find_stack};
 use keyway::navigate::FittedStack;
 use keyway::sense::SensorPoints;
 use nav2::Nav2;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -197,6 +197,8 @@ impl Settings {
 /// Parameters that were given, and have not been looked at.
 struct Given {
     own: Parameters,
+    /// Names that files give to all nodes alone: they may be for others.
+    of_all: BTreeSet<String>,
     nav2: Nav2,
 }
 
@@ -204,6 +206,7 @@ impl Given {
     /// Of all files in their order, then of the command line: the last one counts.
     fn read(arguments: &Arguments) -> Result<Self, StartError> {
         let (mut given, mut nav2) = (Parameters::new(), Nav2::default());
+        let mut of_all = BTreeSet::new();
         for path in &arguments.parameter_files {
             let fault = |why: String| StartError::File { path: path.clone(), why };
             let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
@@ -218,21 +221,26 @@ impl Given {
                 nav2 = of_file;
             }
             for (name, node) in &nodes {
-                if is_for(name, arguments)
-                    && let Some(Value::Table(parameters)) = node.get("ros__parameters")
-                {
-                    given.extend(parameters.clone());
+                let Some(Value::Table(parameters)) = node.get("ros__parameters") else { continue };
+                if name == ALL {
+                    of_all.extend(parameters.keys().cloned());
+                } else if !is_for(name, arguments) {
+                    continue;
+                } else {
+                    of_all.retain(|name| !parameters.contains_key(name));
                 }
+                given.extend(parameters.clone());
             }
         }
         for (name, text) in &arguments.parameters {
             let value = serde_saphyr::from_str(text)
                 .map_err(|error| wrong(name, format!("`{text}` is no YAML: {error}")))?;
+            of_all.remove(name);
             given.insert(name.clone(), value);
         }
         let mut own = nav2.own.clone();
         own.extend(given);
-        Ok(Self { own, nav2 })
+        Ok(Self { own, of_all, nav2 })
     }
 
     /// The points of clouds that count.
@@ -309,11 +317,18 @@ impl Given {
         self.take(name, "a number", number)
     }
 
-    /// Refuses what is left.
+    /// Refuses what is left, unless it may be for other nodes.
     fn all_known(self, known: &[(&str, &str)]) -> Result<(), StartError> {
-        let Some(name) = self.own.into_keys().next() else { return Ok(()) };
-        let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-        Err(wrong(&name, format!("is none of this node's: {}", known.join(", "))))
+        let known = known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        for name in self.own.keys() {
+            if !self.of_all.contains(name) {
+                return Err(wrong(name, format!("is none of this node's: {known}")));
+            }
+            eprintln!(
+                "keyway-ros: parameter `{name}`, given to all nodes (`{ALL}`), is none of this node's"
+            );
+        }
+        Ok(())
     }
 }
 
@@ -323,14 +338,17 @@ fn number(value: &Value) -> Option<f64> {
     whole.or(value.as_float()).filter(|number| number.is_finite())
 }
 
-/// True if the parameters of a file under this name are for this node: `/**`, its name, or its name
+/// The name under which a file has parameters for all nodes.
+const ALL: &str = "/**";
+
+/// True if the parameters of a file under this name are for this node alone: its name, or its name
 /// with its namespace.
 fn is_for(name: &str, arguments: &Arguments) -> bool {
     let node = arguments.node_name();
     let namespace = arguments.namespace.as_deref().unwrap_or("/");
     let full = crate::arguments::full_name(node, namespace);
     let any_namespace = format!("/**/{node}");
-    [node, "/**", &full, &any_namespace].contains(&name)
+    [node, &full, &any_namespace].contains(&name)
 }
 
 fn wrong(name: &str, why: impl Into<String>) -> StartError {
@@ -427,6 +445,13 @@ mod tests {
         let settings = Settings::of(&arguments, Some("jazzy")).unwrap();
         assert_eq!(settings.odom_topic, "odometry");
         assert!(!settings.is_cmd_vel_stamped);
+        // What is given to all may be for others; what is given to this node is not.
+        let with = |name: &str| format!("{text}{name}:\n  ros__parameters:\n    speed: 1\n");
+        std::fs::write(file.path(), with("/**/keyway")).unwrap();
+        assert!(Settings::of(&arguments, None).is_err());
+        std::fs::write(file.path(), text.replace("robot: jackal", "robot: jackal\n    speed: 1"))
+            .unwrap();
+        assert!(Settings::of(&arguments, None).is_ok());
         std::fs::write(file.path(), "- 1\n").unwrap();
         let message = Settings::of(&arguments, None).err().unwrap().to_string();
         assert!(message.contains("names of nodes"), "{message}");

@@ -14,18 +14,20 @@ use crate::transforms::Placement;
 use keyway::geometry::Point;
 
 /// A robot, and the frames and messages of its drivers.
-struct Robot {
-    pilot: Pilot,
+pub(crate) struct Robot {
+    pub(crate) pilot: Pilot,
     /// In the frame `odom`, which stands 1 m to the right of the map's origin.
-    pose: Pose,
+    pub(crate) pose: Pose,
     velocity: Velocity,
-    now_s: f64,
+    pub(crate) now_s: f64,
+    /// Its wheels turn on the spot.
+    pub(crate) slips: bool,
 }
 
 const ODOM: Pose = Pose { x: 1.0, y: 0.0, theta: 0.0 };
 
 /// A room of 6 m x 4 m in cells of 5 cm, with walls around it.
-fn room() -> OccupancyGrid {
+pub(crate) fn room() -> OccupancyGrid {
     let (width, height) = (120, 80);
     let is_wall = |x: u32, y: u32| x == 0 || y == 0 || x + 1 == width || y + 1 == height;
     let cells = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -50,13 +52,18 @@ impl Robot {
     }
 
     /// With these parameters.
-    fn with(parameters: &[(&str, &str)]) -> Self {
+    pub(crate) fn with(parameters: &[(&str, &str)]) -> Self {
+        let mut robot = Self::without_map(parameters);
+        robot.pilot.take_map(&room()).unwrap();
+        robot
+    }
+
+    pub(crate) fn without_map(parameters: &[(&str, &str)]) -> Self {
         let (pose, velocity) = (Pose::new(0.5, 2.0, 0.0), Velocity::ZERO);
         let mut pilot = Pilot::new(settings_with(parameters));
         let mount = Placement::upright(Pose::default());
         pilot.transforms.insert(["base_link", "base_scan"], (0.0, mount), true);
-        pilot.take_map(&room()).unwrap();
-        Self { pilot, pose, velocity, now_s: 100.0 }
+        Self { pilot, pose, velocity, now_s: 100.0, slips: false }
     }
 
     /// The true pose in the map.
@@ -65,7 +72,7 @@ impl Robot {
     }
 
     /// Its drivers tell all that they know, by this stamp.
-    fn tell(&mut self, stamp_s: f64) {
+    pub(crate) fn tell(&mut self, stamp_s: f64) {
         for (names, pose) in [(["map", "odom"], ODOM), (["odom", "base_link"], self.pose)] {
             self.pilot.transforms.insert(names, (stamp_s, Placement::upright(pose)), false);
         }
@@ -85,11 +92,13 @@ impl Robot {
     }
 
     /// One cycle, whose command it obeys.
-    fn cycle(&mut self) -> Cycle {
+    pub(crate) fn cycle(&mut self) -> Cycle {
         self.tell(self.now_s);
         let cycle = self.pilot.cycle(self.now_s);
-        let cycle_s = settings().stack.robot().cycle_s;
-        self.pose = self.pose.after_ramp(self.velocity, cycle.command, cycle_s);
+        let cycle_s = self.pilot.settings.stack.robot().cycle_s;
+        if !self.slips {
+            self.pose = self.pose.after_ramp(self.velocity, cycle.command, cycle_s);
+        }
         (self.velocity, self.now_s) = (cycle.command, self.now_s + cycle_s);
         cycle
     }
@@ -100,7 +109,7 @@ impl Robot {
     }
 }
 
-fn goal(frame: &str, pose: Pose) -> PoseStamped {
+pub(crate) fn goal(frame: &str, pose: Pose) -> PoseStamped {
     PoseStamped { header: Header::new(0.0, frame), pose: pose.into() }
 }
 
