@@ -50,6 +50,8 @@ pub fn run(argv: &[OsString]) -> u8 {
         Command::Map { command } => commands::map::run(&command),
         Command::Scene { command } => commands::scene::run(&command),
         Command::List(args) => commands::list::run(&args),
+        #[cfg(feature = "ros")]
+        Command::Ros { arguments } => commands::ros::run(arguments),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     match done {

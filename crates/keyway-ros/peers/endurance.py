@@ -1,13 +1,20 @@
 """Drives to and fro for a time: endurance.py MINUTES. At 20 Hz, on a map of 2000 x 2000 cells, with a lidar of 720 beams; how
-even the commands come, and what the node takes of the machine."""
+even the commands come, by a listener in a process of its own, and what the node takes of the machine."""
 
+import json
+import signal
+import subprocess
 import sys
 import time
+from collections import Counter
 
 import numpy as np
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist, TwistStamped
 from nav2_msgs.action import NavigateToPose
 from peer import Checks, Goal, Keyway, begin, leave, pose, wait
-from robot import Robot
+from robot import IS_JAZZY, Robot
 from world import Grid
 
 
@@ -31,9 +38,9 @@ class Endurance(Checks):
         here = lambda: Goal(self.navigate, NavigateToPose.Goal(pose=pose(0.0, 0.0))).end().status == 4
         # The map is latched: it may take seconds.
         assert wait(here, 60), "no map after a minute"
-        self.robot.commanded_at.clear()
 
     def measure(self, minutes: float) -> int:
+        listener = subprocess.Popen([sys.executable, __file__, "listen"], stdout=subprocess.PIPE)
         random, end = np.random.default_rng(1), time.monotonic() + 60 * minutes
         reached = sent = 0
         cpu_s, at, memory = self.keyway.cpu_s(), time.monotonic(), []
@@ -45,18 +52,51 @@ class Endurance(Checks):
             ended = Goal(self.navigate, NavigateToPose.Goal(pose=pose(x, y))).end(180)
             reached += ended.status == 4
             memory.append(self.keyway.memory_mb())
+            print(f"({x:.2f}, {y:.2f}) ... {'ok' if ended.status == 4 else ended.result.error_msg}", flush=True)
         share = (self.keyway.cpu_s() - cpu_s) / (time.monotonic() - at)
-        periods = np.diff(self.robot.commanded_at)
+        listener.send_signal(signal.SIGTERM)
+        heard = json.loads(listener.communicate(timeout=20)[0])
+        periods = np.diff(heard["commanded_at"])
         # Between two goals there are none.
         periods = periods[periods < 0.5]
         middle, late, most = np.percentile(periods, [50, 99, 100])
         print(f"{reached} of {sent} goals, {self.robot.contacts} contacts")
         print(f"period {1e3 * middle:.1f} ms, p99 {1e3 * late:.1f} ms, longest {1e3 * most:.1f} ms, of {len(periods)}")
-        print(f"{100 * share:.1f} % of a core, {memory[0]:.1f} MB after the first goal, {memory[-1]:.1f} MB after the last", flush=True)
+        print(f"{100 * share:.1f} % of a core, {memory[0]:.1f} MB after the first goal, {memory[-1]:.1f} MB after the last")
+        for said, seconds in heard["said"].items():
+            print(f"    {seconds} s: {said}", flush=True)
         return int(self.robot.contacts > 0)
+
+
+def listen() -> None:
+    """Until it is told to end: when commands come, and what the node says of itself."""
+    node, commanded_at, said = rclpy.create_node("listener"), [], Counter()
+    # As bytes: what is in them does not matter.
+    kind = Twist if IS_JAZZY else TwistStamped
+    node.create_subscription(kind, "cmd_vel", lambda _: commanded_at.append(time.monotonic()), 10, raw=True)
+
+    def hear(message: DiagnosticArray) -> None:
+        for status in message.status:
+            # Numbers change from one to the next.
+            said["".join(letter for letter in status.message if not letter.isdigit())] += 1
+            for value in status.values:
+                if value.key == "doubt":
+                    said["doubt: " + value.value] += 1
+
+    node.create_subscription(DiagnosticArray, "/diagnostics", hear, 10)
+    signal.signal(signal.SIGTERM, lambda *_: rclpy.shutdown())
+    try:
+        rclpy.spin(node)
+    except Exception:
+        # Its context has ended.
+        pass
+    print(json.dumps({"commanded_at": commanded_at, "said": said}), flush=True)
 
 
 if __name__ == "__main__":
     begin()
+    if sys.argv[1] == "listen":
+        listen()
+        sys.exit()
     endurance = Endurance()
     leave(endurance.measure(float(sys.argv[1])), endurance.keyway)

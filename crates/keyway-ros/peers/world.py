@@ -39,10 +39,17 @@ class Grid:
 
     def ranges(self, x: float, y: float, bearings: np.ndarray, range_m: float) -> np.ndarray:
         """What beams meet; infinite where they meet nothing."""
-        ranges = np.arange(0.1, range_m, 0.02)
-        row, column = self.index(x + np.outer(np.cos(bearings), ranges), y + np.outer(np.sin(bearings), ranges))
-        hit = self.cells[row, column] == 100
-        return np.where(hit.any(1), ranges[hit.argmax(1)], np.inf)
+        cosines, sines, coarse = np.cos(bearings), np.sin(bearings), np.arange(0.1, range_m, self.resolution_m)
+        hit = self.is_met(x + np.outer(cosines, coarse), y + np.outer(sines, coarse))
+        first = coarse[hit.argmax(1)]
+        # Where in the last step it is met.
+        fine = first[:, None] - np.linspace(self.resolution_m, 0.0, 6)[1:]
+        within = self.is_met(x + cosines[:, None] * fine, y + sines[:, None] * fine)
+        return np.where(hit.any(1), fine[np.arange(len(fine)), within.argmax(1)], np.inf)
+
+    def is_met(self, x, y):
+        row, column = self.index(x, y)
+        return self.cells[row, column] == 100
 
 
 def room() -> Grid:

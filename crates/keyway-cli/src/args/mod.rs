@@ -82,6 +82,14 @@ pub(crate) enum Command {
     /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of
     /// one
     List(ListArgs),
+    /// Drives a robot with ROS 2, as the program `keyway-ros`, whose arguments it takes
+    #[cfg(feature = "ros")]
+    #[command(disable_help_flag = true)]
+    Ros {
+        /// As of `keyway-ros`
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
     /// Prints completions for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {

@@ -12,6 +12,8 @@ pub(crate) mod plan;
 pub(crate) mod prepare;
 pub(crate) mod replay;
 pub(crate) mod reproduce;
+#[cfg(feature = "ros")]
+pub(crate) mod ros;
 pub(crate) mod scene;
 
 pub(crate) use navigate::Moment;

@@ -200,6 +200,10 @@ impl Sensing {
         if age_s > max_age_s {
             return Err(Waits::NewOdometry { age_s });
         }
+        // By such a clock the pose of now is one of long ago.
+        if age_s < -max_age_s {
+            return Err(Waits::Ahead { ahead_s: -age_s });
+        }
         self.fault(now_s).map_or(Ok(()), Err)
     }
 

@@ -45,6 +45,21 @@ fn a_velocity_from_before_is_none() {
     assert!(robot.pilot.cycle(robot.now_s).waits.is_some(), "that is no velocity");
 }
 
+/// Its drivers have a computer of their own.
+#[test]
+fn who_has_another_clock_stands() {
+    for (off_s, may_drive) in [(0.1, true), (0.5, false), (100.0, false), (-0.5, false)] {
+        let mut robot = under_way(&[]);
+        for _ in 0..20 {
+            robot.cycle();
+        }
+        robot.tell(robot.now_s + off_s);
+        let cycle = robot.pilot.cycle(robot.now_s);
+        assert_eq!(cycle.waits.is_none(), may_drive, "{off_s}: {:?}", cycle.waits);
+        assert_eq!(cycle.command != Velocity::ZERO, may_drive, "{off_s}");
+    }
+}
+
 #[test]
 fn a_scan_whose_bearings_cannot_be_stops_the_robot() {
     for increment in [0.0, f32::NAN, 1.0] {
