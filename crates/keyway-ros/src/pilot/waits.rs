@@ -22,7 +22,9 @@ pub(crate) enum Waits {
     Silent { cloud: usize, after_s: f64 },
     #[error("the odometry is {age_s:.2} s old")]
     NewOdometry { age_s: f64 },
-    #[error("the odometry is {ahead_s:.2} s ahead of this machine's clock: set both by one, such as by NTP")]
+    #[error(
+        "the odometry is {ahead_s:.2} s ahead of this machine's clock: set both by one, such as by NTP"
+    )]
     Ahead { ahead_s: f64 },
     #[error("the pose is {age_s:.2} s old, by transforms that are late or have ended")]
     NewPose { age_s: f64 },

@@ -32,6 +32,7 @@ pub(crate) use footprint::{
 #[cfg(feature = "formats")]
 use frame::is_origin;
 pub use frame::{FrameError, GridFrame, MAX_CELLS};
+pub(crate) use layers::DiagonalEvents;
 use layers::StopBitmaps;
 #[cfg(feature = "formats")]
 pub(crate) use layers::mix;

@@ -3,6 +3,7 @@
 mod blocked_by;
 mod components;
 mod config;
+mod diagonals;
 pub(in crate::map) mod dilation;
 mod edited;
 mod fingerprint;
@@ -18,6 +19,7 @@ mod stops;
 pub use blocked_by::BlockedBy;
 pub use components::{Components, Connectivity};
 pub use config::{LayerConfig, UnknownPolicy};
+pub(crate) use diagonals::DiagonalEvents;
 #[cfg(feature = "formats")]
 pub(crate) use fingerprint::mix;
 pub use hindrance::Hindrance;

@@ -4,6 +4,7 @@ use crate::ConfigError;
 use crate::map::cell_index::Numbering;
 use crate::map::layers::components::LazyComponents;
 use crate::map::layers::config::Neighbourhoods;
+use crate::map::layers::diagonals::{DiagonalEvents, LazyDiagonals};
 use crate::map::layers::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
 use crate::map::layers::edited::{EditedWindow, EditedWindows};
 use crate::map::layers::fingerprint::LazyFingerprint;
@@ -32,6 +33,7 @@ pub struct SearchMap {
     blocked: BitGrid,
     blocked_transposed: BitGrid,
     stops: StopBitmaps,
+    diagonals: LazyDiagonals,
     pub(in crate::map) free_ends: FreeEnds,
     /// Cells from the map's border in which a disc of the clearance would leave the map.
     border_cells: i32,
@@ -62,6 +64,7 @@ impl SearchMap {
         let blocked_transposed = blocked.transposed();
         Ok(Self {
             stops: StopBitmaps::new(&blocked, &blocked_transposed),
+            diagonals: LazyDiagonals::default(),
             free_ends: FreeEnds::new(config.free_ends_m / frame.resolution_m()),
             unknown: grid.unknown().clone(),
             revision: grid.revision(),
@@ -107,6 +110,16 @@ impl SearchMap {
     /// Where straight scans of a jump point search stop.
     pub(crate) const fn stops(&self) -> &StopBitmaps {
         &self.stops
+    }
+
+    /// Where a diagonal of a jump point search has something to do, once that pays.
+    pub(crate) fn diagonals(&self) -> Option<&DiagonalEvents> {
+        self.diagonals.get(&self.blocked, &self.blocked_transposed, &self.stops)
+    }
+
+    /// Notes how many nodes a search has expanded: what is computed for many depends on it.
+    pub(crate) fn note_expanded(&self, expanded: u64) {
+        self.diagonals.note(expanded);
     }
 
     /// Unknown cells, whatever the policy for them.
@@ -197,7 +210,9 @@ impl SearchMap {
         let StopBitmaps { east, west, north, south, cramped } = &self.stops;
         let layers = [&self.obstacles, &self.unknown, &self.blocked, &self.blocked_transposed];
         let layers = layers.into_iter().chain([east, west, north, south, cramped]);
-        layers.map(BitGrid::memory_bytes).sum::<usize>() + self.components.memory_bytes()
+        layers.map(BitGrid::memory_bytes).sum::<usize>()
+            + self.components.memory_bytes()
+            + self.diagonals.memory_bytes()
     }
 
     /// What the map says of a cell; outside the map it is free.
@@ -376,6 +391,7 @@ impl SearchMap {
     pub(in crate::map) fn blocked_cells_changed(&mut self, window: &CellWindow) {
         let CellWindow { low, high } = *window;
         self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
+        self.diagonals.forget();
         self.fingerprint.forget();
         self.components.forget();
     }

@@ -10,7 +10,7 @@
 //! one diagonal and then straight, so it is enough to look for it once, in the direction in which
 //! it lies.
 
-use crate::map::{Cell, CellIndex, SearchMap};
+use crate::map::{Cell, CellIndex, DiagonalEvents, SearchMap};
 use crate::search::bit_scan::{is_set, next_one, previous_one};
 use crate::search::{Cost, pattern};
 
@@ -47,9 +47,55 @@ pub(super) struct Place {
     turned: usize,
 }
 
+/// The cells of a diagonal at which anything happens to a search.
+pub(super) trait Diagonals: Copy {
+    /// A place on a diagonal.
+    type Bit;
+
+    /// The place of a cell.
+    fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, cell: Cell) -> Self::Bit;
+
+    /// Goes on to the next one; the steps to it.
+    fn pass<const TO_EAST: bool, const TO_NORTH: bool>(self, bit: &mut Self::Bit) -> usize;
+}
+
+/// Of which nothing is known: a diagonal is walked cell by cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Walked;
+
+impl Diagonals for Walked {
+    type Bit = ();
+
+    #[inline]
+    fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, _: Cell) {}
+
+    #[inline]
+    fn pass<const TO_EAST: bool, const TO_NORTH: bool>(self, (): &mut ()) -> usize {
+        1
+    }
+}
+
+impl Diagonals for &DiagonalEvents {
+    type Bit = usize;
+
+    #[inline]
+    fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, cell: Cell) -> usize {
+        DiagonalEvents::bit::<TO_EAST, TO_NORTH>(self, cell)
+    }
+
+    #[inline]
+    fn pass<const TO_EAST: bool, const TO_NORTH: bool>(self, bit: &mut usize) -> usize {
+        let words = self.words::<TO_EAST, TO_NORTH>();
+        let next = if TO_EAST { next_one(words, *bit) } else { previous_one(words, *bit) };
+        let steps = next.abs_diff(*bit);
+        *bit = next;
+        steps
+    }
+}
+
 /// Scans of one map towards one goal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct JumpPoints<'m> {
+pub(super) struct JumpPoints<'m, D> {
     blocked: &'m [u64],
     blocked_turned: &'m [u64],
     east: &'m [u64],
@@ -57,13 +103,14 @@ pub(super) struct JumpPoints<'m> {
     north: &'m [u64],
     south: &'m [u64],
     cramped: &'m [u64],
+    diagonals: D,
     stride: usize,
     turned_stride: usize,
     goal: Cell,
 }
 
-impl<'m> JumpPoints<'m> {
-    pub(super) fn new(map: &'m SearchMap, goal: Cell) -> Self {
+impl<'m, D: Diagonals> JumpPoints<'m, D> {
+    pub(super) fn new(map: &'m SearchMap, goal: Cell, diagonals: D) -> Self {
         let stops = map.stops();
         Self {
             blocked: map.blocked().words(),
@@ -73,6 +120,7 @@ impl<'m> JumpPoints<'m> {
             north: stops.north.words(),
             south: stops.south.words(),
             cramped: stops.cramped.words(),
+            diagonals,
             stride: map.blocked().stride(),
             turned_stride: map.blocked_transposed().stride(),
             goal,
@@ -132,7 +180,7 @@ impl<'m> JumpPoints<'m> {
         }
     }
 
-    /// Walks a diagonal; after `align` steps the goal is straight ahead.
+    /// Passes a diagonal; after `align` steps the goal is straight ahead.
     #[inline]
     fn scan_diagonal<const TO_EAST: bool, const TO_NORTH: bool>(
         &self,
@@ -141,16 +189,19 @@ impl<'m> JumpPoints<'m> {
         align: u32,
         found: &mut impl JumpVisitor,
     ) {
-        // The 2 x 2 block that a step needs, seen from the cell that it leaves.
-        let block = usize::from(!TO_EAST) + if TO_NORTH { 0 } else { self.stride };
-        let (mut at, mut g, mut align) = (from, g, align);
-        while !is_set(self.cramped, at.index - block) {
-            at = self.moved::<TO_EAST, TO_NORTH>(at);
-            g += Cost::KEY_DIAGONAL;
-            align = align.wrapping_sub(1);
-            if align == 0 && self.sees_goal(at) {
-                found.goal(g + self.straight_to_goal(at));
+        let (mut at, mut g) = (from, g);
+        let mut align = if align == 0 { usize::MAX } else { align as usize };
+        let mut bit = self.diagonals.bit::<TO_EAST, TO_NORTH>(from.cell);
+        while self.may_step::<TO_EAST, TO_NORTH>(at) {
+            let steps = self.diagonals.pass::<TO_EAST, TO_NORTH>(&mut bit);
+            if align <= steps {
+                self.look_along::<TO_EAST, TO_NORTH>(at, g, align, found);
+                align = usize::MAX;
+            } else {
+                align -= steps;
             }
+            at = self.moved::<TO_EAST, TO_NORTH>(at, steps);
+            g += steps as u64 * Cost::KEY_DIAGONAL;
             let is_dominated = self.scan_row::<TO_EAST>(at, g, found)
                 || self.scan_column::<TO_NORTH>(at, g, found);
             if is_dominated {
@@ -159,18 +210,42 @@ impl<'m> JumpPoints<'m> {
         }
     }
 
+    /// Visits the goal, which is straight ahead after so many steps along a diagonal, if it is in
+    /// sight.
     #[inline]
-    fn moved<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place) -> Place {
+    fn look_along<const TO_EAST: bool, const TO_NORTH: bool>(
+        &self,
+        from: Place,
+        g: u64,
+        steps: usize,
+        found: &mut impl JumpVisitor,
+    ) {
+        let at = self.moved::<TO_EAST, TO_NORTH>(from, steps);
+        if self.sees_goal(at) {
+            found.goal(g + steps as u64 * Cost::KEY_DIAGONAL + self.straight_to_goal(at));
+        }
+    }
+
+    /// True if the 2 x 2 cells that a diagonal step needs are free.
+    #[inline]
+    fn may_step<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place) -> bool {
+        let block = usize::from(!TO_EAST) + if TO_NORTH { 0 } else { self.stride };
+        !is_set(self.cramped, at.index - block)
+    }
+
+    /// A place so many steps along a diagonal.
+    #[inline]
+    fn moved<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place, steps: usize) -> Place {
         let Place { cell, index, turned } = at;
         let (x, index, turned) = if TO_EAST {
-            (cell.x + 1, index + 1, turned + self.turned_stride)
+            (cell.x + steps as i32, index + steps, turned + steps * self.turned_stride)
         } else {
-            (cell.x - 1, index - 1, turned - self.turned_stride)
+            (cell.x - steps as i32, index - steps, turned - steps * self.turned_stride)
         };
         let (y, index, turned) = if TO_NORTH {
-            (cell.y + 1, index + self.stride, turned + 1)
+            (cell.y + steps as i32, index + steps * self.stride, turned + steps)
         } else {
-            (cell.y - 1, index - self.stride, turned - 1)
+            (cell.y - steps as i32, index - steps * self.stride, turned - steps)
         };
         Place { cell: Cell::new(x, y), index, turned }
     }
@@ -339,7 +414,7 @@ mod tests {
 
     fn scan(rows: &[&str], from: Cell, goal: Cell, directions: u8, known: u64) -> Finds {
         let map = map(rows);
-        let jumps = JumpPoints::new(&map, goal);
+        let jumps = JumpPoints::new(&map, goal, Walked);
         let mut finds = Finds { known, ..Finds::default() };
         let place = jumps.place(map.index(from));
         assert_eq!(place.cell, from);
@@ -406,7 +481,7 @@ mod tests {
     #[test]
     fn onward_directions_by_hand() {
         let map = map(&ROWS);
-        let jumps = JumpPoints::new(&map, Cell::new(0, 0));
+        let jumps = JumpPoints::new(&map, Cell::new(0, 0), Walked);
         let onward =
             |x, y, arrivals| jumps.onward(jumps.place(map.index(Cell::new(x, y))), arrivals);
         // East along row 1 to (2, 1): ahead, and to the left (north) where it opens.
