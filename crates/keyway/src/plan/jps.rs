@@ -93,12 +93,10 @@ impl GlobalPlanner for Jps {
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
         let nodes = workspace.part::<JumpNodes>();
-        let found = match seen {
+        match seen {
             None => run(map, query, nodes, &mut ()),
             Some(mut seen) => run(map, query, nodes, &mut seen),
-        };
-        map.note_expanded(nodes.statistics().expanded);
-        found?;
+        }?;
         unfold_path(map, query, nodes, plan);
         plan.statistics = SearchStatistics::one_sided(nodes.statistics());
         plan.stop = Some(Stop::NothingBetter);
@@ -112,10 +110,19 @@ fn run(
     nodes: &mut JumpNodes,
     seen: &mut impl Observer,
 ) -> Result<(), PlanError> {
-    match map.diagonals() {
-        Some(events) => search(map, &JumpPoints::new(map, query.goal, events), query, nodes, seen),
-        None => search(map, &JumpPoints::new(map, query.goal, Walked), query, nodes, seen),
+    if let Some(events) = map.diagonals() {
+        return search(map, &JumpPoints::new(map, query.goal, events), query, nodes, seen);
     }
+    let found = search(map, &JumpPoints::new(map, query.goal, Walked), query, nodes, seen);
+    map.note_walked(cells_walked(query, nodes));
+    found
+}
+
+/// About so many cells of diagonals were walked: to count them would cost more than it is worth.
+fn cells_walked(query: &Query, nodes: &JumpNodes) -> u64 {
+    let (start, goal) = (query.start, query.goal);
+    let apart = start.x.abs_diff(goal.x) + start.y.abs_diff(goal.y);
+    4 * (u64::from(apart) + nodes.statistics().expanded)
 }
 
 fn search<D: Diagonals>(

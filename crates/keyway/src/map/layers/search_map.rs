@@ -117,9 +117,9 @@ impl SearchMap {
         self.diagonals.get(&self.blocked, &self.blocked_transposed, &self.stops)
     }
 
-    /// Notes how many nodes a search has expanded: what is computed for many depends on it.
-    pub(crate) fn note_expanded(&self, expanded: u64) {
-        self.diagonals.note(expanded);
+    /// Notes how many cells of diagonals a search has walked.
+    pub(crate) fn note_walked(&self, cells: u64) {
+        self.diagonals.note(cells);
     }
 
     /// Unknown cells, whatever the policy for them.

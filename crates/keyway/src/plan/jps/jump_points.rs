@@ -52,6 +52,9 @@ pub(super) trait Diagonals: Copy {
     /// A place on a diagonal.
     type Bit;
 
+    /// Each cell is one.
+    const WALKS: bool;
+
     /// The place of a cell.
     fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, cell: Cell) -> Self::Bit;
 
@@ -59,12 +62,13 @@ pub(super) trait Diagonals: Copy {
     fn pass<const TO_EAST: bool, const TO_NORTH: bool>(self, bit: &mut Self::Bit) -> usize;
 }
 
-/// Of which nothing is known: a diagonal is walked cell by cell.
+/// Of which nothing is known: diagonals are walked cell by cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Walked;
 
 impl Diagonals for Walked {
     type Bit = ();
+    const WALKS: bool = true;
 
     #[inline]
     fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, _: Cell) {}
@@ -77,6 +81,7 @@ impl Diagonals for Walked {
 
 impl Diagonals for &DiagonalEvents {
     type Bit = usize;
+    const WALKS: bool = false;
 
     #[inline]
     fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, cell: Cell) -> usize {
@@ -158,12 +163,12 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
     ) {
         let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
         let goal_direction = direction_of(dx, dy);
-        let steps_to_align = dx.unsigned_abs().min(dy.unsigned_abs());
+        let steps_to_align = dx.abs().min(dy.abs());
         let mut left = directions.0;
         while left != 0 {
             let direction = left.trailing_zeros();
             left &= left - 1;
-            let align = if direction == goal_direction { steps_to_align } else { u32::MAX };
+            let align = if direction == goal_direction { steps_to_align } else { i32::MAX };
             if align == 0 && self.sees_goal(from) {
                 found.goal(g + self.straight_to_goal(from));
             }
@@ -186,43 +191,34 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         &self,
         from: Place,
         g: u64,
-        align: u32,
+        align: i32,
         found: &mut impl JumpVisitor,
     ) {
-        let (mut at, mut g) = (from, g);
-        let mut align = if align == 0 { usize::MAX } else { align as usize };
+        let (mut at, mut g, mut align) = (from, g, align);
+        if !D::WALKS && align == 0 {
+            align = i32::MAX;
+        }
         let mut bit = self.diagonals.bit::<TO_EAST, TO_NORTH>(from.cell);
         while self.may_step::<TO_EAST, TO_NORTH>(at) {
-            let steps = self.diagonals.pass::<TO_EAST, TO_NORTH>(&mut bit);
-            if align <= steps {
-                self.look_along::<TO_EAST, TO_NORTH>(at, g, align, found);
-                align = usize::MAX;
-            } else {
-                align -= steps;
-            }
-            at = self.moved::<TO_EAST, TO_NORTH>(at, steps);
+            let (before, steps) = (at, self.diagonals.pass::<TO_EAST, TO_NORTH>(&mut bit));
+            at = self.moved::<TO_EAST, TO_NORTH>(before, steps);
             g += steps as u64 * Cost::KEY_DIAGONAL;
+            align = align.wrapping_sub(steps as i32);
+            let is_aligned = if D::WALKS { align == 0 } else { align <= 0 };
+            if is_aligned {
+                let past = align.unsigned_abs();
+                let place = self.moved::<TO_EAST, TO_NORTH>(before, steps - past as usize);
+                if self.sees_goal(place) {
+                    let g = g - u64::from(past) * Cost::KEY_DIAGONAL;
+                    found.goal(g + self.straight_to_goal(place));
+                }
+                align = i32::MAX;
+            }
             let is_dominated = self.scan_row::<TO_EAST>(at, g, found)
                 || self.scan_column::<TO_NORTH>(at, g, found);
             if is_dominated {
                 break;
             }
-        }
-    }
-
-    /// Visits the goal, which is straight ahead after so many steps along a diagonal, if it is in
-    /// sight.
-    #[inline]
-    fn look_along<const TO_EAST: bool, const TO_NORTH: bool>(
-        &self,
-        from: Place,
-        g: u64,
-        steps: usize,
-        found: &mut impl JumpVisitor,
-    ) {
-        let at = self.moved::<TO_EAST, TO_NORTH>(from, steps);
-        if self.sees_goal(at) {
-            found.goal(g + steps as u64 * Cost::KEY_DIAGONAL + self.straight_to_goal(at));
         }
     }
 
