@@ -252,3 +252,46 @@ fn unfold_leg_backwards(to: Cell, from: Cell, plan: &mut Plan) {
         plan.mark_last();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
+    use crate::random::Random;
+
+    /// Answers are the same, and found by the same work, whether diagonals are walked or passed.
+    #[test]
+    fn passing_diagonals_changes_nothing() {
+        const SIDE: i32 = 200;
+        let mut random = Random::new(46);
+        let mut below = |limit: i32| random.below(limit as u32) as i32;
+        let blocks: Vec<[i32; 3]> =
+            (0..40).map(|_| [below(SIDE), below(SIDE), 3 + below(20)]).collect();
+        let frame = GridFrame::new(SIDE as u64, SIDE as u64, 1.0, crate::geometry::Pose::default());
+        let grid = OccupancyGrid::from_fn(frame.unwrap(), |Cell { x, y }| {
+            let is_in = |&[left, low, side]: &[i32; 3]| {
+                (left..left + side).contains(&x) && (low..low + side).contains(&y)
+            };
+            if blocks.iter().any(is_in) { CellState::Occupied } else { CellState::Free }
+        });
+        let fresh = || SearchMap::new(&grid, LayerConfig::default()).unwrap();
+        let warm = fresh();
+        warm.note_walked(u64::from(u32::MAX));
+        assert!(warm.diagonals().is_some());
+        let mut found = 0;
+        for _ in 0..300 {
+            let [start, goal] = [(); 2].map(|()| Cell::new(below(SIDE), below(SIDE)));
+            let query = Query::new(start, goal);
+            let plan = |map: &SearchMap| {
+                let mut plan = Plan::default();
+                let mut workspace = Workspace::default();
+                Jps.plan_into(map, &query, &mut workspace, None, &mut plan).ok()?;
+                Some((plan.cells.clone(), plan.statistics))
+            };
+            let walked = plan(&fresh());
+            found += u32::from(walked.is_some());
+            assert_eq!(plan(&warm), walked, "from {start} to {goal}");
+        }
+        assert!(found > 100, "{found}");
+    }
+}
