@@ -20,8 +20,8 @@ impl Shown {
     /// Cells along a side.
     const MOST_CELLS: f64 = 400.0;
 
-    /// More at once does not fit into the buffers with which others receive (208 kB, where nobody has
-    /// set them): it comes seconds later, or never.
+    /// More at once does not fit into the buffers with which others receive (208 kB, where nobody
+    /// has set them): it comes seconds later, or never.
     pub(crate) const MOST_BYTES: usize = 160_000;
 
     /// The reach around the robot, along both axes \[m\].

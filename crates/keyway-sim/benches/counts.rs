@@ -1,6 +1,6 @@
 //! Work of a fixed kind, once, between marks that callgrind knows: `.ci/counts` runs each case and
-//! compares its instructions and cache misses with those that are committed. By hand: `counts` lists
-//! the cases, `counts CASE` does the work of one.
+//! compares its instructions and cache misses with those that are committed. By hand: `counts`
+//! lists the cases, `counts CASE` does the work of one.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -125,13 +125,12 @@ impl Node {
     /// Stands after a halt of the process: nobody who comes to a robot that stands expects that it
     /// drives on by itself.
     fn end_after_halt(&mut self) {
+        let Some(client) = self.drives_for.take() else { return };
         self.say("the process was halted: the robot stands, and its goal is given up");
         self.pilot.stop();
         self.command(Velocity::ZERO);
-        if let Some(client) = self.drives_for.take() {
-            let ended = Ended::failed(Fault::Unknown, "the process was halted");
-            self.tell(client, GoalStatus::Aborted, &ended, &Report::default());
-        }
+        let ended = Ended::failed(Fault::Unknown, "the process was halted");
+        self.tell(client, GoalStatus::Aborted, &ended, &Report::default());
     }
 
     /// Takes in all that has come.

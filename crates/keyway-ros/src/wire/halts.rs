@@ -1,5 +1,5 @@
-//! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP; and threads
-//! of the network that panic, after which nothing comes any more, and nothing goes out.
+//! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP; and
+//! threads of the network that panic, after which nothing comes any more, and nothing goes out.
 
 use ros2_client::dds::rustdds::mio1;
 use std::io;

@@ -112,7 +112,13 @@ impl SearchMap {
         &self.stops
     }
 
-    /// Where a diagonal of a jump point search has something to do, once that pays.
+    /// The cells of diagonals at which a search has something to do. Costs some hundred operations
+    /// per 64 cells.
+    pub(crate) fn diagonal_events(&self) -> DiagonalEvents {
+        DiagonalEvents::new(&self.blocked, &self.blocked_transposed, &self.stops)
+    }
+
+    /// The same, kept, once jump point searches have done so much that it pays.
     pub(crate) fn diagonals(&self) -> Option<&DiagonalEvents> {
         self.diagonals.get(&self.blocked, &self.blocked_transposed, &self.stops)
     }

@@ -20,7 +20,6 @@
 //! Values that follow from the map are not stored: the bytes are read together with their map.
 
 use super::corners::Corners;
-use super::diagonals::Diagonals;
 use super::labels::{Entry, Hop, Labels, octant};
 use super::{Prepared, inverse};
 use crate::map::{Cell, SearchMap, mix};
@@ -123,7 +122,7 @@ impl Prepared {
             hops: numbers(hops).into_iter().map(Hop).collect(),
         };
         labels.check(&cells).map_err(|index| content("label entry", index))?;
-        let diagonals = Diagonals::new(map);
+        let diagonals = map.diagonal_events();
         let (fingerprint, edges, nodes) = (head.fingerprint, head.edges, inverse(&order));
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })
     }

@@ -36,7 +36,6 @@
 //! nothing once warm. A budget counts labels that are read.
 
 mod corners;
-mod diagonals;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "formats")]
@@ -52,7 +51,7 @@ mod unfold;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, PrepareProgress, Stop};
-use crate::map::{Cell, Connectivity, SearchMap};
+use crate::map::{Cell, Connectivity, DiagonalEvents, SearchMap};
 use crate::search::{Observer, Query, Workspace};
 #[cfg(feature = "files")]
 pub use file::PreparedFileError;
@@ -61,7 +60,6 @@ pub use format::PreparedFormatError;
 pub use prepare_error::PrepareError;
 
 use corners::Corners;
-use diagonals::Diagonals;
 use graph::{Edge, corner_graph};
 use hubs::HubMemory;
 use labels::Labels;
@@ -82,7 +80,7 @@ pub struct Prepared {
     /// [`SearchMap::fingerprint`] of the map it was made for.
     fingerprint: u64,
     corners: Corners,
-    diagonals: Diagonals,
+    diagonals: DiagonalEvents,
     edges: u64,
     /// The node of each corner cell, by the cell's number.
     nodes: Vec<u32>,
@@ -148,7 +146,7 @@ impl Prepared {
         let graph = renamed(&graph, &order, &nodes);
         let labels = Labels::new(&graph, &cells, |done| report(order.len() + done))?;
         let edges = graph.iter().map(Vec::len).sum::<usize>() as u64 / 2;
-        let (fingerprint, diagonals) = (map.fingerprint(), Diagonals::new(map));
+        let (fingerprint, diagonals) = (map.fingerprint(), map.diagonal_events());
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })
     }
 

@@ -5,8 +5,7 @@
 //! on behind them: each is a find of its own, at which the path turns to that side and does not go
 //! straight on. That determines in which directions it goes on, and so how long it is at least.
 
-use super::diagonals::Diagonals;
-use crate::map::{BitGrid, Cell, SearchMap};
+use crate::map::{BitGrid, Cell, DiagonalEvents, SearchMap};
 use crate::search::Cost;
 use crate::search::bit_scan::{is_set, next_one, previous_one};
 
@@ -30,7 +29,7 @@ pub(super) struct Sight<'m> {
     /// Stops towards east, north, west, south.
     stops: [&'m [u64]; 4],
     cramped: &'m [u64],
-    diagonals: &'m Diagonals,
+    diagonals: &'m DiagonalEvents,
     stride: usize,
     turned_stride: usize,
 }
@@ -39,7 +38,7 @@ pub(super) struct Sight<'m> {
 pub(super) const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 impl<'m> Sight<'m> {
-    pub(super) fn new(map: &'m SearchMap, diagonals: &'m Diagonals) -> Self {
+    pub(super) fn new(map: &'m SearchMap, diagonals: &'m DiagonalEvents) -> Self {
         let stops = map.stops();
         Self {
             blocked: map.blocked().words(),
@@ -126,7 +125,7 @@ impl<'m> Sight<'m> {
         let step = (a.0 + b.0, a.1 + b.1);
         let (mut at, mut steps) = (from, 0);
         while self.is_diagonal_free(at, step) {
-            let count = self.diagonals.steps_to_stop(at, quarter);
+            let count = steps_to_event(self.diagonals, at, quarter);
             at = moved(at, (step.0 * count, step.1 * count));
             steps += count as u64;
             if !visit(at, steps) {
@@ -184,6 +183,19 @@ pub(super) fn scan(words: &[u64], at: usize, is_up: bool) -> usize {
     if is_up { next_one(words, at) } else { previous_one(words, at) }
 }
 
+/// The number of steps to the next cell of a diagonal at which there is something to do: towards
+/// north-east, north-west, south-west or south-east. The first step must be free.
+fn steps_to_event(events: &DiagonalEvents, from: Cell, quarter: usize) -> i32 {
+    let (words, at) = match quarter {
+        0 => (events.words::<true, true>(), events.bit::<true, true>(from)),
+        1 => (events.words::<false, true>(), events.bit::<false, true>(from)),
+        2 => (events.words::<false, false>(), events.bit::<false, false>(from)),
+        _ => (events.words::<true, false>(), events.bit::<true, false>(from)),
+    };
+    let is_eastwards = quarter == 0 || quarter == 3;
+    scan(words, at, is_eastwards).abs_diff(at) as i32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -194,7 +206,7 @@ mod tests {
     fn with_sight<T>(ask: impl FnOnce(&Sight<'_>) -> T) -> T {
         let grid = OccupancyGrid::from_ascii(&ROWS);
         let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
-        let diagonals = Diagonals::new(&map);
+        let diagonals = map.diagonal_events();
         ask(&Sight::new(&map, &diagonals))
     }
 
