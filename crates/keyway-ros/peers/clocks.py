@@ -4,35 +4,13 @@ import subprocess
 import sys
 import time
 
-from action_msgs.msg import GoalStatus
-from nav2_msgs.action import ComputePathToPose, NavigateToPose
-from peer import Checks, Goal, Keyway, begin, leave, pose, wait
+from peer import Keyway, ToAndFro, begin, leave, wait
 from robot import Robot
 
-RIGHT, LEFT = (6.5, 1.5), (1.5, 1.5)
 
-
-class Clocks(Checks):
+class Clocks(ToAndFro):
     def __init__(self, has_clock: bool) -> None:
         super().__init__(Robot(has_clock=has_clock), Keyway(f"use_sim_time:={str(has_clock).lower()}"))
-        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
-        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
-        self.spin()
-        planned = lambda: Goal(self.compute, ComputePathToPose.Goal(goal=pose(*RIGHT))).end().result.error_code == 0
-        assert wait(planned, 60), "no path after a minute"
-
-    def set_out(self) -> tuple[Goal, tuple[float, float]]:
-        place = RIGHT if self.robot.x < 4.0 else LEFT
-        goal = Goal(self.navigate, NavigateToPose.Goal(pose=pose(*place)))
-        assert wait(lambda: self.robot.v > 0.3, 15), "it does not set out"
-        return goal, place
-
-    def arrives(self, goal: Goal, place: tuple[float, float]) -> None:
-        ended = goal.end()
-        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(*place), (ended.status, self.robot.x, self.robot.y)
-
-    def nothing_was_touched(self) -> None:
-        assert self.robot.contacts == 0, self.robot.contacts
 
 
 class Simulated(Clocks):

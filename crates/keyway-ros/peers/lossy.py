@@ -4,36 +4,18 @@ import time
 
 from action_msgs.msg import GoalStatus
 from air import Air
-from nav2_msgs.action import ComputePathToPose, NavigateToPose
-from peer import Checks, Goal, Keyway, begin, leave, pose, wait
+from peer import Keyway, ToAndFro, begin, leave, wait
 from robot import Robot
 
-RIGHT, LEFT = (6.5, 1.5), (1.5, 1.5)
 MAX_POSE_AGE_S, CYCLE_S = 0.2, 0.1
 
 
-class Lossy(Checks):
+class Lossy(ToAndFro):
     def __init__(self, air: Air) -> None:
         super().__init__(Robot(), Keyway(start=air.start))
         self.air = air
         self.robot.watchdog_s = 0.5
-        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
-        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
-        self.spin()
-        planned = lambda: Goal(self.compute, ComputePathToPose.Goal(goal=pose(*RIGHT))).end().result.error_code == 0
-        assert wait(planned, 60), "no path after a minute"
         air.set(lost=0.05, delay_s=0.02, jitter_s=0.02)
-
-    def set_out(self) -> tuple[Goal, tuple[float, float]]:
-        place = RIGHT if self.robot.x < 4.0 else LEFT
-        goal = Goal(self.navigate, NavigateToPose.Goal(pose=pose(*place)))
-        assert wait(lambda: self.robot.v > 0.3, 15), "it does not set out"
-        return goal, place
-
-    def arrives(self, goal: Goal, place: tuple[float, float]) -> None:
-        ended = goal.end()
-        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(*place), (ended.status, self.robot.x, self.robot.y)
-        assert self.robot.contacts == 0, self.robot.contacts
 
     def a_goal_is_reached(self) -> None:
         for _ in range(4):
@@ -68,9 +50,6 @@ class Lossy(Checks):
         assert self.robot.stands()
         self.air.set(lost=0.05, delay_s=0.02, jitter_s=0.02)
         self.arrives(goal, place)
-
-    def nothing_was_touched(self) -> None:
-        assert self.robot.contacts == 0, self.robot.contacts
 
 
 if __name__ == "__main__":

@@ -9,7 +9,9 @@ import threading
 import time
 
 import rclpy
+from action_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import ComputePathToPose, NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.executors import MultiThreadedExecutor
 from robot import IS_JAZZY, Robot
@@ -124,7 +126,7 @@ class Checks:
         return math.hypot(self.robot.x - x, self.robot.y - y) < 0.2
 
     def run(self) -> int:
-        names = [name for name in vars(type(self)) if name.startswith(("a_", "what_", "nothing_", "who_"))]
+        names = [name for kind in type(self).__mro__ for name in vars(kind) if name.startswith(("a_", "what_", "nothing_", "who_"))]
         failed = 0
         for name in names:
             try:
@@ -135,6 +137,50 @@ class Checks:
                 print(f"{name} ... FAILED: {error}", flush=True)
         print(f"{len(names) - failed} passed, {failed} failed", flush=True)
         return min(failed, 1)
+
+
+class ToAndFro(Checks):
+    """Checks of a robot that drives from one side of the room to the other."""
+
+    RIGHT, LEFT = (6.5, 1.5), (1.5, 1.5)
+
+    def __init__(self, robot: Robot, keyway: Keyway) -> None:
+        super().__init__(robot, keyway)
+        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
+        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
+        self.spin()
+        self.connect()
+
+    def connect(self) -> None:
+        """Waits until the node plans. A client takes one that has died for alive for a while, and waits in vain."""
+        assert self.navigate.wait_for_server(30) and self.compute.wait_for_server(30)
+
+        def plans() -> bool:
+            sent = self.compute.send_goal_async(ComputePathToPose.Goal(goal=pose(*self.RIGHT)))
+            if not wait(sent.done, 3):
+                return False
+            ended = sent.result().get_result_async()
+            return wait(ended.done, 3) and ended.result().result.error_code == 0
+
+        assert wait(plans, 40), "no path after 40 s"
+
+    def far(self) -> tuple[float, float]:
+        """The goal that is farther away."""
+        return self.RIGHT if self.robot.x < 4.0 else self.LEFT
+
+    def set_out(self) -> tuple[Goal, tuple[float, float]]:
+        place = self.far()
+        goal = Goal(self.navigate, NavigateToPose.Goal(pose=pose(*place)))
+        assert wait(lambda: self.robot.v > 0.3, 15), "it does not set out"
+        return goal, place
+
+    def arrives(self, goal: Goal, place: tuple[float, float]) -> None:
+        ended = goal.end()
+        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(*place), (ended.status, self.robot.x, self.robot.y)
+        assert self.robot.contacts == 0, self.robot.contacts
+
+    def nothing_was_touched(self) -> None:
+        assert self.robot.contacts == 0, self.robot.contacts
 
 
 def leave(code: int, keyway: Keyway | None = None) -> None:

@@ -6,51 +6,16 @@ import sys
 import time
 
 import rclpy
-from action_msgs.msg import GoalStatus
-from nav2_msgs.action import ComputePathToPose, NavigateToPose
-from peer import Checks, Goal, Keyway, begin, leave, pose, wait
+from nav2_msgs.action import NavigateToPose
+from peer import Keyway, ToAndFro, begin, leave, pose, wait
 from rclpy.action import ActionClient
 from robot import Robot
 
-RIGHT, LEFT = (6.5, 1.5), (1.5, 1.5)
 
-
-class Standing(Checks):
+class Standing(ToAndFro):
     def __init__(self) -> None:
         super().__init__(Robot(), Keyway())
         self.robot.watchdog_s = 0.5
-        self.navigate = self.client(NavigateToPose, "navigate_to_pose")
-        self.compute = self.client(ComputePathToPose, "compute_path_to_pose")
-        self.spin()
-        self.connect()
-
-    def connect(self) -> None:
-        """Waits until the node plans. A client takes one that has died for alive for a while, and waits in vain."""
-        assert self.navigate.wait_for_server(30) and self.compute.wait_for_server(30)
-
-        def plans() -> bool:
-            sent = self.compute.send_goal_async(ComputePathToPose.Goal(goal=pose(*RIGHT)))
-            if not wait(sent.done, 3):
-                return False
-            ended = sent.result().get_result_async()
-            return wait(ended.done, 3) and ended.result().result.error_code == 0
-
-        assert wait(plans, 40), "no path after 40 s"
-
-    def far(self) -> tuple[float, float]:
-        """The goal that is farther away."""
-        return RIGHT if self.robot.x < 4.0 else LEFT
-
-    def set_out(self) -> tuple[Goal, tuple[float, float]]:
-        place = self.far()
-        goal = Goal(self.navigate, NavigateToPose.Goal(pose=pose(*place)))
-        assert wait(lambda: self.robot.v > 0.3, 15), "it does not set out"
-        return goal, place
-
-    def arrives(self, goal: Goal, place: tuple[float, float]) -> None:
-        ended = goal.end()
-        assert ended.status == GoalStatus.STATUS_SUCCEEDED and self.is_at(*place), (ended.status, self.robot.x, self.robot.y)
-        assert self.robot.contacts == 0, self.robot.contacts
 
     def what_is_late_is_not_driven_by(self) -> None:
         goal, place = self.set_out()
@@ -128,9 +93,6 @@ class Standing(Checks):
         self.robot.watchdog_s = 60.0
         self.keyway.stop()
         assert wait(self.robot.stands, 2.5) and self.robot.command == (0.0, 0.0)
-
-    def nothing_was_touched(self) -> None:
-        assert self.robot.contacts == 0, self.robot.contacts
 
 
 def send_goal(x: float, y: float) -> None:
