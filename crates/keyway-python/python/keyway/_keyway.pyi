@@ -314,6 +314,17 @@ class Navigator:
         >>> navigator.nearest_reachable((1, 1), (3, 1))[0] < 2
         True
         """
+    def note_override(self, /, now: float, command: Sequence[float] | NDArray[Any]) -> None:
+        """
+        Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the place
+        of the last step's, at a time by the clock of the stamps [s]: of a person with a joystick, or
+        of a safety controller. To be called whenever such a command is given.
+
+        >>> import keyway, numpy as np
+        >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+        >>> navigator = keyway.Navigator(grid)
+        >>> navigator.note_override(0.1, (0, 0))
+        """
     @property
     def notice(self, /) -> str | None:
         """

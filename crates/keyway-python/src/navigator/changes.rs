@@ -5,6 +5,7 @@ use super::{Navigator, told_pose};
 use crate::errors::{bad_value, navigate_error};
 use crate::map::{Map, map_of_array};
 use crate::values::Numbers;
+use keyway::geometry::Velocity;
 use keyway::map::Edit;
 use keyway::navigate::{Masks, SpeedMask};
 use pyo3::prelude::*;
@@ -22,6 +23,20 @@ impl Navigator {
     fn relocate(&self, py: Python<'_>, pose: Numbers) -> PyResult<()> {
         let pose = told_pose(&pose)?;
         py.detach(|| self.lock().navigator.relocate(pose));
+        Ok(())
+    }
+
+    /// Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the place
+    /// of the last step's, at a time by the clock of the stamps [s]: of a person with a joystick, or
+    /// of a safety controller. To be called whenever such a command is given.
+    ///
+    /// >>> import keyway, numpy as np
+    /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
+    /// >>> navigator = keyway.Navigator(grid)
+    /// >>> navigator.note_override(0.1, (0, 0))
+    fn note_override(&self, py: Python<'_>, now: f64, command: Numbers) -> PyResult<()> {
+        let [v, omega] = command.exactly("command", "(v, omega)")?;
+        py.detach(|| self.lock().navigator.note_override(now, Velocity::new(v, omega)));
         Ok(())
     }
 

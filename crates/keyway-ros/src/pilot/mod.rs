@@ -166,13 +166,11 @@ impl Pilot {
     /// The next command, at a time \[s\]. In doubt of where it is the robot stands.
     pub(crate) fn cycle(&mut self, now_s: f64) -> Cycle {
         let step = self.look(now_s).map(|navigator| navigator.step_at(now_s));
-        if !self.is_active && self.errand.is_some() {
-            let report = self.report(now_s).unwrap_or_default();
-            self.stop();
-            let ended = Some((Ended::failed(Fault::Unknown, INACTIVE), report));
-            return Cycle { command: Velocity::ZERO, ended, waits: None };
-        }
         let (ended, waits) = match &step {
+            _ if !self.is_active && self.errand.is_some() => {
+                let report = self.report(now_s).unwrap_or_default();
+                (Some((Ended::failed(Fault::Unknown, INACTIVE), report)), None)
+            }
             Ok(step) => (self.end_of_errand(step, now_s), None),
             Err(waits) => (self.end_of_doubt(waits, now_s), Some(waits.clone())),
         };
@@ -180,9 +178,19 @@ impl Pilot {
         if is_failed {
             self.stop();
         }
-        let command =
-            step.ok().filter(|_| !is_failed).map_or(Velocity::ZERO, |step| step.command());
+        let command = match step {
+            Ok(step) if !is_failed => step.command(),
+            _ => self.stand(now_s),
+        };
         Cycle { command, ended, waits }
+    }
+
+    /// The command of a robot that stands, whatever the navigator would do.
+    fn stand(&mut self, now_s: f64) -> Velocity {
+        if let Some(navigator) = &mut self.navigator {
+            navigator.note_override(now_s, Velocity::ZERO);
+        }
+        Velocity::ZERO
     }
 
     /// Observes what has come.

@@ -206,6 +206,15 @@ impl Doubts {
         }
     }
 
+    /// Notes that another command acts from now on, of which the robot says nothing yet.
+    pub(super) fn note_command(&mut self, now: Time, command: Velocity) {
+        if let Some(&Moment { time, pose, told, .. }) = self.moments.back()
+            && now > time
+        {
+            self.note(now, (pose, told), command);
+        }
+    }
+
     /// Number of sensors that are looked at.
     pub(super) fn sensors(&self) -> usize {
         self.repeated.len()

@@ -60,6 +60,20 @@ fn who_has_another_clock_stands() {
     }
 }
 
+/// Transforms are missing again and again: the robot stands, and its motors are not blamed.
+#[test]
+fn standing_in_doubt_teaches_nothing_about_the_motors() {
+    let mut robot = under_way(&[("robot", "small"), ("max_pose_age", "0.05")]);
+    let mut stood = 0;
+    for cycle in 0..300 {
+        let cycle = if cycle % 5 == 0 { robot.cycle() } else { robot.cycle_untold() };
+        stood += usize::from(matches!(cycle.waits, Some(Waits::NewPose { .. })));
+        let doubts = robot.pilot.navigator().unwrap().doubts();
+        assert!(doubts.is_empty(), "{doubts:?}");
+    }
+    assert!(stood > 200, "{stood}");
+}
+
 #[test]
 fn a_scan_whose_bearings_cannot_be_stops_the_robot() {
     for increment in [0.0, f32::NAN, 1.0] {

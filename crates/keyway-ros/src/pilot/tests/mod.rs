@@ -94,6 +94,11 @@ impl Robot {
     /// One cycle, whose command it obeys.
     pub(crate) fn cycle(&mut self) -> Cycle {
         self.tell(self.now_s);
+        self.cycle_untold()
+    }
+
+    /// The same without a word of its drivers.
+    fn cycle_untold(&mut self) -> Cycle {
         let cycle = self.pilot.cycle(self.now_s);
         let cycle_s = self.pilot.settings.stack.robot().cycle_s;
         if !self.slips {

@@ -173,6 +173,14 @@ impl Motors {
         self.under_way.give(observed, now, command);
     }
 
+    /// Notes a command of somebody else. What is averaged begins anew with what the robot then does.
+    pub(super) fn note_override(&mut self, now: Time, command: Velocity) {
+        self.under_way.give(now, now, command);
+        if let Some(smoothing) = &mut self.smoothing {
+            smoothing.begin_anew();
+        }
+    }
+
     /// The command that acts at a time; `None` before the first.
     pub(super) fn acts_at(&self, time: Time) -> Option<Velocity> {
         self.under_way.acts_at(time, self.delay_s())
@@ -191,7 +199,7 @@ impl Motors {
         self.dead_band.pause();
         self.odometry = Odometry::default();
         if let Some(smoothing) = &mut self.smoothing {
-            smoothing.restart_clock();
+            smoothing.begin_anew();
         }
     }
 

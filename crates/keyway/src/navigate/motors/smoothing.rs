@@ -59,8 +59,8 @@ impl Smoothing {
         limits.clamped(command)
     }
 
-    /// Forgets when anything was.
-    pub(super) const fn restart_clock(&mut self) {
+    /// Begins the next cycle with the velocity that the robot then has.
+    pub(super) const fn begin_anew(&mut self) {
         (self.given, self.astray) = (None, None);
     }
 }

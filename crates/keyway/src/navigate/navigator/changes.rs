@@ -3,7 +3,7 @@
 
 use super::Navigator;
 use crate::ConfigError;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Velocity};
 use crate::map::{Edit, OccupancyGrid};
 use crate::navigate::{Masks, NavigateError};
 use std::sync::Arc;
@@ -26,6 +26,23 @@ impl Navigator {
             self.shift_errand(&shift);
             self.plan_again();
         }
+    }
+
+    /// Notes that the robot was given a command of somebody else in the place of the last step's, at
+    /// a time by the clock of the stamps \[s\]: of a person with a joystick, of a safety controller,
+    /// or of a driver that stands still in doubt. It holds until the next step. Without this the
+    /// navigator would believe that its own commands do not move the robot. To be called whenever
+    /// such a command is given.
+    ///
+    /// A command that is not finite is none. An earlier time than the latest that was told is that
+    /// one.
+    pub fn note_override(&mut self, now_s: f64, command: Velocity) {
+        if !(command.v.is_finite() && command.omega.is_finite()) {
+            return;
+        }
+        self.forget_last();
+        self.issued = command;
+        self.world.note_override(now_s, command);
     }
 
     /// Forgets all that was sensed, standing and moving, such as points of a bumper that sees no

@@ -194,8 +194,8 @@ impl Navigator {
     /// Asked again before anything has changed, it gives the same answer, which counts once.
     ///
     /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot
-    /// will be when it acts. It is taken to be given: whoever gives another one makes that
-    /// prediction wrong, and teaches the navigator motors that the robot does not have. It learns
+    /// will be when it acts. It is taken to be given: whoever gives another one says so
+    /// ([`Self::note_override`]), or makes that prediction wrong. The navigator learns
     /// delays that are not as described, and what is too little to move the robot
     /// ([`Self::doubts`]). Whatever velocity is told, the command is within the robot's limits of
     /// speed.

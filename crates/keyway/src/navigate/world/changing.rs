@@ -1,7 +1,7 @@
 //! Corrections of what is known: of the place of the robot, or the map.
 
 use super::World;
-use crate::geometry::{Disc, Pose, Shift};
+use crate::geometry::{Disc, Pose, Shift, Velocity};
 use crate::map::{Cell, CellState, Edit, OccupancyGrid};
 use crate::navigate::doubts::Doubts;
 use crate::navigate::masks::Masks;
@@ -63,6 +63,16 @@ impl World {
             self.sensed.update_from(map, sensor, scan, None, &mut self.changed);
             self.keep_out();
             self.spread_changes();
+        }
+    }
+
+    /// Somebody else has given a command at a time \[s\].
+    pub(in crate::navigate) fn note_override(&mut self, now_s: f64, command: Velocity) {
+        self.pass_time(now_s);
+        let Some(now) = self.now else { return };
+        self.motors.note_override(now, command);
+        if let Some(acting) = self.motors.acts_at(now) {
+            self.doubts.note_command(now, acting);
         }
     }
 
