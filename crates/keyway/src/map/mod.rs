@@ -15,6 +15,7 @@ mod frame;
 mod layers;
 mod occupancy;
 mod occupancy_values;
+mod packed;
 mod ray;
 
 pub use bits::BitGrid;

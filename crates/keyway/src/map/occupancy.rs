@@ -1,5 +1,6 @@
 //! What a map file says.
 
+use super::packed::packed;
 use super::{BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyThresholds};
 use serde::{Deserialize, Serialize};
 
@@ -95,6 +96,28 @@ impl OccupancyGrid {
         grid
     }
 
+    /// A grid with a byte for every cell, whose states `state` gives; `row` gives the bytes of row
+    /// y, as many as there are columns. Some 3 instructions per cell.
+    pub(super) fn from_rows<'a>(
+        frame: GridFrame,
+        row: impl Fn(usize) -> &'a [u8],
+        state: impl Fn(u8) -> CellState + Copy,
+    ) -> Self {
+        let mut grid = Self::all_free(frame);
+        for y in 0..frame.height() as usize {
+            let bytes = row(y);
+            debug_assert_eq!(bytes.len(), frame.width() as usize);
+            // Column x is bit x + 1, so that the first word has one byte less.
+            let (early, rest) = bytes.split_at(bytes.len().min(63));
+            for (word, bytes) in std::iter::once(early).chain(rest.chunks(64)).enumerate() {
+                let bits = |of| packed(bytes, |byte| state(byte) == of) << u32::from(word == 0);
+                grid.occupied.set_word(y as i32, word, bits(CellState::Occupied));
+                grid.unknown.set_word(y as i32, word, bits(CellState::Unknown));
+            }
+        }
+        grid
+    }
+
     /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom,
     /// which `thresholds` turn into states. The values are kept.
     ///
@@ -132,10 +155,9 @@ impl OccupancyGrid {
         numbers: Vec<u8>,
         thresholds: OccupancyThresholds,
     ) -> Self {
-        let mut each = numbers.iter();
-        let mut grid = Self::from_fn(frame, |_| {
-            each.next().map_or(CellState::Unknown, |&value| thresholds.state(value))
-        });
+        let width = frame.width() as usize;
+        let row = |y: usize| &numbers[y * width..(y + 1) * width];
+        let mut grid = Self::from_rows(frame, row, |value| thresholds.state(value));
         grid.values = Some(Values { numbers, thresholds });
         grid
     }
@@ -161,12 +183,11 @@ impl OccupancyGrid {
         let frame =
             GridFrame::new(width as u64, rows.len() as u64, 1.0, crate::geometry::Pose::default())
                 .expect("a drawing has at least one cell");
-        Self::from_fn(frame, |cell| {
-            match rows[rows.len() - 1 - cell.y as usize].as_bytes()[cell.x as usize] {
-                b'.' => CellState::Free,
-                b'?' => CellState::Unknown,
-                _ => CellState::Occupied,
-            }
+        let row = |y: usize| rows[rows.len() - 1 - y].as_bytes();
+        Self::from_rows(frame, row, |letter| match letter {
+            b'.' => CellState::Free,
+            b'?' => CellState::Unknown,
+            _ => CellState::Occupied,
         })
     }
 
@@ -245,6 +266,7 @@ impl OccupancyGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn drawing_top_row_first() {
@@ -253,6 +275,21 @@ mod tests {
         assert_eq!(grid.state(Cell::new(2, 1)), Some(CellState::Unknown));
         assert_eq!(grid.state(Cell::new(0, 0)), Some(CellState::Free));
         assert_eq!(grid.state(Cell::new(3, 0)), None);
+    }
+
+    proptest! {
+        #[test]
+        fn rows_of_bytes_are_cells(width in 1u64..200, height in 1u64..4, bytes in prop::collection::vec(any::<u8>(), 800)) {
+            let frame = GridFrame::new(width, height, 1.0, crate::geometry::Pose::default()).unwrap();
+            let (columns, thresholds) = (width as usize, OccupancyThresholds::default());
+            let grid = OccupancyGrid::from_rows(
+                frame, |y| &bytes[y * columns..(y + 1) * columns], |value| thresholds.state(value),
+            );
+            let expected = OccupancyGrid::from_fn(frame, |cell| {
+                thresholds.state(bytes[cell.y as usize * columns + cell.x as usize])
+            });
+            prop_assert_eq!(grid, expected);
+        }
     }
 
     #[test]

@@ -157,11 +157,13 @@ impl<'a> Clearance<'a> {
     /// Distance from a line to the nearest obstacle square \[m\]; `None` when the map has no
     /// obstacle or the line no point.
     pub fn of_line(&self, line: &Polyline) -> Option<f64> {
-        let first = *line.points().first()?;
-        let far = self.of_point(first, f64::INFINITY);
+        // Turns are often near obstacles: then they say how far to look.
+        let turns = line.merged();
+        let near_turns =
+            turns.points().iter().fold(f64::INFINITY, |near, &turn| self.of_point(turn, near));
         // Nothing is that far away only where there is nothing at all.
         let nearer = |nearest, segment| self.of_segment(segment, nearest);
-        far.is_finite().then(|| line.segments().fold(far, nearer))
+        near_turns.is_finite().then(|| line.segments().fold(near_turns, nearer))
     }
 
     /// True when the segment stays inside the map and keeps `clearance_m` from every obstacle

@@ -120,12 +120,11 @@ pub(super) fn map_of_at_most(
     }
     check_size::<MovingAiError>((width, height), max_cells)?;
     let frame = GridFrame::new(width, height, placement.resolution_m, placement.origin)?;
-    let grid = OccupancyGrid::from_fn(frame, |cell| {
-        match rows[rows.len() - 1 - cell.y as usize][cell.x as usize] {
-            b'.' | b'G' | b'S' => CellState::Free,
-            b'g' | b's' if has_heights => CellState::Free,
-            _ => CellState::Occupied,
-        }
+    let row = |y: usize| &rows[rows.len() - 1 - y][..width as usize];
+    let grid = OccupancyGrid::from_rows(frame, row, |letter| match letter {
+        b'.' | b'G' | b'S' => CellState::Free,
+        b'g' | b's' if has_heights => CellState::Free,
+        _ => CellState::Occupied,
     });
     Ok(Octile { grid, has_heights })
 }
@@ -236,7 +235,8 @@ fn rows_text(count: usize) -> String {
 }
 
 fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
-    let is_visible = text.bytes().all(|byte| byte.is_ascii_graphic());
+    // All bytes are looked at: the compiler then compares many at once.
+    let is_visible = text.bytes().fold(true, |all, byte| all & byte.is_ascii_graphic());
     let other = || text.chars().enumerate().find(|(_, c)| !c.is_ascii_graphic());
     if let Some((at, got)) = if is_visible { None } else { other() } {
         return Err(MovingAiError::Terrain { line, column: at + 1, got });

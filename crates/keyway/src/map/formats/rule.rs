@@ -86,13 +86,12 @@ impl CellRule {
             let values = top_row_first.chunks_exact(width).rev().flatten().copied().collect();
             return OccupancyGrid::from_value_per_cell(frame, values, self.thresholds());
         }
-        let top = frame.height() as usize - 1;
-        OccupancyGrid::from_fn(frame, |cell| {
-            match top_row_first[(top - cell.y as usize) * width + cell.x as usize] {
-                0 => CellState::Free,
-                100 => CellState::Occupied,
-                _ => CellState::Unknown,
-            }
+        let height = frame.height() as usize;
+        let row = |y: usize| &top_row_first[(height - 1 - y) * width..(height - y) * width];
+        OccupancyGrid::from_rows(frame, row, |value| match value {
+            0 => CellState::Free,
+            100 => CellState::Occupied,
+            _ => CellState::Unknown,
         })
     }
 }
@@ -112,15 +111,25 @@ pub(super) struct Doubts {
 pub(super) struct Translator<'a> {
     rule: &'a CellRule,
     pub(super) doubts: Doubts,
+    /// The last pixel whose value is no mistake: most pixels are like the one before.
+    last: Option<(Pixel, u8)>,
 }
 
 impl<'a> Translator<'a> {
     pub(super) fn new(rule: &'a CellRule) -> Self {
-        Self { rule, doubts: Doubts::default() }
+        Self { rule, doubts: Doubts::default(), last: None }
     }
 
     /// As [`CellRule::value`].
+    #[inline]
     pub(super) fn value(&mut self, pixel: Pixel) -> u8 {
+        match self.last {
+            Some((last, value)) if last == pixel => value,
+            _ => self.value_of_another(pixel),
+        }
+    }
+
+    fn value_of_another(&mut self, pixel: Pixel) -> u8 {
         let value = self.rule.value(pixel);
         if value == 0 && pixel.is_saved_unknown() {
             let trinary = CellRule { mode: MapMode::Trinary, ..*self.rule };
@@ -130,13 +139,15 @@ impl<'a> Translator<'a> {
                 // A scale has no unknown cells between its thresholds.
                 self.doubts.by_opacity += 1;
             }
+        } else {
+            self.last = Some((pixel, value));
         }
         value
     }
 }
 
 /// One pixel of any kind of image.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pixel {
     /// Red, green and blue added up; three times the grey of a grey pixel.
     pub(super) rgb_sum: u32,
