@@ -31,7 +31,7 @@
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
-//! cells. Nodes take 16 bytes per cell in pages of 64 that are handed out at the first touch.
+//! cells. Nodes take 16 bytes per cell in pages of 32 that are handed out at the first touch.
 
 mod bucket_queue;
 mod jump_nodes;

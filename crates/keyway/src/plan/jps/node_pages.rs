@@ -1,23 +1,28 @@
 //! Memory for the nodes of a search.
 
-/// 16 bytes for every cell that a search touches, in pages of 64 cells of a row.
+/// 16 bytes for every cell that a search touches, in pages of 32 cells of a row.
 ///
 /// A page is handed out at the first touch, so the nodes of one query lie close together, whatever
 /// the size of the map: a query after thousands of others finds its nodes in the cache, and the
-/// first queries do not pay for pages of memory that hold one node each. Nothing is cleared between
-/// queries. Memory: 1/8 byte per cell of the padded map, and 1 kB per page of the query that
-/// touched most; room for all pages is reserved, but not touched.
+/// first queries do not pay for pages of memory that hold one node each. Nodes are not cleared
+/// between queries. Memory: 1/8 byte per cell of the padded map, and 512 bytes per page of the query
+/// that touched most; room for all pages is reserved, but not touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NodePages {
-    /// For every 64 cells: epoch << 32 | number of the page.
-    directory: Vec<u64>,
+    /// For every 32 cells: stamp | number of the page.
+    directory: Vec<u32>,
     nodes: Vec<[u64; 2]>,
     epoch: u32,
+    /// The number of the query, modulo few, above the bits of a page's number.
+    stamp: u32,
     /// Pages handed out in this query.
-    used: usize,
+    used: u32,
 }
 
-const CELLS_PER_PAGE: usize = 64;
+const CELLS_PER_PAGE: usize = 32;
+/// For the pages of all indices.
+const NUMBER_BITS: u32 = 27;
+const _: () = assert!((CELLS_PER_PAGE as u64) << NUMBER_BITS > u32::MAX as u64);
 
 impl NodePages {
     /// Epochs fit into this many bits.
@@ -32,6 +37,11 @@ impl NodePages {
             _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
+        self.stamp = self.stamp.wrapping_add(1 << NUMBER_BITS);
+        if self.stamp == 0 {
+            self.directory.fill(0);
+            self.stamp = 1 << NUMBER_BITS;
+        }
         self.used = 0;
     }
 
@@ -43,39 +53,42 @@ impl NodePages {
     /// A node that may have been touched before or not; then it holds anything with another epoch.
     #[inline]
     pub(super) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
-        if (self.directory[index / CELLS_PER_PAGE] >> 32) as u32 != self.epoch {
-            self.hand_out(index / CELLS_PER_PAGE);
+        let mut page = self.directory[index / CELLS_PER_PAGE] ^ self.stamp;
+        if page >> NUMBER_BITS != 0 {
+            page = self.hand_out(index / CELLS_PER_PAGE);
         }
-        let place = self.place(index);
-        &mut self.nodes[place]
+        &mut self.nodes[place(page, index)]
     }
 
     /// A node that was touched in this query.
     #[inline]
     pub(super) fn touched(&self, index: usize) -> [u64; 2] {
-        self.nodes[self.place(index)]
+        self.nodes[place(self.directory[index / CELLS_PER_PAGE] ^ self.stamp, index)]
     }
 
     /// Memory on the heap that was ever touched \[bytes\].
     pub(super) const fn memory_bytes(&self) -> usize {
-        size_of::<u64>() * self.directory.len() + size_of::<[u64; 2]>() * self.nodes.len()
-    }
-
-    #[inline]
-    fn place(&self, index: usize) -> usize {
-        let page = self.directory[index / CELLS_PER_PAGE] as u32 as usize;
-        page * CELLS_PER_PAGE + index % CELLS_PER_PAGE
+        size_of::<u32>() * self.directory.len() + size_of::<[u64; 2]>() * self.nodes.len()
     }
 
     #[cold]
     #[inline(never)]
-    fn hand_out(&mut self, page: usize) {
-        self.directory[page] = u64::from(self.epoch) << 32 | self.used as u64;
+    fn hand_out(&mut self, at: usize) -> u32 {
+        let page = self.used;
+        self.directory[at] = self.stamp | page;
         self.used += 1;
-        if self.nodes.len() < self.used * CELLS_PER_PAGE {
-            self.nodes.resize(self.used * CELLS_PER_PAGE, [0; 2]);
+        let end = self.used as usize * CELLS_PER_PAGE;
+        if self.nodes.len() < end {
+            self.nodes.resize(end, [0; 2]);
         }
+        page
     }
+}
+
+/// Where the node of a cell is.
+#[inline]
+const fn place(page: u32, index: usize) -> usize {
+    page as usize * CELLS_PER_PAGE + index % CELLS_PER_PAGE
 }
 
 #[cfg(test)]
@@ -127,9 +140,24 @@ mod tests {
         for index in [5, 6, 70, 1 << 19] {
             pages.touch(index);
         }
-        assert_eq!(pages.memory_bytes() - empty, 3 * 1024);
+        assert_eq!(pages.memory_bytes() - empty, 3 * 512);
         pages.start(1 << 20);
         pages.touch(99);
-        assert_eq!(pages.memory_bytes() - empty, 3 * 1024);
+        assert_eq!(pages.memory_bytes() - empty, 3 * 512);
+    }
+
+    /// The stamps of the directory come again long before the epochs.
+    #[test]
+    fn nothing_of_earlier_queries_is_found() {
+        let mut pages = NodePages::default();
+        for query in 0..500 {
+            pages.start(1 << 12);
+            let epoch = u64::from(pages.epoch());
+            for index in [64 * (query % 50), 7, 4000] {
+                assert_ne!(pages.touch(index)[1], epoch, "{query}");
+                *pages.touch(index) = [query as u64, epoch];
+                assert_eq!(pages.touched(index), [query as u64, epoch]);
+            }
+        }
     }
 }
