@@ -132,19 +132,29 @@ impl Plane {
             // Column i of the strip moves by i rows: by powers of two.
             for (power, moves) in COLUMNS.into_iter().enumerate() {
                 let by = (1 << power) % rows;
-                for (y, own) in next.iter_mut().enumerate() {
-                    let from = if rises { (y + by) % rows } else { (y + rows - by) % rows };
-                    *own = strip[y] & !moves | strip[from] & moves;
-                }
+                let by = if rises { by } else { (rows - by) % rows };
+                let (wraps, goes_on) = strip.split_at(by);
+                let (up, last) = next.split_at_mut(rows - by);
+                let (up_stays, last_stays) = strip.split_at(rows - by);
+                merge(up, up_stays, goes_on, moves);
+                merge(last, last_stays, wraps, moves);
                 std::mem::swap(&mut strip, &mut next);
             }
             let first = 64 * word % rows;
             for row in 0..rows {
-                let from = if rises { first + rows - row } else { row + rows - first } % rows;
+                let (from, to) = if rises { (first, row) } else { (row, first) };
+                let from = if from >= to { from - to } else { from + rows - to };
                 sheared[row * self.words_per_row + word] = strip[from];
             }
         }
         sheared
+    }
+}
+
+/// Some bits of one, the others of the other.
+fn merge(own: &mut [u64], stays: &[u64], comes: &[u64], moves: u64) {
+    for (own, (stays, comes)) in own.iter_mut().zip(stays.iter().zip(comes)) {
+        *own = stays & !moves | comes & moves;
     }
 }
 
