@@ -75,8 +75,8 @@ impl Arguments {
         }
         match from {
             "__node" | "__name" => drop(self.node.get_or_insert(to)),
-            "__ns" if to.starts_with('/') => drop(self.namespace.get_or_insert(to)),
-            "__ns" => return Err(StartError::RelativeNamespace(to)),
+            "__ns" if is_namespace(&to) => drop(self.namespace.get_or_insert(to)),
+            "__ns" => return Err(StartError::Namespace(to)),
             _ => self.remappings.push((from.to_owned(), to)),
         }
         Ok(())
@@ -89,6 +89,15 @@ impl Arguments {
         let rule = self.remappings.iter().find(|(from, _)| full(from) == full(name));
         full(rule.map_or(name, |(_, to)| to))
     }
+}
+
+/// True for `/`, and for names with a slash before each.
+fn is_namespace(text: &str) -> bool {
+    let is_name = |name: &str| {
+        let is_word = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        is_word && name.bytes().next().is_some_and(|first| !first.is_ascii_digit())
+    };
+    text == "/" || text.strip_prefix('/').is_some_and(|names| names.split('/').all(is_name))
 }
 
 /// A name with its namespace.
@@ -195,6 +204,9 @@ mod tests {
             ("--ros-args -r", "-r"),
             ("--ros-args -p a:=", "a:="),
             ("--ros-args -r __ns:=r1", "r1"),
+            ("--ros-args -r __ns:=/a//b", "/a//b"),
+            ("--ros-args -r __ns:=/1a", "/1a"),
+            ("--ros-args -r __ns:=/a/", "/a/"),
         ] {
             let message = parse(text).unwrap_err().to_string();
             assert!(message.contains(said), "{message}");

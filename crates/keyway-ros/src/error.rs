@@ -19,9 +19,15 @@ pub enum StartError {
     /// A value that is not of the form `a:=b`.
     #[error("`{0}` is no rule of the form `name:=value`")]
     NoRule(String),
-    /// A namespace without its slash.
-    #[error("the namespace `{0}` must begin with a slash")]
-    RelativeNamespace(String),
+    /// A namespace that is none.
+    #[error(
+        "`{0}` is no namespace: it is `/`, or names with a slash before each, such as `/robot1/base`; names are letters, digits and \
+         underscores, and begin with no digit"
+    )]
+    Namespace(String),
+    /// What was asked for cannot be printed.
+    #[error("cannot print: {0}")]
+    Output(String),
     /// A variable of the environment that means nothing.
     #[error("the variable {name} of the environment is `{value}`, and must be {expected}")]
     Variable {

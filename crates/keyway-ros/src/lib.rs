@@ -37,13 +37,16 @@ use arguments::{Arguments, Network};
 use node::Node;
 use pilot::Pilot;
 use settings::{Settings, SimulatorSettings};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 use simulator::Simulator;
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Runs the node with the arguments after the name of the program, until it is told to stop (by
-/// SIGINT or SIGTERM), or prints what it was asked for.
+/// SIGINT, SIGTERM or SIGQUIT, or the end of its terminal), or prints what it was asked for.
 ///
 /// # Errors
 /// An argument, a parameter or a variable of the environment that cannot be used, or a network that
@@ -55,21 +58,22 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
     let scene = arguments.next_if(is_scene);
     let arguments = Arguments::parse(arguments)?;
     if arguments.help {
-        print!("{}", help());
-        return Ok(());
+        return print(&help());
     }
     if arguments.version {
-        println!("keyway-ros {}", env!("CARGO_PKG_VERSION"));
-        return Ok(());
+        return print(&format!("keyway-ros {}\n", env!("CARGO_PKG_VERSION")));
     }
     wire::notice_panics();
     let distro = variable("ROS_DISTRO");
     let network = Network::of_environment(variable)?;
     let is_over = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
-            StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
-        })?;
+    for signal in [SIGINT, SIGTERM, SIGQUIT, SIGHUP] {
+        // Under `nohup` the end of the terminal is to change nothing.
+        if !is_ignored(signal) {
+            signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
+                StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
+            })?;
+        }
     }
     if is_simulator {
         let scene = scene.ok_or_else(|| StartError::ArgumentWithoutValue("sim".to_owned()))?;
@@ -80,6 +84,29 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
     }
     let pilot = Pilot::new(Settings::of(&arguments, distro.as_deref())?);
     Node::new(&arguments, network, pilot)?.run(&is_over)
+}
+
+/// Says something to whoever has started the program. Where nobody can read it, the robot goes on.
+pub(crate) fn say(what: impl Display) {
+    _ = writeln!(std::io::stderr(), "keyway-ros: {what}");
+}
+
+/// Prints what was asked for; a reader who has gone is no fault.
+fn print(text: &str) -> Result<(), StartError> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(StartError::Output(error.to_string()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// True for a signal that the program was started to ignore, as far as the system tells.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
+    ignored.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
 }
 
 fn variable(name: &str) -> Option<String> {

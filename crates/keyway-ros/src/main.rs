@@ -1,12 +1,15 @@
 //! The program `keyway-ros`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match keyway_ros::run(std::env::args().skip(1)) {
+    // What is no text is no argument of ours, and is refused by how it looks.
+    let arguments = std::env::args_os().skip(1);
+    match keyway_ros::run(arguments.map(|argument| argument.to_string_lossy().into_owned())) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("keyway-ros: {error}");
+            _ = writeln!(std::io::stderr(), "keyway-ros: {error}");
             ExitCode::from(2)
         }
     }

@@ -61,6 +61,9 @@ impl Simulator {
     /// The base stops when no command has come for so long \[s\].
     const WATCHDOG_S: f64 = 0.5;
 
+    /// Cycles that are later are not made up for: the process was halted.
+    const HALT: Duration = Duration::from_millis(500);
+
     /// Joins the network, with the robot of a scene at its start.
     pub(crate) fn new(
         scene: &Path,
@@ -104,7 +107,9 @@ impl Simulator {
 
     /// Publishes what never changes.
     fn set_out(&mut self) {
-        self.began_s = if self.settings.use_sim_time { 0.0 } else { machine_s() };
+        // The first cycle ends now.
+        let cycle_s = self.episode.robots[0].robot.cycle_s;
+        self.began_s = if self.settings.use_sim_time { 0.0 } else { machine_s() - cycle_s };
         let header = Header::new(self.began_s, "map");
         self.map.publish(OccupancyGrid::of(&self.episode.known, header));
         let mounts = self.episode.robots[0].robot.sensors.iter().map(|sensor| sensor.mount.pose());
@@ -125,7 +130,15 @@ impl Simulator {
             self.receive();
             let now = Instant::now();
             if now >= next {
-                next = (next + period).max(now);
+                let late = now - next;
+                if late > Self::HALT {
+                    // The world stood still meanwhile, and the clock of the machine did not.
+                    next = now;
+                    if !self.settings.use_sim_time {
+                        self.began_s += late.as_secs_f64();
+                    }
+                }
+                next += period;
                 self.cycle(cycle_s)?;
             }
         }
@@ -158,7 +171,7 @@ impl Simulator {
         let outcome = self.run.step(&control).map_err(|error| fault(error.to_string()))?;
         self.cycles += 1;
         if matches!(outcome, Some(Outcome::Collided { .. })) {
-            eprintln!("keyway-ros sim: the robot touched something; it is put back to its start");
+            crate::say("the robot touched something; it is put back to its start");
             self.run = stepper(&self.episode).map_err(fault)?;
             // The time goes on.
             self.began_s += cycle_s * self.cycles as f64 - self.run.told().stamp_s;

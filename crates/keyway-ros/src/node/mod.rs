@@ -9,7 +9,7 @@ use crate::arguments::{Arguments, Network};
 use crate::clock::Clock;
 use crate::error::StartError;
 use crate::messages::builtin_interfaces::Time;
-use crate::pilot::{Cycle, Ended, Family, Fault, Pilot, Report, Wanted};
+use crate::pilot::{Cycle, Ended, Family, Fault, Pilot, Report, Waits, Wanted};
 use crate::served::{Answered, Served, Told, Wish, answered, served};
 use crate::settings::Settings;
 use crate::wire::{GoalId, GoalStatus, Inbox, Wire};
@@ -38,6 +38,8 @@ pub(crate) struct Node {
     moves: bool,
     cycles: u64,
     began: Instant,
+    /// All that it needs has been there.
+    was_ready: bool,
     timing: Timing,
     /// The last thing that was said of standing still.
     said: String,
@@ -52,8 +54,8 @@ enum Client {
 }
 
 impl Node {
-    /// Whoever waits longer for the time of a simulation is told so.
-    const NO_CLOCK: Duration = Duration::from_secs(5);
+    /// What has not come by then, after the start, is said.
+    const PATIENCE: Duration = Duration::from_secs(5);
 
     /// Joins the network, for a pilot.
     pub(crate) fn new(
@@ -81,6 +83,7 @@ impl Node {
             moves: false,
             cycles: 0,
             began: Instant::now(),
+            was_ready: false,
             timing,
             said: String::new(),
         })
@@ -122,6 +125,21 @@ impl Node {
         Ok(())
     }
 
+    /// Says, before all is there for the first time, what it waits for; while it drives, why the
+    /// robot stands.
+    fn explain(&mut self, waits: Option<Waits>) {
+        let is_late = self.began.elapsed() > Self::PATIENCE;
+        match waits {
+            Some(why) if self.drives_for.is_some() => self.say(&format!("the robot stands: {why}")),
+            Some(why) if !self.was_ready && is_late => self.say(&format!("it waits: {why}")),
+            Some(_) => {}
+            None => {
+                self.was_ready = true;
+                self.said.clear();
+            }
+        }
+    }
+
     /// Stands after a halt of the process: nobody who comes to a robot that stands expects that it
     /// drives on by itself.
     fn end_after_halt(&mut self) {
@@ -150,7 +168,7 @@ impl Node {
             self.say(&fault);
         }
         let Some(now_s) = self.clock.now_s() else {
-            if self.began.elapsed() > Self::NO_CLOCK {
+            if self.began.elapsed() > Self::PATIENCE {
                 self.say("no /clock has come, and `use_sim_time` is set: nothing can be done");
             }
             return;
@@ -220,13 +238,7 @@ impl Node {
         if self.drives_for.is_some() || self.moves {
             self.command(command);
         }
-        match waits {
-            Some(why) if self.drives_for.is_some() => {
-                self.say(&format!("the robot stands: {why}"));
-            }
-            Some(_) => {}
-            None => self.said.clear(),
-        }
+        self.explain(waits);
         if let Some((ended, report)) = ended
             && let Some(client) = self.drives_for.take()
         {
@@ -264,8 +276,17 @@ impl Node {
         // Numbers in it change from cycle to cycle.
         let kind: String = what.chars().filter(|letter| !letter.is_ascii_digit()).collect();
         if self.said != kind {
-            eprintln!("keyway-ros: {what}");
+            crate::say(what);
             self.said = kind;
+        }
+    }
+}
+
+/// Whatever has ended it: its last command is to stand.
+impl Drop for Node {
+    fn drop(&mut self) {
+        if self.moves {
+            self.command(Velocity::ZERO);
         }
     }
 }

@@ -17,7 +17,11 @@ impl Pilot {
             return Err(Ended::failed(Fault::Unknown, super::INACTIVE));
         }
         // It may be the first thing that happens.
-        let _ = self.look(now_s);
+        let looked = self.look(now_s).err();
+        let is_lost = self.navigator.as_ref().is_some_and(|navigator| navigator.now_s().is_none());
+        if let Some(why) = looked.filter(|_| is_lost) {
+            return Err(Ended::failed(Fault::Transform, why.to_string()));
+        }
         self.limit_act(None);
         let mut errand = Errand::new(now_s, self.recoveries());
         match wanted {

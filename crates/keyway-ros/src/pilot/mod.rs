@@ -22,7 +22,7 @@ use crate::settings::{Change, Settings};
 use crate::transforms::Transforms;
 use errand::Errand;
 use keyway::geometry::{Pose, Velocity};
-use keyway::navigate::{Masks, Navigator, Step};
+use keyway::navigate::{Blocked, Masks, Navigator, Step};
 use sensing::Sensing;
 
 /// A robot that drives by messages.
@@ -174,6 +174,7 @@ impl Pilot {
             Ok(step) => (self.end_of_errand(step, now_s), None),
             Err(waits) => (self.end_of_doubt(waits, now_s), Some(waits.clone())),
         };
+        let waits = waits.or_else(|| self.blindness(step.as_ref().ok()?));
         let is_failed = matches!(ended, Some((Ended::Failed { .. }, _)));
         if is_failed {
             self.stop();
@@ -183,6 +184,13 @@ impl Pilot {
             _ => self.stand(now_s),
         };
         Cycle { command, ended, waits }
+    }
+
+    /// The reason, if the robot stands because it sees nothing.
+    fn blindness(&self, step: &Step) -> Option<Waits> {
+        let why = step.why().filter(|why| matches!(why, Blocked::SensorSilent { .. }))?;
+        let topics = self.settings.scan_topics.join(", ");
+        Some(Waits::Blind { why: why.to_string(), topics })
     }
 
     /// The command of a robot that stands, whatever the navigator would do.

@@ -20,6 +20,9 @@ pub(crate) enum Waits {
     Cloud(#[from] CloudError),
     #[error("cloud_topics[{cloud}] has been silent for more than {after_s} s (`cloud_timeout`)")]
     Silent { cloud: usize, after_s: f64 },
+    /// Why nothing is seen, and the topics that should tell.
+    #[error("{why} (topics: {topics})")]
+    Blind { why: String, topics: String },
     #[error("the odometry is {age_s:.2} s old")]
     NewOdometry { age_s: f64 },
     #[error(

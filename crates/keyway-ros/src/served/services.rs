@@ -84,7 +84,7 @@ impl Serves for LoadMap {
         match pilot.load_map(&request.map_url, told.now_s) {
             Ok(map) => LoadedMap { map, result: LoadedMap::SUCCESS },
             Err(error) => {
-                eprintln!("keyway-ros: {error}");
+                crate::say(&error);
                 let result = match error {
                     UrlError::Missing(_) => LoadedMap::DOES_NOT_EXIST,
                     UrlError::File(_) | UrlError::Map(_) => LoadedMap::INVALID_DATA,

@@ -15,6 +15,9 @@ impl Change {
     pub(crate) fn of(name: &str, value: &Value) -> Result<Self, String> {
         let number = super::number(value).ok_or_else(|| format!("must be a number, got {value}"));
         match name {
+            "max_pose_age" if !number.as_ref().is_ok_and(super::is_pose_age) => {
+                Err(format!("must be {}, got {value}", super::MAX_POSE_AGE))
+            }
             "max_pose_age" | "obstacle_max_range" => {
                 let number = number?;
                 if number <= 0.0 {
@@ -113,6 +116,7 @@ mod tests {
         for (name, value, why) in [
             ("robot", Value::String("small".to_owned()), "at the start"),
             ("max_pose_age", Value::Float(-1.0), "positive"),
+            ("max_pose_age", Value::Float(1e300), "at most 5"),
             ("obstacle_max_range", Value::Boolean(true), "a number"),
         ] {
             assert!(Change::of(name, &value).unwrap_err().contains(why));

@@ -184,10 +184,12 @@ impl Settings {
                 .truth("enable_stamped_cmd_vel")?
                 .unwrap_or(distribution == Distribution::Kilted),
             use_sim_time: given.truth("use_sim_time")?.unwrap_or(false),
-            max_pose_age_s: given.positive("max_pose_age")?.unwrap_or(0.2),
+            max_pose_age_s: given
+                .take("max_pose_age", MAX_POSE_AGE, |value| number(value).filter(is_pose_age))?
+                .unwrap_or(0.2),
         };
         for line in given.nav2.report() {
-            eprintln!("keyway-ros: {line}");
+            crate::say(line);
         }
         given.all_known(&PARAMETERS)?;
         Ok(settings)
@@ -252,7 +254,9 @@ impl Given {
             return Err(wrong("min_obstacle_height", why));
         }
         let range_m = self.positive("obstacle_max_range")?.unwrap_or(2.5);
-        let timeout_s = self.number("cloud_timeout")?.unwrap_or(1.0);
+        let no_less = |value: &Value| number(value).filter(|&timeout_s| timeout_s >= 0.0);
+        let timeout_s = self.take("cloud_timeout", "0 or a positive number", no_less)?;
+        let timeout_s = timeout_s.unwrap_or(1.0);
         Ok(PointsTaken { heights_m: lowest_m..=highest_m, range_m, timeout_s })
     }
 
@@ -324,12 +328,19 @@ impl Given {
             if !self.of_all.contains(name) {
                 return Err(wrong(name, format!("is none of this node's: {known}")));
             }
-            eprintln!(
-                "keyway-ros: parameter `{name}`, given to all nodes (`{ALL}`), is none of this node's"
-            );
+            crate::say(format_args!(
+                "parameter `{name}`, given to all nodes (`{ALL}`), is none of this node's"
+            ));
         }
         Ok(())
     }
+}
+
+/// Poses that are older say nothing of where a robot is.
+const MAX_POSE_AGE: &str = "a positive number, at most 5";
+
+fn is_pose_age(age_s: &f64) -> bool {
+    *age_s > 0.0 && *age_s <= 5.0
 }
 
 /// A number that is finite.
@@ -394,7 +405,12 @@ mod tests {
             (vec![], "robot"),
             (vec![("robot", "jackl")], "jackl"),
             (vec![("robot", "jackal"), ("speed", "1")], "`speed`: is none of this node's"),
-            (vec![("robot", "jackal"), ("max_pose_age", "-1")], "a positive number, got -1"),
+            (
+                vec![("robot", "jackal"), ("max_pose_age", "-1")],
+                "a positive number, at most 5, got -1",
+            ),
+            (vec![("robot", "jackal"), ("max_pose_age", "1e300")], "at most 5"),
+            (vec![("robot", "jackal"), ("cloud_timeout", "-1")], "0 or a positive number"),
             (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
             (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
             (vec![("robot", "jackal"), ("min_obstacle_height", "3")], "above max_obstacle_height"),

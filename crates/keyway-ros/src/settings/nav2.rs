@@ -78,18 +78,28 @@ impl Nav2 {
 
     fn take_size(&mut self, nodes: &mut Nodes<'_>) {
         for costmap in ["local_costmap", "global_costmap"] {
+            let given = nodes.take(costmap, "footprint");
+            if let Some(other) = given.filter(|value| !value.is_str()) {
+                let expected =
+                    "a text, such as \"[[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1], [0.2, -0.1]]\"";
+                self.fault = Some(format!("{costmap}: footprint: must be {expected}, got {other}"));
+                return;
+            }
             // Without corners it is the radius that counts, as in Nav2.
-            let text =
-                nodes.text(costmap, "footprint").filter(|text| text.contains(char::is_numeric));
-            if let Some(text) = text {
-                match polygon(&text) {
+            let text = given.and_then(Value::as_str);
+            if let Some(text) = text.filter(|text| text.contains(char::is_numeric)) {
+                match polygon(text) {
                     Ok(footprint) => self.robot.footprint = Some(footprint),
                     Err(why) => self.fault = Some(format!("{costmap}: footprint: {why}")),
                 }
                 return;
             }
-            if let Some(radius_m) = nodes.number(costmap, "robot_radius") {
-                self.robot.radius_m = Some(radius_m);
+            if let Some(value) = nodes.take(costmap, "robot_radius") {
+                self.robot.radius_m = super::number(value).filter(|&radius_m| radius_m > 0.0);
+                if self.robot.radius_m.is_none() {
+                    let why = format!("must be a positive number, got {value}");
+                    self.fault = Some(format!("{costmap}: robot_radius: {why}"));
+                }
                 return;
             }
         }
@@ -125,8 +135,13 @@ impl Nav2 {
         let slower = of_controller(&["decel_lim_x", "ax_min"]);
         let turn_faster = of_controller(&["acc_lim_theta", "az_max", "max_angular_accel"]);
         let turn_slower = of_controller(&["decel_lim_theta"]);
+        let fault = &mut self.fault;
         let mut of_smoother = |name: &str| {
             let list = nodes.numbers(SMOOTHER, name).filter(|list| list.len() == 3);
+            if let (None, Some(value)) = (&list, nodes.take(SMOOTHER, name)) {
+                let why = format!("must be three numbers, for x, y and theta, got {value}");
+                *fault = Some(format!("{SMOOTHER}: {name}: {why}"));
+            }
             let at = |index: usize| list.as_ref().map(|list| list[index].abs());
             [at(0), at(2)]
         };
@@ -194,7 +209,12 @@ impl Nav2 {
                     continue;
                 }
                 let mut of = |name: &str| nodes.take(costmap, &format!("{layer}.{source}.{name}"));
-                let is_cloud = of("data_type").and_then(Value::as_str) == Some("PointCloud2");
+                let kind = of("data_type").and_then(Value::as_str).unwrap_or("LaserScan");
+                // Sonars and others have messages of their own, which nobody reads here.
+                if !["LaserScan", "PointCloud2"].contains(&kind) {
+                    continue;
+                }
+                let is_cloud = kind == "PointCloud2";
                 let topic = of("topic").and_then(Value::as_str).unwrap_or(source).to_owned();
                 let topics = if is_cloud { &mut clouds } else { &mut scans };
                 topics.push(topic);
@@ -418,6 +438,25 @@ velocity_smoother:
         let closed = with("[[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2], [0.3, 0.2]]");
         assert!(closed.fault.is_none() && closed.robot.footprint.is_some());
         assert_eq!(with("[]").robot.radius_m, Some(0.1));
+    }
+
+    #[test]
+    fn what_cannot_be_is_named() {
+        for (before, after, named) in [
+            ("robot_radius: 0.22", "footprint: [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]]", "a text"),
+            ("robot_radius: 0.22", "robot_radius: 0", "robot_radius: must be a positive number"),
+            ("[0.4, 0.0, 2.5]", "[0.4, 0.0]", "max_velocity: must be three numbers"),
+            ("[2.5, 0.0, 3.2]", "2.5", "max_accel: must be three numbers"),
+            ("[2.5, 0.0, 3.2]", "[a, b, c]", "max_accel: must be three numbers"),
+        ] {
+            let text = MPPI.replace(before, after);
+            assert_ne!(text, MPPI);
+            let fault = of(&text).fault.unwrap();
+            assert!(fault.contains(named), "{fault}");
+        }
+        // Sonars are not read.
+        let sonar = of(&MPPI.replace("LaserScan", "Range"));
+        assert!(!sonar.own.contains_key("scan_topics") && sonar.own.contains_key("cloud_topics"));
     }
 
     #[test]

@@ -30,7 +30,11 @@ impl SimulatorSettings {
         let mut given = Given::read(arguments)?;
         let distribution = distribution_of(&mut given, distro)?;
         let use_sim_time = given.truth("use_sim_time")?.unwrap_or(false);
-        let rate = given.positive("rate")?.unwrap_or(1.0);
+        let is_rate = |rate: &f64| (0.01..=100.0).contains(rate);
+        let rate = given.take("rate", "a number from 0.01 to 100", |value| {
+            super::number(value).filter(is_rate)
+        })?;
+        let rate = rate.unwrap_or(1.0);
         if rate != 1.0 && !use_sim_time {
             let why = "needs use_sim_time: the clock of the machine is as fast as it is";
             return Err(super::wrong("rate", why));

@@ -45,6 +45,29 @@ fn a_velocity_from_before_is_none() {
     assert!(robot.pilot.cycle(robot.now_s).waits.is_some(), "that is no velocity");
 }
 
+/// The likeliest first mistake is a wrong topic or frame.
+#[test]
+fn who_is_not_told_enough_says_what_is_missing() {
+    let mut lost = Robot::with(&[("robot_base_frame", "base")]);
+    lost.tell(lost.now_s);
+    let refused = lost.pilot.begin(to("map", Pose::new(5.0, 2.0, 0.0)), lost.now_s);
+    let Err(Ended::Failed { fault: Fault::Transform, why, .. }) = refused else { panic!() };
+    assert!(why.contains("`base`"), "{why}");
+
+    let mut blind = under_way(&[("scan_topics", "[front]")]);
+    let waits = (0..60).find_map(|_| {
+        for (names, pose) in [(["map", "odom"], ODOM), (["odom", "base_link"], blind.pose)] {
+            let stamped = (blind.now_s, Placement::upright(pose));
+            blind.pilot.transforms.insert(names, stamped, false);
+        }
+        let header = Header::new(blind.now_s, "odom");
+        blind.pilot.sensing.take_odometry(&Odometry { header, ..Odometry::default() });
+        blind.cycle_untold().waits
+    });
+    let Some(why @ Waits::Blind { .. }) = waits else { panic!("{waits:?}") };
+    assert!(why.to_string().ends_with("(topics: front)"), "{why}");
+}
+
 /// Its drivers have a computer of their own.
 #[test]
 fn who_has_another_clock_stands() {

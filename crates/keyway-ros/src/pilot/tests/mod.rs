@@ -188,6 +188,8 @@ fn without_something_it_stands() {
         pilot.transforms.insert(names, (100.0, Placement::upright(pose)), false);
     }
     assert_eq!(pilot.cycle(100.0).waits, Some(Waits::Odometry));
+    let odometry = Odometry { header: Header::new(100.0, "odom"), ..Odometry::default() };
+    pilot.sensing.take_odometry(&odometry);
     let outcome = pilot.begin(to("camera", Pose::default()), 100.0);
     let Err(Ended::Failed { fault: Fault::Transform, why }) = outcome else { panic!() };
     assert!(why.contains("camera"), "{why}");
