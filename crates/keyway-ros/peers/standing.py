@@ -88,9 +88,17 @@ class Standing(ToAndFro):
         print(f"    start to first command: {first:.1f} s, with a client that waits for the map", flush=True)
         self.arrives(goal, place)
 
+    def a_node_whose_terminal_ends_stops_its_robot(self) -> None:
+        self.robot.watchdog_s = 60.0
+        self.set_out()
+        self.keyway.process.send_signal(signal.SIGHUP)
+        assert self.keyway.process.wait(10) == 0
+        assert wait(self.robot.stands, 2.5) and self.robot.command == (0.0, 0.0)
+        self.keyway = Keyway()
+        self.connect()
+
     def a_node_that_ends_stops_its_robot(self) -> None:
         self.set_out()
-        self.robot.watchdog_s = 60.0
         self.keyway.stop()
         assert wait(self.robot.stands, 2.5) and self.robot.command == (0.0, 0.0)
 

@@ -25,7 +25,7 @@ pub enum StartError {
          underscores, and begin with no digit"
     )]
     Namespace(String),
-    /// What was asked for cannot be printed.
+    /// The help, or the version, cannot be printed.
     #[error("cannot print: {0}")]
     Output(String),
     /// A variable of the environment that means nothing.

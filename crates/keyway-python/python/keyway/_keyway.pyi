@@ -316,9 +316,9 @@ class Navigator:
         """
     def note_override(self, /, now: float, command: Sequence[float] | NDArray[Any]) -> None:
         """
-        Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the place
-        of the last step's, at a time by the clock of the stamps [s]: of a person with a joystick, or
-        of a safety controller. To be called whenever such a command is given.
+        Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the
+        place of the last step's, at a time by the clock of the stamps [s]: of a person with a
+        joystick, or of a safety controller. To be called whenever such a command is given.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)

@@ -54,7 +54,7 @@ enum Client {
 }
 
 impl Node {
-    /// What has not come by then, after the start, is said.
+    /// So long after the start it says what it still waits for.
     const PATIENCE: Duration = Duration::from_secs(5);
 
     /// Joins the network, for a pilot.

@@ -13,7 +13,7 @@ pub(super) struct Timing {
     all: Duration,
     /// Cycles that began more than half a period late, since the beginning.
     late: u64,
-    /// The reason why nothing was decided in the last cycle.
+    /// The reason why it stood in doubt in the last cycle.
     waits: Option<Waits>,
 }
 

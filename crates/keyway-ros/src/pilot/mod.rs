@@ -49,7 +49,7 @@ pub(crate) struct Cycle {
     pub(crate) command: Velocity,
     /// The errand has ended in this cycle, having come so far.
     pub(crate) ended: Option<(Ended, Report)>,
-    /// Nothing was decided.
+    /// The reason, if it stands in doubt.
     pub(crate) waits: Option<Waits>,
 }
 

@@ -5,7 +5,7 @@ use crate::transforms::TransformError;
 use keyway::sense::ScanError;
 use thiserror::Error;
 
-/// The reason why a robot stands and nothing is decided.
+/// The reason why a robot stands, whatever its goal.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum Waits {
     #[error("no map has come yet")]
@@ -20,7 +20,7 @@ pub(crate) enum Waits {
     Cloud(#[from] CloudError),
     #[error("cloud_topics[{cloud}] has been silent for more than {after_s} s (`cloud_timeout`)")]
     Silent { cloud: usize, after_s: f64 },
-    /// Why nothing is seen, and the topics that should tell.
+    /// The lidars are silent: the reason in words, and their topics.
     #[error("{why} (topics: {topics})")]
     Blind { why: String, topics: String },
     #[error("the odometry is {age_s:.2} s old")]

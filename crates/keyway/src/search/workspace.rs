@@ -5,7 +5,7 @@ use std::any::Any;
 use std::fmt::Debug;
 
 /// Reusable memory for searches. It holds no result and has no meaning between calls: a second
-/// query on the same map allocates nothing and clears nothing.
+/// query on the same map allocates nothing and clears next to nothing.
 ///
 /// Each planner keeps what it needs in a part of its own type ([`Self::part`]), and so can a
 /// planner outside this crate. Planners that keep the same type share it: those that expand cells
@@ -14,9 +14,9 @@ use std::fmt::Debug;
 /// Memory: 16 bytes per cell of the padded map for each of these frontiers that is used, reserved
 /// by its first query, and its open list: 266 kB and 17 to 300 bytes for each node that it held at
 /// once. A bidirectional jump point search has two frontiers of its own, with a quarter of a byte
-/// more per cell each. A one-sided jump point search has 1/8 byte per cell, 1 kB for each page of
-/// 64 cells that its largest query touched, and an open list for which 1 byte per cell is reserved.
-/// A density of the remaining box takes 4 bytes per cell. A random tree has 4.4 bytes per cell, and
+/// more per cell each. A one-sided jump point search has 1/8 byte per cell, 512 bytes for each page
+/// of 32 cells that its largest query touched, and an open list for which 1 byte per cell is
+/// reserved. A density of the remaining box takes 4 bytes per cell. A random tree has 4.4 bytes per cell, and
 /// 32 bytes for each sample that it may draw. What is reserved and not touched uses no memory.
 #[derive(Debug, Default)]
 pub struct Workspace {

@@ -173,7 +173,7 @@ impl Motors {
         self.under_way.give(observed, now, command);
     }
 
-    /// Notes a command of somebody else. What is averaged begins anew with what the robot then does.
+    /// Notes a command of somebody else. Averages begin anew with what the robot then does.
     pub(super) fn note_override(&mut self, now: Time, command: Velocity) {
         self.under_way.give(now, now, command);
         if let Some(smoothing) = &mut self.smoothing {

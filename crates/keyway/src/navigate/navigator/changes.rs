@@ -28,14 +28,13 @@ impl Navigator {
         }
     }
 
-    /// Notes that the robot was given a command of somebody else in the place of the last step's, at
-    /// a time by the clock of the stamps \[s\]: of a person with a joystick, of a safety controller,
-    /// or of a driver that stands still in doubt. It holds until the next step. Without this the
-    /// navigator would believe that its own commands do not move the robot. To be called whenever
-    /// such a command is given.
+    /// Notes that the robot was given a command of somebody else in the place of the last step's,
+    /// at a time by the clock of the stamps \[s\]: of a person with a joystick, of a safety
+    /// controller, or of a driver that stands still in doubt. It holds until the next step. Without
+    /// this the navigator would believe that its own commands do not move the robot. To be called
+    /// whenever such a command is given.
     ///
-    /// A command that is not finite is none. An earlier time than the latest that was told is that
-    /// one.
+    /// A command that is not finite is none. A time before the latest that was told counts as that.
     pub fn note_override(&mut self, now_s: f64, command: Velocity) {
         if !(command.v.is_finite() && command.omega.is_finite()) {
             return;

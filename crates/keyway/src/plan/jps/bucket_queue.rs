@@ -11,8 +11,8 @@
 ///
 /// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by
 /// more than the span given to [`Self::start`]. The buckets are a ring, which grows to the longest
-/// stretch of keys that wait at a time; their entries are chains in one array, whose places are used
-/// again.
+/// stretch of keys that wait at a time; their entries are chains in one array, whose places are
+/// used again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BucketQueue {
     /// First entry of each bucket's chain; 0 is its end.

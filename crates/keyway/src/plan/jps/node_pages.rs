@@ -5,8 +5,8 @@
 /// A page is handed out at the first touch, so the nodes of one query lie close together, whatever
 /// the size of the map: a query after thousands of others finds its nodes in the cache, and the
 /// first queries do not pay for pages of memory that hold one node each. Nodes are not cleared
-/// between queries. Memory: 1/8 byte per cell of the padded map, and 512 bytes per page of the query
-/// that touched most; room for all pages is reserved, but not touched.
+/// between queries. Memory: 1/8 byte per cell of the padded map, and 512 bytes per page of the
+/// query that touched most; room for all pages is reserved, but not touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NodePages {
     /// For every 32 cells: stamp | number of the page.
@@ -85,7 +85,7 @@ impl NodePages {
     }
 }
 
-/// Where the node of a cell is.
+/// The index of a cell's node.
 #[inline]
 const fn place(page: u32, index: usize) -> usize {
     page as usize * CELLS_PER_PAGE + index % CELLS_PER_PAGE
@@ -146,18 +146,23 @@ mod tests {
         assert_eq!(pages.memory_bytes() - empty, 3 * 512);
     }
 
-    /// The stamps of the directory come again long before the epochs.
+    /// The stamps of the directory come again long before the epochs: of the pages that a query
+    /// touches, some had other numbers when its stamp was last in use, and none since.
     #[test]
     fn nothing_of_earlier_queries_is_found() {
+        const STAMPS: usize = (u32::MAX >> NUMBER_BITS) as usize;
         let mut pages = NodePages::default();
-        for query in 0..500 {
-            pages.start(1 << 12);
+        for query in 0..10 * STAMPS {
+            pages.start(10 * STAMPS * CELLS_PER_PAGE);
             let epoch = u64::from(pages.epoch());
-            for index in [64 * (query % 50), 7, 4000] {
-                assert_ne!(pages.touch(index)[1], epoch, "{query}");
-                *pages.touch(index) = [query as u64, epoch];
-                assert_eq!(pages.touched(index), [query as u64, epoch]);
+            let (round, group) = (query / STAMPS, query % STAMPS);
+            let page = |at: usize| 10 * group + (3 * at + round) % 10;
+            let indices = (0..5).map(|at| CELLS_PER_PAGE * page(at));
+            for index in indices.clone() {
+                assert_ne!(pages.touch(index)[1], epoch, "{query}: {index}");
+                *pages.touch(index) = [index as u64, epoch];
             }
+            assert!(indices.clone().all(|index| pages.touched(index) == [index as u64, epoch]));
         }
     }
 }
