@@ -6,7 +6,7 @@ import time
 from action_msgs.msg import GoalStatus
 from builtin_interfaces.msg import Duration
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Point, PolygonStamped, PoseStamped
+from geometry_msgs.msg import Point, PolygonStamped, PoseStamped, Twist
 from lifecycle_msgs.srv import GetState
 from map_msgs.msg import OccupancyGridUpdate
 from nav2_msgs.action import (
@@ -30,8 +30,9 @@ from nav2_msgs.msg import CostmapFilterInfo
 from nav2_msgs.srv import ClearEntireCostmap, GetCostmap, LoadMap, ManageLifecycleNodes
 from nav_msgs.msg import OccupancyGrid, Path
 from peer import Checks, Goal, Keyway, begin, leave, pose, several, wait
-from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.msg import Log, Parameter, ParameterValue
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rclpy.qos import qos_profile_sensor_data
 from robot import IS_JAZZY, LATCHED, Robot, map_of
 from visualization_msgs.msg import MarkerArray
 
@@ -216,6 +217,29 @@ class Drive(Checks):
         assert states["keyway: driving"] == "drives", states
         assert any(len(marker.points) > 20 for marker in shown["fan"].markers)
         assert goal.end().status == GoalStatus.STATUS_SUCCEEDED
+        for listener in listeners:
+            self.robot.destroy_subscription(listener)
+
+    def what_does_not_fit_is_named(self) -> None:
+        said, told = [], {}
+        listeners = [
+            self.robot.create_subscription(Log, "/rosout", lambda message: said.append(message.msg), 10),
+            self.robot.create_subscription(
+                DiagnosticArray, "/diagnostics", lambda message: told.update({status.name: status for status in message.status}), 1
+            ),
+        ]
+        # Of another kind, and with less than the node asks for.
+        senders = [self.robot.create_publisher(Twist, "speed_limit", 1), self.robot.create_publisher(PoseStamped, "goal_pose", qos_profile_sensor_data)]
+        faults = [
+            "/goal_pose: another node sends with less reliability than the receiver asks for",
+            "/speed_limit: another node sends geometry_msgs/msg/Twist, and this one takes nav2_msgs/msg/SpeedLimit",
+        ]
+        shown = lambda: [pair.value for pair in told["keyway: topics"].values] if told else None
+        assert wait(lambda: shown() == faults, 10), told
+        assert set(faults) <= set(said), said
+        for sender in senders:
+            self.robot.destroy_publisher(sender)
+        assert wait(lambda: shown() == [], 10), told
         for listener in listeners:
             self.robot.destroy_subscription(listener)
 

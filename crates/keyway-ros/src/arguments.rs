@@ -39,17 +39,8 @@ impl Arguments {
                 ("-V" | "--version", false) => parsed.version = true,
                 ("--ros-args", _) => is_of_ros = true,
                 ("--", true) => is_of_ros = false,
-                ("-r" | "--remap", true) => {
-                    let (from, to) = rule(&value()?)?;
-                    parsed.remap(&from, to)?;
-                }
-                ("-p" | "--param", true) => {
-                    let (name, value) = rule(&value()?)?;
-                    let is_ours = for_node(&name).0.is_none_or(|node| node == parsed.node_name());
-                    if is_ours {
-                        parsed.parameters.push((for_node(&name).1.to_owned(), value));
-                    }
-                }
+                ("-r" | "--remap", true) => parsed.remappings.push(rule(&value()?)?),
+                ("-p" | "--param", true) => parsed.parameters.push(rule(&value()?)?),
                 ("--params-file", true) => parsed.parameter_files.push(value()?.into()),
                 // How much is logged is not ours to choose for others; it is little.
                 ("--log-level" | "--log-config-file" | "-e" | "--enclave", true) => {
@@ -59,6 +50,7 @@ impl Arguments {
                 _ => return Err(StartError::UnknownArgument(argument)),
             }
         }
+        parsed.take_names()?;
         Ok(parsed)
     }
 
@@ -67,37 +59,70 @@ impl Arguments {
         self.node.as_deref().unwrap_or(Self::NODE)
     }
 
-    /// Takes in a rule, such as `cmd_vel:=motors/cmd_vel` or `__ns:=/robot1`.
-    fn remap(&mut self, from: &str, to: String) -> Result<(), StartError> {
-        let (node, from) = for_node(from);
-        if node.is_some_and(|node| node != self.node_name()) {
-            return Ok(());
+    /// Its namespace.
+    pub(crate) fn namespace(&self) -> &str {
+        self.namespace.as_deref().unwrap_or("/")
+    }
+
+    /// Takes the names of the node out of the rules, then leaves those rules that are for this node:
+    /// they may stand before its name.
+    fn take_names(&mut self) -> Result<(), StartError> {
+        let names_node =
+            |name| matches!(for_node(name), (None | Some(Self::NODE), "__node" | "__name"));
+        let named = self.remappings.iter().find(|(from, _)| names_node(from));
+        self.node = named.map(|(_, to)| to.clone());
+        if let Some(name) = self.node.clone().filter(|name| !is_name(name)) {
+            return Err(StartError::Node(name));
         }
-        match from {
-            "__node" | "__name" => drop(self.node.get_or_insert(to)),
-            "__ns" if is_namespace(&to) => drop(self.namespace.get_or_insert(to)),
-            "__ns" => return Err(StartError::Namespace(to)),
-            _ => self.remappings.push((from.to_owned(), to)),
+        let node = self.node_name().to_owned();
+        for rules in [&mut self.remappings, &mut self.parameters] {
+            rules.retain(|(name, _)| for_node(name).0.is_none_or(|of| of == node));
+            for (name, _) in rules {
+                *name = for_node(name).1.to_owned();
+            }
         }
-        Ok(())
+        let namespace = self.remappings.iter().find(|(from, _)| from == "__ns");
+        self.namespace = namespace.map(|(_, to)| to.clone());
+        if let Some(namespace) = self.namespace.clone().filter(|name| !is_namespace(name)) {
+            return Err(StartError::Namespace(namespace));
+        }
+        self.remappings.retain(|(from, _)| !["__node", "__name", "__ns"].contains(&from.as_str()));
+        let topics = self.remappings.iter().flat_map(|(from, to)| [from, to]);
+        match topics.into_iter().find(|name| !is_topic(name)) {
+            Some(name) => Err(StartError::Topic(name.clone())),
+            None => Ok(()),
+        }
     }
 
     /// The full name that a topic, a service or an action has: what the first rule for it says, or
     /// its own.
     pub(crate) fn remapped(&self, name: &str) -> String {
-        let full = |name| full_name(name, self.namespace.as_deref().unwrap_or("/"));
+        let namespace = self.namespace();
+        // What begins with `~` is in the namespace of the node itself.
+        let full = |name: &str| match name.strip_prefix("~/") {
+            Some(own) => full_name(&format!("{}/{own}", self.node_name()), namespace),
+            None => full_name(name, namespace),
+        };
         let rule = self.remappings.iter().find(|(from, _)| full(from) == full(name));
         full(rule.map_or(name, |(_, to)| to))
     }
 }
 
+/// True for letters, digits and underscores, if it does not begin with a digit.
+fn is_name(text: &str) -> bool {
+    let is_word = text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    is_word && text.bytes().next().is_some_and(|first| !first.is_ascii_digit())
+}
+
 /// True for `/`, and for names with a slash before each.
 fn is_namespace(text: &str) -> bool {
-    let is_name = |name: &str| {
-        let is_word = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-        is_word && name.bytes().next().is_some_and(|first| !first.is_ascii_digit())
-    };
     text == "/" || text.strip_prefix('/').is_some_and(|names| names.split('/').all(is_name))
+}
+
+/// True for names with slashes between them, perhaps after `/` or `~/`.
+fn is_topic(text: &str) -> bool {
+    let names = text.strip_prefix("~/").or_else(|| text.strip_prefix('/')).unwrap_or(text);
+    names.split('/').all(is_name)
 }
 
 /// A name with its namespace.
@@ -188,12 +213,22 @@ mod tests {
         assert_eq!(parsed.remapped("/r1/cmd_vel"), "/r1/motors");
         assert_eq!(parsed.remapped("scan"), "/r1/scan");
         assert_eq!(parsed.remapped("/tf"), "/tf");
+        assert_eq!(parsed.remapped("~/state"), "/r1/nav/state");
         assert_eq!(Arguments::default().remapped("scan"), "/scan");
         let expected = [("robot", "jackal"), ("rate", "10")];
         assert!(parsed.parameters.iter().map(|(a, b)| (a.as_str(), b.as_str())).eq(expected));
         assert_eq!(parsed.parameter_files, [PathBuf::from("a.yaml")]);
         assert!(parse("--help").unwrap().help && parse("-V").unwrap().version);
         assert_eq!(parse("").unwrap(), Arguments::default());
+    }
+
+    #[test]
+    fn rules_may_stand_before_the_name_of_the_node() {
+        let text = "--ros-args -p nav:rate:=10 -p keyway:rate:=5 -r nav:scan:=front -r nav:__ns:=/a \
+                    -r __node:=nav";
+        let parsed = parse(text).unwrap();
+        assert_eq!(parsed.parameters, [("rate".to_owned(), "10".to_owned())]);
+        assert_eq!(parsed.remapped("scan"), "/a/front");
     }
 
     #[test]
@@ -207,6 +242,9 @@ mod tests {
             ("--ros-args -r __ns:=/a//b", "/a//b"),
             ("--ros-args -r __ns:=/1a", "/1a"),
             ("--ros-args -r __ns:=/a/", "/a/"),
+            ("--ros-args -r __node:=a/b", "`a/b`"),
+            ("--ros-args -r scan:=front//scan", "`front//scan`"),
+            ("--ros-args -r scan:=/1/scan", "`/1/scan`"),
         ] {
             let message = parse(text).unwrap_err().to_string();
             assert!(message.contains(said), "{message}");

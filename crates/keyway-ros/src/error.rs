@@ -25,6 +25,18 @@ pub enum StartError {
          underscores, and begin with no digit"
     )]
     Namespace(String),
+    /// A name of a node that is none.
+    #[error(
+        "`{0}` is no name of a node: it is letters, digits and underscores, and begins with no digit; \
+         `__ns` gives a namespace"
+    )]
+    Node(String),
+    /// A name of a topic, a service or an action that is none.
+    #[error(
+        "`{0}` is no name of a topic: it is names with a slash between them, such as `front/scan`, perhaps \
+         after `/` or `~/`; names are letters, digits and underscores, and begin with no digit"
+    )]
+    Topic(String),
     /// The help, or the version, cannot be printed.
     #[error("cannot print: {0}")]
     Output(String),

@@ -170,6 +170,10 @@ impl Simulator {
         let fault = |why: String| StartError::Network { what: "simulate".to_owned(), why };
         let outcome = self.run.step(&control).map_err(|error| fault(error.to_string()))?;
         self.cycles += 1;
+        if self.cycles.is_multiple_of((1.0 / cycle_s).ceil() as u64) {
+            // One who sends commands of the wrong kind would never be heard.
+            self.wire.misfits();
+        }
         if matches!(outcome, Some(Outcome::Collided { .. })) {
             crate::say("the robot touched something; it is put back to its start");
             self.run = stepper(&self.episode).map_err(fault)?;

@@ -250,7 +250,7 @@ impl Node {
             self.tell(client, status, &ended, &report);
         }
         self.feed_back(now_s);
-        self.outboxes.show(&self.pilot, &self.wire, &mut self.timing, now_s);
+        self.outboxes.show(&self.pilot, &mut self.wire, &mut self.timing, now_s);
     }
 
     fn command(&mut self, command: Velocity) {
@@ -276,7 +276,7 @@ impl Node {
         // Numbers in it change from cycle to cycle.
         let kind: String = what.chars().filter(|letter| !letter.is_ascii_digit()).collect();
         if self.said != kind {
-            crate::say(what);
+            self.wire.say(what);
             self.said = kind;
         }
     }

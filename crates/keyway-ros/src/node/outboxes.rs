@@ -87,11 +87,11 @@ impl Outboxes {
     }
 
     /// At the end of a cycle: all that others may look at, where somebody does.
-    pub(super) fn show(&mut self, pilot: &Pilot, wire: &Wire, timing: &mut Timing, now_s: f64) {
+    pub(super) fn show(&mut self, pilot: &Pilot, wire: &mut Wire, timing: &mut Timing, now_s: f64) {
         self.cycles += 1;
         self.show_route(pilot, now_s);
         if self.is_time_for(Self::DIAGNOSTICS_S, timing) {
-            self.diagnostics.publish(timing.diagnostics(pilot, now_s));
+            self.diagnostics.publish(timing.diagnostics(pilot, &wire.misfits(), now_s));
         }
         if self.is_time_for(Self::PICTURES_S, timing) {
             self.show_pictures(pilot, wire, now_s);

@@ -2,6 +2,7 @@
 
 use crate::messages::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use crate::pilot::{Pilot, Waits};
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -47,10 +48,16 @@ impl Timing {
         self.waits = waits;
     }
 
-    /// The state of the robot, and of its cycles since the last call.
-    pub(super) fn diagnostics(&mut self, pilot: &Pilot, now_s: f64) -> DiagnosticArray {
+    /// The state of the robot, of its cycles since the last call, and of others on its topics that
+    /// do not fit.
+    pub(super) fn diagnostics(
+        &mut self,
+        pilot: &Pilot,
+        misfits: &BTreeSet<String>,
+        now_s: f64,
+    ) -> DiagnosticArray {
         let header = pilot.header(now_s);
-        let status = vec![self.of_driving(pilot), self.of_cycles()];
+        let status = vec![self.of_driving(pilot), self.of_cycles(), of_topics(misfits)];
         let (period_s, late) = (self.period_s, self.late);
         *self = Self { late, waits: self.waits.take(), ..Self::new(period_s) };
         DiagnosticArray { header, status }
@@ -92,6 +99,15 @@ impl Timing {
         ];
         status("keyway: cycles", said, values)
     }
+}
+
+fn of_topics(misfits: &BTreeSet<String>) -> DiagnosticStatus {
+    let said = match misfits.first() {
+        Some(first) => (DiagnosticStatus::WARN, first.clone()),
+        None => (DiagnosticStatus::OK, "others on its topics fit".to_owned()),
+    };
+    let values = misfits.iter().map(|misfit| value("misfit", misfit)).collect();
+    status("keyway: topics", said, values)
 }
 
 fn status(name: &str, said: (u8, String), values: Vec<KeyValue>) -> DiagnosticStatus {

@@ -2,6 +2,7 @@
 //! and names of frames and topics.
 
 mod declared;
+mod file;
 mod nav2;
 mod simulator;
 
@@ -155,6 +156,10 @@ impl Settings {
             return Err(wrong("scan_topics", why));
         }
         let cloud_topics = given.texts("cloud_topics")?.unwrap_or_default();
+        if let Some(topic) = cloud_topics.iter().find(|topic| scan_topics.contains(topic)) {
+            let why = format!("has `{topic}`, as scan_topics has: a topic has one kind of message");
+            return Err(wrong("cloud_topics", why));
+        }
         if cloud_topics.len() > SensorPoints::MOST_SENSORS {
             let why = format!("has more topics than {}", SensorPoints::MOST_SENSORS);
             return Err(wrong("cloud_topics", why));
@@ -211,22 +216,16 @@ impl Given {
         let mut of_all = BTreeSet::new();
         for path in &arguments.parameter_files {
             let fault = |why: String| StartError::File { path: path.clone(), why };
-            let text = std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?;
-            let nodes: Value =
-                serde_saphyr::from_str(&text).map_err(|error| fault(error.to_string()))?;
-            let Value::Table(nodes) = nodes else {
-                return Err(fault("names of nodes are missing at the top".to_owned()));
-            };
+            let nodes = file::read(path).map_err(fault)?;
             // What is given to this node itself counts more, wherever it stands.
-            let of_file = Nav2::of(&nodes);
+            let of_file = Nav2::of(&nodes, arguments.namespace());
             if !of_file.is_empty() {
                 nav2 = of_file;
             }
-            for (name, node) in &nodes {
-                let Some(Value::Table(parameters)) = node.get("ros__parameters") else { continue };
+            for (name, parameters) in file::nodes(&nodes) {
                 if name == ALL {
                     of_all.extend(parameters.keys().cloned());
-                } else if !is_for(name, arguments) {
+                } else if !is_for(&name, arguments) {
                     continue;
                 } else {
                     of_all.retain(|name| !parameters.contains_key(name));
@@ -356,10 +355,9 @@ const ALL: &str = "/**";
 /// with its namespace.
 fn is_for(name: &str, arguments: &Arguments) -> bool {
     let node = arguments.node_name();
-    let namespace = arguments.namespace.as_deref().unwrap_or("/");
-    let full = crate::arguments::full_name(node, namespace);
+    let full = crate::arguments::full_name(node, arguments.namespace());
     let any_namespace = format!("/**/{node}");
-    [node, &full, &any_namespace].contains(&name)
+    [node, &full, &full[1..], &any_namespace].contains(&name)
 }
 
 fn wrong(name: &str, why: impl Into<String>) -> StartError {
@@ -413,6 +411,7 @@ mod tests {
             (vec![("robot", "jackal"), ("cloud_timeout", "-1")], "0 or a positive number"),
             (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
             (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
+            (vec![("robot", "jackal"), ("cloud_topics", "[scan]")], "has `scan`, as scan_topics"),
             (vec![("robot", "jackal"), ("min_obstacle_height", "3")], "above max_obstacle_height"),
             (vec![("robot", "[")], "YAML"),
             (vec![("robot", "jackal"), ("distribution", "foxy")], "jazzy or kilted, got foxy"),

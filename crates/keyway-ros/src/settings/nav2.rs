@@ -33,9 +33,10 @@ struct Nodes<'a> {
 }
 
 impl Nav2 {
-    /// Of the nodes of a file; nothing where none of them is Nav2's.
-    pub(super) fn of(file: &Table) -> Self {
-        let mut nodes = Nodes::of(file);
+    /// Of the nodes of a file that are in a namespace, or in none; nothing where none of them is
+    /// Nav2's.
+    pub(super) fn of(file: &Table, namespace: &str) -> Self {
+        let mut nodes = Nodes::of(file, namespace);
         let mut found = Self { all: nodes.names(), ..Self::default() };
         found.take_size(&mut nodes);
         found.take_limits(&mut nodes);
@@ -250,14 +251,17 @@ impl<'a> Nodes<'a> {
         "waypoint_follower",
     ];
 
-    fn of(file: &'a Table) -> Self {
-        let parameters = Self::NAMES.into_iter().filter_map(|name| {
-            let node = file.get(name)?;
+    fn of(file: &'a Table, namespace: &str) -> Self {
+        let mut parameters = BTreeMap::new();
+        for (path, of_node) in super::file::nodes(file) {
+            let full = format!("/{}", path.trim_start_matches('/'));
+            let inside = full.strip_prefix(namespace).or_else(|| full.strip_prefix("/**"));
+            let path = inside.unwrap_or(&full).trim_start_matches('/');
             // Nodes of costmaps stand in a namespace that is called as they are.
-            let node = node.get(name).unwrap_or(node);
-            Some((name, node.get("ros__parameters")?.as_table()?))
-        });
-        Self { parameters: parameters.collect(), taken: BTreeSet::new() }
+            let is_it = |name: &&str| path == *name || path == format!("{name}/{name}");
+            parameters.extend(Self::NAMES.into_iter().find(is_it).map(|name| (name, of_node)));
+        }
+        Self { parameters, taken: BTreeSet::new() }
     }
 
     /// The names of all parameters, each after its node.
@@ -330,7 +334,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Nav2 {
-        Nav2::of(&serde_saphyr::from_str(text).unwrap())
+        Nav2::of(&serde_saphyr::from_str(text).unwrap(), "/")
     }
 
     /// As Nav2's own files are laid out, with MPPI.
@@ -457,6 +461,16 @@ velocity_smoother:
         // Sonars are not read.
         let sonar = of(&MPPI.replace("LaserScan", "Range"));
         assert!(!sonar.own.contains_key("scan_topics") && sonar.own.contains_key("cloud_topics"));
+    }
+
+    #[test]
+    fn nodes_may_be_in_the_namespace() {
+        let inner = MPPI.trim().replace('\n', "\n  ");
+        let file = serde_saphyr::from_str(&format!("/r1:\n  {inner}\n")).unwrap();
+        let here = Nav2::of(&file, "/r1");
+        assert_eq!(here.robot.radius_m, Some(0.22));
+        assert_eq!(here.report(), of(MPPI).report());
+        assert!(Nav2::of(&file, "/").is_empty() && Nav2::of(&file, "/r2").is_empty());
     }
 
     #[test]

@@ -4,6 +4,7 @@
 
 mod action;
 mod halts;
+mod misfits;
 mod parameters;
 mod service;
 
@@ -17,11 +18,14 @@ use crate::messages::{self, Named};
 use crate::settings::Change;
 use halts::Halts;
 pub(crate) use halts::notice_panics;
+use misfits::{Misfits, Way};
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, mio1};
 use ros2_client::qos::{Durability, History};
+use ros2_client::ros2::LogLevel;
 use ros2_client::{
-    Context, Message, MessageTypeName, Name, NodeName, Publisher, QosProfile, Subscription,
+    Context, Message, MessageTypeName, Name, NodeName, Publisher, QosProfile, Subscription, rosout,
 };
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::net::{IpAddr, Ipv4Addr};
 use std::sync::mpsc::Receiver;
@@ -84,6 +88,7 @@ pub(crate) struct Wire {
     sources: usize,
     halts: Halts,
     changed: Receiver<Change>,
+    misfits: Misfits,
 }
 
 impl Drop for Wire {
@@ -131,10 +136,10 @@ impl Wire {
             builder = builder.with_only_networks([IpAddr::V4(Ipv4Addr::LOCALHOST)]);
         }
         let participant = builder.build().map_err(|error| fault("join the network", error))?;
+        let misfits = Misfits::new(participant.clone());
         let context = Context::from_domain_participant(participant)
             .map_err(|error| fault("join the network", error))?;
-        let namespace = arguments.namespace.as_deref().unwrap_or("/");
-        let name = NodeName::new(namespace, arguments.node_name())
+        let name = NodeName::new(arguments.namespace(), arguments.node_name())
             .map_err(|error| fault("name the node", error))?;
         let (options, changed) = parameters::with_parameters(parameters);
         let mut node =
@@ -151,7 +156,7 @@ impl Wire {
         let halts = mio1::Waker::new(poll.registry(), mio1::Token(0)).and_then(Halts::watch);
         let halts = halts.map_err(|error| fault("watch for halts", error))?;
         let arguments = arguments.clone();
-        Ok(Self { node, arguments, poll, events, sources: 0, halts, changed })
+        Ok(Self { node, arguments, poll, events, sources: 0, halts, changed, misfits })
     }
 
     /// Messages of a topic, as many as are kept.
@@ -163,6 +168,7 @@ impl Wire {
     ) -> Result<Inbox<M>, StartError> {
         let qos = delivery.qos(depth);
         let topic_of = self.topic::<M>(topic, &qos)?;
+        self.misfits.add::<M>(self.arguments.remapped(topic), Way::In, qos.clone());
         let mut subscription = self
             .node
             .create_subscription(&topic_of, Some(qos))
@@ -180,6 +186,7 @@ impl Wire {
     ) -> Result<Outbox<M>, StartError> {
         let qos = delivery.qos(depth);
         let topic_of = self.topic::<M>(topic, &qos)?;
+        self.misfits.add::<M>(self.arguments.remapped(topic), Way::Out, qos.clone());
         let publisher = self
             .node
             .create_publisher(&topic_of, Some(qos))
@@ -234,6 +241,21 @@ impl Wire {
     /// True if somebody has subscribed to a topic.
     pub(crate) fn is_heard<M: Named>(&self, outbox: &Outbox<M>) -> bool {
         outbox.publisher.get_subscription_count(&self.node) > 0
+    }
+
+    /// Says something to whoever has started the program, and to those who read /rosout.
+    pub(crate) fn say(&self, what: &str) {
+        crate::say(what);
+        rosout!(self.node, LogLevel::Warn, "{what}");
+    }
+
+    /// The reasons why others on the topics of this node do not fit. New ones are said.
+    pub(crate) fn misfits(&mut self) -> BTreeSet<String> {
+        let now = self.misfits.now();
+        for misfit in self.misfits.untold(&now) {
+            self.say(&misfit);
+        }
+        now
     }
 
     /// Waits until something comes, but no longer than this.
