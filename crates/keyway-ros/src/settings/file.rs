@@ -19,7 +19,11 @@ pub(super) fn read(path: &Path) -> Result<Table, String> {
         return Err("it is longer than 1 MiB, and no file of parameters".to_owned());
     }
     let text = String::from_utf8(text).map_err(|_| "it is no text in UTF-8".to_owned())?;
-    match serde_saphyr::from_str(&text).map_err(|error| error.to_string())? {
+    let fault = |error: serde_saphyr::Error| {
+        let said = error.to_string();
+        said.strip_prefix("error: ").unwrap_or(&said).to_owned()
+    };
+    match serde_saphyr::from_str(&text).map_err(fault)? {
         Item(Some(Value::Table(nodes))) => Ok(nodes),
         // A file of comments alone gives nothing.
         Item(None) => Ok(Table::new()),
