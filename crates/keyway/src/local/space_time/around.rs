@@ -2,10 +2,12 @@
 //! movers.
 
 use super::cost_to_go::{CostToGo, WayAhead, Weighing};
+use super::fitting::Ground;
 use super::free_headings::BlockedHeadings;
 use super::lattice::Lattice;
 use super::meeting::Foreseen;
-use super::pose_cost::{Facing, Ground, PoseCost, WayEnd};
+use super::pose_cost::{Driven, PoseCost};
+use super::pose_times::{Facing, WayEnd};
 use super::room::Room;
 use super::{SpaceTime, local, way_ahead};
 use crate::geometry::{Disc, Point, wrap_angle};
@@ -81,13 +83,14 @@ impl SpaceTime {
         let ground = Ground {
             obstacles: scene.obstacles,
             blocked: blocked_headings,
-            limits: &self.robot.limits,
             inscribed_m: self.outline.inscribed_m,
             turning_m,
-            can_reverse: self.config.backwards && self.robot.limits.v_min_mps < 0.0,
         };
+        let limits = &self.robot.limits;
+        let can_reverse = self.config.backwards && limits.v_min_mps < 0.0;
+        let driven = Driven { limits, can_reverse };
         let room_m = |place: Point| room.of_point(place);
-        pose_cost.fill((lattice, cost_to_go), room_m, &ground, robot, &end);
+        pose_cost.fill((lattice, cost_to_go), room_m, (&ground, driven), robot, &end);
     }
 
     fn weighing(&self) -> Weighing {

@@ -3,8 +3,10 @@
 use super::*;
 use crate::geometry::Pose;
 use crate::local::space_time::cost_to_go::{WayAhead, Weighing};
+use crate::local::space_time::free_headings::BlockedHeadings;
+use crate::local::space_time::pose_times::Facing;
 use crate::local::space_time::room::Room;
-use crate::map::{Cell, CellState, FieldConfig, GridFrame, OccupancyGrid};
+use crate::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use crate::robot::{Footprint, Robot};
 use std::f64::consts::PI;
 
@@ -40,16 +42,10 @@ fn pose_cost(robot: &Robot, from: Point, end: WayEnd) -> PoseCost {
     cost_to_go.fill(lattice, &weighing, room_m, &way, 9.0);
     let mut blocked = BlockedHeadings::default();
     blocked.fit(&robot.footprint, 0.0, CELL_M);
-    let ground = Ground {
-        obstacles: &field,
-        blocked: &blocked,
-        limits: &robot.limits,
-        inscribed_m: 0.2,
-        turning_m: 0.45,
-        can_reverse: robot.limits.v_min_mps < 0.0,
-    };
+    let ground = Ground { obstacles: &field, blocked: &blocked, inscribed_m: 0.2, turning_m: 0.45 };
+    let driven = Driven { limits: &robot.limits, can_reverse: robot.limits.v_min_mps < 0.0 };
     let mut pose_cost = PoseCost::default();
-    pose_cost.fill((lattice, &cost_to_go), room_m, &ground, from, &end);
+    pose_cost.fill((lattice, &cost_to_go), room_m, (&ground, driven), from, &end);
     pose_cost
 }
 
@@ -60,16 +56,6 @@ fn robot(v_min_mps: f64) -> Robot {
     (robot.limits.v_max_mps, robot.limits.v_min_mps) = (1.0, v_min_mps);
     robot.limits.omega_max_radps = PI / 3.0;
     robot
-}
-
-#[test]
-fn every_other_bit() {
-    assert_eq!(every_other(u64::MAX), u32::MAX);
-    assert_eq!(every_other(0x5555_5555_5555_5555), u32::MAX);
-    assert_eq!(every_other(0xaaaa_aaaa_aaaa_aaaa), 0);
-    for bit in 0..32 {
-        assert_eq!(every_other(1 << (2 * bit)), 1 << bit);
-    }
 }
 
 const AHEAD: Point = Point::new(1.0, 0.0);
