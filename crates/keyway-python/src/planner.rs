@@ -151,12 +151,17 @@ fn planned(
         let route = ready.route(&query).map_err(|error| ready.why(&error, &query))?;
         Ok::<_, PyErr>((ready, route))
     };
-    let (ready, route) = if ready.is_quick() && progress.is_none() {
-        py.detach(|| work(ready, &Watch::default()))?
-    } else {
-        let ready = Arc::clone(ready);
-        watched(py, progress, move |watch| work(&ready, watch))??
-    };
+    if progress.is_none() {
+        if ready.is_quick() {
+            let (ready, route) = py.detach(|| work(ready, &Watch::default()))?;
+            return Ok(Plan::new(ready, route));
+        }
+        if let Some(route) = py.detach(|| ready.quick_route(&query)) {
+            return Ok(Plan::new(Arc::clone(ready), route));
+        }
+    }
+    let ready = Arc::clone(ready);
+    let (ready, route) = watched(py, progress, move |watch| work(&ready, watch))??;
     Ok(Plan::new(ready, route))
 }
 

@@ -113,6 +113,9 @@ impl Ready {
     /// A search of so many cells takes a few tenths of a second at most.
     const QUICK_CELLS: u64 = 1 << 20;
 
+    /// A search of so many nodes takes some hundredths of a second at most.
+    const QUICK_NODES: u64 = 1 << 14;
+
     fn new(PlannerParts { grid }: PlannerParts, choice: &Choice, watch: &Watch) -> PyResult<Self> {
         let named = choice.robot.as_deref().map(|name| robot(name, choice.radius_m)).transpose()?;
         let radius_m = named.as_ref().map(|robot| robot.footprint.inscribed_radius_m());
@@ -143,12 +146,24 @@ impl Ready {
         Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
     }
 
-    /// Whether a query is over before somebody could want to stop it: then it needs no thread, which takes longer than most
+    /// True if a query is over before somebody could want to stop it: then it needs no thread, which takes longer than most
     /// queries do.
     pub(crate) fn is_quick(&self) -> bool {
+        self.map.frame().cell_count() <= Self::QUICK_CELLS && self.is_bounded_by_nodes()
+    }
+
+    /// The route, if its search ends after a few nodes, however large the map is.
+    pub(crate) fn quick_route(&self, query: &RouteQuery) -> Option<Route> {
+        let budget = query.budget.unwrap_or(Self::QUICK_NODES).min(Self::QUICK_NODES);
+        let query = RouteQuery { budget: Some(budget), ..*query };
+        self.is_bounded_by_nodes().then(|| self.route(&query).ok()).flatten()
+    }
+
+    /// True if the nodes of a search say how long a query takes.
+    fn is_bounded_by_nodes(&self) -> bool {
         let is_random_tree = matches!(self.stack.planner, PlannerConfig::Rrt(_));
         let makes_layers = self.stack.map.free_ends_m > 0.0;
-        self.map.frame().cell_count() <= Self::QUICK_CELLS && !is_random_tree && !makes_layers
+        !is_random_tree && !makes_layers
     }
 
     /// The same with the clearance lifted around the ends of a query, where that is asked for.
