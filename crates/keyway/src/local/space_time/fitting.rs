@@ -46,6 +46,12 @@ impl Fitting {
         self.turning.resize(near.count(), 0);
     }
 
+    /// Known everywhere, without a footprint.
+    #[cfg(test)]
+    pub(super) fn of(free: Vec<Sectors>, turning: Vec<Sectors>) -> Self {
+        Self { is_known: vec![true; free.len()], free, turning, ..Self::default() }
+    }
+
     /// The headings at which the footprint fits somewhere in the square around a point; it must have
     /// been [looked at](Self::look).
     pub(super) fn free(&self, number: usize) -> Sectors {

@@ -1,13 +1,18 @@
 //! The least times from places, and from places and headings, to the end of a way.
 //!
+//! There are few lengths of motions, and what is done at a time is kept together. So what is reached
+//! at a time is found from what was done so many ticks before, for each length, and nothing is ever
+//! reached twice: no queue, and a bit for each pose.
+//!
 //! # Source
-//! Dijkstra's search with buckets \[Dial1969\], from the end on.
+//! Dijkstra's search, from the end on; by places with buckets \[Dial1969\].
 
 use super::fitting::{Fitting, Ground, Sectors};
 use super::near::Near;
 use crate::geometry::{Point, wrap_angle};
 use crate::robot::Limits;
 use std::f64::consts::{FRAC_PI_4, TAU};
+use std::ops::Range;
 
 /// Times by place and heading, and by place, in ticks.
 #[derive(Debug, Default)]
@@ -15,6 +20,13 @@ pub(super) struct PoseTimes {
     by_pose: Vec<[u16; HEADINGS]>,
     by_place: Vec<u16>,
     buckets: Buckets,
+    /// The free headings of each place that are not reached.
+    open: Vec<Sectors>,
+    /// The poses that are done: all of them, and by kinds of steps that lead to them.
+    all: Done,
+    along: [Done; KINDS],
+    /// The poses at the end of the way, by their times.
+    ends: Vec<(u16, u32, Sectors)>,
 }
 
 /// The end of the way, and how to face there.
@@ -49,8 +61,14 @@ const ROUNDING_RAD: f64 = 1e-6;
 /// Not reached.
 const NEVER: u16 = u16::MAX;
 
+/// Later times are as good as none.
+const END: u16 = NEVER - 2 * Done::TICKS as u16;
+
 /// Ticks of a step to the next point ahead.
 pub(super) const STEP_TICKS: f64 = 4.0;
+
+/// Ticks of a step ahead, by kinds.
+const AHEAD: [u16; KINDS] = [4, 9, 6];
 
 /// Points of the lattice that a robot comes to next, in 16 directions, and ticks for each.
 const STEPS: [(i32, i32, u16); 16] = [
@@ -71,6 +89,14 @@ const STEPS: [(i32, i32, u16); 16] = [
     (1, -1, 6),
     (2, -1, 9),
 ];
+
+/// Kinds of steps: straight, between, diagonal.
+const KINDS: usize = 3;
+
+/// The kind of a direction.
+const fn kind(direction: usize) -> usize {
+    [0, 1, 2, 1][direction % 4]
+}
 
 impl PoseTimes {
     /// Finds the times to the end of a way of everything near it, in ticks of `tick_s`. Looks at all
@@ -134,73 +160,176 @@ impl PoseTimes {
     fn grow_poses(&mut self, near: &Near, fitting: &Fitting, motions: &Motions, end: &WayEnd) {
         self.by_pose.clear();
         self.by_pose.resize(near.count(), [NEVER; HEADINGS]);
-        for number in near.around(end.at) {
-            for heading in 0..HEADINGS {
-                if let Some(time) = motions.at_end(heading, end.facing) {
-                    self.lower(number, heading, (time, fitting.free(number)));
+        self.open.clear();
+        self.open.extend((0..near.count()).map(|number| fitting.free(number)));
+        self.all.clear();
+        self.along.iter_mut().for_each(Done::clear);
+        self.begin_at_ends(near, motions, end);
+        let longest = motions.longest();
+        let (mut now, mut last, mut ends) = (0, 0, 0);
+        while now < END && (ends < self.ends.len() || now - last <= longest) {
+            let done = self.all.count();
+            while let Some(&(_, number, headings)) =
+                self.ends.get(ends).filter(|(time, ..)| *time == now)
+            {
+                self.reach(number as usize, headings, now);
+                ends += 1;
+            }
+            self.turn_to(now, fitting, motions);
+            for (kind, ahead) in AHEAD.into_iter().enumerate() {
+                self.step_to(now, near, (kind, ahead, true), motions.turn);
+                if motions.can_reverse {
+                    self.step_to(now, near, (kind, motions.back[kind], false), motions.turn);
                 }
             }
-        }
-        while let Some((now, pose)) = self.buckets.pop() {
-            let (number, heading) = (pose / HEADINGS, pose % HEADINGS);
-            if self.by_pose[number][heading] == now {
-                self.pass_on((number, heading), now, (near, fitting), motions);
+            self.all.end(now);
+            self.along.iter_mut().for_each(|done| done.end(now));
+            if self.all.count() > done {
+                last = now;
             }
+            now += 1;
         }
     }
 
-    /// Lowers the times of the poses from which the robot comes to one that is done.
-    fn pass_on(
+    /// Collects the poses at the end of the way.
+    fn begin_at_ends(&mut self, near: &Near, motions: &Motions, end: &WayEnd) {
+        self.ends.clear();
+        for number in near.around(end.at) {
+            self.ends.extend((0..HEADINGS).filter_map(|heading| {
+                Some((motions.at_end(heading, end.facing)?, number as u32, 1 << heading))
+            }));
+        }
+        self.ends.sort_unstable();
+    }
+
+    /// Reaches the headings from which the robot turns to those that were done a turn before.
+    fn turn_to(&mut self, now: u16, fitting: &Fitting, motions: &Motions) {
+        for index in self.all.before(now, motions.turn) {
+            let Pose { number, heading, .. } = self.all.get(index);
+            let (own, turning) = (1 << heading, fitting.turning(number));
+            let turned = (own & turning).rotate_left(1) | own.rotate_right(1) & turning;
+            self.reach(number, turned, now);
+        }
+    }
+
+    /// Reaches the poses from which the robot comes by a step of a kind to those that were done so
+    /// many ticks before; on the way it may turn to the next heading, if that does not take longer.
+    fn step_to(
         &mut self,
-        (number, heading): (usize, usize),
         now: u16,
-        (near, fitting): (&Near, &Fitting),
-        motions: &Motions,
+        near: &Near,
+        (kind, ticks, is_ahead): (usize, u16, bool),
+        turn: u16,
     ) {
-        let (left, right) = ((heading + 1) % HEADINGS, (heading + HEADINGS - 1) % HEADINGS);
-        let (free, turning) = (fitting.free(number), fitting.turning(number));
-        let turned = now + motions.turn;
-        if turning >> heading & 1 == 1 {
-            self.lower(number, left, (turned, free));
+        let sides = |own: Sectors| own.rotate_left(1) | own.rotate_right(1);
+        let is_slower = ticks >= turn;
+        for index in self.along[kind].before(now, ticks) {
+            let Pose { number, heading, direction } = self.along[kind].get(index);
+            let Some(from) = near.beside(near.point(number), step(direction, is_ahead)) else {
+                continue;
+            };
+            let own = 1 << heading;
+            self.reach(from, if is_slower { own | sides(own) } else { own }, now);
         }
-        if turning >> right & 1 == 1 {
-            self.lower(number, right, (turned, free));
+        if is_slower {
+            return;
         }
-        let point = near.point(number);
-        let mut come_from = |step: (i32, i32), ticks: u16| {
-            if let Some(from) = near.beside(point, step) {
-                let (free, then) = (fitting.free(from), now + ticks);
-                self.lower(from, heading, (then, free));
-                let then = then.max(turned);
-                self.lower(from, left, (then, free));
-                self.lower(from, right, (then, free));
+        for index in self.along[kind].before(now, turn) {
+            let Pose { number, heading, direction } = self.along[kind].get(index);
+            if let Some(from) = near.beside(near.point(number), step(direction, is_ahead)) {
+                self.reach(from, sides(1 << heading), now);
             }
-        };
-        let mut come_along = |direction: usize| {
-            let (dx, dy, ahead) = STEPS[direction];
-            come_from((-dx, -dy), ahead);
-            if motions.can_reverse {
-                come_from((dx, dy), motions.back[direction]);
-            }
-        };
-        come_along(heading / 2);
-        // Headings between two directions take both.
-        if heading % 2 == 1 {
-            come_along((heading / 2 + 1) % STEPS.len());
         }
     }
 
+    /// Those of the headings of a place that are free, and were not reached before, are reached now.
     #[inline]
-    fn lower(&mut self, number: usize, heading: usize, (time, free): (u16, Sectors)) {
-        let known = &mut self.by_pose[number][heading];
-        if free >> heading & 1 == 1 && time < *known {
-            *known = time;
-            self.buckets.push(time, number * HEADINGS + heading);
+    fn reach(&mut self, number: usize, headings: Sectors, now: u16) {
+        let mut new = self.open[number] & headings;
+        self.open[number] &= !new;
+        while new != 0 {
+            let heading = new.trailing_zeros() as usize;
+            new &= new - 1;
+            self.by_pose[number][heading] = now;
+            let direction = heading / 2;
+            self.all.push(Pose { number, heading, direction });
+            self.along[kind(direction)].push(Pose { number, heading, direction });
+            // Headings between two directions take both.
+            if heading % 2 == 1 {
+                let direction = (direction + 1) % STEPS.len();
+                self.along[kind(direction)].push(Pose { number, heading, direction });
+            }
         }
     }
 }
 
-/// What waits for its time.
+/// The step from a point to the one before it in a direction, for a robot that drives ahead or back.
+fn step(direction: usize, is_ahead: bool) -> (i32, i32) {
+    let (dx, dy, _) = STEPS[direction];
+    if is_ahead { (-dx, -dy) } else { (dx, dy) }
+}
+
+/// A pose, and a direction in which the robot drives there.
+#[derive(Clone, Copy, Debug)]
+struct Pose {
+    number: usize,
+    heading: usize,
+    direction: usize,
+}
+
+/// Poses in the order of their times.
+#[derive(Debug)]
+struct Done {
+    /// Number << 9 | heading << 4 | direction.
+    poses: Vec<u32>,
+    /// How many there were at the end of each of the last ticks.
+    ends: [u32; Self::TICKS],
+}
+
+impl Default for Done {
+    fn default() -> Self {
+        Self { poses: Vec::new(), ends: [0; Self::TICKS] }
+    }
+}
+
+impl Done {
+    /// More than those of the longest motion.
+    const TICKS: usize = 512;
+
+    fn clear(&mut self) {
+        self.poses.clear();
+        self.ends.fill(0);
+    }
+
+    fn count(&self) -> usize {
+        self.poses.len()
+    }
+
+    #[inline]
+    fn push(&mut self, Pose { number, heading, direction }: Pose) {
+        self.poses.push((number << 9 | heading << 4 | direction) as u32);
+    }
+
+    #[inline]
+    fn get(&self, index: usize) -> Pose {
+        let packed = self.poses[index] as usize;
+        Pose { number: packed >> 9, heading: packed >> 4 & 31, direction: packed & 15 }
+    }
+
+    /// No more comes at this time.
+    fn end(&mut self, now: u16) {
+        self.ends[usize::from(now) % Self::TICKS] = self.poses.len() as u32;
+    }
+
+    /// Those that were done so many ticks before.
+    fn before(&self, now: u16, ticks: u16) -> Range<usize> {
+        let Some(then) = now.checked_sub(ticks) else { return 0..0 };
+        let end = |at: u16| self.ends[usize::from(at) % Self::TICKS] as usize;
+        then.checked_sub(1).map_or(0, end)..end(then)
+    }
+}
+
+/// Places that wait for their time.
 #[derive(Debug, Default)]
 struct Buckets {
     waiting: Vec<Vec<u32>>,
@@ -209,11 +338,8 @@ struct Buckets {
 }
 
 impl Buckets {
-    /// More than the ticks of the longest motion.
-    const COUNT: usize = 512;
-
-    /// Later times are as good as none.
-    const END: u16 = NEVER - 2 * Self::COUNT as u16;
+    /// More than the ticks of the longest step.
+    const COUNT: usize = 16;
 
     #[inline]
     fn push(&mut self, time: u16, what: usize) {
@@ -226,7 +352,7 @@ impl Buckets {
 
     /// What comes first, and its time. At the end it begins anew.
     fn pop(&mut self) -> Option<(u16, usize)> {
-        while self.count > 0 && self.now < Self::END {
+        while self.count > 0 && self.now < END {
             if let Some(what) = self.waiting[usize::from(self.now) % Self::COUNT].pop() {
                 self.count -= 1;
                 return Some((self.now, what as usize));
@@ -245,8 +371,8 @@ pub(super) struct Motions {
     /// To the next heading.
     turn: u16,
     can_reverse: bool,
-    /// Back, in each direction.
-    back: [u16; STEPS.len()],
+    /// A step back, by kinds.
+    back: [u16; KINDS],
 }
 
 impl Motions {
@@ -256,8 +382,13 @@ impl Motions {
         let ticks = |time_s: f64| (time_s / tick_s).round().clamp(1.0, 255.0) as u16;
         let turn = ticks(HEADING_RAD / omega_max_radps);
         let slower = if can_reverse { (v_max_mps / -v_min_mps).clamp(1.0, 25.0) } else { 0.0 };
-        let back = STEPS.map(|(_, _, ahead)| (f64::from(ahead) * slower).round() as u16);
+        let back = AHEAD.map(|ahead| (f64::from(ahead) * slower).round() as u16);
         Self { turn, can_reverse, back }
+    }
+
+    /// That of the longest motion.
+    fn longest(&self) -> u16 {
+        self.back.into_iter().chain(AHEAD).fold(self.turn, u16::max)
     }
 
     /// The time that is left at the end of the way at a heading; `None` where the way does not end
@@ -276,9 +407,12 @@ impl Motions {
             Facing::On(wanted_rad) => {
                 let aside_rad = (off_rad(wanted_rad) - FRAC_PI_4).max(0.0);
                 let ticks = (aside_rad / HEADING_RAD).round() as u16 * self.turn;
-                // No wait is longer than there are buckets.
-                Some(ticks.min(Buckets::COUNT as u16 - 1))
+                Some(ticks.min(Done::TICKS as u16 - 1))
             }
         }
     }
 }
+
+#[cfg(test)]
+#[path = "pose_times_tests.rs"]
+mod tests;

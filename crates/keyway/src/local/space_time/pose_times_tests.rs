@@ -1,0 +1,106 @@
+//! Times of places and headings, compared with the relaxation of all motions until nothing changes.
+
+use super::*;
+use crate::geometry::Pose as WorldPose;
+use crate::local::space_time::lattice::Lattice;
+use crate::map::GridFrame;
+use crate::random::Random;
+use crate::robot::Robot;
+
+const SIDE: usize = 13;
+
+/// All points of a small lattice, a way through its middle, and its middle.
+fn everywhere() -> (Near, Point) {
+    let frame = GridFrame::new(20, 20, 1.0, WorldPose::default()).unwrap();
+    let middle = Point::new(10.5, 10.5);
+    let lattice = Lattice::around(&frame, middle, 5.0, 1.0);
+    assert_eq!(lattice.side, SIDE);
+    let mut near = Near::default();
+    near.collect(lattice, &[middle], 99.0);
+    assert_eq!(near.count(), SIDE * SIDE);
+    (near, middle)
+}
+
+/// By the definition: what leads to a pose in how many ticks.
+fn relaxed(
+    near: &Near,
+    fitting: &Fitting,
+    motions: &Motions,
+    end: &WayEnd,
+) -> Vec<[u16; HEADINGS]> {
+    let is_free = |number: usize, heading: usize| fitting.free(number) >> heading & 1 == 1;
+    let mut times = vec![[NEVER; HEADINGS]; near.count()];
+    for number in near.around(end.at) {
+        for heading in (0..HEADINGS).filter(|&heading| is_free(number, heading)) {
+            times[number][heading] = motions.at_end(heading, end.facing).unwrap_or(NEVER);
+        }
+    }
+    loop {
+        let before = times.clone();
+        for (number, own) in before.iter().enumerate() {
+            for (heading, &time) in own.iter().enumerate().filter(|(_, time)| **time != NEVER) {
+                let mut lower = |to: usize, heading: usize, ticks: u16| {
+                    if is_free(to, heading) {
+                        times[to][heading] = times[to][heading].min(time + ticks);
+                    }
+                };
+                let (left, right) = ((heading + 1) % HEADINGS, (heading + HEADINGS - 1) % HEADINGS);
+                for (side, from) in [(left, heading), (right, right)] {
+                    if fitting.turning(number) >> from & 1 == 1 {
+                        lower(number, side, motions.turn);
+                    }
+                }
+                let mut directions = vec![heading / 2, heading.div_ceil(2) % 16];
+                directions.dedup();
+                for direction in directions {
+                    let (dx, dy, ahead) = STEPS[direction];
+                    let back = motions.back[kind(direction)];
+                    for (step, ticks) in [((-dx, -dy), ahead), ((dx, dy), back)] {
+                        if step == (dx, dy) && !motions.can_reverse {
+                            continue;
+                        }
+                        let Some(from) = near.beside(near.point(number), step) else { continue };
+                        lower(from, heading, ticks);
+                        lower(from, left, ticks.max(motions.turn));
+                        lower(from, right, ticks.max(motions.turn));
+                    }
+                }
+            }
+        }
+        if times == before {
+            return times;
+        }
+    }
+}
+
+#[test]
+fn times_are_those_of_the_relaxation_of_all_motions() {
+    let (near, middle) = everywhere();
+    let mut random = Random::new(46);
+    // The same memory for all: nothing of the one before may be left.
+    let mut times = PoseTimes::default();
+    for round in 0..40 {
+        let mut bits = |share: f64| {
+            (0..HEADINGS)
+                .fold(0, |bits, heading| bits | Sectors::from(random.unit() < share) << heading)
+        };
+        let share = [0.2, 0.5, 0.8, 1.0][round % 4];
+        let free: Vec<Sectors> = (0..near.count()).map(|_| bits(share)).collect();
+        let turning: Vec<Sectors> = (0..near.count()).map(|_| bits(share)).collect();
+        let fitting = Fitting::of(free, turning);
+        let mut limits = Robot::jackal().limits;
+        limits.v_min_mps = [0.0, -0.1, -0.5, -2.0][round / 4 % 4];
+        limits.omega_max_radps = [0.05, 0.4, 1.5, 6.0][round / 2 % 4];
+        let motions = Motions::new(&limits, limits.v_min_mps < 0.0, 0.1 / limits.v_max_mps);
+        let facing = match round % 3 {
+            0 => Facing::Any,
+            1 => Facing::At(1.0),
+            _ => Facing::On(-2.0),
+        };
+        let end = WayEnd { at: middle, facing };
+        times.grow_poses(&near, &fitting, &motions, &end);
+        let expected = relaxed(&near, &fitting, &motions, &end);
+        assert!(expected.as_flattened().iter().any(|&ticks| ticks != NEVER), "round {round}");
+        assert_eq!(times.by_pose, expected, "round {round}");
+    }
+}
