@@ -73,7 +73,8 @@ impl Fitting {
         ground: &Ground<'_>,
     ) {
         if !self.is_known[number] {
-            self.look_at_tile(near.point(number), near, room_m, ground);
+            let place = near.places()[number] as usize;
+            self.look_at_tile(near.point(place), near, room_m, ground);
         }
     }
 
@@ -94,7 +95,7 @@ impl Fitting {
         let half_m = FRAC_1_SQRT_2 * lattice.spacing_m;
         let mut is_tried = false;
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
-            let Some(number) = near.beside((x, y), (0, 0)) else { continue };
+            let Some(number) = near.number(near.place((x, y))) else { continue };
             self.is_known[number] = true;
             let at_m = room_m(lattice.position(x, y));
             if at_m >= ground.turning_m {

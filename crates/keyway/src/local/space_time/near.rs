@@ -4,25 +4,29 @@ use super::lattice::Lattice;
 use crate::geometry::Point;
 use arrayvec::ArrayVec;
 
-/// Points near a way, numbered.
+/// Points near a way, numbered. Each has a place in a grid with a border, so that a step from it is
+/// always on the grid.
 #[derive(Debug, Default)]
 pub(super) struct Near {
     pub(super) lattice: Lattice,
-    /// The number of each point of the lattice; `NONE` for those that are not near.
+    /// The number of each place; `NONE` where there is none.
     numbers: Vec<u32>,
-    /// Column and row of each.
-    points: Vec<(u16, u16)>,
+    /// The place of each point.
+    places: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
+
+/// No step is longer, along an axis.
+const BORDER: usize = 2;
 
 impl Near {
     /// Collects the points that are no farther than this from a way.
     pub(super) fn collect(&mut self, lattice: Lattice, way: &[Point], within_m: f64) {
         self.lattice = lattice;
         self.numbers.clear();
-        self.numbers.resize(lattice.count(), NONE);
-        self.points.clear();
+        self.numbers.resize(self.stride() * self.stride(), NONE);
+        self.places.clear();
         let reach = within_m / lattice.spacing_m;
         let mut last: Option<Point> = None;
         for &at in way {
@@ -30,15 +34,15 @@ impl Near {
                 continue;
             }
             last = Some(at);
-            let place = lattice.place(at);
-            let [columns, rows] = lattice.within(place, reach);
+            let middle = lattice.place(at);
+            let [columns, rows] = lattice.within(middle, reach);
             for y in rows {
                 for x in columns.clone() {
-                    let number = &mut self.numbers[y * lattice.side + x];
-                    let is_near = Point::new(x as f64, y as f64).distance(place) <= reach;
-                    if is_near && *number == NONE {
-                        *number = self.points.len() as u32;
-                        self.points.push((x as u16, y as u16));
+                    let place = self.place((x, y));
+                    let is_near = Point::new(x as f64, y as f64).distance(middle) <= reach;
+                    if is_near && self.numbers[place] == NONE {
+                        self.numbers[place] = self.places.len() as u32;
+                        self.places.push(place as u32);
                     }
                 }
             }
@@ -47,38 +51,50 @@ impl Near {
 
     /// How many there are.
     pub(super) const fn count(&self) -> usize {
-        self.points.len()
+        self.places.len()
     }
 
-    /// The number of a point of the lattice by its index, if it is near.
-    pub(super) fn number_of(&self, index: usize) -> Option<usize> {
-        self.numbers.get(index).filter(|&&number| number != NONE).map(|&number| number as usize)
+    /// The places of all of them, in the order of their numbers.
+    pub(super) fn places(&self) -> &[u32] {
+        &self.places
     }
 
-    /// Column and row of one.
-    pub(super) fn point(&self, number: usize) -> (usize, usize) {
-        let (x, y) = self.points[number];
-        (usize::from(x), usize::from(y))
+    /// How many places there are.
+    pub(super) const fn place_count(&self) -> usize {
+        self.numbers.len()
     }
 
-    /// The one that is a step away from a point, if that is near.
+    const fn stride(&self) -> usize {
+        self.lattice.side + 2 * BORDER
+    }
+
+    /// The place of a point of the lattice.
+    pub(super) const fn place(&self, (x, y): (usize, usize)) -> usize {
+        (y + BORDER) * self.stride() + x + BORDER
+    }
+
+    /// Column and row of the point at a place.
+    pub(super) const fn point(&self, place: usize) -> (usize, usize) {
+        (place % self.stride() - BORDER, place / self.stride() - BORDER)
+    }
+
+    /// The number of the point at a place, if one is near the way.
     #[inline]
-    pub(super) fn beside(&self, (x, y): (usize, usize), (dx, dy): (i32, i32)) -> Option<usize> {
-        let side = self.lattice.side;
-        let (x, y) = (x.wrapping_add_signed(dx as isize), y.wrapping_add_signed(dy as isize));
-        if x >= side || y >= side {
-            return None;
-        }
-        let number = self.numbers[y * side + x];
-        (number != NONE).then_some(number as usize)
+    pub(super) fn number(&self, place: usize) -> Option<usize> {
+        Some(self.numbers[place]).filter(|&number| number != NONE).map(|number| number as usize)
     }
 
-    /// Those around a place, whose squares it lies in or beside.
+    /// From a place to the one that is so many columns and rows away.
+    pub(super) const fn step(&self, (columns, rows): (i32, i32)) -> isize {
+        rows as isize * self.stride() as isize + columns as isize
+    }
+
+    /// The numbers of those around a position, whose squares it lies in or beside.
     pub(super) fn around(&self, at: Point) -> impl Iterator<Item = usize> + use<> {
         let [columns, rows] = self.lattice.within(self.lattice.place(at), 1.0);
-        let indices = rows.flat_map(|y| columns.clone().map(move |x| y * self.lattice.side + x));
+        let places = rows.flat_map(|y| columns.clone().map(move |x| self.place((x, y))));
         let numbers: ArrayVec<usize, 9> =
-            indices.take(9).filter_map(|index| self.number_of(index)).collect();
+            places.take(9).filter_map(|place| self.number(place)).collect();
         numbers.into_iter()
     }
 }

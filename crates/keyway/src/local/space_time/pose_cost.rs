@@ -112,18 +112,19 @@ impl PoseCost {
             return None;
         }
         let (part_x, part_y) = (place.x - x, place.y - y);
-        let corner = y as usize * lattice.side + x as usize;
+        let corner = self.near.place((x as usize, y as usize));
+        let above = corner.wrapping_add_signed(self.near.step((0, 1)));
         let turned = libm::atan2(ahead.y, ahead.x) / HEADING_RAD;
         let low = turned.floor();
         let (part, low) = (turned - low, low as i32);
         let (mut sum_s, mut weights, mut known) = (0.0, 0.0, 0.0);
-        for (index, weight) in [
+        for (place, weight) in [
             (corner, (1.0 - part_x) * (1.0 - part_y)),
             (corner + 1, part_x * (1.0 - part_y)),
-            (corner + lattice.side, (1.0 - part_x) * part_y),
-            (corner + lattice.side + 1, part_x * part_y),
+            (above, (1.0 - part_x) * part_y),
+            (above + 1, part_x * part_y),
         ] {
-            let Some(number) = self.near.number_of(index) else { continue };
+            let Some(number) = self.near.number(place) else { continue };
             known += weight;
             let Some(by_place) = self.times.of_place(number) else { continue };
             for (heading, part) in [(low, 1.0 - part), (low + 1, part)] {

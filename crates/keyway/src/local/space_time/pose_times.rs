@@ -20,7 +20,7 @@ pub(super) struct PoseTimes {
     by_pose: Vec<[u16; HEADINGS]>,
     by_place: Vec<u16>,
     buckets: Buckets,
-    /// The free headings of each place that are not reached.
+    /// The free headings at each place that are not reached.
     open: Vec<Sectors>,
     /// The poses that are done: all of them, and by kinds of steps that lead to them.
     all: Done,
@@ -144,9 +144,10 @@ impl PoseTimes {
             if self.by_place[number] != now {
                 continue;
             }
-            let point = near.point(number);
+            let place = near.places()[number] as usize;
             for (dx, dy, ticks) in STEPS {
-                let Some(next) = near.beside(point, (dx, dy)) else { continue };
+                let next = place.wrapping_add_signed(near.step((dx, dy)));
+                let Some(next) = near.number(next) else { continue };
                 let time = now + ticks;
                 if time < self.by_place[next] && fits(next) {
                     self.by_place[next] = time;
@@ -161,7 +162,10 @@ impl PoseTimes {
         self.by_pose.clear();
         self.by_pose.resize(near.count(), [NEVER; HEADINGS]);
         self.open.clear();
-        self.open.extend((0..near.count()).map(|number| fitting.free(number)));
+        self.open.resize(near.place_count(), 0);
+        for (number, &place) in near.places().iter().enumerate() {
+            self.open[place as usize] = fitting.free(number);
+        }
         self.all.clear();
         self.along.iter_mut().for_each(Done::clear);
         self.begin_at_ends(near, motions, end);
@@ -169,13 +173,13 @@ impl PoseTimes {
         let (mut now, mut last, mut ends) = (0, 0, 0);
         while now < END && (ends < self.ends.len() || now - last <= longest) {
             let done = self.all.count();
-            while let Some(&(_, number, headings)) =
+            while let Some(&(_, place, headings)) =
                 self.ends.get(ends).filter(|(time, ..)| *time == now)
             {
-                self.reach(number as usize, headings, now);
+                self.reach(near, place as usize, headings, now);
                 ends += 1;
             }
-            self.turn_to(now, fitting, motions);
+            self.turn_to(now, (near, fitting), motions);
             for (kind, ahead) in AHEAD.into_iter().enumerate() {
                 self.step_to(now, near, (kind, ahead, true), motions.turn);
                 if motions.can_reverse {
@@ -196,19 +200,21 @@ impl PoseTimes {
         self.ends.clear();
         for number in near.around(end.at) {
             self.ends.extend((0..HEADINGS).filter_map(|heading| {
-                Some((motions.at_end(heading, end.facing)?, number as u32, 1 << heading))
+                let time = motions.at_end(heading, end.facing)?;
+                Some((time, near.places()[number], 1 << heading))
             }));
         }
         self.ends.sort_unstable();
     }
 
     /// Reaches the headings from which the robot turns to those that were done a turn before.
-    fn turn_to(&mut self, now: u16, fitting: &Fitting, motions: &Motions) {
+    fn turn_to(&mut self, now: u16, (near, fitting): (&Near, &Fitting), motions: &Motions) {
         for index in self.all.before(now, motions.turn) {
-            let Pose { number, heading, .. } = self.all.get(index);
+            let Pose { place, heading, .. } = self.all.get(index);
+            let Some(number) = near.number(place) else { continue };
             let (own, turning) = (1 << heading, fitting.turning(number));
             let turned = (own & turning).rotate_left(1) | own.rotate_right(1) & turning;
-            self.reach(number, turned, now);
+            self.reach(near, place, turned, now);
         }
     }
 
@@ -221,58 +227,55 @@ impl PoseTimes {
         (kind, ticks, is_ahead): (usize, u16, bool),
         turn: u16,
     ) {
+        let steps =
+            STEPS.map(|(dx, dy, _)| near.step(if is_ahead { (-dx, -dy) } else { (dx, dy) }));
         let sides = |own: Sectors| own.rotate_left(1) | own.rotate_right(1);
         let is_slower = ticks >= turn;
         for index in self.along[kind].before(now, ticks) {
-            let Pose { number, heading, direction } = self.along[kind].get(index);
-            let Some(from) = near.beside(near.point(number), step(direction, is_ahead)) else {
-                continue;
-            };
+            let Pose { place, heading, direction } = self.along[kind].get(index);
             let own = 1 << heading;
-            self.reach(from, if is_slower { own | sides(own) } else { own }, now);
+            let headings = if is_slower { own | sides(own) } else { own };
+            self.reach(near, place.wrapping_add_signed(steps[direction]), headings, now);
         }
         if is_slower {
             return;
         }
         for index in self.along[kind].before(now, turn) {
-            let Pose { number, heading, direction } = self.along[kind].get(index);
-            if let Some(from) = near.beside(near.point(number), step(direction, is_ahead)) {
-                self.reach(from, sides(1 << heading), now);
-            }
+            let Pose { place, heading, direction } = self.along[kind].get(index);
+            let headings = sides(1 << heading);
+            self.reach(near, place.wrapping_add_signed(steps[direction]), headings, now);
         }
     }
 
-    /// Those of the headings of a place that are free, and were not reached before, are reached now.
+    /// Those of the headings at a place that are free, and were not reached before, are reached now.
     #[inline]
-    fn reach(&mut self, number: usize, headings: Sectors, now: u16) {
-        let mut new = self.open[number] & headings;
-        self.open[number] &= !new;
+    fn reach(&mut self, near: &Near, place: usize, headings: Sectors, now: u16) {
+        let mut new = self.open[place] & headings;
+        if new == 0 {
+            return;
+        }
+        self.open[place] &= !new;
+        let Some(number) = near.number(place) else { return };
         while new != 0 {
             let heading = new.trailing_zeros() as usize;
             new &= new - 1;
             self.by_pose[number][heading] = now;
             let direction = heading / 2;
-            self.all.push(Pose { number, heading, direction });
-            self.along[kind(direction)].push(Pose { number, heading, direction });
+            self.all.push(Pose { place, heading, direction });
+            self.along[kind(direction)].push(Pose { place, heading, direction });
             // Headings between two directions take both.
             if heading % 2 == 1 {
                 let direction = (direction + 1) % STEPS.len();
-                self.along[kind(direction)].push(Pose { number, heading, direction });
+                self.along[kind(direction)].push(Pose { place, heading, direction });
             }
         }
     }
 }
 
-/// The step from a point to the one before it in a direction, for a robot that drives ahead or back.
-fn step(direction: usize, is_ahead: bool) -> (i32, i32) {
-    let (dx, dy, _) = STEPS[direction];
-    if is_ahead { (-dx, -dy) } else { (dx, dy) }
-}
-
 /// A pose, and a direction in which the robot drives there.
 #[derive(Clone, Copy, Debug)]
 struct Pose {
-    number: usize,
+    place: usize,
     heading: usize,
     direction: usize,
 }
@@ -280,7 +283,7 @@ struct Pose {
 /// Poses in the order of their times.
 #[derive(Debug)]
 struct Done {
-    /// Number << 9 | heading << 4 | direction.
+    /// Place << 9 | heading << 4 | direction.
     poses: Vec<u32>,
     /// How many there were at the end of each of the last ticks.
     ends: [u32; Self::TICKS],
@@ -306,14 +309,14 @@ impl Done {
     }
 
     #[inline]
-    fn push(&mut self, Pose { number, heading, direction }: Pose) {
-        self.poses.push((number << 9 | heading << 4 | direction) as u32);
+    fn push(&mut self, Pose { place, heading, direction }: Pose) {
+        self.poses.push((place << 9 | heading << 4 | direction) as u32);
     }
 
     #[inline]
     fn get(&self, index: usize) -> Pose {
         let packed = self.poses[index] as usize;
-        Pose { number: packed >> 9, heading: packed >> 4 & 31, direction: packed & 15 }
+        Pose { place: packed >> 9, heading: packed >> 4 & 31, direction: packed & 15 }
     }
 
     /// No more comes at this time.

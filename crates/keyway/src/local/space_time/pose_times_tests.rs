@@ -59,7 +59,9 @@ fn relaxed(
                         if step == (dx, dy) && !motions.can_reverse {
                             continue;
                         }
-                        let Some(from) = near.beside(near.point(number), step) else { continue };
+                        let place = near.places()[number] as usize;
+                        let from = near.number(place.wrapping_add_signed(near.step(step)));
+                        let Some(from) = from else { continue };
                         lower(from, heading, ticks);
                         lower(from, left, ticks.max(motions.turn));
                         lower(from, right, ticks.max(motions.turn));
