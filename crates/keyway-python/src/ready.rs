@@ -113,8 +113,8 @@ impl Ready {
     /// A search of so many cells takes a few tenths of a second at most.
     const QUICK_CELLS: u64 = 1 << 20;
 
-    /// A search of so many nodes takes some hundredths of a second at most.
-    const QUICK_NODES: u64 = 1 << 14;
+    /// A search of so many nodes takes about as long as a thread that starts.
+    const QUICK_NODES: u64 = 1 << 11;
 
     fn new(PlannerParts { grid }: PlannerParts, choice: &Choice, watch: &Watch) -> PyResult<Self> {
         let named = choice.robot.as_deref().map(|name| robot(name, choice.radius_m)).transpose()?;

@@ -249,7 +249,7 @@ def test_ctrl_c_stops_a_single_one_at_once(name: str, single_calls: dict[str, Ca
 
 
 def test_a_search_on_a_large_map_is_the_same_with_and_without_a_thread() -> None:
-    """Who watches has a thread at once; otherwise a search gets one after 16,384 nodes."""
+    """Who watches has a thread at once; otherwise a search gets one after 2,048 nodes."""
     grid = keyway.Map.from_array(np.random.default_rng(7).random((1100, 1100)) < 0.2, resolution=1.0)
     free = grid.free_positions()
     for planner in ("astar", "jps"):
@@ -257,9 +257,9 @@ def test_a_search_on_a_large_map_is_the_same_with_and_without_a_thread() -> None
             alone = keyway.plan(grid, free[0], goal, planner=planner)
             watched = keyway.plan(grid, free[0], goal, planner=planner, progress=lambda done, expected: None)
             assert alone.cost == watched.cost and alone.expanded == watched.expanded
-            assert np.array_equal(alone.path, watched.path)
+            assert np.array_equal(alone.cells, watched.cells) and np.array_equal(alone.xy, watched.xy)
     far = keyway.plan(grid, free[0], free[-1], planner="astar")
-    assert far.expanded > 16384
+    assert far.expanded > 2048
     for budget in (100, 20000, far.expanded - 1):
         with pytest.raises(keyway.BudgetExhausted):
             keyway.plan(grid, free[0], free[-1], planner="astar", budget=budget)
