@@ -281,18 +281,12 @@ struct Pose {
 }
 
 /// Poses in the order of their times.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Done {
     /// Place << 9 | heading << 4 | direction.
     poses: Vec<u32>,
     /// How many there were at the end of each of the last ticks.
-    ends: [u32; Self::TICKS],
-}
-
-impl Default for Done {
-    fn default() -> Self {
-        Self { poses: Vec::new(), ends: [0; Self::TICKS] }
-    }
+    ends: Vec<u32>,
 }
 
 impl Done {
@@ -301,7 +295,8 @@ impl Done {
 
     fn clear(&mut self) {
         self.poses.clear();
-        self.ends.fill(0);
+        self.ends.clear();
+        self.ends.resize(Self::TICKS, 0);
     }
 
     fn count(&self) -> usize {
