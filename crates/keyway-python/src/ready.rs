@@ -146,8 +146,8 @@ impl Ready {
         Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
     }
 
-    /// True if a query is over before somebody could want to stop it: then it needs no thread, which takes longer than most
-    /// queries do.
+    /// True if a query is over before somebody could want to stop it: then it needs no thread,
+    /// which takes longer than most queries do.
     pub(crate) fn is_quick(&self) -> bool {
         self.map.frame().cell_count() <= Self::QUICK_CELLS && self.is_bounded_by_nodes()
     }

@@ -64,8 +64,8 @@ impl Arguments {
         self.namespace.as_deref().unwrap_or("/")
     }
 
-    /// Takes the names of the node out of the rules, then leaves those rules that are for this node:
-    /// they may stand before its name.
+    /// Takes the names of the node out of the rules, then leaves those rules that are for this
+    /// node: they may stand before its name.
     fn take_names(&mut self) -> Result<(), StartError> {
         let names_node =
             |name| matches!(for_node(name), (None | Some(Self::NODE), "__node" | "__name"));

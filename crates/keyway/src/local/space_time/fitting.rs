@@ -12,7 +12,7 @@ use std::ops::Range;
 /// A bit for each of so many headings; it stands for those up to the next ones.
 pub(super) type Sectors = u32;
 
-/// What is on the ground, and what a robot needs there.
+/// The ground, and the room that a robot needs there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ground<'a> {
     pub(super) obstacles: &'a DistanceField,
@@ -22,7 +22,7 @@ pub(super) struct Ground<'a> {
     pub(super) turning_m: f64,
 }
 
-/// What is known of the points near a way, by their numbers.
+/// The headings that fit at the points near a way, by their numbers.
 #[derive(Debug, Default)]
 pub(super) struct Fitting {
     is_known: Vec<bool>,
@@ -52,8 +52,8 @@ impl Fitting {
         Self { is_known: vec![true; free.len()], free, turning, ..Self::default() }
     }
 
-    /// The headings at which the footprint fits somewhere in the square around a point; it must have
-    /// been [looked at](Self::look).
+    /// The headings at which the footprint fits somewhere in the square around a point; it must
+    /// have been [looked at](Self::look).
     pub(super) fn free(&self, number: usize) -> Sectors {
         self.free[number]
     }
@@ -63,7 +63,8 @@ impl Fitting {
         self.turning[number]
     }
 
-    /// Looks at a point, unless that was done, and at those beside it, which share most of the work.
+    /// Looks at a point, unless that was done, and at those beside it, which share most of the
+    /// work.
     #[inline]
     pub(super) fn look(
         &mut self,

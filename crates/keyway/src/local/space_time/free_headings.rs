@@ -27,8 +27,8 @@ pub(super) struct BlockedHeadings {
     made_for: Option<(Footprint, f64, f64)>,
     /// Cells to each side that matter.
     reach: i32,
-    /// For both parities of a place along both axes, by row and column of the place as seen from the
-    /// cell, with columns without entries to both sides.
+    /// For both parities of a place along both axes, by row and column of the place as seen from
+    /// the cell, with columns without entries to both sides.
     tables: [Vec<Headings>; 4],
     /// The reach of the footprint to the left, down, to the right and up \[cells\], by heading.
     reaches: Vec<[f64; 4]>,
@@ -168,8 +168,8 @@ impl BlockedHeadings {
 /// Of a row of places: by the parity of the column, in half cells, and by column of cells.
 type Block = [[Headings; Places::COLUMNS]; 2];
 
-/// Places at which a footprint is tried, in half cells from the lower left corner of the map: 2 x + 1
-/// is the middle of column x.
+/// Places at which a footprint is tried, in half cells from the lower left corner of the map:
+/// 2 x + 1 is the middle of column x.
 #[derive(Debug, Default)]
 pub(super) struct Places {
     xs: Vec<i32>,

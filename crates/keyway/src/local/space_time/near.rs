@@ -49,7 +49,7 @@ impl Near {
         }
     }
 
-    /// How many there are.
+    /// The number of points.
     pub(super) const fn count(&self) -> usize {
         self.places.len()
     }
@@ -59,7 +59,7 @@ impl Near {
         &self.places
     }
 
-    /// How many places there are.
+    /// The number of places.
     pub(super) const fn place_count(&self) -> usize {
         self.numbers.len()
     }

@@ -1,8 +1,8 @@
 //! The least times from places, and from places and headings, to the end of a way.
 //!
-//! There are few lengths of motions, and what is done at a time is kept together. So what is reached
-//! at a time is found from what was done so many ticks before, for each length, and nothing is ever
-//! reached twice: no queue, and a bit for each pose.
+//! There are few lengths of motions, and what is done at a time is kept together. So what is
+//! reached at a time is found from what was done so many ticks before, for each length, and nothing
+//! is ever reached twice: no queue, and a bit for each pose.
 //!
 //! # Source
 //! Dijkstra's search, from the end on; by places with buckets \[Dial1969\].
@@ -70,24 +70,24 @@ pub(super) const STEP_TICKS: f64 = 4.0;
 /// Ticks of a step ahead, by kinds.
 const AHEAD: [u16; KINDS] = [4, 9, 6];
 
-/// Points of the lattice that a robot comes to next, in 16 directions, and ticks for each.
-const STEPS: [(i32, i32, u16); 16] = [
-    (1, 0, 4),
-    (2, 1, 9),
-    (1, 1, 6),
-    (1, 2, 9),
-    (0, 1, 4),
-    (-1, 2, 9),
-    (-1, 1, 6),
-    (-2, 1, 9),
-    (-1, 0, 4),
-    (-2, -1, 9),
-    (-1, -1, 6),
-    (-1, -2, 9),
-    (0, -1, 4),
-    (1, -2, 9),
-    (1, -1, 6),
-    (2, -1, 9),
+/// Points of the lattice that a robot comes to next, in 16 directions.
+const STEPS: [(i32, i32); 16] = [
+    (1, 0),
+    (2, 1),
+    (1, 1),
+    (1, 2),
+    (0, 1),
+    (-1, 2),
+    (-1, 1),
+    (-2, 1),
+    (-1, 0),
+    (-2, -1),
+    (-1, -1),
+    (-1, -2),
+    (0, -1),
+    (1, -2),
+    (1, -1),
+    (2, -1),
 ];
 
 /// Kinds of steps: straight, between, diagonal.
@@ -99,8 +99,8 @@ const fn kind(direction: usize) -> usize {
 }
 
 impl PoseTimes {
-    /// Finds the times to the end of a way of everything near it, in ticks of `tick_s`. Looks at all
-    /// points that are reached.
+    /// Finds the times to the end of a way of everything near it, in ticks. Looks at all points that
+    /// are reached.
     pub(super) fn fill(
         &mut self,
         (near, fitting): (&Near, &mut Fitting),
@@ -145,10 +145,10 @@ impl PoseTimes {
                 continue;
             }
             let place = near.places()[number] as usize;
-            for (dx, dy, ticks) in STEPS {
-                let next = place.wrapping_add_signed(near.step((dx, dy)));
+            for (direction, step) in STEPS.into_iter().enumerate() {
+                let next = place.wrapping_add_signed(near.step(step));
                 let Some(next) = near.number(next) else { continue };
-                let time = now + ticks;
+                let time = now + AHEAD[kind(direction)];
                 if time < self.by_place[next] && fits(next) {
                     self.by_place[next] = time;
                     self.buckets.push(time, next);
@@ -227,8 +227,7 @@ impl PoseTimes {
         (kind, ticks, is_ahead): (usize, u16, bool),
         turn: u16,
     ) {
-        let steps =
-            STEPS.map(|(dx, dy, _)| near.step(if is_ahead { (-dx, -dy) } else { (dx, dy) }));
+        let steps = STEPS.map(|(dx, dy)| near.step(if is_ahead { (-dx, -dy) } else { (dx, dy) }));
         let sides = |own: Sectors| own.rotate_left(1) | own.rotate_right(1);
         let is_slower = ticks >= turn;
         for index in self.along[kind].before(now, ticks) {
@@ -247,7 +246,7 @@ impl PoseTimes {
         }
     }
 
-    /// Those of the headings at a place that are free, and were not reached before, are reached now.
+    /// Reaches those of the headings at a place that are free, and were not reached before.
     #[inline]
     fn reach(&mut self, near: &Near, place: usize, headings: Sectors, now: u16) {
         let mut new = self.open[place] & headings;
@@ -285,7 +284,7 @@ struct Pose {
 struct Done {
     /// Place << 9 | heading << 4 | direction.
     poses: Vec<u32>,
-    /// How many there were at the end of each of the last ticks.
+    /// Their number at the end of each of the last ticks.
     ends: Vec<u32>,
 }
 
@@ -348,7 +347,7 @@ impl Buckets {
         self.count += 1;
     }
 
-    /// What comes first, and its time. At the end it begins anew.
+    /// The place that comes first, and its time. At the end it begins anew.
     fn pop(&mut self) -> Option<(u16, usize)> {
         while self.count > 0 && self.now < END {
             if let Some(what) = self.waiting[usize::from(self.now) % Self::COUNT].pop() {

@@ -53,7 +53,8 @@ fn relaxed(
                 let mut directions = vec![heading / 2, heading.div_ceil(2) % 16];
                 directions.dedup();
                 for direction in directions {
-                    let (dx, dy, ahead) = STEPS[direction];
+                    let (dx, dy) = STEPS[direction];
+                    let ahead = AHEAD[kind(direction)];
                     let back = motions.back[kind(direction)];
                     for (step, ticks) in [((-dx, -dy), ahead), ((dx, dy), back)] {
                         if step == (dx, dy) && !motions.can_reverse {
