@@ -202,13 +202,18 @@ Examples:
   keyway prepare keyway-demo/small_house.yaml --out small_house.prepared
   keyway plan keyway-demo/small_house.yaml --prepared small_house.prepared \
 --start -8.175,-2.825 --goal 8.725,0.875
-  keyway prepare keyway-demo/small_house.yaml --robot small --out inflated.prepared --format json")]
+  keyway prepare keyway-demo/small_house.yaml --robot small --out inflated.prepared --format json
+  keyway prepare keyway-demo/rooms.map --out rooms.prepared --if-it-pays=20000")]
 pub(crate) struct PrepareArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
     /// File to write
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// Prepare only if that takes less time than jps needs for this many paths [default: 100000]
+    #[arg(long, value_name = "PATHS", num_args = 0..=1, require_equals = true)]
+    #[arg(default_missing_value = "100000", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) if_it_pays: Option<u64>,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     #[command(flatten)]

@@ -10,27 +10,48 @@ use indicatif::{ProgressBar, ProgressStyle};
 use keyway::files::StackBase;
 use keyway::map::{LayerConfig, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{Preparation, PrepareProgress, Prepared};
-use keyway_lab::table::{facts, quantity};
+use keyway::plan::{Preparation, PreparationEstimate, PrepareError, PrepareProgress, Prepared};
+use keyway_lab::measure::wall_clock;
+use keyway_lab::table::{facts, paragraph, quantity};
 use serde::Serialize;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
-/// `keyway.prepare/1`.
+/// Preparations that take longer are announced \[s\].
+const LONG_S: f64 = 5.0;
+
+/// `keyway.prepare/2`.
 #[derive(Serialize)]
 struct PrepareReport {
     schema: &'static str,
     map: String,
     map_digest: String,
-    out: String,
+    /// `None` if nobody asked for it.
+    estimate: Option<Estimate>,
+    /// `None` if it does not pay.
+    preparation: Option<Made>,
+    config: LayerConfig,
+    /// The files that were written.
+    files: Vec<String>,
+}
+
+/// The costs of the preparation, before it was made.
+#[derive(Serialize)]
+struct Estimate {
+    #[serde(flatten)]
+    estimate: PreparationEstimate,
+    pays_from_paths: Option<f64>,
+}
+
+/// The costs of the preparation that was made.
+#[derive(Serialize)]
+struct Made {
     #[serde(flatten)]
     preparation: Preparation,
     preparation_ms: f64,
     file_bytes: u64,
-    config: LayerConfig,
-    /// The files that were written.
-    files: Vec<String>,
 }
 
 pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
@@ -47,22 +68,18 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     refuse_to_replace_a_source(&loaded.sources, &args.out, "--out")?;
     refuse_unwritable(&args.out, "--out")?;
     let map = layers(&loaded.grid, config.clone(), &size)?;
-    let begin = Instant::now();
-    let prepared = prepare(&map)?;
-    let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
-    let file_bytes = prepared
-        .save(&args.out)
-        .map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
+    let estimate = estimate(&map, args)?;
+    let pays = estimate.as_ref().is_none_or(|estimate| estimate.pays(args));
+    let preparation = if pays { Some(prepare(&map, &args.out)?) } else { None };
+    let files = preparation.iter().map(|_| args.out.display().to_string());
     let report = PrepareReport {
-        schema: "keyway.prepare/1",
+        schema: "keyway.prepare/2",
         map: args.map.path.display().to_string(),
         map_digest: loaded.digest,
-        out: args.out.display().to_string(),
-        preparation: prepared.preparation(),
-        preparation_ms,
-        file_bytes,
+        files: files.collect(),
+        estimate,
+        preparation,
         config,
-        files: vec![args.out.display().to_string()],
     };
     match args.format {
         Format::Json => crate::json::print(&report)?,
@@ -74,15 +91,37 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-fn prepare(map: &SearchMap) -> Result<Prepared, CliError> {
+/// The costs beforehand, where it depends on them if the map is prepared, or somebody waits.
+fn estimate(map: &SearchMap, args: &PrepareArgs) -> Result<Option<Estimate>, CliError> {
+    if args.if_it_pays.is_none() && !std::io::stderr().is_terminal() {
+        return Ok(None);
+    }
+    let estimate = Prepared::estimate(map, wall_clock()).map_err(refused)?;
+    let estimate = Estimate { pays_from_paths: estimate.pays_from_paths(), estimate };
+    if estimate.pays(args) && estimate.estimate.time_s > LONG_S {
+        eprintln!("{}", estimate.in_words());
+    }
+    Ok(Some(estimate))
+}
+
+fn prepare(map: &SearchMap, out: &Path) -> Result<Made, CliError> {
     let bar = progress_bar();
+    let begin = Instant::now();
     let prepared = Prepared::build_with_progress(map, |PrepareProgress { done, total, .. }| {
         bar.set_length(total);
         bar.set_position(done);
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    prepared.map_err(|error| CliError::new(Kind::Config, error).field("MAP"))
+    let prepared = prepared.map_err(refused)?;
+    let preparation_ms = begin.elapsed().as_secs_f64() * 1e3;
+    let file_bytes =
+        prepared.save(out).map_err(|error| CliError::new(Kind::Output, error).field("--out"))?;
+    Ok(Made { preparation: prepared.preparation(), preparation_ms, file_bytes })
+}
+
+fn refused(error: PrepareError) -> CliError {
+    CliError::new(Kind::Config, error).field("MAP")
 }
 
 /// On a terminal only.
@@ -97,15 +136,48 @@ fn progress_bar() -> ProgressBar {
     }
 }
 
+impl Estimate {
+    /// True if the preparation takes less time than the paths that are to be planned.
+    fn pays(&self, args: &PrepareArgs) -> bool {
+        let paths = args.if_it_pays.map(|paths| paths as f64);
+        paths.zip(self.pays_from_paths).is_none_or(|(paths, from)| paths >= from)
+    }
+
+    fn in_words(&self) -> String {
+        let PreparationEstimate { time_s, memory_bytes, peak_bytes, .. } = self.estimate;
+        let [kept, peak] = [memory_bytes, peak_bytes].map(megabytes);
+        let costs = format!(
+            "the preparation takes about {time_s:.0} s, and {kept} of memory ({peak} meanwhile)"
+        );
+        match self.estimate.jps_s.zip(self.pays_from_paths) {
+            Some((jps_s, paths)) => format!(
+                "{costs}; jps finds a path in {:.3} ms: it cannot pay for less than {paths:.0} paths",
+                jps_s * 1e3,
+            ),
+            None => costs,
+        }
+    }
+}
+
+fn megabytes(bytes: u64) -> String {
+    quantity(Some(bytes as f64 / 1e6), 3, "MB")
+}
+
 fn table(report: &PrepareReport) -> String {
-    let Preparation { corner_cells, edges, label_entries, memory_bytes, .. } = report.preparation;
-    let megabytes = |bytes: f64| quantity(Some(bytes / 1e6), 3, "MB");
-    facts([
-        ("file", megabytes(report.file_bytes as f64)),
-        ("memory", megabytes(memory_bytes as f64)),
-        ("time", quantity(Some(report.preparation_ms), 1, "ms")),
-        ("corner cells", corner_cells.to_string()),
-        ("edges", edges.to_string()),
-        ("label entries", label_entries.to_string()),
-    ])
+    match (&report.preparation, &report.estimate) {
+        (Some(made), _) => {
+            let Preparation { corner_cells, edges, label_entries, memory_bytes, .. } =
+                made.preparation;
+            facts([
+                ("file", megabytes(made.file_bytes)),
+                ("memory", megabytes(memory_bytes as u64)),
+                ("time", quantity(Some(made.preparation_ms), 1, "ms")),
+                ("corner cells", corner_cells.to_string()),
+                ("edges", edges.to_string()),
+                ("label entries", label_entries.to_string()),
+            ])
+        }
+        (None, Some(estimate)) => paragraph(&format!("not prepared: {}", estimate.in_words())),
+        (None, None) => String::new(),
+    }
 }

@@ -9,22 +9,29 @@ fn prepare_and_plan() {
     let line = "prepare small_house.yaml --radius 0.2 --out house.prepared --format json";
     let report = keyway(folder.path(), line).expect_code(0).json();
     let bytes = std::fs::read(folder.path().join("house.prepared")).unwrap();
-    assert_eq!(report["file_bytes"], bytes.len());
+    let made = &report["preparation"];
+    assert_eq!(made["file_bytes"], bytes.len());
     expect_members(
         &report,
         &[
-            ("schema", |v| v == "keyway.prepare/1"),
+            ("schema", |v| v == "keyway.prepare/2"),
             ("map", |v| v == "small_house.yaml"),
             ("map_digest", Value::is_string),
-            ("out", |v| v == "house.prepared"),
+            ("estimate", Value::is_null),
+            ("preparation", Value::is_object),
+            ("config", |v| v["clearance_m"] == 0.2),
+            ("files", |v| v[0] == "house.prepared"),
+        ],
+    );
+    expect_members(
+        made,
+        &[
             ("corner_cells", |v| v.as_u64().is_some_and(|count| count > 10)),
             ("edges", |v| v.as_u64().is_some_and(|count| count > 10)),
             ("label_entries", |v| v.as_u64().is_some_and(|count| count > 10)),
             ("memory_bytes", |v| v.as_u64().is_some_and(|bytes| bytes > 500 * 500 / 8)),
             ("preparation_ms", Value::is_f64),
             ("file_bytes", Value::is_u64),
-            ("config", |v| v["clearance_m"] == 0.2),
-            ("files", |v| v[0] == "house.prepared"),
         ],
     );
     let plan = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875 --format json";
@@ -43,6 +50,37 @@ fn prepare_and_plan() {
     let error = refused.expect_code(2).json();
     assert_eq!((&error["kind"], &error["field"]), (&"input".into(), &"--prepared".into()));
     assert!(error["message"].as_str().unwrap().contains("clearance"), "{error}");
+}
+
+#[test]
+fn only_if_it_pays() {
+    let folder = folder();
+    let line = "prepare small_house.yaml --radius 0.2 --out house.prepared";
+    let run = |options: &str| keyway(folder.path(), &format!("{line} {options}")).expect_code(0);
+    let report = run("--if-it-pays=1 --format json").json();
+    assert!(report["preparation"].is_null() && report["files"] == serde_json::json!([]));
+    assert!(!folder.path().join("house.prepared").exists());
+    let estimate = &report["estimate"];
+    expect_members(
+        estimate,
+        &[
+            ("corner_cells", |v| v.as_u64().is_some_and(|count| count > 10)),
+            ("label_entries", |v| v.as_u64().is_some_and(|count| count > 10)),
+            ("memory_bytes", Value::is_u64),
+            ("peak_bytes", Value::is_u64),
+            ("time_s", |v| v.as_f64().is_some_and(|time| time > 0.0)),
+            ("jps_s", |v| v.as_f64().is_some_and(|time| time > 0.0)),
+            ("pays_from_paths", |v| v.as_f64().is_some_and(|paths| paths > 1.0)),
+        ],
+    );
+    let words = run("--if-it-pays=1").out;
+    assert!(words.starts_with("not prepared: the preparation takes about"), "{words}");
+    let many = run("--if-it-pays=10000000 --format json").json();
+    assert_eq!(many["files"][0], "house.prepared");
+    let (before, made) = (&many["estimate"], &many["preparation"]);
+    assert_eq!((before["corner_cells"].as_u64()), (made["corner_cells"].as_u64()));
+    assert!(run("--if-it-pays --format json").json()["estimate"].is_object());
+    keyway(folder.path(), &format!("{line} --if-it-pays=0")).expect_code(2);
 }
 
 #[test]

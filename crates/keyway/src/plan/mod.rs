@@ -74,7 +74,7 @@ pub use prepare_progress::PrepareProgress;
 pub use prepared::PreparedFileError;
 #[cfg(feature = "formats")]
 pub use prepared::PreparedFormatError;
-pub use prepared::{Preparation, PrepareError, Prepared, PreparedConfig};
+pub use prepared::{Preparation, PreparationEstimate, PrepareError, Prepared, PreparedConfig};
 pub use ratio_astar::{RatioAStar, RatioAStarConfig, SearchEnd};
 pub use rrt::{Rrt, RrtConfig};
 pub use shortest::shortest_line;

@@ -19,18 +19,11 @@ pub(super) struct Edge {
 /// a way, or can be put together from such ways.
 pub(super) fn corner_graph(map: &SearchMap, corners: &Corners) -> Vec<Vec<Edge>> {
     let scanner = Scanner::new(map, corners);
-    let edges = |cell| {
-        let mut edges = Vec::new();
-        scanner.in_sight(cell, |at, cost| {
-            edges.push(Edge { to: corners.number(at) as u32, key: cost.key() });
-        });
-        edges
-    };
-    corners.iter().map(edges).collect()
+    corners.iter().map(|corner| scanner.edges(corner)).collect()
 }
 
 /// Scans that end at any corner cell, from whichever side they come.
-struct Scanner<'m> {
+pub(super) struct Scanner<'m> {
     corners: &'m Corners,
     cramped: &'m BitGrid,
     /// Blocked and corner cells; and the same with columns and rows exchanged.
@@ -46,11 +39,20 @@ struct Scan {
 }
 
 impl<'m> Scanner<'m> {
-    fn new(map: &'m SearchMap, corners: &'m Corners) -> Self {
+    pub(super) fn new(map: &'m SearchMap, corners: &'m Corners) -> Self {
         let mut stops = map.blocked().clone();
         stops.merge(corners.cells());
         let stops_transposed = stops.transposed();
         Self { corners, cramped: &map.stops().cramped, stops, stops_transposed }
+    }
+
+    /// The edges of a corner cell: see [`corner_graph`].
+    pub(super) fn edges(&self, corner: Cell) -> Vec<Edge> {
+        let mut edges = Vec::new();
+        self.in_sight(corner, |at, cost| {
+            edges.push(Edge { to: self.corners.number(at) as u32, key: cost.key() });
+        });
+        edges
     }
 
     /// Calls `found` for every corner cell that is directly reachable, with the way's length.

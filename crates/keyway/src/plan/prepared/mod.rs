@@ -36,6 +36,7 @@
 //! nothing once warm. A budget counts labels that are read.
 
 mod corners;
+mod estimate;
 #[cfg(feature = "files")]
 mod file;
 #[cfg(feature = "formats")]
@@ -53,6 +54,7 @@ use super::parameters::{BoxedPlanner, PlannerParameters};
 use super::{GlobalPlanner, Plan, PlanCost, PlanError, PrepareProgress, Stop};
 use crate::map::{Cell, Connectivity, DiagonalEvents, SearchMap};
 use crate::search::{Observer, Query, Workspace};
+pub use estimate::PreparationEstimate;
 #[cfg(feature = "files")]
 pub use file::PreparedFileError;
 #[cfg(feature = "formats")]
@@ -123,14 +125,8 @@ impl Prepared {
         map: &SearchMap,
         mut progress: impl FnMut(PrepareProgress) -> ControlFlow<()>,
     ) -> Result<Self, PrepareError> {
-        if map.penalised().is_some() {
-            return Err(PrepareError::NeedsUniformCost);
-        }
-        let corners = Corners::new(map);
+        let corners = Self::corners_of(map)?;
         let corner_cells = corners.count() as u64;
-        if corner_cells > labels::MAX_HUBS {
-            return Err(PrepareError::TooManyCorners { corner_cells, limit: labels::MAX_HUBS });
-        }
         let mut report = |done: usize| match progress(PrepareProgress {
             done: done as u64,
             total: 2 * corner_cells,
@@ -148,6 +144,19 @@ impl Prepared {
         let edges = graph.iter().map(Vec::len).sum::<usize>() as u64 / 2;
         let (fingerprint, diagonals) = (map.fingerprint(), map.diagonal_events());
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })
+    }
+
+    /// The corner cells of a map that can be prepared, as far as they tell.
+    fn corners_of(map: &SearchMap) -> Result<Corners, PrepareError> {
+        if map.penalised().is_some() {
+            return Err(PrepareError::NeedsUniformCost);
+        }
+        let corners = Corners::new(map);
+        let corner_cells = corners.count() as u64;
+        if corner_cells > labels::MAX_HUBS {
+            return Err(PrepareError::TooManyCorners { corner_cells, limit: labels::MAX_HUBS });
+        }
+        Ok(corners)
     }
 
     /// The outcome of the preparation.
