@@ -1,15 +1,16 @@
-//! What a map file says.
+//! The cells of a map, as its file says.
 
 use super::packed::packed;
 use super::{BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyThresholds};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A change of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edit {
     /// The cell.
     pub cell: Cell,
-    /// What it is from now on.
+    /// Its state from now on.
     pub state: CellState,
 }
 
@@ -22,7 +23,7 @@ pub struct Edit {
 pub struct OccupancyGrid {
     frame: GridFrame,
     occupied: BitGrid,
-    unknown: BitGrid,
+    unknown: Arc<BitGrid>,
     values: Option<Values>,
     revision: u64,
 }
@@ -51,7 +52,7 @@ impl TryFrom<GridParts> for OccupancyGrid {
         if !(fits(&occupied) && fits(&unknown) && has_all) {
             return Err("the cells of a map are not as many as its frame has");
         }
-        Ok(Self { frame, occupied, unknown, values, revision })
+        Ok(Self { frame, occupied, unknown: Arc::new(unknown), values, revision })
     }
 }
 
@@ -69,13 +70,17 @@ impl OccupancyGrid {
 
     /// A grid of free cells.
     pub fn all_free(frame: GridFrame) -> Self {
-        let bits = BitGrid::new(frame.width(), frame.height(), false);
-        Self { frame, occupied: bits.clone(), unknown: bits, values: None, revision: 0 }
+        let [occupied, unknown] = no_bits(frame);
+        Self::of_bits(frame, occupied, unknown)
+    }
+
+    fn of_bits(frame: GridFrame, occupied: BitGrid, unknown: BitGrid) -> Self {
+        Self { frame, occupied, unknown: Arc::new(unknown), values: None, revision: 0 }
     }
 
     /// A grid whose cells are given by `state`.
     pub fn from_fn(frame: GridFrame, mut state: impl FnMut(Cell) -> CellState) -> Self {
-        let mut grid = Self::all_free(frame);
+        let mut grids = no_bits(frame);
         for y in 0..frame.height() as i32 {
             let (mut occupied, mut unknown) = (0, 0);
             for x in 0..frame.width() as i32 {
@@ -87,13 +92,13 @@ impl OccupancyGrid {
                     CellState::Unknown => unknown |= 1_u64 << (bit % 64),
                 }
                 if bit % 64 == 63 || bit == frame.width() as usize {
-                    grid.occupied.set_word(y, bit / 64, occupied);
-                    grid.unknown.set_word(y, bit / 64, unknown);
+                    write_word(&mut grids, y, bit / 64, [occupied, unknown]);
                     (occupied, unknown) = (0, 0);
                 }
             }
         }
-        grid
+        let [occupied, unknown] = grids;
+        Self::of_bits(frame, occupied, unknown)
     }
 
     /// A grid with a byte for every cell, whose states `state` gives; `row` gives the bytes of row
@@ -103,7 +108,7 @@ impl OccupancyGrid {
         row: impl Fn(usize) -> &'a [u8],
         state: impl Fn(u8) -> CellState + Copy,
     ) -> Self {
-        let mut grid = Self::all_free(frame);
+        let mut grids = no_bits(frame);
         for y in 0..frame.height() as usize {
             let bytes = row(y);
             debug_assert_eq!(bytes.len(), frame.width() as usize);
@@ -111,11 +116,12 @@ impl OccupancyGrid {
             let (early, rest) = bytes.split_at(bytes.len().min(63));
             for (word, bytes) in std::iter::once(early).chain(rest.chunks(64)).enumerate() {
                 let bits = |of| packed(bytes, |byte| state(byte) == of) << u32::from(word == 0);
-                grid.occupied.set_word(y as i32, word, bits(CellState::Occupied));
-                grid.unknown.set_word(y as i32, word, bits(CellState::Unknown));
+                let states = [CellState::Occupied, CellState::Unknown];
+                write_word(&mut grids, y as i32, word, states.map(bits));
             }
         }
-        grid
+        let [occupied, unknown] = grids;
+        Self::of_bits(frame, occupied, unknown)
     }
 
     /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom,
@@ -176,7 +182,7 @@ impl OccupancyGrid {
     /// occupied. Meant for tests and examples.
     ///
     /// # Panics
-    /// When the rows are empty or differ in length.
+    /// If the rows are empty or differ in length.
     pub fn from_ascii(rows: &[&str]) -> Self {
         let width = rows.first().map_or(0, |row| row.len());
         assert!(rows.iter().all(|row| row.len() == width), "rows differ in length");
@@ -191,7 +197,7 @@ impl OccupancyGrid {
         })
     }
 
-    /// Where the grid lies.
+    /// Size and place of the grid.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
@@ -202,7 +208,12 @@ impl OccupancyGrid {
     }
 
     /// Unknown cells.
-    pub const fn unknown(&self) -> &BitGrid {
+    pub fn unknown(&self) -> &BitGrid {
+        &self.unknown
+    }
+
+    /// Unknown cells, to be shared until either side changes one.
+    pub(super) const fn shared_unknown(&self) -> &Arc<BitGrid> {
         &self.unknown
     }
 
@@ -217,7 +228,7 @@ impl OccupancyGrid {
         self.values.as_ref().map(|values| values.thresholds)
     }
 
-    /// How often [`Self::apply`] has changed something.
+    /// The number of calls of [`Self::apply`] that have changed something.
     pub const fn revision(&self) -> u64 {
         self.revision
     }
@@ -258,9 +269,34 @@ impl OccupancyGrid {
 
     fn write(&mut self, cell: Cell, state: CellState) -> bool {
         let occupied = self.occupied.set(cell, state == CellState::Occupied);
-        let unknown = self.unknown.set(cell, state == CellState::Unknown);
+        let unknown = set_shared(&mut self.unknown, cell, state == CellState::Unknown);
         occupied || unknown
     }
+}
+
+/// The bits of no occupied and of no unknown cell. Their memory is touched where a bit is set.
+fn no_bits(frame: GridFrame) -> [BitGrid; 2] {
+    std::array::from_fn(|_| BitGrid::new(frame.width(), frame.height(), false))
+}
+
+/// Writes a word of each grid that has no bit in it yet.
+fn write_word(grids: &mut [BitGrid; 2], y: i32, word: usize, bits: [u64; 2]) {
+    for (grid, bits) in grids.iter_mut().zip(bits).filter(|(_, bits)| *bits != 0) {
+        grid.set_word(y, word, bits);
+    }
+}
+
+/// Sets a bit of a grid that others may share; they keep what they have. True if it was different.
+#[inline]
+pub(super) fn set_shared(bits: &mut Arc<BitGrid>, cell: Cell, value: bool) -> bool {
+    bits.get(cell) != value && copied_and_set(bits, cell, value)
+}
+
+/// Apart from the test above, which nearly always says that there is nothing to do.
+#[cold]
+#[inline(never)]
+fn copied_and_set(bits: &mut Arc<BitGrid>, cell: Cell, value: bool) -> bool {
+    Arc::make_mut(bits).set(cell, value)
 }
 
 #[cfg(test)]

@@ -9,10 +9,12 @@ use crate::map::layers::dilation::{BlockedNeighbourhood, CLEARANCE_TOLERANCE};
 use crate::map::layers::edited::{EditedWindow, EditedWindows};
 use crate::map::layers::fingerprint::LazyFingerprint;
 use crate::map::layers::free_ends::FreeEnds;
+use crate::map::occupancy::set_shared;
 use crate::map::{
     BitGrid, Cell, CellIndex, CellState, CellWindow, Clearance, Components, Connectivity, Edit,
     GridFrame, LayerConfig, OccupancyGrid, StopBitmaps, UnknownPolicy,
 };
+use std::sync::Arc;
 
 /// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by
 /// row and transposed, each with a blocked border around the map).
@@ -29,7 +31,8 @@ pub struct SearchMap {
     pub(in crate::map) neighbourhoods: Neighbourhoods,
     neighbourhood: BlockedNeighbourhood,
     obstacles: BitGrid,
-    unknown: BitGrid,
+    /// Shared with the grid, until one of them changes.
+    unknown: Arc<BitGrid>,
     blocked: BitGrid,
     blocked_transposed: BitGrid,
     stops: StopBitmaps,
@@ -66,7 +69,7 @@ impl SearchMap {
             stops: StopBitmaps::new(&blocked, &blocked_transposed),
             diagonals: LazyDiagonals::default(),
             free_ends: FreeEnds::new(config.free_ends_m / frame.resolution_m()),
-            unknown: grid.unknown().clone(),
+            unknown: Arc::clone(grid.shared_unknown()),
             revision: grid.revision(),
             frame,
             config,
@@ -129,12 +132,12 @@ impl SearchMap {
     }
 
     /// Unknown cells, whatever the policy for them.
-    pub const fn unknown(&self) -> &BitGrid {
+    pub fn unknown(&self) -> &BitGrid {
         &self.unknown
     }
 
     /// Cells into which a step costs more, if any.
-    pub const fn penalised(&self) -> Option<&BitGrid> {
+    pub fn penalised(&self) -> Option<&BitGrid> {
         match self.config.unknown {
             UnknownPolicy::Penalised => Some(&self.unknown),
             UnknownPolicy::Blocked | UnknownPolicy::Free => None,
@@ -211,10 +214,11 @@ impl SearchMap {
         self.components.get(&self.blocked, connectivity)
     }
 
-    /// Memory of all layers, and of the components that are known, on the heap \[bytes\].
+    /// Memory of all layers, and of the components that are known, on the heap \[bytes\];
+    /// that of unknown cells may be shared with the grid.
     pub fn memory_bytes(&self) -> usize {
         let StopBitmaps { east, west, north, south, cramped } = &self.stops;
-        let layers = [&self.obstacles, &self.unknown, &self.blocked, &self.blocked_transposed];
+        let layers = [&self.obstacles, &*self.unknown, &self.blocked, &self.blocked_transposed];
         let layers = layers.into_iter().chain([east, west, north, south, cramped]);
         layers.map(BitGrid::memory_bytes).sum::<usize>()
             + self.components.memory_bytes()
@@ -261,7 +265,7 @@ impl SearchMap {
         let (mut changed, mut edited) = (false, EditedWindows::default());
         let frame = self.frame;
         for edit in edits.iter().filter(|edit| frame.contains(edit.cell)) {
-            changed |= self.unknown.set(edit.cell, edit.state == CellState::Unknown);
+            changed |= set_shared(&mut self.unknown, edit.cell, edit.state == CellState::Unknown);
             let obstacle = match edit.state {
                 CellState::Occupied => true,
                 CellState::Unknown => self.config.unknown == UnknownPolicy::Blocked,

@@ -52,6 +52,25 @@ fn closed_cells_are_blocked_until_they_are_opened() {
 }
 
 #[test]
+fn unknown_cells_are_shared_with_the_grid_until_one_changes() {
+    let mut grid = OccupancyGrid::from_ascii(&["#.?", "..."]);
+    let (layers, cell) = (LayerConfig::default(), Cell::new(1, 0));
+    let mut map = SearchMap::new(&grid, layers.clone()).unwrap();
+    let is_shared =
+        |map: &SearchMap, grid: &OccupancyGrid| std::ptr::eq(map.unknown(), grid.unknown());
+    map.apply(&[Edit { cell, state: CellState::Occupied }]);
+    assert!(is_shared(&map, &grid), "no unknown cell has changed");
+    map.apply(&[Edit { cell, state: CellState::Unknown }]);
+    assert!(!is_shared(&map, &grid));
+    assert_eq!((map.state(cell), grid.state(cell)), (CellState::Unknown, Some(CellState::Free)));
+    let map = SearchMap::new(&grid, layers).unwrap();
+    assert!(is_shared(&map, &grid));
+    grid.apply(&[Edit { cell: Cell::new(2, 1), state: CellState::Free }]);
+    assert!(!is_shared(&map, &grid));
+    assert_eq!(map.state(Cell::new(2, 1)), CellState::Unknown);
+}
+
+#[test]
 fn names_the_bad_field() {
     let grid = OccupancyGrid::from_ascii(&["."]);
     let error = SearchMap::new(&grid, with_clearance(f64::NAN)).unwrap_err();
