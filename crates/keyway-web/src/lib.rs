@@ -1,0 +1,46 @@
+//! Keyway for a page in a browser, as one module of WebAssembly without imports.
+//!
+//! A page holds a [`Page`]: it opens maps from bytes, plans on them, shows searches step by step
+//! and drives scenes. Every question is a [`Message`] whose head is JSON, and so is every answer;
+//! what is long, such as the cells of a map or the events of a search, comes as parts of bytes
+//! beside the head. No file is read and no clock: times in reports are `null`, and equal questions
+//! have equal answers, in a browser as on any other machine.
+//!
+//! ```
+//! use keyway_web::{Message, Page};
+//!
+//! let mut page = Page::default();
+//! let map = b"type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n".to_vec();
+//! let open = Message::new(r#"{"ask": "open_map", "name": "small.map"}"#).with("small.map", map);
+//! let opened = page.answer(&open);
+//! assert_eq!(opened.part("cells"), Some(&[0, 1, 0, 0, 0, 0][..]));
+//! let plan = r#"{"ask": "plan", "planner": "jps", "start": [0.5, 0.5], "goal": [2.5, 0.5]}"#;
+//! let planned = page.answer(&Message::new(plan));
+//! assert!(planned.head.contains(r#""outcome":"found""#), "{}", planned.head);
+//! ```
+//!
+//! | question | answer | parts |
+//! |---|---|---|
+//! | [`names`](names::Names) | the names of all that can be chosen | |
+//! | [`open_map`](map::OpenMap) | facts about the map | `cells` |
+//! | [`edit_map`](map::EditMap) | the number of cells that changed | |
+//! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed` |
+//! | [`search`](route::Plan) | events and path of the search | `events`, `path` |
+//! | [`drive`](drive::Drive) | the report `keyway.navigate/4` of each robot, and their cycles | `poses`, `hits`, `sensed` |
+//!
+//! An answer to what cannot be done is `{"error": {"kind", "message", "field"}}`; the page keeps
+//! what it had.
+
+pub mod drive;
+mod error;
+#[cfg(target_family = "wasm")]
+mod exports;
+pub mod map;
+mod message;
+pub mod names;
+mod page;
+pub mod route;
+
+pub use error::{Kind, PageError};
+pub use message::{Message, MessageError};
+pub use page::Page;

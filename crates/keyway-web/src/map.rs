@@ -1,0 +1,152 @@
+//! The map of a page.
+
+use crate::error::{Kind, PageError};
+use crate::message::{Message, json};
+use keyway::file_error::ReadError;
+use keyway::geometry::Pose;
+use keyway::map::formats::{ImagePlacement, LoadedMap, digest, map_from_bytes};
+use keyway::map::{Cell, CellState, Edit, OccupancyGrid};
+use keyway_sim::report::MapSource;
+use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// `{"ask": "open_map", "name", "resolution_m"}`: the parts are the map's files by their names, the
+/// one called `name` and the image that it may name.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenMap {
+    /// The file of the map: `.yaml`, `.map`, `.png` or `.pgm`.
+    pub name: String,
+    /// Side of a cell \[m\], for a map whose file does not say it.
+    pub resolution_m: Option<f64>,
+}
+
+/// Facts about a map. The part `cells` of the answer has a byte for each cell, row by row from the
+/// bottom: 0 free, 1 occupied, 2 unknown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MapFacts {
+    /// Its name.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Side of a cell \[m\].
+    pub resolution_m: f64,
+    /// Pose of the lower left corner, `[x_m, y_m, yaw_rad]`.
+    pub origin: [f64; 3],
+    /// Digest of the map, as in reports.
+    pub digest: String,
+    /// Strange things in its files.
+    pub warnings: Vec<String>,
+}
+
+/// `{"ask": "edit_map", "cells": [[x, y], ..], "state": "occupied"}`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EditMap {
+    /// Columns and rows from the lower left corner; those beside the map are ignored.
+    pub cells: Vec<(i32, i32)>,
+    /// The state of the cells from now on.
+    pub state: State,
+}
+
+/// The state of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// Free.
+    Free,
+    /// Occupied.
+    Occupied,
+    /// Unknown.
+    Unknown,
+}
+
+/// The number of cells that an edit has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Edited {
+    /// The number.
+    pub changed: usize,
+}
+
+/// A map that is open.
+#[derive(Clone, Debug)]
+pub(crate) struct Opened {
+    pub(crate) grid: OccupancyGrid,
+    pub(crate) source: MapSource,
+}
+
+impl Opened {
+    /// The error of a question about a map while none is open.
+    pub(crate) fn none() -> PageError {
+        PageError::new(Kind::Usage, "no map is open, expected `open_map` before").field("ask")
+    }
+}
+
+impl From<LoadedMap> for Opened {
+    fn from(loaded: LoadedMap) -> Self {
+        Self { source: MapSource::from(&loaded), grid: loaded.grid }
+    }
+}
+
+/// Reads a map from the parts of a message.
+pub(crate) fn open(ask: &OpenMap, message: &Message) -> Result<(Opened, Message), PageError> {
+    let bytes = part(message, Path::new(&ask.name))
+        .map_err(|error| PageError::new(Kind::Input, error).field("name"))?;
+    let image = |name: &Path| part(message, name).map(<[u8]>::to_vec);
+    let placement = ask
+        .resolution_m
+        .map(|resolution_m| ImagePlacement { resolution_m, origin: Pose::default() });
+    let loaded = map_from_bytes(Path::new(&ask.name), bytes, image, placement)
+        .map_err(|error| PageError::new(Kind::Input, error).field("name"))?;
+    let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
+    let opened = Opened::from(loaded);
+    let answer = facts(&opened, warnings);
+    Ok((opened, answer))
+}
+
+fn part<'m>(message: &'m Message, name: &Path) -> Result<&'m [u8], ReadError> {
+    let found = name.to_str().and_then(|name| message.part(name));
+    let missing =
+        || ReadError::System { path: name.to_owned(), reason: ErrorKind::NotFound.into() };
+    found.ok_or_else(missing)
+}
+
+/// Facts about a map, and its cells.
+pub(crate) fn facts(opened: &Opened, warnings: Vec<String>) -> Message {
+    let Opened { grid, source } = opened;
+    let frame = grid.frame();
+    let Pose { x, y, theta } = frame.origin();
+    let facts = MapFacts {
+        name: source.name.clone(),
+        width: frame.width(),
+        height: frame.height(),
+        resolution_m: frame.resolution_m(),
+        origin: [x, y, theta],
+        digest: digest(grid),
+        warnings,
+    };
+    let state = |cell: Cell| match grid.state(cell) {
+        Some(CellState::Occupied) => 1,
+        Some(CellState::Unknown) => 2,
+        Some(CellState::Free) | None => 0,
+    };
+    Message::new(json(&facts)).with("cells", frame.cells().map(state).collect())
+}
+
+/// Changes cells of the map.
+pub(crate) fn edit(ask: &EditMap, opened: &mut Opened) -> (Edited, Vec<Edit>) {
+    let state = match ask.state {
+        State::Free => CellState::Free,
+        State::Occupied => CellState::Occupied,
+        State::Unknown => CellState::Unknown,
+    };
+    let is_other = |cell: &Cell| opened.grid.state(*cell).is_some_and(|known| known != state);
+    let cells = ask.cells.iter().map(|&(x, y)| Cell::new(x, y)).filter(is_other);
+    let edits: Vec<Edit> = cells.map(|cell| Edit { cell, state }).collect();
+    opened.grid.apply(&edits);
+    opened.source.digest = digest(&opened.grid);
+    (Edited { changed: edits.len() }, edits)
+}
