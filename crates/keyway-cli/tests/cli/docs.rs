@@ -60,7 +60,7 @@ fn every_member_of_every_report_is_documented() {
         "bench grid wrong.scen",
         "bench scale walled.map --sides 20 --planner jps",
         "map info rooms.map",
-        "prepare rooms.map --out rooms.prepared",
+        "prepare rooms.map --out rooms.prepared --if-it-pays=1000000",
         "list dwa",
         "batch small_house.toml --out batch",
         "batch merge batch --out merged",

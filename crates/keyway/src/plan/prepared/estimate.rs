@@ -66,7 +66,7 @@ impl Prepared {
     /// moment.
     ///
     /// # Errors
-    /// When the map cannot be prepared, as far as the patches show.
+    /// If the map cannot be prepared, as far as the patches show.
     pub fn estimate(
         map: &SearchMap,
         clock: impl Fn() -> f64,
