@@ -183,7 +183,7 @@ impl EpisodeObserver for Film {
 fn hits<R: Ranges>(pose: Pose, scan: &Scan<R>) -> Vec<Point> {
     let end = |beam| {
         let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };
-        let (sin, cos) = scan.bearing_rad(beam).sin_cos();
+        let (sin, cos) = libm::sincos(scan.bearing_rad(beam));
         Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
     };
     (0..scan.beams()).filter_map(end).collect()

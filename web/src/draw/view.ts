@@ -1,0 +1,281 @@
+/** The canvas: places of the world on the screen, and back. */
+
+import type { MapFacts } from "../engine/types";
+import type { Pair } from "../state";
+
+export interface Colors {
+    ground: string;
+    wall: string;
+    unknown: string;
+    line: string;
+    smoothed: string;
+    start: string;
+    goal: string;
+    expanded: string;
+    generated: string;
+    scanned: string;
+    robot: string;
+    hit: string;
+    sensed: string;
+    disc: string;
+}
+
+export class View {
+    readonly context: CanvasRenderingContext2D;
+    private scale = 1;
+    private middle: Pair = [0, 0];
+    private picture: HTMLCanvasElement | null = null;
+    /** Lowest and highest column and row of what is not unknown. */
+    private known: [Pair, Pair] = [
+        [0, 0],
+        [0, 0],
+    ];
+    facts: MapFacts | null = null;
+
+    constructor(readonly canvas: HTMLCanvasElement) {
+        const context = canvas.getContext("2d");
+        if (!context) throw new Error("this browser has no 2D canvas");
+        this.context = context;
+    }
+
+    get colors(): Colors {
+        const style = getComputedStyle(document.documentElement);
+        const color = (name: string) => style.getPropertyValue(`--${name}`).trim();
+        const names = [
+            "ground",
+            "wall",
+            "unknown",
+            "line",
+            "smoothed",
+            "start",
+            "goal",
+            "expanded",
+        ];
+        const more = ["generated", "scanned", "robot", "hit", "sensed", "disc"];
+        return Object.fromEntries(
+            [...names, ...more].map((name) => [name, color(name)]),
+        ) as unknown as Colors;
+    }
+
+    /** A new map, which is shown whole. */
+    show(facts: MapFacts, cells: Uint8Array): void {
+        this.facts = facts;
+        this.known = knownCells(facts, cells);
+        this.paint(cells);
+        this.fit();
+    }
+
+    /** Draws the cells anew, in the colours of now. */
+    paint(cells: Uint8Array): void {
+        const facts = this.facts;
+        if (!facts) return;
+        const picture = document.createElement("canvas");
+        [picture.width, picture.height] = [facts.width, facts.height];
+        const context = picture.getContext("2d");
+        if (!context) return;
+        const { ground, wall, unknown } = this.colors;
+        const colors = [ground, wall, unknown].map((color) => rgb(context, color));
+        const image = context.createImageData(facts.width, facts.height);
+        for (let y = 0; y < facts.height; y++) {
+            for (let x = 0; x < facts.width; x++) {
+                const color = colors[cells[y * facts.width + x] ?? 0] ?? [0, 0, 0];
+                // Rows come from the bottom.
+                image.data.set([...color, 255], 4 * ((facts.height - 1 - y) * facts.width + x));
+            }
+        }
+        context.putImageData(image, 0, 0);
+        this.picture = picture;
+    }
+
+    /** Shows the whole map. */
+    fit(): void {
+        const facts = this.facts;
+        if (!facts) return;
+        const corners = this.corners(facts);
+        const [xs, ys] = [corners.map(([x]) => x), corners.map(([, y]) => y)];
+        const [low, high] = [
+            [Math.min(...xs), Math.min(...ys)],
+            [Math.max(...xs), Math.max(...ys)],
+        ];
+        const [width, height] = [high[0]! - low[0]!, high[1]! - low[1]!];
+        this.middle = [low[0]! + width / 2, low[1]! + height / 2];
+        this.scale = 0.98 * Math.min(this.canvas.width / width, this.canvas.height / height);
+    }
+
+    private corners(facts: MapFacts): Pair[] {
+        const [low, high] = this.known.map(([x, y]) => [
+            x * facts.resolution_m,
+            y * facts.resolution_m,
+        ]);
+        const [x, y, x2, y2] = [low![0]!, low![1]!, high![0]!, high![1]!];
+        return (
+            [
+                [x, y],
+                [x2, y],
+                [x, y2],
+                [x2, y2],
+            ] as Pair[]
+        ).map((at) => placed(facts, at));
+    }
+
+    /** Makes the canvas as large as its box. */
+    resize(): void {
+        const { clientWidth, clientHeight } = this.canvas;
+        const ratio = window.devicePixelRatio || 1;
+        this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
+        this.canvas.height = Math.max(1, Math.round(clientHeight * ratio));
+        this.fit();
+    }
+
+    zoom(factor: number, at: Pair): void {
+        const before = this.toWorld(at);
+        this.scale *= factor;
+        const after = this.toWorld(at);
+        this.middle = [
+            this.middle[0] + before[0] - after[0],
+            this.middle[1] + before[1] - after[1],
+        ];
+    }
+
+    pan([x, y]: Pair): void {
+        this.middle = [this.middle[0] - x / this.scale, this.middle[1] + y / this.scale];
+    }
+
+    toScreen([x, y]: Pair): Pair {
+        const [w, h] = [this.canvas.width, this.canvas.height];
+        return [
+            w / 2 + (x - this.middle[0]) * this.scale,
+            h / 2 - (y - this.middle[1]) * this.scale,
+        ];
+    }
+
+    toWorld([x, y]: Pair): Pair {
+        const [w, h] = [this.canvas.width, this.canvas.height];
+        return [
+            this.middle[0] + (x - w / 2) / this.scale,
+            this.middle[1] - (y - h / 2) / this.scale,
+        ];
+    }
+
+    /** The cell in which a place lies. */
+    cellAt([x, y]: Pair): Pair | null {
+        const facts = this.facts;
+        if (!facts) return null;
+        const [ox, oy, yaw] = facts.origin;
+        const [dx, dy] = [x - ox, y - oy];
+        const column = Math.floor((dx * Math.cos(yaw) + dy * Math.sin(yaw)) / facts.resolution_m);
+        const row = Math.floor((dy * Math.cos(yaw) - dx * Math.sin(yaw)) / facts.resolution_m);
+        const isInside = column >= 0 && row >= 0 && column < facts.width && row < facts.height;
+        return isInside ? [column, row] : null;
+    }
+
+    /** The middle of a cell. */
+    centre([column, row]: Pair): Pair {
+        const facts = this.facts;
+        if (!facts) return [0, 0];
+        return placed(facts, [
+            (column + 0.5) * facts.resolution_m,
+            (row + 0.5) * facts.resolution_m,
+        ]);
+    }
+
+    /** Lengths of the world in pixels. */
+    pixels(metres: number): number {
+        return metres * this.scale;
+    }
+
+    clear(): void {
+        const { context, canvas } = this;
+        context.setTransform(1, 0, 0, 1, 0, 0);
+        context.clearRect(0, 0, canvas.width, canvas.height);
+        if (!this.picture || !this.facts) return;
+        const { height, resolution_m, origin } = this.facts;
+        const [x, y] = this.toScreen([origin[0], origin[1]]);
+        const cell = this.pixels(resolution_m);
+        context.save();
+        context.translate(x, y);
+        context.rotate(-origin[2]);
+        context.imageSmoothingEnabled = cell < 1;
+        context.drawImage(
+            this.picture,
+            0,
+            -height * cell,
+            this.picture.width * cell,
+            height * cell,
+        );
+        context.restore();
+    }
+
+    line(points: Pair[], color: string, width: number, dashes: number[] = []): void {
+        if (points.length < 2) return;
+        const { context } = this;
+        context.beginPath();
+        points.forEach((point, i) => {
+            const [x, y] = this.toScreen(point);
+            if (i === 0) context.moveTo(x, y);
+            else context.lineTo(x, y);
+        });
+        context.strokeStyle = color;
+        context.lineWidth = width * (window.devicePixelRatio || 1);
+        context.lineJoin = "round";
+        context.setLineDash(dashes.map((dash) => dash * (window.devicePixelRatio || 1)));
+        context.stroke();
+        context.setLineDash([]);
+    }
+
+    disc(at: Pair, radius: number, color: string): void {
+        const [x, y] = this.toScreen(at);
+        this.context.beginPath();
+        this.context.arc(x, y, radius, 0, 2 * Math.PI);
+        this.context.fillStyle = color;
+        this.context.fill();
+    }
+
+    /** A round mark with a letter, of the same size at every scale. */
+    mark(at: Pair, letter: string, color: string): void {
+        const size = 9 * (window.devicePixelRatio || 1);
+        this.disc(at, size, color);
+        const [x, y] = this.toScreen(at);
+        const { context } = this;
+        context.fillStyle = "#fff";
+        context.font = `bold ${1.2 * size}px system-ui, sans-serif`;
+        context.textAlign = "center";
+        context.textBaseline = "middle";
+        context.fillText(letter, x, y);
+    }
+}
+
+/** Columns and rows from the first to behind the last cell that is not unknown, and two beside. */
+function knownCells({ width, height }: MapFacts, cells: Uint8Array): [Pair, Pair] {
+    const [low, high]: [Pair, Pair] = [
+        [width, height],
+        [0, 0],
+    ];
+    for (let i = 0; i < cells.length; i++) {
+        if (cells[i] === 2) continue;
+        const at: Pair = [i % width, Math.floor(i / width)];
+        for (const axis of [0, 1] as const) {
+            low[axis] = Math.min(low[axis], at[axis] - 2);
+            high[axis] = Math.max(high[axis], at[axis] + 3);
+        }
+    }
+    return high[0] > low[0]
+        ? [low, high]
+        : [
+              [0, 0],
+              [width, height],
+          ];
+}
+
+function placed(facts: MapFacts, [x, y]: Pair): Pair {
+    const [ox, oy, yaw] = facts.origin;
+    const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+    return [ox + x * cos - y * sin, oy + x * sin + y * cos];
+}
+
+/** Red, green and blue of any colour: a canvas gives all of them as #1a2b3c. */
+function rgb(context: CanvasRenderingContext2D, color: string): [number, number, number] {
+    context.fillStyle = color;
+    const number = Number.parseInt(String(context.fillStyle).slice(1), 16);
+    return [(number >> 16) & 255, (number >> 8) & 255, number & 255];
+}

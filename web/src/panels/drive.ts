@@ -1,0 +1,189 @@
+/** A drive in the simulator, moment by moment, and the reasons of each. */
+
+import { integers, singles } from "../engine/message";
+import { Refused, Stopped } from "../engine/engine";
+import type { CycleReport, Driven } from "../engine/types";
+import type { View } from "../draw/view";
+import { sceneFile, type Pair } from "../state";
+import { texts } from "../texts";
+import { button, choice, facts, metres, named, number, Player, slider } from "./controls";
+import type { Page, Panel } from "./panel";
+
+export class DrivePanel implements Panel {
+    readonly element = document.createElement("div");
+    private readonly result = document.createElement("div");
+    private readonly moment = document.createElement("div");
+    private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
+    private readonly player = new Player(texts, () => this.forward());
+    private readonly drive = button(texts.drive, () => void this.run());
+    private readonly stop = button(texts.stop, () => this.page.engine.stop());
+    private driven: Driven | null = null;
+    private hits: Pair[][] = [];
+    private sensed: Pair[][] = [];
+    private shown = 0;
+
+    constructor(private readonly page: Page) {
+        const { state, names } = page;
+        this.stop.disabled = true;
+        this.element.append(
+            choice(texts.stack, named(names.stacks), state.stack, (name) => {
+                state.stack = name;
+                page.changed();
+            }),
+            choice(texts.robot, named(names.robots), state.robot, (name) => {
+                state.robot = name;
+                page.changed();
+            }),
+            number(texts.seed, state.seed, { min: 0, step: 1 }, (seed) => {
+                state.seed = seed;
+                page.changed();
+            }).element,
+            this.drive,
+            this.stop,
+            this.result,
+            this.slider.element,
+            this.player.button,
+            this.moment,
+        );
+    }
+
+    /** What was driven before is no longer true. */
+    async refresh(): Promise<void> {
+        this.player.stop();
+        [this.driven, this.hits, this.sensed] = [null, [], []];
+        this.result.replaceChildren();
+        this.moment.replaceChildren();
+        this.slider.set(0, 0);
+        this.page.say(texts.driving.ready);
+        this.page.redraw();
+    }
+
+    private async run(): Promise<void> {
+        const { engine, state, say, mapName } = this.page;
+        await this.refresh();
+        [this.drive.disabled, this.stop.disabled] = [true, false];
+        say(texts.working);
+        try {
+            const question = { ask: "drive", scene: sceneFile(state, mapName()) };
+            const { head, parts } = await engine.ask<Driven>(question);
+            this.driven = head;
+            this.hits = lists(integers(parts["hits 0"]), singles(parts["hits 0"]));
+            const sensed = integers(parts["sensed 0"]);
+            this.sensed = lists(sensed, sensed);
+            this.showReport(head);
+            this.showCycle(0);
+        } catch (error) {
+            if (error instanceof Stopped) say(texts.stopped);
+            else if (error instanceof Refused) say(error.message);
+            else throw error;
+        } finally {
+            [this.drive.disabled, this.stop.disabled] = [false, true];
+        }
+    }
+
+    private showReport({ reports }: Driven): void {
+        const report = reports[0];
+        if (!report) return;
+        const words = texts.driving;
+        const seconds = report.run ? `${report.run.time_s.toFixed(1)} s` : "-";
+        this.result.replaceChildren(
+            facts([
+                [
+                    words.outcome,
+                    report.reason ? `${report.outcome}: ${report.reason}` : report.outcome,
+                ],
+                [words.runTime, seconds],
+                [words.length, metres(report.run?.length_m)],
+                [words.clearance, metres(report.run?.min_clearance_m)],
+            ]),
+        );
+        this.page.say(words.driven(report.outcome, seconds));
+    }
+
+    private get cycles(): CycleReport[] {
+        return this.driven?.cycles[0] ?? [];
+    }
+
+    private forward(): boolean {
+        const last = this.cycles.length - 1;
+        this.showCycle(this.shown >= last ? 0 : this.shown + 1);
+        return this.shown < last;
+    }
+
+    private showCycle(shown: number): void {
+        this.shown = shown;
+        this.slider.set(shown, Math.max(0, this.cycles.length - 1));
+        const cycle = this.cycles[shown];
+        if (cycle) {
+            this.slider.input.setAttribute("aria-valuetext", `${cycle.t_s.toFixed(1)} s`);
+            this.moment.replaceChildren(...reasons(cycle));
+        }
+        this.page.redraw();
+    }
+
+    draw(view: View): void {
+        const cycle = this.cycles[this.shown];
+        if (!this.driven || !cycle) return;
+        const colors = view.colors;
+        const side = Math.max(2, view.pixels(view.facts?.resolution_m ?? 1));
+        view.context.fillStyle = colors.sensed;
+        for (const cells of this.sensed.slice(0, this.shown + 1)) {
+            for (const cell of cells) {
+                const [x, y] = view.toScreen(view.centre(cell));
+                view.context.fillRect(x - side / 2, y - side / 2, side, side);
+            }
+        }
+        const routes = this.driven.routes[0] ?? [];
+        const route = routes.filter(([from]) => from <= cycle.cycle).at(-1)?.[1] ?? [];
+        view.line(route, colors.line, 1.5, [4, 4]);
+        const way = this.cycles
+            .slice(0, this.shown + 1)
+            .map(({ pose }): Pair => [pose[0], pose[1]]);
+        view.line(way, colors.smoothed, 3);
+        for (const hit of this.hits[this.shown] ?? []) {
+            view.disc(hit, 1.5 * (window.devicePixelRatio || 1), colors.hit);
+        }
+        const [x, y, yaw] = cycle.pose;
+        const size = Math.max(6, view.pixels(0.2));
+        view.disc([x, y], size, colors.robot);
+        const tip: Pair = [x + 0.4 * Math.cos(yaw), y + 0.4 * Math.sin(yaw)];
+        view.line([[x, y], tip], colors.robot, 3);
+    }
+}
+
+/** A moment in words and numbers. */
+function reasons(cycle: CycleReport): HTMLElement[] {
+    const words = texts.driving;
+    const speeds = (it: { v_mps: number; omega_radps: number } | null) =>
+        it ? `${it.v_mps.toFixed(2)} m/s, ${it.omega_radps.toFixed(2)} rad/s` : words.standing;
+    const rows: (readonly [string, string])[] = [
+        [words.step, cycle.reason ? `${cycle.step}: ${cycle.reason}` : cycle.step],
+        [words.velocity, speeds(cycle.velocity)],
+        [words.command, speeds(cycle.command)],
+        [words.remaining, metres(cycle.remaining_m)],
+        [words.candidates, `${cycle.candidates}`],
+    ];
+    for (const { because, count } of cycle.rejected.filter(({ count }) => count > 0)) {
+        rows.push([words.rejected, `${because}: ${count}`]);
+    }
+    const shares = cycle.chosen?.shares ?? [];
+    const why = shares.map(({ term, weighted }) => `${term} ${weighted.toFixed(2)}`).join(", ");
+    if (why) rows.push([words.reasons, why]);
+    return [facts(rows)];
+}
+
+/** For each cycle a count, and as many pairs. */
+function lists(counts: Int32Array, numbers: Int32Array | Float32Array): Pair[][] {
+    const all: Pair[][] = [];
+    for (let at = 0; at < counts.length;) {
+        const count = counts[at++]!;
+        all.push(
+            Array.from({ length: count }, (_, i) => [
+                numbers[at + 2 * i]!,
+                numbers[at + 2 * i + 1]!,
+            ]),
+        );
+        at += 2 * count;
+    }
+    return all;
+}

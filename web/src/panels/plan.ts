@@ -1,0 +1,99 @@
+/** A path, planned again whenever something changes. */
+
+import { doubles } from "../engine/message";
+import { Refused } from "../engine/engine";
+import type { RouteReport } from "../engine/types";
+import type { View } from "../draw/view";
+import type { Pair } from "../state";
+import { texts } from "../texts";
+import { choice, facts, metres, named, number } from "./controls";
+import { Latest, type Page, type Panel } from "./panel";
+
+export class PlanPanel implements Panel {
+    readonly element = document.createElement("div");
+    private readonly result = document.createElement("div");
+    private line: Pair[] = [];
+    private smoothed: Pair[] = [];
+    private readonly latest = new Latest(() => this.plan());
+
+    constructor(private readonly page: Page) {
+        const { state, names } = page;
+        const set = (change: () => void) => {
+            change();
+            page.changed();
+        };
+        this.element.append(
+            choice(texts.planner, named(names.planners), state.planner, (name) =>
+                set(() => (state.planner = name)),
+            ),
+            choice(texts.smoother, named(names.smoothers), state.smoother, (name) =>
+                set(() => (state.smoother = name)),
+            ),
+            number(texts.radius, state.radius_m, { min: 0, step: 0.05 }, (radius) =>
+                set(() => (state.radius_m = radius)),
+            ).element,
+            this.result,
+        );
+    }
+
+    refresh(): Promise<void> {
+        return this.latest.run();
+    }
+
+    private async plan(): Promise<void> {
+        const { engine, state, say } = this.page;
+        const { planner, smoother, radius_m, start, goal } = state;
+        const begin = performance.now();
+        [this.line, this.smoothed] = [[], []];
+        try {
+            const question = { ask: "plan", planner, smoother, radius_m, start, goal };
+            const { head, parts } = await engine.ask<RouteReport>(question);
+            this.line = pairs(parts["line"]);
+            this.smoothed = pairs(parts["smoothed"]);
+            this.show(head, performance.now() - begin);
+        } catch (error) {
+            if (!(error instanceof Refused)) throw error;
+            this.result.replaceChildren();
+            say(error.message);
+        }
+        this.page.redraw();
+    }
+
+    private show(report: RouteReport, time_ms: number): void {
+        const words = texts.plan;
+        if (report.outcome !== "found") {
+            this.result.replaceChildren();
+            this.page.say(`${texts.noPath}: ${report.why ?? report.outcome}`);
+            return;
+        }
+        this.result.replaceChildren(
+            facts([
+                [words.length, metres(report.length_m)],
+                [words.smoothed, metres(report.smoothed?.length_m)],
+                [
+                    words.clearance,
+                    metres(report.smoothed?.min_clearance_m ?? report.min_clearance_m),
+                ],
+                [words.turns, String(report.turns ?? "-")],
+                [words.expanded, String(report.expanded)],
+                [words.time, `${time_ms.toFixed(1)} ms`],
+            ]),
+        );
+        const length = metres(report.smoothed?.length_m ?? report.length_m);
+        this.page.say(texts.found(length, report.turns ?? 0));
+    }
+
+    draw(view: View): void {
+        const { line, smoothed } = view.colors;
+        view.line(this.line, line, 1.5, this.smoothed.length > 0 ? [4, 4] : []);
+        view.line(this.smoothed, smoothed, 3);
+    }
+}
+
+export function pairs(part: Uint8Array | undefined): Pair[] {
+    const numbers = doubles(part);
+    return Array.from({ length: numbers.length / 2 }, (_, i) => [
+        numbers[2 * i]!,
+        numbers[2 * i + 1]!,
+    ]);
+}

@@ -1,0 +1,156 @@
+// The built page in a browser: what it shows, what it says of bad files, and that all of it can be
+// used without seeing it.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { brotliCompressSync } from "node:zlib";
+import { inBrowser, open, status } from "./browser.mjs";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const DIST = new URL("../dist/", import.meta.url).pathname;
+const SHOTS = process.env.SCREENSHOTS;
+
+async function shot(page, name) {
+    if (!SHOTS) return;
+    mkdirSync(SHOTS, { recursive: true });
+    await page.screenshot({ path: join(SHOTS, `${name}.png`) });
+}
+
+const cell = (page, name) =>
+    page.locator(`#panel tr:has(th:text-is("${name}")) td`).first().textContent();
+
+test("all that is loaded at first is small", () => {
+    const files = readdirSync(DIST, { recursive: true, withFileTypes: true }).filter((it) =>
+        it.isFile(),
+    );
+    const sizes = files.map(
+        (it) => brotliCompressSync(readFileSync(join(it.parentPath, it.name))).length,
+    );
+    const sum = sizes.reduce((a, b) => a + b);
+    assert.ok(sum <= 1_000_000, `${sum} bytes, expected at most a million`);
+});
+
+test("a path follows start and goal, and a link shows it again", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        assert.equal(await status(page, /a path of/), "a path of 17.64 m with 7 turns");
+        await shot(page, "plan");
+        await page.getByLabel("Goal x [m]").fill("2.5");
+        await page.getByLabel("Goal x [m]").blur();
+        const shorter = await status(page, /a path of (?!17\.64)/);
+        const length = await cell(page, "Length of the path");
+        // The map under the goal's mark is dragged nowhere; the goal is.
+        const link = page.url();
+        const other = await open(context, link);
+        assert.equal(await status(other, /a path of/), shorter);
+        assert.equal(await cell(other, "Length of the path"), length);
+        await page.getByLabel("Goal x [m]").fill("99");
+        await page.getByLabel("Goal x [m]").blur();
+        await status(page, /outside the map/);
+    });
+});
+
+test("a search is shown event by event", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await page.getByRole("tab", { name: "Search" }).click();
+        await page.locator("#panel").getByLabel("Planner").selectOption("astar");
+        await status(page, /368\.65 cells/);
+        assert.equal(await cell(page, "Expanded so far"), "3584");
+        await page.getByLabel("Event").fill("1");
+        assert.equal(await cell(page, "Expanded so far"), "1");
+        await shot(page, "search");
+    });
+});
+
+test("a drive is that of the program", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await page.getByRole("tab", { name: "Drive" }).click();
+        await page.getByRole("button", { name: "Drive", exact: true }).click();
+        await status(page, /the drive: reached after/);
+        const time = await cell(page, "Time of the drive");
+        const length = await cell(page, "Distance driven");
+        await page.getByLabel("Time [s]").fill("150");
+        await shot(page, "drive");
+        const program = process.env.KEYWAY;
+        if (!program) return;
+        const scene = new URL("../../crates/keyway-cli/scenes/small_house.toml", import.meta.url)
+            .pathname;
+        const report = JSON.parse(
+            execFileSync(program, ["navigate", "--scene", scene, "--format", "json"]),
+        );
+        assert.equal(time, `${report.run.time_s.toFixed(1)} s`);
+        assert.equal(length, `${report.run.length_m.toFixed(2)} m`);
+    });
+});
+
+test("work can be stopped, and nothing is lost", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await page.getByRole("tab", { name: "Drive" }).click();
+        await page.getByRole("button", { name: "Drive", exact: true }).click();
+        await page.getByRole("button", { name: "Stop" }).click();
+        await status(page, /Stopped/);
+        await page.getByRole("tab", { name: "Plan" }).click();
+        assert.equal(await status(page, /a path of/), "a path of 17.64 m with 7 turns");
+    });
+});
+
+test("own maps are opened, and bad ones leave what was there", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        const give = (name, text) =>
+            page
+                .locator("#files")
+                .setInputFiles({ name, mimeType: "text/plain", buffer: Buffer.from(text) });
+        await give("cut.map", "type octile\nheight 2\nwidth 3\nmap\n...\n..");
+        await status(page, /cut\.map: line 6: the row has 2 characters, expected 3/);
+        await give("strange.txt", "hello");
+        await status(page, /expected a file name that ends in/);
+        await give(
+            "alone.yaml",
+            "image: none.png\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
+        );
+        await status(page, /none\.png/);
+        await page.getByLabel("Planner").selectOption("astar");
+        assert.match(await status(page, /a path of/), /17\.\d+ m/);
+        await give("own.map", "type octile\nheight 4\nwidth 4\nmap\n....\n....\n....\n....\n");
+        await status(page, /a path of 2\.83 m/);
+    });
+});
+
+for (const colorScheme of ["light", "dark"]) {
+    test(`everything can be used without seeing it (${colorScheme})`, async () => {
+        await inBrowser({ colorScheme }, async (address, context) => {
+            const page = await open(context, address);
+            await page.evaluate(AXE);
+            for (const tab of ["Plan", "Search", "Drive"]) {
+                await page.getByRole("tab", { name: tab }).click();
+                await page.waitForTimeout(300);
+                const { violations } = await page.evaluate(() => globalThis.axe.run());
+                const found = violations.map(
+                    ({ id, nodes }) => `${id}: ${nodes.map((it) => it.html).join(" ")}`,
+                );
+                assert.deepEqual(found, [], `${tab}: ${found.join("\n")}`);
+                await shot(page, `${tab}-${colorScheme}`);
+            }
+            const picture = page.getByRole("img");
+            assert.match(await picture.getAttribute("aria-label"), /Picture of the map: /);
+        });
+    });
+}
+
+test("a small screen shows the map first", async () => {
+    await inBrowser({ viewport: { width: 390, height: 844 } }, async (address, context) => {
+        const page = await open(context, address);
+        await status(page, /a path of/);
+        const width = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(width <= 390, `${width} pixels wide`);
+        await shot(page, "phone");
+    });
+});
