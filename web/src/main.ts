@@ -16,7 +16,8 @@ import { fromFragment, INITIAL, toFragment, type Pair, type State, type Tab } fr
 import { texts } from "./texts";
 
 type Tool = keyof typeof texts.tools;
-type Held = { kind: "start" | "goal" } | { kind: "disc"; index: number } | { kind: "pan" | "draw" };
+type Held =
+    { kind: "start" | "goal" | "pan" | "draw" } | { kind: "disc" | "walker"; index: number };
 
 /** Bundled maps: their files by name, the first one that of the map; start and goal. */
 const BUNDLED: Record<string, { files: [string, string][]; start: Pair; goal: Pair }> = {
@@ -114,7 +115,7 @@ class App implements Page {
 
     /** Walls and obstacles of another map. */
     private forget(start: Pair, goal: Pair): void {
-        Object.assign(this.state, { start, goal, discs: [], free: [], walls: [] });
+        Object.assign(this.state, { start, goal, discs: [], walkers: [], free: [], walls: [] });
     }
 
     private async drawAgain(): Promise<void> {
@@ -184,6 +185,9 @@ class App implements Page {
         view.clear();
         const colors = view.colors;
         if (state.tab === "drive") {
+            for (const { from, to } of state.walkers) {
+                view.line([from, to], colors.mover, 1.5, [2, 4]);
+            }
             for (const { at, radius_m } of state.discs)
                 view.disc(at, view.pixels(radius_m), colors.disc);
         }
@@ -209,11 +213,25 @@ class App implements Page {
         return { kind: this.tool === "wall" || this.tool === "erase" ? "draw" : "pan" };
     }
 
+    /** Puts what the tool says, and holds it. */
+    private put(at: Pair): void {
+        const { discs, walkers } = this.state;
+        if (this.tool === "disc") {
+            discs.push({ at, radius_m: 0.2 });
+            this.held = { kind: "disc", index: discs.length - 1 };
+        } else if (this.tool === "walker") {
+            walkers.push({ from: at, to: at });
+            this.held = { kind: "walker", index: walkers.length - 1 };
+        } else return;
+        this.moveTo(at);
+    }
+
     private moveTo(at: Pair): void {
         const held = this.held;
         const rounded = at.map((value) => Number(value.toFixed(3))) as Pair;
         if (held?.kind === "start" || held?.kind === "goal") this.state[held.kind] = rounded;
         else if (held?.kind === "disc") this.state.discs[held.index]!.at = rounded;
+        else if (held?.kind === "walker") this.state.walkers[held.index]!.to = rounded;
         else return;
         this.showPlaces();
         this.redraw();
@@ -232,15 +250,7 @@ class App implements Page {
             const at = this.view.toWorld(this.last);
             this.held = this.under(at);
             if (this.held.kind === "draw") this.paintAt(at);
-            else if (
-                this.held.kind === "pan" &&
-                this.tool === "disc" &&
-                this.state.tab === "drive"
-            ) {
-                this.state.discs.push({ at, radius_m: 0.2 });
-                this.held = { kind: "disc", index: this.state.discs.length - 1 };
-                this.moveTo(at);
-            }
+            else if (this.held.kind === "pan" && this.state.tab === "drive") this.put(at);
         };
         canvas.onpointermove = (event) => {
             const now = place(event);

@@ -3,6 +3,11 @@
 export type Tab = "plan" | "search" | "drive";
 export type Pair = [number, number];
 export type Disc = { at: Pair; radius_m: number };
+/** Somebody who walks to and fro between two places. */
+export type Walker = { from: Pair; to: Pair };
+
+export const WALKER_RADIUS_M = 0.25;
+export const WALKER_SPEED_MPS = 0.6;
 
 export interface State {
     tab: Tab;
@@ -17,6 +22,7 @@ export interface State {
     start: Pair;
     goal: Pair;
     discs: Disc[];
+    walkers: Walker[];
     /** Cells that were drawn: free ones and walls. */
     free: Pair[];
     walls: Pair[];
@@ -34,6 +40,7 @@ export const INITIAL: State = {
     start: [-8.175, -2.825],
     goal: [8.725, 0.875],
     discs: [{ at: [0.3, -0.275], radius_m: 0.15 }],
+    walkers: [],
     free: [],
     walls: [],
 };
@@ -77,6 +84,11 @@ export function sceneFile(state: State, map: string): string {
     ];
     for (const { at, radius_m } of state.discs) {
         lines.push("", "[[unknown]]", `position = ${pair(at)}`, `radius_m = ${radius_m}`);
+    }
+    for (const { from, to } of state.walkers) {
+        lines.push("", "[[moving]]", `radius_m = ${WALKER_RADIUS_M}`);
+        lines.push(`way_points = [${pair(from)}, ${pair(to)}]`);
+        lines.push(`speed_mps = ${WALKER_SPEED_MPS}`, "to_and_fro = true");
     }
     return lines.join("\n") + "\n";
 }

@@ -21,6 +21,7 @@ export const texts = {
         wall: "draws walls",
         erase: "erases walls",
         disc: "puts obstacles that the map does not show",
+        walker: "draws the way of somebody who walks to and fro",
     },
     play: "Play",
     pause: "Pause",

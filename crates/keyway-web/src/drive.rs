@@ -8,12 +8,13 @@ use keyway::files::robot_in_place;
 use keyway::geometry::{Point, Pose};
 use keyway::map::Cell;
 use keyway::navigate::{Navigator, Stack};
-use keyway::robot::Robot;
+use keyway::robot::{Footprint, Robot};
 use keyway::sense::{Ranges, Reading, Scan};
 use keyway_sim::episode::{
     Cycle, CycleReport, Episode, EpisodeObserver, RobotReport, RunOptions, watch_episode,
 };
 use keyway_sim::scene_files::{SceneFile, SceneMap};
+use keyway_sim::sim::MovingObstacle;
 use serde::{Deserialize, Serialize};
 
 /// `{"ask": "drive", "scene", "seed"}`: drives all robots of a scene. A scene without a world of
@@ -34,7 +35,8 @@ pub struct Drive {
 /// A drive. The parts hold, for each robot `i` in turn: `poses i`, of each cycle x, y, heading
 /// (three numbers of 64 bits); `hits i`, of each cycle the number of points where its scans met
 /// something, then two numbers each (all of 32 bits); `sensed i`, of each cycle the number of cells
-/// that were sensed first in it, then column and row of each (32 bits).
+/// that were sensed first in it, then column and row of each (32 bits); `movers i`, of each cycle
+/// the place of each moving obstacle (two numbers of 32 bits).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Driven {
     /// `keyway.navigate/4` of each robot.
@@ -44,6 +46,32 @@ pub struct Driven {
     /// Routes of each robot: the number of the cycle from which on it drives along it, and its
     /// points \[m\].
     pub routes: Vec<Vec<(u64, Vec<Point>)>>,
+    /// The outline of each robot.
+    pub outlines: Vec<Outline>,
+    /// The radius of each moving obstacle \[m\].
+    pub mover_radii_m: Vec<f64>,
+}
+
+/// The outline of a robot: a disc, or a polygon in the robot's frame.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outline {
+    /// Radius of the disc \[m\]; `null` for a polygon.
+    pub radius_m: Option<f64>,
+    /// Vertices of the polygon \[m\]; none for a disc.
+    pub vertices: Vec<Point>,
+}
+
+impl From<&Footprint> for Outline {
+    fn from(footprint: &Footprint) -> Self {
+        match footprint {
+            Footprint::Circle(circle) => {
+                Self { radius_m: Some(circle.radius_m()), vertices: Vec::new() }
+            }
+            Footprint::Polygon(polygon) => {
+                Self { radius_m: None, vertices: polygon.vertices().to_vec() }
+            }
+        }
+    }
 }
 
 /// Drives a scene.
@@ -101,9 +129,18 @@ fn drive_episode(episode: &Episode, ask: &Drive) -> Result<Message, PageError> {
     let mut films = vec![Film::default(); count];
     let report = watch_episode(episode, RunOptions::default(), &mut films)
         .map_err(|error| PageError::new(Kind::Input, error).field("scene"))?;
-    let mut driven = Driven { reports: report.robots, cycles: Vec::new(), routes: Vec::new() };
+    let mut driven = Driven {
+        reports: report.robots,
+        cycles: Vec::new(),
+        routes: Vec::new(),
+        outlines: episode.robots.iter().map(|one| Outline::from(&one.robot.footprint)).collect(),
+        mover_radii_m: episode.movers.iter().map(|mover| mover.at(0.0).radius_m).collect(),
+    };
     let mut parts = Vec::new();
     for (i, film) in films.into_iter().enumerate() {
+        let run = driven.reports[i].run.as_ref();
+        let movers = run.map_or_else(|| episode.movers.clone(), |run| run.movers(&episode.movers));
+        parts.push((format!("movers {i}"), film.places_of(&movers)));
         driven.cycles.push(film.cycles);
         driven.routes.push(film.routes);
         let named = [("poses", film.poses), ("hits", film.hits), ("sensed", film.sensed)];
@@ -132,6 +169,16 @@ impl Film {
             let points = navigator.route().map(|route| route.smoothed.points().to_vec());
             self.routes.push((cycle, points.unwrap_or_default()));
         }
+    }
+
+    /// The places of all movers in each cycle.
+    fn places_of(&self, movers: &[MovingObstacle]) -> Vec<u8> {
+        let places = |cycle: &CycleReport| {
+            let t_s = cycle.t_s;
+            movers.iter().map(move |mover| mover.at(t_s).centre)
+        };
+        let numbers = self.cycles.iter().flat_map(places).flat_map(|at| [at.x as f32, at.y as f32]);
+        numbers.flat_map(f32::to_le_bytes).collect()
     }
 
     fn note_hits(&mut self, cycle: &Cycle<'_>) {

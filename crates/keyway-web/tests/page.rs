@@ -127,9 +127,31 @@ fn a_drive_is_that_of_the_library() {
     };
     assert!(counted("hits 0") > 1000 && counted("sensed 0") > 10);
     assert_eq!(head["routes"][0][0][0], 0);
+    assert_eq!(head["outlines"][0], json!({"radius_m": 0.18, "vertices": []}));
     let (short, answer) =
         ask(&mut page, &json!({"ask": "drive", "scene": SCENE, "reports_only": true}));
     assert_eq!((&short["reports"], answer.parts.len()), (&head["reports"], 0));
+}
+
+#[test]
+fn moving_obstacles_are_told_with_the_cycles() {
+    let mut page = with_house();
+    let walker = "\n[[moving]]\nradius_m = 0.25\nposition = [2.0, -3.0]\nvelocity_mps = [0.0, 0.5]\n\n\
+        [rules]\ntime_limit_s = 1.0\n";
+    let scene =
+        SCENE.replace("version = 1", "version = 2").replace("\"small\"", "\"jackal\"") + walker;
+    let (head, answer) = ask(&mut page, &json!({"ask": "drive", "scene": scene}));
+    assert_eq!(head["mover_radii_m"], json!([0.25]), "{}", head["error"]);
+    assert_eq!(head["outlines"][0]["vertices"].as_array().unwrap().len(), 4);
+    let bytes = answer.part("movers 0").unwrap();
+    let places: Vec<f32> =
+        bytes.chunks_exact(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
+    let cycles = head["cycles"][0].as_array().unwrap();
+    assert_eq!(places.len(), 2 * cycles.len());
+    for (place, cycle) in places.chunks_exact(2).zip(cycles) {
+        let y = -3.0 + 0.5 * cycle["t_s"].as_f64().unwrap();
+        assert!((f64::from(place[1]) - y).abs() < 1e-6 && place[0] == 2.0, "{place:?}");
+    }
 }
 
 #[test]

@@ -18,6 +18,7 @@ export interface Colors {
     hit: string;
     sensed: string;
     disc: string;
+    mover: string;
 }
 
 export class View {
@@ -51,7 +52,7 @@ export class View {
             "goal",
             "expanded",
         ];
-        const more = ["generated", "scanned", "robot", "hit", "sensed", "disc"];
+        const more = ["generated", "scanned", "robot", "hit", "sensed", "disc", "mover"];
         return Object.fromEntries(
             [...names, ...more].map((name) => [name, color(name)]),
         ) as unknown as Colors;
@@ -229,6 +230,20 @@ export class View {
         this.context.arc(x, y, radius, 0, 2 * Math.PI);
         this.context.fillStyle = color;
         this.context.fill();
+    }
+
+    /** A polygon that is given in the frame of a pose. */
+    polygon(vertices: Pair[], [x, y, yaw]: [number, number, number], color: string): void {
+        const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+        const { context } = this;
+        context.beginPath();
+        for (const [ahead, left] of vertices) {
+            const at: Pair = [x + ahead * cos - left * sin, y + ahead * sin + left * cos];
+            context.lineTo(...this.toScreen(at));
+        }
+        context.closePath();
+        context.fillStyle = color;
+        context.fill();
     }
 
     /** A round mark with a letter, of the same size at every scale. */

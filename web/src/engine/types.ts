@@ -71,4 +71,6 @@ export interface Driven {
     reports: RobotReport[];
     cycles: CycleReport[][];
     routes: [number, Point[]][][];
+    outlines: { radius_m: number | null; vertices: Point[] }[];
+    mover_radii_m: number[];
 }

@@ -4,7 +4,7 @@ import { integers, singles } from "../engine/message";
 import { Refused, Stopped } from "../engine/engine";
 import type { CycleReport, Driven } from "../engine/types";
 import type { View } from "../draw/view";
-import { sceneFile, type Pair } from "../state";
+import { sceneFile, WALKER_RADIUS_M, type Pair } from "../state";
 import { texts } from "../texts";
 import { button, choice, facts, metres, named, number, Player, slider } from "./controls";
 import type { Page, Panel } from "./panel";
@@ -20,6 +20,7 @@ export class DrivePanel implements Panel {
     private driven: Driven | null = null;
     private hits: Pair[][] = [];
     private sensed: Pair[][] = [];
+    private movers: Float32Array = new Float32Array();
     private shown = 0;
 
     constructor(private readonly page: Page) {
@@ -70,6 +71,7 @@ export class DrivePanel implements Panel {
             this.hits = lists(integers(parts["hits 0"]), singles(parts["hits 0"]));
             const sensed = integers(parts["sensed 0"]);
             this.sensed = lists(sensed, sensed);
+            this.movers = singles(parts["movers 0"]);
             this.showReport(head);
             this.showCycle(0);
         } catch (error) {
@@ -123,8 +125,13 @@ export class DrivePanel implements Panel {
 
     draw(view: View): void {
         const cycle = this.cycles[this.shown];
-        if (!this.driven || !cycle) return;
         const colors = view.colors;
+        if (!this.driven || !cycle) {
+            for (const { from } of this.page.state.walkers) {
+                view.disc(from, view.pixels(WALKER_RADIUS_M), colors.mover);
+            }
+            return;
+        }
         const side = Math.max(2, view.pixels(view.facts?.resolution_m ?? 1));
         view.context.fillStyle = colors.sensed;
         for (const cells of this.sensed.slice(0, this.shown + 1)) {
@@ -143,9 +150,15 @@ export class DrivePanel implements Panel {
         for (const hit of this.hits[this.shown] ?? []) {
             view.disc(hit, 1.5 * (window.devicePixelRatio || 1), colors.hit);
         }
+        this.driven.mover_radii_m.forEach((radius_m, mover) => {
+            const at = 2 * (this.shown * this.driven!.mover_radii_m.length + mover);
+            const place: Pair = [this.movers[at]!, this.movers[at + 1]!];
+            view.disc(place, view.pixels(radius_m), colors.mover);
+        });
         const [x, y, yaw] = cycle.pose;
-        const size = Math.max(6, view.pixels(0.2));
-        view.disc([x, y], size, colors.robot);
+        const { radius_m, vertices } = this.driven.outlines[0]!;
+        if (radius_m === null) view.polygon(vertices, cycle.pose, colors.robot);
+        else view.disc([x, y], view.pixels(radius_m), colors.robot);
         const tip: Pair = [x + 0.4 * Math.cos(yaw), y + 0.4 * Math.sin(yaw)];
         view.line([[x, y], tip], colors.robot, 3);
     }
