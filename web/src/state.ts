@@ -19,6 +19,9 @@ export interface State {
     robot: string;
     stack: string;
     seed: number;
+    /** Disturbances: the delay of the motors, and the noise of the lidar (a standard deviation). */
+    delay_s: number;
+    noise_m: number;
     start: Pair;
     goal: Pair;
     discs: Disc[];
@@ -37,6 +40,8 @@ export const INITIAL: State = {
     robot: "small",
     stack: "keyway",
     seed: 0,
+    delay_s: 0,
+    noise_m: 0,
     start: [-8.175, -2.825],
     goal: [8.725, 0.875],
     discs: [{ at: [0.3, -0.275], radius_m: 0.15 }],
@@ -82,6 +87,10 @@ export function sceneFile(state: State, map: string): string {
         `start = ${pair(state.start)}`,
         `goal = ${pair(state.goal)}`,
     ];
+    if (state.delay_s > 0 || state.noise_m > 0) {
+        lines.push("", "[disturbances]", `actuation = { delay_s = ${state.delay_s} }`);
+        lines.push(`sensor = { range_m = ${state.noise_m} }`);
+    }
     for (const { at, radius_m } of state.discs) {
         lines.push("", "[[unknown]]", `position = ${pair(at)}`, `radius_m = ${radius_m}`);
     }

@@ -3,9 +3,10 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { brotliCompressSync } from "node:zlib";
 import { inBrowser, open, status } from "./browser.mjs";
@@ -71,6 +72,9 @@ test("a drive is that of the program", async () => {
     await inBrowser({}, async (address, context) => {
         const page = await open(context, address);
         await page.getByRole("tab", { name: "Drive" }).click();
+        await page.getByLabel("Delay of the motors [s]").fill("0.1");
+        await page.getByLabel("Noise of the lidar [m]").fill("0.02");
+        await page.getByLabel("Noise of the lidar [m]").blur();
         await page.getByRole("button", { name: "Drive", exact: true }).click();
         await status(page, /the drive: reached after/);
         const time = await cell(page, "Time of the drive");
@@ -79,15 +83,37 @@ test("a drive is that of the program", async () => {
         await shot(page, "drive");
         const program = process.env.KEYWAY;
         if (!program) return;
-        const scene = new URL("../../crates/keyway-cli/scenes/small_house.toml", import.meta.url)
-            .pathname;
-        const report = JSON.parse(
-            execFileSync(program, ["navigate", "--scene", scene, "--format", "json"]),
-        );
+        const folder = mkdtempSync(join(tmpdir(), "keyway-drive-"));
+        const saved = async (name) => {
+            const [file] = await Promise.all([
+                page.waitForEvent("download"),
+                page.getByRole("button", { name }).click(),
+            ]);
+            const path = join(folder, file.suggestedFilename());
+            await file.saveAs(path);
+            return path;
+        };
+        const report = JSON.parse(readFileSync(await saved("Save the report"), "utf8"));
         assert.equal(time, `${report.run.time_s.toFixed(1)} s`);
         assert.equal(length, `${report.run.length_m.toFixed(2)} m`);
+        const scene = await saved("Save the scene");
+        for (const name of ["small_house.yaml", "small_house.png"]) {
+            const bundled = new URL(`../../crates/keyway-cli/scenes/${name}`, import.meta.url);
+            copyFileSync(bundled, join(folder, name));
+        }
+        const line = ["navigate", "--scene", "scene.toml", "--format", "json"];
+        const own = JSON.parse(execFileSync(program, line, { cwd: dirname(scene) }));
+        assert.equal(JSON.stringify(withoutTimes(report)), JSON.stringify(withoutTimes(own)));
+        rmSync(folder, { recursive: true });
     });
 });
+
+/** What does not depend on a clock, or on where the report was made. */
+function withoutTimes({ files: _, ...report }) {
+    for (const part of [report.plan, report.smoothed]) delete part.time_s;
+    delete report.run.mean_cycle_us;
+    return report;
+}
 
 test("work can be stopped, and nothing is lost", async () => {
     await inBrowser({}, async (address, context) => {

@@ -17,6 +17,9 @@ export class DrivePanel implements Panel {
     private readonly player = new Player(texts, () => this.forward());
     private readonly drive = button(texts.drive, () => void this.run());
     private readonly stop = button(texts.stop, () => this.page.engine.stop());
+    private readonly report = button(texts.saveReport, () => {
+        save("report.json", JSON.stringify(this.driven?.reports[0]));
+    });
     private driven: Driven | null = null;
     private hits: Pair[][] = [];
     private sensed: Pair[][] = [];
@@ -25,7 +28,7 @@ export class DrivePanel implements Panel {
 
     constructor(private readonly page: Page) {
         const { state, names } = page;
-        this.stop.disabled = true;
+        [this.stop.disabled, this.report.disabled] = [true, true];
         this.element.append(
             choice(texts.stack, named(names.stacks), state.stack, (name) => {
                 state.stack = name;
@@ -39,8 +42,18 @@ export class DrivePanel implements Panel {
                 state.seed = seed;
                 page.changed();
             }).element,
+            number(texts.delay, state.delay_s, { min: 0, max: 1, step: 0.05 }, (delay) => {
+                state.delay_s = delay;
+                page.changed();
+            }).element,
+            number(texts.noise, state.noise_m, { min: 0, max: 0.2, step: 0.01 }, (noise) => {
+                state.noise_m = noise;
+                page.changed();
+            }).element,
             this.drive,
             this.stop,
+            button(texts.saveScene, () => save("scene.toml", sceneFile(state, page.mapName()))),
+            this.report,
             this.result,
             this.slider.element,
             this.player.button,
@@ -52,6 +65,7 @@ export class DrivePanel implements Panel {
     async refresh(): Promise<void> {
         this.player.stop();
         [this.driven, this.hits, this.sensed] = [null, [], []];
+        this.report.disabled = true;
         this.result.replaceChildren();
         this.moment.replaceChildren();
         this.slider.set(0, 0);
@@ -68,6 +82,7 @@ export class DrivePanel implements Panel {
             const question = { ask: "drive", scene: sceneFile(state, mapName()) };
             const { head, parts } = await engine.ask<Driven>(question);
             this.driven = head;
+            this.report.disabled = false;
             this.hits = lists(integers(parts["hits 0"]), singles(parts["hits 0"]));
             const sensed = integers(parts["sensed 0"]);
             this.sensed = lists(sensed, sensed);
@@ -162,6 +177,15 @@ export class DrivePanel implements Panel {
         const tip: Pair = [x + 0.4 * Math.cos(yaw), y + 0.4 * Math.sin(yaw)];
         view.line([[x, y], tip], colors.robot, 3);
     }
+}
+
+/** Gives the browser a file to keep. */
+function save(name: string, content: string): void {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([content]));
+    link.download = name;
+    link.click();
+    URL.revokeObjectURL(link.href);
 }
 
 /** A moment in words and numbers. */
