@@ -93,12 +93,13 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
 
 /// The costs beforehand, where it depends on them if the map is prepared, or somebody waits.
 fn estimate(map: &SearchMap, args: &PrepareArgs) -> Result<Option<Estimate>, CliError> {
-    if args.if_it_pays.is_none() && !std::io::stderr().is_terminal() {
+    let is_watched = std::io::stderr().is_terminal();
+    if args.if_it_pays.is_none() && !is_watched {
         return Ok(None);
     }
     let estimate = Prepared::estimate(map, wall_clock()).map_err(refused)?;
     let estimate = Estimate { pays_from_paths: estimate.pays_from_paths(), estimate };
-    if estimate.pays(args) && estimate.estimate.time_s > LONG_S {
+    if is_watched && estimate.pays(args) && estimate.estimate.time_s > LONG_S {
         eprintln!("{}", estimate.in_words());
     }
     Ok(Some(estimate))
@@ -145,13 +146,17 @@ impl Estimate {
 
     fn in_words(&self) -> String {
         let PreparationEstimate { time_s, memory_bytes, peak_bytes, .. } = self.estimate;
-        let [kept, peak] = [memory_bytes, peak_bytes].map(megabytes);
+        let [kept, peak] = [memory_bytes, peak_bytes].map(|bytes| bytes as f64 / 1e6);
+        let time = match time_s {
+            ..1.0 => format!("{:.0} ms", time_s * 1e3),
+            _ => format!("{time_s:.0} s"),
+        };
         let costs = format!(
-            "the preparation takes about {time_s:.0} s, and {kept} of memory ({peak} meanwhile)"
+            "the preparation takes about {time} and {kept:.1} MB of memory, {peak:.1} MB meanwhile"
         );
         match self.estimate.jps_s.zip(self.pays_from_paths) {
             Some((jps_s, paths)) => format!(
-                "{costs}; jps finds a path in {:.3} ms: it cannot pay for less than {paths:.0} paths",
+                "{costs}; jps finds a path in {:.3} ms: it cannot pay for fewer than {paths:.0} paths",
                 jps_s * 1e3,
             ),
             None => costs,
