@@ -1,65 +1,55 @@
 /** The page: a map with a panel beside it. */
 
 import "./style.css";
-import houseYaml from "../../crates/keyway-cli/scenes/small_house.yaml?url";
-import housePng from "../../crates/keyway-cli/scenes/small_house.png?url";
-import roomsMap from "../../crates/keyway-cli/scenes/rooms.map?url";
-import { Engine, Refused } from "./engine/engine";
-import type { MapFacts, Names } from "./engine/types";
+import { isBundled, load } from "./bundled";
 import { View } from "./draw/view";
+import { Engine } from "./engine/engine";
+import type { Parts } from "./engine/message";
+import type { MapFacts, Names } from "./engine/types";
+import { Ground } from "./ground";
 import { button, choice, number, type NumberField } from "./panels/controls";
 import { DrivePanel } from "./panels/drive";
-import type { Page, Panel } from "./panels/panel";
+import { failure, type Page, type Panel } from "./panels/panel";
 import { PlanPanel } from "./panels/plan";
 import { SearchPanel } from "./panels/search";
-import { fromFragment, INITIAL, toFragment, type Pair, type State, type Tab } from "./state";
+import { Pointer, type Tool } from "./pointer";
+import { fromFragment, TABS, toFragment, type Pair, type State, type Tab } from "./state";
 import { texts } from "./texts";
 
-type Tool = keyof typeof texts.tools;
-type Held =
-    { kind: "start" | "goal" | "pan" | "draw" } | { kind: "disc" | "walker"; index: number };
-
-/** Bundled maps: their files by name, the first one that of the map; start and goal. */
-const BUNDLED: Record<string, { files: [string, string][]; start: Pair; goal: Pair }> = {
-    house: {
-        files: [
-            ["small_house.yaml", houseYaml],
-            ["small_house.png", housePng],
-        ],
-        start: INITIAL.start,
-        goal: INITIAL.goal,
-    },
-    rooms: { files: [["rooms.map", roomsMap]], start: [1.5, 1.5], goal: [30.5, 30.5] },
-};
-
-const TABS: Tab[] = ["plan", "search", "drive"];
-const CODES = { free: 0, occupied: 1 } as const;
-
 class App implements Page {
-    private readonly view: View;
-    private cells: Uint8Array = new Uint8Array();
-    private name = "";
-    private tool: Tool = "move";
-    private held: Held | null = null;
-    private last: Pair = [0, 0];
-    private isDue = false;
-    private panel!: Panel;
-    private places: NumberField[] = [];
-    private readonly side = element("panel");
+    readonly engine: Engine;
+    names!: Names;
+    private readonly view = new View(element("map") as HTMLCanvasElement);
+    private readonly ground = new Ground(this.view, () => this.changed());
+    private readonly pointer: Pointer;
     private readonly status = element("status");
+    private isDue = false;
+    private isLinkDue = false;
+    private panel: Panel | null = null;
+    /** Its drive is still there after a look at another part, unless something has changed. */
+    private drive: DrivePanel | null = null;
+    private places: NumberField[] = [];
+    private maps: HTMLSelectElement | null = null;
 
-    constructor(
-        readonly state: State,
-        readonly engine: Engine,
-        readonly names: Names,
-    ) {
-        this.view = new View(element("map") as HTMLCanvasElement);
-        this.listen();
+    constructor(readonly state: State) {
+        this.engine = new Engine(this.ground.edits);
+        const moved = () => {
+            this.showPlaces();
+            this.changed();
+        };
+        // A drive on another map is of no use.
+        const drawn = () => {
+            this.drive?.leave();
+            this.redraw();
+        };
+        const { view, ground, engine } = this;
+        this.pointer = new Pointer(view, ground, engine, state, moved, drawn, this.redraw);
     }
 
-    readonly mapName = () => this.name;
+    readonly mapName = () => this.ground.name;
 
-    readonly say = (text: string) => {
+    readonly say = (panel: Panel | null, text: string) => {
+        if (panel !== null && panel !== this.panel) return;
         this.status.textContent = text;
         this.view.canvas.setAttribute("aria-label", texts.pictureOf(text));
     };
@@ -74,66 +64,85 @@ class App implements Page {
     };
 
     readonly changed = () => {
-        void this.panel.refresh();
-        void toFragment(this.state).then((fragment) =>
-            history.replaceState(null, "", `#${fragment}`),
-        );
+        this.state.drawn = this.ground.list;
+        if (this.panel !== this.drive) this.drive = null;
+        void this.panel?.refresh();
+        this.redraw();
+        this.writeLink();
     };
 
+    /** Writes the state into the address, but not at every move of a pointer. */
+    private writeLink(): void {
+        if (this.isLinkDue) return;
+        this.isLinkDue = true;
+        setTimeout(async () => {
+            this.isLinkDue = false;
+            history.replaceState(null, "", `#${await toFragment(this.state)}`);
+        }, 300);
+    }
+
     async start(): Promise<void> {
+        this.names = (await this.engine.ask<Names>({ ask: "names" })).head;
+        this.makeTabs();
+        this.makeControls();
+        this.listen();
         this.view.resize();
-        await this.openBundled(this.state.map, false);
+        const { map, drawn } = this.state;
+        const isHere = isBundled(map);
+        await this.openBundled(isHere ? map : "house", !isHere);
+        if (isHere) this.ground.draw(this.engine, drawn);
+        await this.ground.tell(this.engine);
         this.open(this.state.tab);
+        if (!isHere) this.say(null, texts.notInLink(map));
     }
 
     /** Shows one of the parts. */
     private open(tab: Tab): void {
+        this.panel?.leave?.();
         this.state.tab = tab;
         for (const other of TABS) {
             element(`tab-${other}`).setAttribute("aria-selected", String(other === tab));
             element(`tab-${other}`).tabIndex = other === tab ? 0 : -1;
         }
-        this.side.setAttribute("aria-labelledby", `tab-${tab}`);
-        const panels = { plan: PlanPanel, search: SearchPanel, drive: DrivePanel };
-        this.panel = new panels[tab](this);
-        this.side.replaceChildren(this.panel.element);
-        this.changed();
+        const side = element("panel");
+        side.setAttribute("aria-labelledby", `tab-${tab}`);
+        const isKept = tab === "drive" && this.drive !== null;
+        if (tab === "drive") this.panel = this.drive ??= new DrivePanel(this);
+        else this.panel = tab === "plan" ? new PlanPanel(this) : new SearchPanel(this);
+        side.replaceChildren(this.panel.element);
+        if (!isKept) void this.panel.refresh();
         this.redraw();
+        this.writeLink();
     }
 
     private async openBundled(map: string, isNew: boolean): Promise<void> {
-        const bundled = BUNDLED[map] ?? BUNDLED["house"]!;
-        const files = bundled.files.map(async ([name, url]): Promise<[string, Uint8Array]> => {
-            const content = await (await fetch(url)).arrayBuffer();
-            return [name, new Uint8Array(content)];
-        });
-        await this.openFiles(bundled.files[0]![0], Object.fromEntries(await Promise.all(files)));
+        const { name, parts, ends } = await load(map);
+        await this.openFiles(name, parts);
         this.state.map = map;
-        if (isNew) this.forget(bundled.start, bundled.goal);
-        await this.drawAgain();
-    }
-
-    /** Walls and obstacles of another map. */
-    private forget(start: Pair, goal: Pair): void {
-        Object.assign(this.state, { start, goal, discs: [], walkers: [], free: [], walls: [] });
-    }
-
-    private async drawAgain(): Promise<void> {
-        await this.edit(this.state.walls, "occupied");
-        await this.edit(this.state.free, "free");
+        if (isNew) this.forget(ends);
         this.showPlaces();
     }
 
-    /** Opens a map; when it cannot be read, the one before stays. */
-    private async openFiles(name: string, parts: Record<string, Uint8Array>): Promise<void> {
-        const { head, parts: cells } = await this.engine.tell<MapFacts>(
-            { ask: "open_map", name },
-            parts,
+    private async openFiles(name: string, parts: Parts): Promise<void> {
+        const facts: MapFacts = await this.ground.open(this.engine, name, parts);
+        this.say(
+            null,
+            [`${facts.name}, ${facts.width} x ${facts.height}`, ...facts.warnings].join("; "),
         );
-        this.name = name;
-        this.cells = cells["cells"] ?? new Uint8Array();
-        this.view.show(head, this.cells);
-        this.say(`${head.name}, ${head.width} x ${head.height}`);
+    }
+
+    /** Walls and obstacles of another map. */
+    private forget([start, goal]: [Pair, Pair]): void {
+        Object.assign(this.state, { start, goal, discs: [], walkers: [], drawn: [] });
+    }
+
+    private async choose(map: string): Promise<void> {
+        try {
+            await this.openBundled(map, true);
+            this.changed();
+        } catch (error) {
+            this.say(null, failure(error));
+        }
     }
 
     private async openOwn(files: File[]): Promise<void> {
@@ -146,38 +155,15 @@ class App implements Page {
         try {
             await this.openFiles(readable.name, Object.fromEntries(await Promise.all(read)));
         } catch (error) {
-            if (!(error instanceof Refused)) throw error;
-            this.say(error.message);
+            this.say(null, failure(error));
             return;
         }
-        const facts = this.view.facts!;
-        const at = (share: number) => this.view.centre([facts.width * share, facts.height * share]);
-        this.forget(at(0.25), at(0.75));
+        const { radius_m } = this.state;
+        this.forget([this.ground.freeNear(0.25, radius_m), this.ground.freeNear(0.75, radius_m)]);
+        this.state.map = readable.name;
+        this.maps?.add(new Option(readable.name, readable.name, false, true));
         this.showPlaces();
         this.changed();
-    }
-
-    /** Changes cells of the map. */
-    private async edit(cells: Pair[], state: "free" | "occupied"): Promise<void> {
-        if (cells.length === 0) return;
-        await this.engine.tell({ ask: "edit_map", cells, state });
-        const width = this.view.facts?.width ?? 0;
-        for (const [x, y] of cells) this.cells[y * width + x] = CODES[state];
-        this.view.paint(this.cells);
-    }
-
-    private paintAt(at: Pair): void {
-        const middle = this.view.cellAt(at);
-        if (!middle) return;
-        const near = [-1, 0, 1].flatMap((dy) =>
-            [-1, 0, 1].map((dx): Pair => [middle[0] + dx, middle[1] + dy]),
-        );
-        const facts = this.view.facts!;
-        const isInside = ([x, y]: Pair) => x >= 0 && y >= 0 && x < facts.width && y < facts.height;
-        const cells = near.filter(isInside);
-        const isWall = this.tool === "wall";
-        (isWall ? this.state.walls : this.state.free).push(...cells);
-        void this.edit(cells, isWall ? "occupied" : "free").then(this.changed);
     }
 
     private draw(): void {
@@ -188,89 +174,17 @@ class App implements Page {
             for (const { from, to } of state.walkers) {
                 view.line([from, to], colors.mover, 1.5, [2, 4]);
             }
-            for (const { at, radius_m } of state.discs)
+            for (const { at, radius_m } of state.discs) {
                 view.disc(at, view.pixels(radius_m), colors.disc);
+            }
         }
         this.panel?.draw(view);
         view.mark(state.start, "S", colors.start);
         view.mark(state.goal, "G", colors.goal);
     }
 
-    /** What is under the pointer. */
-    private under(at: Pair): Held {
-        const reach = 14 * (window.devicePixelRatio || 1);
-        const isNear = (place: Pair, size: number) => {
-            const [x, y] = this.view.toScreen(place);
-            const [px, py] = this.view.toScreen(at);
-            return Math.hypot(x - px, y - py) < size;
-        };
-        if (isNear(this.state.start, reach)) return { kind: "start" };
-        if (isNear(this.state.goal, reach)) return { kind: "goal" };
-        const index = this.state.discs.findIndex((disc) =>
-            isNear(disc.at, Math.max(reach, this.view.pixels(disc.radius_m))),
-        );
-        if (this.state.tab === "drive" && index >= 0) return { kind: "disc", index };
-        return { kind: this.tool === "wall" || this.tool === "erase" ? "draw" : "pan" };
-    }
-
-    /** Puts what the tool says, and holds it. */
-    private put(at: Pair): void {
-        const { discs, walkers } = this.state;
-        if (this.tool === "disc") {
-            discs.push({ at, radius_m: 0.2 });
-            this.held = { kind: "disc", index: discs.length - 1 };
-        } else if (this.tool === "walker") {
-            walkers.push({ from: at, to: at });
-            this.held = { kind: "walker", index: walkers.length - 1 };
-        } else return;
-        this.moveTo(at);
-    }
-
-    private moveTo(at: Pair): void {
-        const held = this.held;
-        const rounded = at.map((value) => Number(value.toFixed(3))) as Pair;
-        if (held?.kind === "start" || held?.kind === "goal") this.state[held.kind] = rounded;
-        else if (held?.kind === "disc") this.state.discs[held.index]!.at = rounded;
-        else if (held?.kind === "walker") this.state.walkers[held.index]!.to = rounded;
-        else return;
-        this.showPlaces();
-        this.redraw();
-        this.changed();
-    }
-
     private listen(): void {
         const { canvas } = this.view;
-        const place = (event: PointerEvent | WheelEvent): Pair => {
-            const ratio = window.devicePixelRatio || 1;
-            return [event.offsetX * ratio, event.offsetY * ratio];
-        };
-        canvas.onpointerdown = (event) => {
-            canvas.setPointerCapture(event.pointerId);
-            this.last = place(event);
-            const at = this.view.toWorld(this.last);
-            this.held = this.under(at);
-            if (this.held.kind === "draw") this.paintAt(at);
-            else if (this.held.kind === "pan" && this.state.tab === "drive") this.put(at);
-        };
-        canvas.onpointermove = (event) => {
-            const now = place(event);
-            if (this.held?.kind === "pan") {
-                this.view.pan([now[0] - this.last[0], now[1] - this.last[1]]);
-                this.redraw();
-            } else if (this.held?.kind === "draw") this.paintAt(this.view.toWorld(now));
-            else if (this.held) this.moveTo(this.view.toWorld(now));
-            this.last = now;
-        };
-        canvas.onpointerup = canvas.onpointercancel = () => (this.held = null);
-        canvas.addEventListener(
-            "wheel",
-            (event) => {
-                event.preventDefault();
-                this.view.zoom(Math.exp(-event.deltaY / 400), place(event));
-                this.redraw();
-            },
-            { passive: false },
-        );
         canvas.ondragover = (event) => event.preventDefault();
         canvas.ondrop = (event) => {
             event.preventDefault();
@@ -281,11 +195,11 @@ class App implements Page {
             this.redraw();
         }).observe(canvas);
         matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-            this.view.paint(this.cells);
+            this.ground.repaint();
             this.redraw();
         });
-        this.makeTabs();
-        this.makeControls();
+        // Another link in the same window.
+        window.addEventListener("hashchange", () => location.reload());
     }
 
     private makeTabs(): void {
@@ -306,23 +220,31 @@ class App implements Page {
     }
 
     private makeControls(): void {
-        const maps = Object.entries(texts.bundled);
-        const tools = Object.entries(texts.tools);
         const files = document.createElement("input");
         [files.type, files.multiple, files.id] = ["file", true, "files"];
-        files.onchange = () => void this.openOwn([...(files.files ?? [])]);
+        files.onchange = () => {
+            void this.openOwn([...(files.files ?? [])]).then(() => (files.value = ""));
+        };
         const label = document.createElement("label");
         [label.htmlFor, label.textContent] = ["files", texts.openFiles];
         const box = document.createElement("div");
         box.className = "field";
         box.append(label, files);
+        const bundled = Object.entries(texts.bundled);
+        const maps = choice(texts.map, bundled, this.state.map, (map) => {
+            if (isBundled(map)) void this.choose(map);
+        });
+        this.maps = maps.querySelector("select");
+        const tools = Object.entries(texts.tools);
         element("controls").append(
-            choice(texts.map, maps, this.state.map, (map) => {
-                void this.openBundled(map, true).then(this.changed);
-            }),
+            maps,
             box,
-            choice(texts.pointer, tools, this.tool, (tool) => (this.tool = tool as Tool)),
+            choice(texts.pointer, tools, "move", (tool) => (this.pointer.tool = tool as Tool)),
             this.makePlaces(),
+            button(texts.whole, () => {
+                this.view.fit();
+                this.redraw();
+            }),
             button(texts.share, () => void this.share()),
         );
     }
@@ -336,7 +258,6 @@ class App implements Page {
                 const name = `${texts[end]} ${axis === 0 ? "x" : "y"} [m]`;
                 const field = number(name, this.state[end][axis], { step: 0.05 }, (value) => {
                     this.state[end][axis] = value;
-                    this.redraw();
                     this.changed();
                 });
                 this.places.push(field);
@@ -352,10 +273,13 @@ class App implements Page {
     }
 
     private async share(): Promise<void> {
-        const fragment = await toFragment(this.state);
-        history.replaceState(null, "", `#${fragment}`);
-        await navigator.clipboard?.writeText(location.href);
-        this.say(texts.copied);
+        history.replaceState(null, "", `#${await toFragment(this.state)}`);
+        try {
+            await navigator.clipboard.writeText(location.href);
+            this.say(null, texts.copied);
+        } catch {
+            this.say(null, texts.clipboard);
+        }
     }
 }
 
@@ -369,10 +293,12 @@ async function main(): Promise<void> {
     document.title = texts.title;
     element("title").textContent = texts.title;
     element("subtitle").textContent = texts.subtitle;
-    const state = await fromFragment(location.hash.slice(1));
-    const engine = new Engine();
-    const { head } = await engine.ask<Names>({ ask: "names" });
-    await new App(state, engine, head).start();
+    try {
+        await new App(await fromFragment(location.hash.slice(1))).start();
+    } catch (error) {
+        element("status").textContent = texts.notStarted(String(error));
+        throw error;
+    }
     document.body.dataset["ready"] = "true";
 }
 

@@ -1,17 +1,20 @@
 /** What is shown: all of it fits into a link. */
 
 export type Tab = "plan" | "search" | "drive";
+export const TABS: readonly Tab[] = ["plan", "search", "drive"];
 export type Pair = [number, number];
 export type Disc = { at: Pair; radius_m: number };
 /** Somebody who walks to and fro between two places. */
 export type Walker = { from: Pair; to: Pair };
+/** A cell that was drawn: column, row, and 1 for a wall or 0 for free ground. */
+export type Drawn = [number, number, 0 | 1];
 
 export const WALKER_RADIUS_M = 0.25;
 export const WALKER_SPEED_MPS = 0.6;
 
 export interface State {
     tab: Tab;
-    /** A bundled map; own maps are not in links. */
+    /** A bundled map, or the name of an own one, which is not in the link. */
     map: string;
     planner: string;
     smoother: string;
@@ -26,12 +29,10 @@ export interface State {
     goal: Pair;
     discs: Disc[];
     walkers: Walker[];
-    /** Cells that were drawn: free ones and walls. */
-    free: Pair[];
-    walls: Pair[];
+    drawn: Drawn[];
 }
 
-export const INITIAL: State = {
+export const initial = (): State => ({
     tab: "plan",
     map: "house",
     planner: "jps",
@@ -46,9 +47,72 @@ export const INITIAL: State = {
     goal: [8.725, 0.875],
     discs: [{ at: [0.3, -0.275], radius_m: 0.15 }],
     walkers: [],
-    free: [],
-    walls: [],
+    drawn: [],
+});
+
+/** A link cannot hold more of a kind. */
+const MOST = 20_000;
+const FARTHEST_M = 1e5;
+
+type Check<T> = (value: unknown) => value is T;
+
+const isText: Check<string> = (value): value is string =>
+    typeof value === "string" && value.length < 200;
+const isBetween =
+    (low: number, high: number): Check<number> =>
+    (value): value is number =>
+        typeof value === "number" && value >= low && value <= high;
+const isWhole =
+    (high: number): Check<number> =>
+    (value): value is number =>
+        Number.isInteger(value) && isBetween(0, high)(value);
+const isPair: Check<Pair> = (value): value is Pair =>
+    Array.isArray(value) && value.length === 2 && value.every(isBetween(-FARTHEST_M, FARTHEST_M));
+const isRecord = (value: unknown): value is Record<string, unknown> =>
+    typeof value === "object" && value !== null;
+const isDisc: Check<Disc> = (value): value is Disc =>
+    isRecord(value) && isPair(value["at"]) && isBetween(0.001, 100)(value["radius_m"]);
+const isWalker: Check<Walker> = (value): value is Walker =>
+    isRecord(value) && isPair(value["from"]) && isPair(value["to"]);
+const isDrawn: Check<Drawn> = (value): value is Drawn =>
+    Array.isArray(value) &&
+    value.length === 3 &&
+    value.slice(0, 2).every(isWhole(1e6)) &&
+    isWhole(1)(value[2]);
+const isList =
+    <T>(is: Check<T>): Check<T[]> =>
+    (value): value is T[] =>
+        Array.isArray(value) && value.length <= MOST && value.every(is);
+
+const CHECKS: { [Field in keyof State]: Check<State[Field]> } = {
+    tab: (value): value is Tab => TABS.some((tab) => tab === value),
+    map: isText,
+    planner: isText,
+    smoother: isText,
+    radius_m: isBetween(0, 1000),
+    robot: isText,
+    stack: isText,
+    seed: isWhole(Number.MAX_SAFE_INTEGER),
+    delay_s: isBetween(0, 1),
+    noise_m: isBetween(0, 1),
+    start: isPair,
+    goal: isPair,
+    discs: isList(isDisc),
+    walkers: isList(isWalker),
+    drawn: isList(isDrawn),
 };
+
+/** The fields that can be used; those that cannot are as at the beginning. */
+export function checked(given: unknown): State {
+    const state = initial();
+    if (!isRecord(given)) return state;
+    const take = <Field extends keyof State>(field: Field) => {
+        const value = Object.hasOwn(given, field) ? given[field] : undefined;
+        if (CHECKS[field](value)) state[field] = value as State[Field];
+    };
+    for (const field of Object.keys(CHECKS) as (keyof State)[]) take(field);
+    return state;
+}
 
 async function through(bytes: Uint8Array, stream: TransformStream): Promise<Uint8Array> {
     const body = new Blob([bytes as BlobPart]).stream().pipeThrough(stream);
@@ -59,19 +123,19 @@ async function through(bytes: Uint8Array, stream: TransformStream): Promise<Uint
 export async function toFragment(state: State): Promise<string> {
     const text = new TextEncoder().encode(JSON.stringify(state));
     const packed = await through(text, new CompressionStream("deflate-raw"));
-    const letters = btoa(String.fromCharCode(...packed));
+    const letters = btoa(Array.from(packed, (byte) => String.fromCharCode(byte)).join(""));
     return letters.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-/** The state of a fragment; the initial one where it is damaged or there is none. */
+/** The state of a fragment, as far as it can be read. */
 export async function fromFragment(fragment: string): Promise<State> {
     try {
         const letters = atob(fragment.replaceAll("-", "+").replaceAll("_", "/"));
         const packed = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
         const text = await through(packed, new DecompressionStream("deflate-raw"));
-        return { ...INITIAL, ...(JSON.parse(new TextDecoder().decode(text)) as Partial<State>) };
+        return checked(JSON.parse(new TextDecoder().decode(text)));
     } catch {
-        return structuredClone(INITIAL);
+        return initial();
     }
 }
 

@@ -23,7 +23,7 @@ export const texts = {
     tools: {
         move: "moves start, goal and obstacles",
         wall: "draws walls",
-        erase: "erases walls",
+        erase: "erases walls and obstacles",
         disc: "puts obstacles that the map does not show",
         walker: "draws the way of somebody who walks to and fro",
     },
@@ -32,12 +32,19 @@ export const texts = {
     stop: "Stop",
     drive: "Drive",
     step: "Event",
-    time: "Time [s]",
+    time: "Moment",
     working: "working ...",
+    fault: (why: string) =>
+        `This page's memory or time was not enough for that, and the library was started anew (${why}).`,
+    notInLink: (map: string) =>
+        `The map ${map} is not in the link: open it as a file. Here is the house.`,
+    notInScene: "The walls that were drawn are not in the scene.",
+    clipboard: "The address of this page is the link: copy it.",
     stopped: "Stopped.",
+    whole: "Show the whole map",
+    notStarted: (why: string) => `The page could not start: ${why}.`,
     share: "Copy a link to this",
     copied: "The link is in the clipboard.",
-    dropHere: "Files can be dropped on the map.",
     pictureOf: (what: string) => `Picture of the map: ${what}`,
     found: (length: string, turns: number) => `a path of ${length} with ${turns} turns`,
     noPath: "no path",
@@ -61,6 +68,7 @@ export const texts = {
         },
     },
     driving: {
+        now: "Time",
         ready: "Press Drive to simulate the drive from S to G.",
         outcome: "Outcome",
         runTime: "Time of the drive",

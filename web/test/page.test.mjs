@@ -44,7 +44,8 @@ test("a path follows start and goal, and a link shows it again", async () => {
         await page.getByLabel("Goal x [m]").blur();
         const shorter = await status(page, /a path of (?!17\.64)/);
         const length = await cell(page, "Length of the path");
-        // The map under the goal's mark is dragged nowhere; the goal is.
+        await page.getByRole("button", { name: "Copy a link" }).click();
+        await status(page, /link/);
         const link = page.url();
         const other = await open(context, link);
         assert.equal(await status(other, /a path of/), shorter);
@@ -79,7 +80,7 @@ test("a drive is that of the program", async () => {
         await status(page, /the drive: reached after/);
         const time = await cell(page, "Time of the drive");
         const length = await cell(page, "Distance driven");
-        await page.getByLabel("Time [s]").fill("150");
+        await page.getByLabel("Moment").fill("150");
         await shot(page, "drive");
         const program = process.env.KEYWAY;
         if (!program) return;
@@ -146,7 +147,7 @@ test("own maps are opened, and bad ones leave what was there", async () => {
         await page.getByLabel("Planner").selectOption("astar");
         assert.match(await status(page, /a path of/), /17\.\d+ m/);
         await give("own.map", "type octile\nheight 4\nwidth 4\nmap\n....\n....\n....\n....\n");
-        await status(page, /a path of 2\.83 m/);
+        await status(page, /a path of 1\.41 m/);
     });
 });
 
@@ -178,5 +179,85 @@ test("a small screen shows the map first", async () => {
         const width = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(width <= 390, `${width} pixels wide`);
         await shot(page, "phone");
+    });
+});
+
+/** A link with this state. */
+async function linkTo(address, state) {
+    const { deflateRawSync } = await import("node:zlib");
+    return `${address}#${deflateRawSync(JSON.stringify(state)).toString("base64url")}`;
+}
+
+test("links that are damaged show what they can", async () => {
+    await inBrowser({}, async (address, context) => {
+        const states = [
+            { tab: "foo", start: null, map: "constructor", walls: [[0.5, 1]] },
+            {
+                drawn: [
+                    [600, 100, 1],
+                    [1e12, 1, 1],
+                    [1, 1, 7],
+                ],
+                discs: [{ at: [0, 0], radius_m: -1 }],
+            },
+            { start: ["a", "b"], walkers: [{ from: [0, 0] }], seed: "0\nmap = 1", radius_m: -3 },
+            [1, 2],
+        ];
+        const links = await Promise.all(states.map((state) => linkTo(address, state)));
+        for (const link of [...links, `${address}#%%%`, `${address}#AAAA`]) {
+            const page = await open(context, link);
+            assert.match(await status(page, /a path of|is not in the link/), /./);
+            await page.getByLabel("Planner").selectOption("astar");
+            assert.match(await status(page, /a path of/), /17\.\d+ m/);
+            await page.close();
+        }
+    });
+});
+
+test("walls that are drawn stay through a stop, and in links", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await status(page, /17\.64 m/);
+        await page.getByLabel("The pointer").selectOption("wall");
+        const map = await page.locator("#map").boundingBox();
+        const across = async () => {
+            const [x, y] = [map.x + 0.52 * map.width, map.y + 0.35 * map.height];
+            await page.mouse.move(x, y);
+            await page.mouse.down();
+            await page.mouse.move(x, y + 0.15 * map.height, { steps: 3 });
+            await page.mouse.up();
+        };
+        await page.getByRole("tab", { name: "Drive" }).click();
+        await page.getByRole("button", { name: "Drive", exact: true }).click();
+        await across();
+        await page.getByRole("tab", { name: "Plan" }).click();
+        const around = await status(page, /a path of (?!17\.64)/);
+        await page.getByRole("button", { name: "Copy a link" }).click();
+        await status(page, /link/);
+        const other = await open(context, page.url());
+        assert.equal(await status(other, /a path of/), around);
+        await page.getByLabel("The pointer").selectOption("erase");
+        await across();
+        // A little of the wall may be left where the map is shown elsewhere now.
+        await status(page, /a path of 17\./);
+    });
+});
+
+test("a drive that no longer counts is not shown", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await page.getByRole("tab", { name: "Drive" }).click();
+        await page.getByRole("button", { name: "Drive", exact: true }).click();
+        await page.getByLabel("Goal x [m]").fill("2.5");
+        await page.getByLabel("Goal x [m]").blur();
+        await status(page, /Press Drive|Stopped/);
+        assert.equal(await page.locator("#panel table").count(), 0);
+        await page.getByRole("button", { name: "Drive", exact: true }).click();
+        const shown = await status(page, /the drive: reached/);
+        // Still there after a look at another part.
+        await page.getByRole("tab", { name: "Plan" }).click();
+        await status(page, /a path of/);
+        await page.getByRole("tab", { name: "Drive" }).click();
+        assert.notEqual(await page.locator("#panel table").count(), 0, shown);
     });
 });

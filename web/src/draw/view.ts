@@ -24,6 +24,8 @@ export interface Colors {
 export class View {
     readonly context: CanvasRenderingContext2D;
     private scale = 1;
+    /** The scale at which the whole map is shown. */
+    private whole = 1;
     private middle: Pair = [0, 0];
     private picture: HTMLCanvasElement | null = null;
     /** Lowest and highest column and row of what is not unknown. */
@@ -77,15 +79,36 @@ export class View {
         const { ground, wall, unknown } = this.colors;
         const colors = [ground, wall, unknown].map((color) => rgb(context, color));
         const image = context.createImageData(facts.width, facts.height);
+        const pixels = new Uint32Array(image.data.buffer);
+        const words = colors.map(
+            ([red, green, blue]) => (255 << 24) | (blue << 16) | (green << 8) | red,
+        );
         for (let y = 0; y < facts.height; y++) {
+            // Rows come from the bottom.
+            const to = (facts.height - 1 - y) * facts.width;
             for (let x = 0; x < facts.width; x++) {
-                const color = colors[cells[y * facts.width + x] ?? 0] ?? [0, 0, 0];
-                // Rows come from the bottom.
-                image.data.set([...color, 255], 4 * ((facts.height - 1 - y) * facts.width + x));
+                pixels[to + x] = words[cells[y * facts.width + x] ?? 0]!;
             }
         }
         context.putImageData(image, 0, 0);
         this.picture = picture;
+    }
+
+    get knownCells(): [Pair, Pair] {
+        return this.known;
+    }
+
+    /** Draws some cells anew. */
+    paintCells(numbers: number[], cells: Uint8Array): void {
+        const context = this.picture?.getContext("2d");
+        const facts = this.facts;
+        if (!context || !facts) return;
+        const { ground, wall, unknown } = this.colors;
+        for (const number of numbers) {
+            context.fillStyle = [ground, wall, unknown][cells[number] ?? 0] ?? ground;
+            const row = Math.floor(number / facts.width);
+            context.fillRect(number % facts.width, facts.height - 1 - row, 1, 1);
+        }
     }
 
     /** Shows the whole map. */
@@ -100,7 +123,8 @@ export class View {
         ];
         const [width, height] = [high[0]! - low[0]!, high[1]! - low[1]!];
         this.middle = [low[0]! + width / 2, low[1]! + height / 2];
-        this.scale = 0.98 * Math.min(this.canvas.width / width, this.canvas.height / height);
+        this.whole = 0.98 * Math.min(this.canvas.width / width, this.canvas.height / height);
+        this.scale = this.whole;
     }
 
     private corners(facts: MapFacts): Pair[] {
@@ -128,9 +152,10 @@ export class View {
         this.fit();
     }
 
+    /** Enlarges what is shown around a place, between a tenth and a hundred times the whole map. */
     zoom(factor: number, at: Pair): void {
         const before = this.toWorld(at);
-        this.scale *= factor;
+        this.scale = Math.min(100 * this.whole, Math.max(0.1 * this.whole, this.scale * factor));
         const after = this.toWorld(at);
         this.middle = [
             this.middle[0] + before[0] - after[0],
@@ -158,16 +183,14 @@ export class View {
         ];
     }
 
-    /** The cell in which a place lies. */
-    cellAt([x, y]: Pair): Pair | null {
-        const facts = this.facts;
-        if (!facts) return null;
-        const [ox, oy, yaw] = facts.origin;
+    /** The column and the row in which a place lies, which may be beside the map. */
+    columnAndRow([x, y]: Pair): Pair {
+        const [ox, oy, yaw] = this.facts?.origin ?? [0, 0, 0];
+        const resolution = this.facts?.resolution_m ?? 1;
         const [dx, dy] = [x - ox, y - oy];
-        const column = Math.floor((dx * Math.cos(yaw) + dy * Math.sin(yaw)) / facts.resolution_m);
-        const row = Math.floor((dy * Math.cos(yaw) - dx * Math.sin(yaw)) / facts.resolution_m);
-        const isInside = column >= 0 && row >= 0 && column < facts.width && row < facts.height;
-        return isInside ? [column, row] : null;
+        const column = Math.floor((dx * Math.cos(yaw) + dy * Math.sin(yaw)) / resolution);
+        const row = Math.floor((dy * Math.cos(yaw) - dx * Math.sin(yaw)) / resolution);
+        return [column, row];
     }
 
     /** The middle of a cell. */

@@ -1,4 +1,4 @@
-/** Asks the library, and keeps what it has to be told again when its thread was stopped. */
+/** Asks the library, and tells it again what it has to know when its thread was stopped. */
 
 import { fromBytes, toBytes, type Message, type Parts } from "./message";
 import type { Failure } from "./types";
@@ -11,10 +11,14 @@ export class Refused extends Error {
     }
 }
 
-/** The work was stopped from the page. */
+/** The library broke down, as where a browser has no more memory for it; it starts anew. */
+export class Fault extends Error {}
+
+/** The question was stopped from the page. */
 export class Stopped extends Error {}
 
 interface Waiting {
+    message: Message;
     resolve(answer: Message): void;
     reject(error: Error): void;
 }
@@ -24,63 +28,78 @@ export interface Answer<Head> {
     parts: Parts;
 }
 
+export interface Question {
+    ask: string;
+    [field: string]: unknown;
+}
+
 export class Engine {
     private worker = this.start();
+    /** In the order in which they were asked: the library works at the first one. */
     private waiting = new Map<number, Waiting>();
     private next = 0;
-    /** What was opened and edited, in this order. */
-    private told: Message[] = [];
+    private opened: Message | null = null;
+
+    /** `edits` are all changes of the map since it was opened. */
+    constructor(private readonly edits: () => Question[]) {}
 
     private start(): Worker {
         const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
-        worker.onmessage = (event: MessageEvent<Answered>) => {
-            const { id, answer } = event.data;
-            this.waiting.get(id)?.resolve(fromBytes(answer));
-            this.waiting.delete(id);
+        worker.onmessage = ({ data }: MessageEvent<Answered>) => {
+            if ("fault" in data) this.restart(data.id, new Fault(data.fault));
+            else {
+                this.waiting.get(data.id)?.resolve(fromBytes(data.answer));
+                this.waiting.delete(data.id);
+            }
         };
-        worker.onerror = (event) => this.restart(new Error(event.message || "the library failed"));
+        worker.onerror = (event) => {
+            const [first] = this.waiting.keys();
+            this.restart(first, new Fault(event.message || "it was not loaded"));
+        };
         return worker;
     }
 
-    /** The answer to a question; refused or stopped ones are errors. */
-    async ask<Head>(head: object, parts: Parts = {}): Promise<Answer<Head>> {
-        const answer = await this.send({ head: JSON.stringify(head), parts });
-        const read = JSON.parse(answer.head) as Head & Partial<Failure>;
-        if (read.error) throw new Refused(read.error);
-        return { head: read, parts: answer.parts };
-    }
-
-    /** The same for what changes the map: it is said again after a stop. */
-    async tell<Head>(
-        head: { ask: string; [field: string]: unknown },
+    /** The answer to a question; `stop` ends it. */
+    async ask<Head>(
+        question: Question,
         parts: Parts = {},
+        stop?: AbortSignal,
     ): Promise<Answer<Head>> {
-        const answer = await this.ask<Head>(head, parts);
-        if (head.ask === "open_map") this.told = [];
-        this.told.push({ head: JSON.stringify(head), parts });
-        return answer;
+        const message = { head: JSON.stringify(question), parts };
+        const answer = await this.send(message, stop);
+        const head = JSON.parse(answer.head) as Head & Partial<Failure>;
+        if (head.error) throw new Refused(head.error);
+        if (question.ask === "open_map") this.opened = message;
+        return { head, parts: answer.parts };
     }
 
-    /** Ends whatever the library works at; it then has the map as it was. */
-    stop(): void {
-        this.restart(new Stopped("stopped"));
-    }
-
-    private restart(reason: Error): void {
-        this.worker.terminate();
-        const waiting = [...this.waiting.values()];
-        this.waiting.clear();
-        this.worker = this.start();
-        for (const message of this.told) void this.send(message);
-        for (const one of waiting) one.reject(reason);
-    }
-
-    private send(message: Message): Promise<Message> {
+    private send(message: Message, stop?: AbortSignal): Promise<Message> {
         const id = this.next++;
-        const asked: Asked = { id, question: toBytes(message) };
         return new Promise((resolve, reject) => {
-            this.waiting.set(id, { resolve, reject });
-            this.worker.postMessage(asked);
+            this.waiting.set(id, { message, resolve, reject });
+            this.post(id, message);
+            stop?.addEventListener("abort", () => {
+                if (this.waiting.has(id)) this.restart(id, new Stopped("stopped"));
+            });
         });
+    }
+
+    private post(id: number, message: Message): void {
+        const asked: Asked = { id, question: toBytes(message) };
+        this.worker.postMessage(asked);
+    }
+
+    /** Gives up one question; the others are asked again. */
+    private restart(id: number | undefined, reason: Error): void {
+        this.worker.terminate();
+        this.worker = this.start();
+        const given = id === undefined ? undefined : this.waiting.get(id);
+        if (id !== undefined) this.waiting.delete(id);
+        const edits = this.edits().map((edit) => ({ head: JSON.stringify(edit), parts: {} }));
+        for (const message of this.opened ? [this.opened, ...edits] : []) {
+            this.post(this.next++, message);
+        }
+        for (const [other, { message }] of this.waiting) this.post(other, message);
+        given?.reject(reason);
     }
 }

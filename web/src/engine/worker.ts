@@ -14,22 +14,28 @@ export interface Asked {
     question: Uint8Array;
 }
 
-export interface Answered {
-    id: number;
-    answer: Uint8Array;
-}
+/** An answer, or the fault after which the library has to be started anew. */
+export type Answered = { id: number } & ({ answer: Uint8Array } | { fault: string });
 
-const instance = WebAssembly.instantiateStreaming(fetch(wasmUrl)).then(
-    (loaded) => loaded.instance.exports as unknown as Exports,
-);
+/** Whatever the host says of the file's type. */
+const instance = fetch(wasmUrl).then(async (response) => {
+    if (!response.ok) throw new Error(`the library was not loaded: ${response.status}`);
+    const loaded = await WebAssembly.instantiate(await response.arrayBuffer());
+    return loaded.instance.exports as unknown as Exports;
+});
 
 self.onmessage = async (event: MessageEvent<Asked>) => {
     const { id, question } = event.data;
-    const library = await instance;
-    const at = library.room(question.length);
-    new Uint8Array(library.memory.buffer, at, question.length).set(question);
-    const from = library.ask();
-    const answer = new Uint8Array(library.memory.buffer, from, library.answer_bytes()).slice();
-    const answered: Answered = { id, answer };
-    self.postMessage(answered, { transfer: [answer.buffer] });
+    try {
+        const library = await instance;
+        const at = library.room(question.length);
+        new Uint8Array(library.memory.buffer, at, question.length).set(question);
+        const from = library.ask();
+        const answer = new Uint8Array(library.memory.buffer, from, library.answer_bytes()).slice();
+        const answered: Answered = { id, answer };
+        self.postMessage(answered, { transfer: [answer.buffer] });
+    } catch (error) {
+        const answered: Answered = { id, fault: String(error) };
+        self.postMessage(answered);
+    }
 };

@@ -46,13 +46,24 @@ export function number(
     if (bounds.max !== undefined) input.max = String(bounds.max);
     input.step = String(bounds.step);
     input.value = String(value);
+    let known = value;
     input.onchange = () => {
-        if (Number.isFinite(input.valueAsNumber)) changed(input.valueAsNumber);
+        const given = input.valueAsNumber;
+        const [low, high] = [bounds.min ?? -Infinity, bounds.max ?? Infinity];
+        const isWhole = bounds.step === 1;
+        if (!(given >= low && given <= high) || (isWhole && !Number.isSafeInteger(given))) {
+            // It cannot be: the one before comes back.
+            input.value = String(known);
+            return;
+        }
+        known = given;
+        changed(given);
     };
     return {
         element: labelled(label, input),
         set: (now) => {
-            input.value = String(Number(now.toFixed(3)));
+            known = Number(now.toFixed(3));
+            input.value = String(known);
         },
     };
 }

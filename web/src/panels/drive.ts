@@ -1,13 +1,13 @@
 /** A drive in the simulator, moment by moment, and the reasons of each. */
 
 import { integers, singles } from "../engine/message";
-import { Refused, Stopped } from "../engine/engine";
+import { Stopped } from "../engine/engine";
 import type { CycleReport, Driven } from "../engine/types";
 import type { View } from "../draw/view";
 import { sceneFile, WALKER_RADIUS_M, type Pair } from "../state";
 import { texts } from "../texts";
 import { button, choice, facts, metres, named, number, Player, slider } from "./controls";
-import type { Page, Panel } from "./panel";
+import { failure, type Page, type Panel } from "./panel";
 
 export class DrivePanel implements Panel {
     readonly element = document.createElement("div");
@@ -16,10 +16,11 @@ export class DrivePanel implements Panel {
     private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
     private readonly player = new Player(texts, () => this.forward());
     private readonly drive = button(texts.drive, () => void this.run());
-    private readonly stop = button(texts.stop, () => this.page.engine.stop());
+    private readonly stop = button(texts.stop, () => this.running?.abort());
     private readonly report = button(texts.saveReport, () => {
         save("report.json", JSON.stringify(this.driven?.reports[0]));
     });
+    private running: AbortController | null = null;
     private driven: Driven | null = null;
     private hits: Pair[][] = [];
     private sensed: Pair[][] = [];
@@ -52,7 +53,7 @@ export class DrivePanel implements Panel {
             }).element,
             this.drive,
             this.stop,
-            button(texts.saveScene, () => save("scene.toml", sceneFile(state, page.mapName()))),
+            button(texts.saveScene, () => this.saveScene()),
             this.report,
             this.result,
             this.slider.element,
@@ -61,26 +62,39 @@ export class DrivePanel implements Panel {
         );
     }
 
-    /** What was driven before is no longer true. */
+    /** What was driven before is no longer true, and what is driven just now not needed. */
     async refresh(): Promise<void> {
+        this.running?.abort();
+        this.clear();
+        this.page.say(this, texts.driving.ready);
+    }
+
+    leave(): void {
+        this.player.stop();
+        this.running?.abort();
+    }
+
+    private clear(): void {
         this.player.stop();
         [this.driven, this.hits, this.sensed] = [null, [], []];
         this.report.disabled = true;
         this.result.replaceChildren();
         this.moment.replaceChildren();
         this.slider.set(0, 0);
-        this.page.say(texts.driving.ready);
         this.page.redraw();
     }
 
     private async run(): Promise<void> {
         const { engine, state, say, mapName } = this.page;
-        await this.refresh();
+        this.clear();
+        const running = new AbortController();
+        this.running = running;
         [this.drive.disabled, this.stop.disabled] = [true, false];
-        say(texts.working);
+        say(this, texts.working);
         try {
             const question = { ask: "drive", scene: sceneFile(state, mapName()) };
-            const { head, parts } = await engine.ask<Driven>(question);
+            const { head, parts } = await engine.ask<Driven>(question, {}, running.signal);
+            if (running.signal.aborted) return;
             this.driven = head;
             this.report.disabled = false;
             this.hits = lists(integers(parts["hits 0"]), singles(parts["hits 0"]));
@@ -90,12 +104,17 @@ export class DrivePanel implements Panel {
             this.showReport(head);
             this.showCycle(0);
         } catch (error) {
-            if (error instanceof Stopped) say(texts.stopped);
-            else if (error instanceof Refused) say(error.message);
-            else throw error;
+            say(this, error instanceof Stopped ? texts.stopped : failure(error));
         } finally {
             [this.drive.disabled, this.stop.disabled] = [false, true];
+            this.running = null;
         }
+    }
+
+    private saveScene(): void {
+        const { state, mapName, say } = this.page;
+        save("scene.toml", sceneFile(state, mapName()));
+        if (state.drawn.length > 0) say(this, texts.notInScene);
     }
 
     private showReport({ reports }: Driven): void {
@@ -114,7 +133,7 @@ export class DrivePanel implements Panel {
                 [words.clearance, metres(report.run?.min_clearance_m)],
             ]),
         );
-        this.page.say(words.driven(report.outcome, seconds));
+        this.page.say(this, words.driven(report.outcome, seconds));
     }
 
     private get cycles(): CycleReport[] {
@@ -194,6 +213,7 @@ function reasons(cycle: CycleReport): HTMLElement[] {
     const speeds = (it: { v_mps: number; omega_radps: number } | null) =>
         it ? `${it.v_mps.toFixed(2)} m/s, ${it.omega_radps.toFixed(2)} rad/s` : words.standing;
     const rows: (readonly [string, string])[] = [
+        [words.now, `${cycle.t_s.toFixed(1)} s`],
         [words.step, cycle.reason ? `${cycle.step}: ${cycle.reason}` : cycle.step],
         [words.velocity, speeds(cycle.velocity)],
         [words.command, speeds(cycle.command)],

@@ -1,13 +1,12 @@
 /** A path, planned again whenever something changes. */
 
 import { doubles } from "../engine/message";
-import { Refused } from "../engine/engine";
 import type { RouteReport } from "../engine/types";
 import type { View } from "../draw/view";
 import type { Pair } from "../state";
 import { texts } from "../texts";
 import { choice, facts, metres, named, number } from "./controls";
-import { Latest, type Page, type Panel } from "./panel";
+import { failure, Latest, type Page, type Panel } from "./panel";
 
 export class PlanPanel implements Panel {
     readonly element = document.createElement("div");
@@ -41,10 +40,9 @@ export class PlanPanel implements Panel {
     }
 
     private async plan(): Promise<void> {
-        const { engine, state, say } = this.page;
+        const { engine, state } = this.page;
         const { planner, smoother, radius_m, start, goal } = state;
         const begin = performance.now();
-        [this.line, this.smoothed] = [[], []];
         try {
             const question = { ask: "plan", planner, smoother, radius_m, start, goal };
             const { head, parts } = await engine.ask<RouteReport>(question);
@@ -52,9 +50,9 @@ export class PlanPanel implements Panel {
             this.smoothed = pairs(parts["smoothed"]);
             this.show(head, performance.now() - begin);
         } catch (error) {
-            if (!(error instanceof Refused)) throw error;
+            [this.line, this.smoothed] = [[], []];
             this.result.replaceChildren();
-            say(error.message);
+            this.page.say(this, failure(error));
         }
         this.page.redraw();
     }
@@ -63,7 +61,7 @@ export class PlanPanel implements Panel {
         const words = texts.plan;
         if (report.outcome !== "found") {
             this.result.replaceChildren();
-            this.page.say(`${texts.noPath}: ${report.why ?? report.outcome}`);
+            this.page.say(this, `${texts.noPath}: ${report.why ?? report.outcome}`);
             return;
         }
         this.result.replaceChildren(
@@ -80,7 +78,7 @@ export class PlanPanel implements Panel {
             ]),
         );
         const length = metres(report.smoothed?.length_m ?? report.length_m);
-        this.page.say(texts.found(length, report.turns ?? 0));
+        this.page.say(this, texts.found(length, report.turns ?? 0));
     }
 
     draw(view: View): void {

@@ -1,13 +1,12 @@
 /** A search, event by event. */
 
 import { integers } from "../engine/message";
-import { Refused } from "../engine/engine";
 import type { SearchReport } from "../engine/types";
 import type { View } from "../draw/view";
 import type { Pair } from "../state";
 import { texts } from "../texts";
 import { choice, facts, named, Player, slider } from "./controls";
-import { Latest, type Page, type Panel } from "./panel";
+import { failure, Latest, type Page, type Panel } from "./panel";
 
 /** Numbers of an event: kind, side, column and row of the node, column and row of the other end. */
 const NUMBERS = 6;
@@ -68,13 +67,13 @@ export class SearchPanel implements Panel {
                 cells[2 * i + 1]!,
             ]);
             say(
+                this,
                 head.why ??
                     `${texts.search.cost}: ${head.cost_cells?.toFixed(2)} ${texts.search.cells}`,
             );
         } catch (error) {
-            if (!(error instanceof Refused)) throw error;
             [this.report, this.events, this.path] = [null, new Int32Array(), []];
-            say(error.message);
+            say(this, failure(error));
         }
         this.showFirst(this.count);
     }
