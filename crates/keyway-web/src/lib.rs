@@ -26,7 +26,7 @@
 //! | [`edit_map`](map::EditMap) | the number of cells that changed | |
 //! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed` |
 //! | [`search`](route::Plan) | events and path of the search | `events`, `path` |
-//! | [`drive`](drive::Drive) | the report `keyway.navigate/4` of each robot, and their cycles | `poses`, `hits`, `sensed` |
+//! | [`drive`](drive::Drive) | reports `keyway.navigate/4`, and cycles | see [`drive::Driven`] |
 //!
 //! An answer to what cannot be done is `{"error": {"kind", "message", "field"}}`; the page keeps
 //! what it had.
