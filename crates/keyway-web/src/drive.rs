@@ -9,7 +9,6 @@ use keyway::geometry::{Point, Pose};
 use keyway::map::Cell;
 use keyway::navigate::{Navigator, Stack};
 use keyway::robot::{Footprint, Robot};
-use keyway::sense::{Ranges, Reading, Scan};
 use keyway_sim::episode::{
     Cycle, CycleReport, Episode, EpisodeObserver, RobotReport, RunOptions, watch_episode,
 };
@@ -185,18 +184,14 @@ impl Film {
         let observation = cycle.observation;
         let scans = observation.scans.iter();
         let points: Vec<Point> =
-            scans.flat_map(|one| hits(observation.pose.compose(one.mount), &one.scan)).collect();
+            scans.flat_map(|one| one.scan.hits(observation.pose.compose(one.mount))).collect();
         self.hits.extend((points.len() as u32).to_le_bytes());
         let numbers = points.iter().flat_map(|point| [point.x as f32, point.y as f32]);
         self.hits.extend(numbers.flat_map(f32::to_le_bytes));
     }
 
     fn note_sensed(&mut self, navigator: &Navigator) {
-        let sensed = navigator.sensed();
-        let (width, height) = (sensed.width() as i32, sensed.height() as i32);
-        let rows = (0..height).filter(|&y| sensed.any_in_span(y, 0, width - 1));
-        let cells = rows.flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
-        let now: Vec<Cell> = cells.filter(|&cell| sensed.get(cell)).collect();
+        let now: Vec<Cell> = navigator.sensed().ones().collect();
         let is_new =
             |cell: &&Cell| self.known.binary_search_by_key(&key(**cell), |c| key(*c)).is_err();
         let new: Vec<Cell> = now.iter().filter(is_new).copied().collect();
@@ -224,14 +219,4 @@ impl EpisodeObserver for Film {
         self.note_route(cycle.index, cycle.navigator);
         self.cycles.push(CycleReport::of(cycle, &cycle.navigator.explain()));
     }
-}
-
-/// The ends of the beams of a sensor that met something.
-fn hits<R: Ranges>(pose: Pose, scan: &Scan<R>) -> Vec<Point> {
-    let end = |beam| {
-        let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };
-        let (sin, cos) = libm::sincos(scan.bearing_rad(beam));
-        Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
-    };
-    (0..scan.beams()).filter_map(end).collect()
 }

@@ -273,6 +273,13 @@ impl BitGrid {
         word(columns.first) & columns.masks[0] | word(columns.last) & columns.masks[1] != 0
     }
 
+    /// Cells whose bits are set, row by row from the bottom.
+    pub fn ones(&self) -> impl Iterator<Item = Cell> + '_ {
+        let last = self.width as i32 - 1;
+        (0..self.height as i32)
+            .flat_map(move |y| self.ones_in_span(y, 0, last).map(move |x| Cell::new(x, y)))
+    }
+
     /// Columns of the set bits among columns `from..=to` of row `y` (clipped to the grid), in
     /// order. Empty words cost one test per 64 cells.
     pub fn ones_in_span(&self, y: i32, from: i32, to: i32) -> impl Iterator<Item = i32> + '_ {

@@ -1,6 +1,7 @@
 //! One turn of a range sensor.
 
 use super::{Ranges, RangesRef};
+use crate::geometry::{Point, Pose};
 use crate::robot::RangeSensor;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -166,6 +167,15 @@ impl<R: Ranges> Scan<R> {
         let is_hit = range_m > 0.0 && range_m <= self.range_max_m && !is_too_near;
         is_hit.then_some(Reading::Hit(range_m))
     }
+
+    /// The places \[m\] where beams of a sensor at `pose` met something, in the order of the beams.
+    pub fn hits(&self, pose: Pose) -> impl Iterator<Item = Point> + '_ {
+        (0..self.beams()).filter_map(move |beam| {
+            let Some(Reading::Hit(range_m)) = self.reading(beam) else { return None };
+            let (sin, cos) = libm::sincos(self.bearing_rad(beam));
+            Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
+        })
+    }
 }
 
 #[cfg(test)]
@@ -209,5 +219,20 @@ mod tests {
         assert_eq!((blind.reading(0), blind.reading(9)), (hit(0.1), free));
         let endless = Scan { range_max_m: inf, ..scan };
         assert_eq!((endless.reading(8), endless.reading(9)), (hit(65.0), None));
+    }
+
+    #[test]
+    fn hits_are_in_the_world_and_misses_are_not() {
+        let scan = Scan {
+            angle_min_rad: 0.0,
+            angle_increment_rad: std::f64::consts::FRAC_PI_2,
+            range_min_m: 0.0,
+            range_max_m: 3.0,
+            ranges_m: vec![2.0, f64::INFINITY, 3.5, f64::NAN],
+        };
+        let pose = Pose::new(1.0, 1.0, std::f64::consts::FRAC_PI_2);
+        let hits: Vec<Point> = scan.hits(pose).collect();
+        assert_eq!(hits.len(), 1);
+        assert!(hits[0].distance(Point::new(1.0, 3.0)) < 1e-12);
     }
 }

@@ -7,7 +7,7 @@ use keyway::local::Explanation;
 use keyway::map::{BitGrid, Cell};
 use keyway::navigate::{NavigateError, Navigator};
 use keyway::route::Route;
-use keyway::sense::{Mover, Observation, Ranges, Reading, Scan};
+use keyway::sense::{Mover, Observation};
 use keyway_lab::recording::RecordingError;
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
@@ -115,6 +115,8 @@ impl Watcher {
         let Observation { pose, velocity, scans, .. } = *observation;
         let number = navigator.routes_planned();
         let known = self.path.take().filter(|(of, _)| *of == number);
+        let mut sensed: Vec<Cell> = navigator.sensed().ones().collect();
+        sensed.sort_unstable();
         let path =
             || navigator.route().map_or_else(Polyline::default, |route| route.smoothed.clone());
         let (_, route) = self.path.insert(known.unwrap_or_else(|| (number, Arc::new(path()))));
@@ -123,8 +125,8 @@ impl Watcher {
             pose,
             velocity,
             guide: navigator.guidance().map_or(pose.point(), |guidance| guidance.point),
-            hits: scans.iter().flat_map(|one| hits(pose.compose(one.mount), &one.scan)).collect(),
-            sensed: set_cells(navigator.sensed()),
+            hits: scans.iter().flat_map(|one| one.scan.hits(pose.compose(one.mount))).collect(),
+            sensed,
             route: Arc::clone(route),
             movers: navigator.movers().to_vec(),
             walked: navigator.gone_around().to_vec(),
@@ -193,26 +195,6 @@ impl EpisodeObserver for Watcher {
     }
 }
 
-/// The ends of the beams of a sensor that met something.
-fn hits<R: Ranges>(pose: Pose, scan: &Scan<R>) -> Vec<Point> {
-    let end = |beam| {
-        let Some(Reading::Hit(range_m)) = scan.reading(beam) else { return None };
-        let (sin, cos) = scan.bearing_rad(beam).sin_cos();
-        Some(pose.world_from_body(Point::new(range_m * cos, range_m * sin)))
-    };
-    (0..scan.beams()).filter_map(end).collect()
-}
-
-/// The set cells in ascending order.
-fn set_cells(grid: &BitGrid) -> Vec<Cell> {
-    let (width, height) = (grid.width() as i32, grid.height() as i32);
-    let rows = (0..height).filter(|&y| grid.any_in_span(y, 0, width - 1));
-    let row = |y| (0..width).map(move |x| Cell::new(x, y)).filter(|&cell| grid.get(cell));
-    let mut cells: Vec<Cell> = rows.flat_map(row).collect();
-    cells.sort_unstable();
-    cells
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -247,19 +229,5 @@ mod tests {
             assert!(film.moments.iter().enumerate().all(|(i, one)| one.t_s == i as f64 * step));
             assert!((cycles - 1) as f64 - film.moments[count - 1].t_s < step);
         }
-    }
-
-    #[test]
-    fn hits_are_in_the_world_and_misses_are_not() {
-        let scan = Scan {
-            angle_min_rad: 0.0,
-            angle_increment_rad: std::f64::consts::FRAC_PI_2,
-            range_min_m: 0.0,
-            range_max_m: 3.0,
-            ranges_m: vec![2.0, f64::INFINITY, 3.5, f64::NAN],
-        };
-        let hits = hits(Pose::new(1.0, 1.0, std::f64::consts::FRAC_PI_2), &scan);
-        assert_eq!(hits.len(), 1);
-        assert!(hits[0].distance(Point::new(1.0, 3.0)) < 1e-12);
     }
 }

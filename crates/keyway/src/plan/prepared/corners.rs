@@ -37,9 +37,7 @@ impl Corners {
 
     /// All of them, in the order of their numbers.
     pub(super) fn iter(&self) -> impl Iterator<Item = Cell> + '_ {
-        let last = self.cells.width() as i32 - 1;
-        (0..self.cells.height() as i32)
-            .flat_map(move |y| self.cells.ones_in_span(y, 0, last).map(move |x| Cell::new(x, y)))
+        self.cells.ones()
     }
 
     /// True if a cell of the map is one.
