@@ -212,7 +212,7 @@ pub(crate) struct PrepareArgs {
     pub(crate) out: PathBuf,
     /// Prepare only if that takes less time than jps needs for this many paths [default: 100000]
     #[arg(long, value_name = "PATHS", num_args = 0..=1, require_equals = true)]
-    #[arg(default_missing_value = "100000", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(default_missing_value = "100000", value_parser = whole::<u64, 1, { u64::MAX }>)]
     pub(crate) if_it_pays: Option<u64>,
     #[command(flatten)]
     pub(crate) size: SizeArgs,

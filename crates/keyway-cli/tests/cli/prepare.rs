@@ -80,7 +80,8 @@ fn only_if_it_pays() {
     let (before, made) = (&many["estimate"], &many["preparation"]);
     assert_eq!((before["corner_cells"].as_u64()), (made["corner_cells"].as_u64()));
     assert!(run("--if-it-pays --format json").json()["estimate"].is_object());
-    keyway(folder.path(), &format!("{line} --if-it-pays=0")).expect_code(2);
+    let refused = keyway(folder.path(), &format!("{line} --if-it-pays=0")).expect_code(2);
+    assert!(refused.err.contains("expected a whole number of at least 1"), "{}", refused.err);
 }
 
 #[test]
