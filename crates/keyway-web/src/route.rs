@@ -7,9 +7,9 @@ use keyway::files::{
     FieldValue, ParameterLayers, RobotLayersError, RobotSize, StartingValues, parameters_from_bytes,
 };
 use keyway::geometry::Point;
-use keyway::map::{Cell, LayerConfig, SearchMap};
+use keyway::map::{LayerConfig, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, Plan as Planned, PlanError, PlannerConfig};
+use keyway::plan::{GlobalPlanner, Plan as Planned, PlanError};
 use keyway::robot::Robot;
 use keyway::route::why_no_room;
 use keyway::search::{IfUnreachable, Recording, SearchEvent, Side, Workspace};
@@ -121,9 +121,7 @@ pub(crate) fn plan(
     workspace: &mut Workspace,
 ) -> Result<Message, PageError> {
     let Setup { size, stack } = setup(ask)?;
-    let robot = size.robot().cloned();
-    let map = layers_for(ask, opened, layers, &size, &stack)?;
-    let planner = planner(&stack.planner, map)?;
+    let (map, planner) = ready(ask, opened, layers, &size, &stack)?;
     let smoother = smoother(&stack.smoother)?;
     let goals = [point(ask.goal)];
     let request = RouteRequest {
@@ -138,7 +136,7 @@ pub(crate) fn plan(
         with_optimum: false,
     };
     let answer = request.answer(None, workspace).map_err(|error| refused(map, ask, &error))?;
-    let inputs = request.inputs(opened.source.clone(), robot, &stack);
+    let inputs = request.inputs(opened.source.clone(), size.robot().cloned(), &stack);
     let mut message = Message::new(json(&answer.report(inputs)));
     if let RouteAnswer { route: Some(route), smoothed, .. } = &answer {
         message = message.with("line", points(route.line.polyline().points()));
@@ -157,8 +155,7 @@ pub(crate) fn search(
     workspace: &mut Workspace,
 ) -> Result<Message, PageError> {
     let Setup { size, stack } = setup(ask)?;
-    let map = layers_for(ask, opened, layers, &size, &stack)?;
-    let planner = planner(&stack.planner, map)?;
+    let (map, planner) = ready(ask, opened, layers, &size, &stack)?;
     let query = keyway::route::RouteQuery {
         budget: ask.budget,
         if_unreachable: if_unreachable(ask),
@@ -188,24 +185,27 @@ const fn if_unreachable(ask: &Plan) -> IfUnreachable {
     if ask.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail }
 }
 
-/// The layers for a plan: those of the last one, where they are the same.
-fn layers_for<'l>(
+/// The layers for a plan, those of the last one where they are the same, and the planner.
+fn ready<'l>(
     ask: &Plan,
     opened: &Opened,
     layers: &'l mut Layers,
     size: &RobotSize,
     stack: &Stack,
-) -> Result<&'l SearchMap, PageError> {
+) -> Result<(&'l SearchMap, Box<dyn GlobalPlanner + Send + Sync>), PageError> {
     let known = layers.take().filter(|(config, of, _)| (config, of) == (&stack.map, size));
     let map = match known {
         Some((.., map)) => map,
         None => size.layers(&opened.grid, stack.map.clone()).map_err(|error| no_layers(&error))?,
     };
     let (.., map) = layers.insert((stack.map.clone(), size.clone(), map));
-    let ends: Vec<Cell> =
-        [ask.start, ask.goal].map(|end| map.frame().cell_near(point(end))).to_vec();
+    let ends = [ask.start, ask.goal].map(|end| map.frame().cell_near(point(end)));
     map.free_ends(&ends);
-    Ok(map)
+    let planner = stack
+        .planner
+        .build(map)
+        .map_err(|error| PageError::new(Kind::Config, error).field("planner"))?;
+    Ok((map, planner))
 }
 
 fn no_layers(error: &RobotLayersError) -> PageError {
@@ -215,13 +215,6 @@ fn no_layers(error: &RobotLayersError) -> PageError {
         _ => "radius_m",
     };
     PageError::new(Kind::Config, error).field(field)
-}
-
-fn planner(
-    config: &PlannerConfig,
-    map: &SearchMap,
-) -> Result<Box<dyn GlobalPlanner + Send + Sync>, PageError> {
-    config.build(map).map_err(|error| PageError::new(Kind::Config, error).field("planner"))
 }
 
 fn smoother(config: &SmootherConfig) -> Result<Option<Box<dyn Smoother + Send + Sync>>, PageError> {
