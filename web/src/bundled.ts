@@ -1,4 +1,4 @@
-/** Maps that come with the page. */
+/** Maps and scenes that come with the page. */
 
 import houseYaml from "../../crates/keyway-cli/scenes/small_house.yaml?url";
 import housePng from "../../crates/keyway-cli/scenes/small_house.png?url";
@@ -30,7 +30,29 @@ const BUNDLED = new Map<string, Bundled>([
     ["rooms", { files: [["rooms.map", roomsMap]], start: [1.5, 1.5], goal: [30.5, 30.5] }],
 ]);
 
+/** Addresses of the files of scenes, by their paths. */
+const FILES: Record<string, string> = import.meta.glob("../../scenes/{fleet,complaints}/*", {
+    query: "?url",
+    import: "default",
+    eager: true,
+});
+
+/** The folder and the name of a path. */
+const split = (path: string) => path.split("/").slice(-2) as [string, string];
+
+/** Names such as `fleet/bay`, by folder. */
+export const SCENES: Map<string, string[]> = new Map();
+for (const path of Object.keys(FILES)) {
+    const [folder, name] = split(path);
+    if (!name.endsWith(".toml")) continue;
+    SCENES.set(folder, [...(SCENES.get(folder) ?? []), name.replace(".toml", "")]);
+}
+
 export const isBundled = (map: string) => BUNDLED.has(map);
+
+/** True if there is a scene such as `fleet/bay`. */
+export const isScene = (scene: string) =>
+    [...SCENES].some(([folder, names]) => names.some((name) => scene === `${folder}/${name}`));
 
 /** The files of a map, the name of the first one, and a start and a goal. */
 export async function load(
@@ -38,14 +60,27 @@ export async function load(
 ): Promise<{ name: string; parts: Parts; ends: [Pair, Pair] }> {
     const bundled = BUNDLED.get(map);
     if (!bundled) throw new Error(`there is no map ${map}`);
-    const files = bundled.files.map(async ([name, address]): Promise<[string, Uint8Array]> => {
+    return {
+        name: bundled.files[0]![0],
+        parts: await loaded(bundled.files),
+        ends: [[...bundled.start], [...bundled.goal]],
+    };
+}
+
+/** The files of a scene such as `fleet/bay`: its own, and all maps of its folder. */
+export async function loadScene(scene: string): Promise<{ name: string; parts: Parts }> {
+    const [own, wanted] = split(scene);
+    const isNeeded = ([folder, name]: [string, string]) =>
+        folder === own && (name === `${wanted}.toml` || !name.endsWith(".toml"));
+    const needed = Object.entries(FILES).filter(([path]) => isNeeded(split(path)));
+    const files = needed.map(([path, address]): [string, string] => [split(path)[1], address]);
+    return { name: `${wanted}.toml`, parts: await loaded(files) };
+}
+
+async function loaded(files: [string, string][]): Promise<Parts> {
+    const read = files.map(async ([name, address]): Promise<[string, Uint8Array]> => {
         const content = await (await fetch(address)).arrayBuffer();
         return [name, new Uint8Array(content)];
     });
-    const parts = Object.fromEntries(await Promise.all(files));
-    return {
-        name: bundled.files[0]![0],
-        parts,
-        ends: [[...bundled.start], [...bundled.goal]],
-    };
+    return Object.fromEntries(await Promise.all(read));
 }

@@ -24,12 +24,16 @@ export class Ground {
     /** Opens a map; when it cannot be read, the one before stays. */
     async open(engine: Engine, name: string, parts: Parts): Promise<MapFacts> {
         const answer = await engine.ask<MapFacts>({ ask: "open_map", name }, parts);
-        this.name = name;
-        this.cells = answer.parts["cells"] ?? new Uint8Array();
+        this.show(answer.head, answer.parts["cells"] ?? new Uint8Array());
+        return answer.head;
+    }
+
+    /** Shows a map that the library has opened. */
+    show(facts: MapFacts, cells: Uint8Array): void {
+        [this.name, this.cells] = [facts.name, cells];
         this.drawn.clear();
         this.pending.clear();
-        this.view.show(answer.head, this.cells);
-        return answer.head;
+        this.view.show(facts, cells);
     }
 
     /** All changes since the map was opened. */

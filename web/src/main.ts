@@ -1,33 +1,42 @@
 /** The page: a map with a panel beside it. */
 
 import "./style.css";
-import { isBundled, load } from "./bundled";
+import { SCENES } from "./bundled";
 import { View } from "./draw/view";
 import { Engine } from "./engine/engine";
-import type { Parts } from "./engine/message";
-import type { MapFacts, Names } from "./engine/types";
+import type { MapFacts, Names, SceneFacts } from "./engine/types";
 import { Ground } from "./ground";
-import { button, choice, number, type NumberField } from "./panels/controls";
+import { button, choice, grouped, number, save, type NumberField } from "./panels/controls";
+import { ComparePanel } from "./panels/compare";
 import { DrivePanel } from "./panels/drive";
 import { failure, type Page, type Panel } from "./panels/panel";
+import { PapersPanel } from "./panels/papers";
 import { PlanPanel } from "./panels/plan";
 import { SearchPanel } from "./panels/search";
 import { Pointer, type Tool } from "./pointer";
-import { fromFragment, TABS, toFragment, type Pair, type State, type Tab } from "./state";
+import { Source } from "./source";
+import { fromFragment, TABS, toFragment, type State, type Tab } from "./state";
 import { texts } from "./texts";
+
+/** Work that is done sooner is not announced. */
+const SOON_MS = 250;
 
 class App implements Page {
     readonly engine: Engine;
     names!: Names;
     private readonly view = new View(element("map") as HTMLCanvasElement);
     private readonly ground = new Ground(this.view, () => this.changed());
+    private readonly source: Source;
     private readonly pointer: Pointer;
     private readonly status = element("status");
+    private readonly stop = button(texts.stop, () => this.stops.at(-1)?.abort());
+    /** Of the work that is done just now. */
+    private readonly stops: AbortController[] = [];
     private isDue = false;
     private isLinkDue = false;
     private panel: Panel | null = null;
-    /** Its drive is still there after a look at another part, unless something has changed. */
-    private drive: DrivePanel | null = null;
+    /** These stay when another part is looked at, unless something has changed. */
+    private readonly kept = new Map<Tab, Panel>();
     private places: NumberField[] = [];
     private maps: HTMLSelectElement | null = null;
 
@@ -39,19 +48,62 @@ class App implements Page {
         };
         // A drive on another map is of no use.
         const drawn = () => {
-            this.drive?.leave();
+            this.kept.forEach((panel) => panel.leave?.());
             this.redraw();
         };
-        const { view, ground, engine } = this;
-        this.pointer = new Pointer(view, ground, engine, state, moved, drawn, this.redraw);
+        const { view, ground, engine, has } = this;
+        this.source = new Source(engine, ground, state, (text) => this.say(null, text));
+        this.pointer = new Pointer(view, ground, engine, state, moved, drawn, this.redraw, has);
+        this.stop.hidden = true;
+        this.status.after(this.stop);
+    }
+
+    /** What can be moved in the part that is shown. */
+    private readonly has = () => {
+        const ends = this.panel?.hasEnds ?? false;
+        const { tab } = this.state;
+        return { ends, obstacles: ends && (tab === "drive" || tab === "compare") };
+    };
+
+    get scene(): SceneFacts | null {
+        return this.source.scene;
     }
 
     readonly mapName = () => this.ground.name;
+
+    readonly showMap = (facts: MapFacts, cells: Uint8Array, name: string) => {
+        this.source.show(facts, cells, name);
+        this.showSource(name);
+        this.showPlaces();
+        this.writeLink();
+    };
 
     readonly say = (panel: Panel | null, text: string) => {
         if (panel !== null && panel !== this.panel) return;
         this.status.textContent = text;
         this.view.canvas.setAttribute("aria-label", texts.pictureOf(text));
+    };
+
+    readonly working = async <T>(
+        outer: AbortSignal | null,
+        work: (stop: AbortSignal) => Promise<T>,
+    ): Promise<T> => {
+        const own = new AbortController();
+        const abort = () => own.abort();
+        outer?.addEventListener("abort", abort);
+        this.stops.push(own);
+        const timer = setTimeout(() => {
+            this.stop.hidden = false;
+            this.say(null, texts.working);
+        }, SOON_MS);
+        try {
+            return await work(own.signal);
+        } finally {
+            clearTimeout(timer);
+            outer?.removeEventListener("abort", abort);
+            this.stops.splice(this.stops.indexOf(own), 1);
+            this.stop.hidden = this.stops.length === 0;
+        }
     };
 
     readonly redraw = () => {
@@ -65,11 +117,22 @@ class App implements Page {
 
     readonly changed = () => {
         this.state.drawn = this.ground.list;
-        if (this.panel !== this.drive) this.drive = null;
-        void this.panel?.refresh();
+        for (const [tab, panel] of this.kept) if (panel !== this.panel) this.kept.delete(tab);
+        void this.refresh();
         this.redraw();
         this.writeLink();
     };
+
+    private async refresh(): Promise<void> {
+        const { panel } = this;
+        try {
+            await this.source.reseed();
+        } catch (error) {
+            this.say(null, failure(error));
+            return;
+        }
+        if (panel === this.panel) await panel?.refresh();
+    }
 
     /** Writes the state into the address, but not at every move of a pointer. */
     private writeLink(): void {
@@ -87,13 +150,13 @@ class App implements Page {
         this.makeControls();
         this.listen();
         this.view.resize();
-        const { map, drawn } = this.state;
-        const isHere = isBundled(map);
-        await this.openBundled(isHere ? map : "house", !isHere);
-        if (isHere) this.ground.draw(this.engine, drawn);
+        await this.source.restore();
+        this.showSource(this.state.map);
+        this.showPlaces();
         await this.ground.tell(this.engine);
+        const opened = this.status.textContent ?? "";
         this.open(this.state.tab);
-        if (!isHere) this.say(null, texts.notInLink(map));
+        this.say(null, opened);
     }
 
     /** Shows one of the parts. */
@@ -106,39 +169,26 @@ class App implements Page {
         }
         const side = element("panel");
         side.setAttribute("aria-labelledby", `tab-${tab}`);
-        const isKept = tab === "drive" && this.drive !== null;
-        if (tab === "drive") this.panel = this.drive ??= new DrivePanel(this);
-        else this.panel = tab === "plan" ? new PlanPanel(this) : new SearchPanel(this);
+        const known = this.kept.get(tab);
+        this.panel = known ?? this.made(tab);
+        if (tab === "drive" || tab === "compare") this.kept.set(tab, this.panel);
         side.replaceChildren(this.panel.element);
-        if (!isKept) void this.panel.refresh();
+        if (!known) void this.panel.refresh();
         this.redraw();
         this.writeLink();
     }
 
-    private async openBundled(map: string, isNew: boolean): Promise<void> {
-        const { name, parts, ends } = await load(map);
-        await this.openFiles(name, parts);
-        this.state.map = map;
-        if (isNew) this.forget(ends);
-        this.showPlaces();
-    }
-
-    private async openFiles(name: string, parts: Parts): Promise<void> {
-        const facts: MapFacts = await this.ground.open(this.engine, name, parts);
-        this.say(
-            null,
-            [`${facts.name}, ${facts.width} x ${facts.height}`, ...facts.warnings].join("; "),
-        );
-    }
-
-    /** Walls and obstacles of another map. */
-    private forget([start, goal]: [Pair, Pair]): void {
-        Object.assign(this.state, { start, goal, discs: [], walkers: [], drawn: [] });
+    private made(tab: Tab): Panel {
+        if (tab === "plan") return new PlanPanel(this);
+        if (tab === "search") return new SearchPanel(this);
+        if (tab === "drive") return new DrivePanel(this);
+        return tab === "compare" ? new ComparePanel(this) : new PapersPanel(this);
     }
 
     private async choose(map: string): Promise<void> {
         try {
-            await this.openBundled(map, true);
+            await this.source.open(map);
+            this.showPlaces();
             this.changed();
         } catch (error) {
             this.say(null, failure(error));
@@ -146,41 +196,69 @@ class App implements Page {
     }
 
     private async openOwn(files: File[]): Promise<void> {
-        const readable = files.find(({ name }) => /\.(ya?ml|map)$/i.test(name)) ?? files[0];
-        if (!readable) return;
-        const read = files.map(async (file): Promise<[string, Uint8Array]> => [
-            file.name,
-            new Uint8Array(await file.arrayBuffer()),
-        ]);
         try {
-            await this.openFiles(readable.name, Object.fromEntries(await Promise.all(read)));
+            const name = await this.source.openOwn(files);
+            if (name === null) return;
+            this.showSource(name);
+            this.showPlaces();
+            this.changed();
         } catch (error) {
             this.say(null, failure(error));
-            return;
         }
-        const { radius_m } = this.state;
-        this.forget([this.ground.freeNear(0.25, radius_m), this.ground.freeNear(0.75, radius_m)]);
-        this.state.map = readable.name;
-        this.maps?.add(new Option(readable.name, readable.name, false, true));
-        this.showPlaces();
-        this.changed();
+    }
+
+    /** The name of the map in the list of maps. */
+    private showSource(name: string): void {
+        const { maps } = this;
+        if (!maps) return;
+        if (![...maps.options].some(({ value }) => value === name)) maps.add(new Option(name));
+        maps.value = name;
     }
 
     private draw(): void {
-        const { view, state } = this;
+        const { view, panel } = this;
         view.clear();
-        const colors = view.colors;
-        if (state.tab === "drive") {
-            for (const { from, to } of state.walkers) {
-                view.line([from, to], colors.mover, 1.5, [2, 4]);
-            }
-            for (const { at, radius_m } of state.discs) {
-                view.disc(at, view.pixels(radius_m), colors.disc);
-            }
+        const panes = panel?.panes ?? 1;
+        view.divide(panes);
+        for (let pane = 0; pane < panes; pane++) {
+            view.inPane(pane, () => {
+                view.ground();
+                const { tab } = this.state;
+                if (this.has().obstacles || (this.scene && tab === "drive")) this.drawObstacles();
+                panel?.draw(view, pane);
+                this.drawEnds();
+            });
         }
-        this.panel?.draw(view);
-        view.mark(state.start, "S", colors.start);
-        view.mark(state.goal, "G", colors.goal);
+    }
+
+    /** Obstacles that the map does not show. */
+    private drawObstacles(): void {
+        const { view, state, scene } = this;
+        const { colors } = view;
+        if (scene) {
+            view.cells(scene.hidden_cells, colors.disc);
+            for (const [x, y, radius_m] of scene.discs) {
+                view.disc([x, y], view.pixels(radius_m), colors.disc);
+            }
+            for (const polygon of scene.polygons) view.polygon(polygon, [0, 0, 0], colors.disc);
+            return;
+        }
+        for (const { from, to } of state.walkers) view.line([from, to], colors.mover, 1.5, [2, 4]);
+        for (const { at, radius_m } of state.discs) {
+            view.disc(at, view.pixels(radius_m), colors.disc);
+        }
+    }
+
+    private drawEnds(): void {
+        const { view, state, scene } = this;
+        const { colors } = view;
+        const isScene = scene && (state.tab === "drive" || state.tab === "compare");
+        const robots = isScene ? scene.robots : [{ start: state.start, goal: state.goal }];
+        robots.forEach(({ start, goal }, i) => {
+            const number = robots.length > 1 ? String(i + 1) : "";
+            view.mark(start, `S${number}`, colors.start);
+            view.mark(goal, `G${number}`, colors.goal);
+        });
     }
 
     private listen(): void {
@@ -196,6 +274,7 @@ class App implements Page {
         }).observe(canvas);
         matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
             this.ground.repaint();
+            this.panel?.repaint?.();
             this.redraw();
         });
         // Another link in the same window.
@@ -230,9 +309,16 @@ class App implements Page {
         const box = document.createElement("div");
         box.className = "field";
         box.append(label, files);
-        const bundled = Object.entries(texts.bundled);
-        const maps = choice(texts.map, bundled, this.state.map, (map) => {
-            if (isBundled(map)) void this.choose(map);
+        const scenes = [...SCENES].flatMap(([folder, names]) =>
+            names.map((name) => [`scene ${folder}/${name}`, `${folder}: ${name}`] as const),
+        );
+        const groups = [
+            { name: texts.groups.maps, options: Object.entries(texts.bundled) },
+            { name: texts.groups.scenes, options: scenes },
+        ];
+        const maps = grouped(texts.map, groups, this.state.map, (map) => {
+            const isOwn = maps.querySelector("select")?.selectedOptions[0]?.parentElement === null;
+            if (!isOwn) void this.choose(map);
         });
         this.maps = maps.querySelector("select");
         const tools = Object.entries(texts.tools);
@@ -246,6 +332,9 @@ class App implements Page {
                 this.redraw();
             }),
             button(texts.share, () => void this.share()),
+            button(texts.savePicture, () => {
+                this.view.canvas.toBlob((picture) => picture && save("keyway.png", picture));
+            }),
         );
     }
 

@@ -29,6 +29,8 @@ export class Pointer {
         private readonly moved: () => void,
         private readonly drawn: () => void,
         private readonly redraw: () => void,
+        /** What can be moved. */
+        private readonly has: () => { ends: boolean; obstacles: boolean },
     ) {
         const { canvas } = view;
         canvas.onpointerdown = (event) => this.down(event);
@@ -43,6 +45,27 @@ export class Pointer {
             redraw();
         };
         canvas.addEventListener("wheel", wheel, { passive: false });
+        canvas.onkeydown = (event) => this.key(event);
+    }
+
+    /** Arrows move the map, plus and minus enlarge it, zero shows all of it. */
+    private key(event: KeyboardEvent): void {
+        const { canvas } = this.view;
+        const by = 40 * ratio();
+        const moves: Record<string, Pair> = {
+            ArrowLeft: [by, 0],
+            ArrowRight: [-by, 0],
+            ArrowUp: [0, by],
+            ArrowDown: [0, -by],
+        };
+        const zooms: Record<string, number> = { "+": 1.25, "=": 1.25, "-": 0.8 };
+        const [move, zoom] = [moves[event.key], zooms[event.key]];
+        if (move) this.view.pan(move);
+        else if (zoom) this.view.zoom(zoom, [canvas.width / 2, canvas.height / 2]);
+        else if (event.key === "0") this.view.fit();
+        else return;
+        event.preventDefault();
+        this.redraw();
     }
 
     private down(event: PointerEvent): void {
@@ -53,7 +76,7 @@ export class Pointer {
         // Two fingers zoom.
         this.held = this.fingers.size > 1 ? null : this.under(at);
         if (this.held?.kind === "draw") this.stroke(at, at);
-        else if (this.held?.kind === "pan" && this.state.tab === "drive") this.put(at);
+        else if (this.held?.kind === "pan" && this.has().obstacles) this.put(at);
     }
 
     private move(event: PointerEvent): void {
@@ -89,10 +112,11 @@ export class Pointer {
             const [px, py] = this.view.toScreen(at);
             return Math.hypot(x - px, y - py) < size;
         };
-        const { start, goal, discs, walkers, tab } = this.state;
-        if (isNear(start)) return { kind: "start" };
-        if (isNear(goal)) return { kind: "goal" };
-        if (tab === "drive") {
+        const { start, goal, discs, walkers } = this.state;
+        const has = this.has();
+        if (has.ends && isNear(start)) return { kind: "start" };
+        if (has.ends && isNear(goal)) return { kind: "goal" };
+        if (has.obstacles) {
             const size = (radius_m: number) => Math.max(reach, this.view.pixels(radius_m));
             const disc = discs.findIndex((disc) => isNear(disc.at, size(disc.radius_m)));
             const from = walkers.findIndex((walker) => isNear(walker.from));

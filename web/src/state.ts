@@ -1,7 +1,11 @@
 /** What is shown: all of it fits into a link. */
 
-export type Tab = "plan" | "search" | "drive";
-export const TABS: readonly Tab[] = ["plan", "search", "drive"];
+import type { Question } from "./engine/engine";
+
+export type Tab = "plan" | "search" | "drive" | "compare" | "papers";
+export const TABS: readonly Tab[] = ["plan", "search", "drive", "compare", "papers"];
+/** What is compared. */
+export type Compared = "planners" | "stacks";
 export type Pair = [number, number];
 export type Disc = { at: Pair; radius_m: number };
 /** Somebody who walks to and fro between two places. */
@@ -14,9 +18,19 @@ export const WALKER_SPEED_MPS = 0.6;
 
 export interface State {
     tab: Tab;
-    /** A bundled map, or the name of an own one, which is not in the link. */
+    /** A bundled map or scene, a map of a claim, or the name of an own one. */
     map: string;
+    /** The text of the scene that is open; `null` for one that is drawn. */
+    scene: string | null;
+    /** A stack for all robots of that scene; empty: those that it names. */
+    sceneStack: string;
     planner: string;
+    /** Planners whose searches are shown beside that of the first one; empty ones are left out. */
+    beside: string[];
+    /** Show the shortest line in any direction. */
+    shortest: boolean;
+    /** Show the velocities that were tried. */
+    fan: boolean;
     smoother: string;
     radius_m: number;
     robot: string;
@@ -30,12 +44,30 @@ export interface State {
     discs: Disc[];
     walkers: Walker[];
     drawn: Drawn[];
+    compared: Compared;
+    planners: string[];
+    smoothers: string[];
+    queries: number;
+    stacks: string[];
+    runs: number;
+    claim: string;
+    /** Show the paper's own map, where it was reconstructed. */
+    paperScene: boolean;
+    claimSeed: number;
+    claimMaps: number;
 }
+
+export const LIMITS = { queries: 1000, runs: 100, seed: 1e9, claimMaps: 200 };
 
 export const initial = (): State => ({
     tab: "plan",
     map: "house",
+    scene: null,
+    sceneStack: "",
     planner: "jps",
+    beside: [],
+    shortest: true,
+    fan: false,
     smoother: "taut",
     radius_m: 0.2,
     robot: "small",
@@ -48,6 +80,16 @@ export const initial = (): State => ({
     discs: [{ at: [0.3, -0.275], radius_m: 0.15 }],
     walkers: [],
     drawn: [],
+    compared: "stacks",
+    planners: ["jps", "theta-star"],
+    smoothers: ["none", "taut"],
+    queries: 20,
+    stacks: ["keyway", "s0-key-point", "astar-follow"],
+    runs: 1,
+    claim: "S0-1",
+    paperScene: true,
+    claimSeed: 1,
+    claimMaps: 20,
 });
 
 /** A link cannot hold more of a kind. */
@@ -79,6 +121,11 @@ const isDrawn: Check<Drawn> = (value): value is Drawn =>
     value.length === 3 &&
     value.slice(0, 2).every(isWhole(1e6)) &&
     isWhole(1)(value[2]);
+const isFlag: Check<boolean> = (value): value is boolean => typeof value === "boolean";
+/** Longer scenes are not in a link. */
+const MOST_SCENE = 100_000;
+const isScene: Check<string | null> = (value): value is string | null =>
+    value === null || (typeof value === "string" && value.length < MOST_SCENE);
 const isList =
     <T>(is: Check<T>): Check<T[]> =>
     (value): value is T[] =>
@@ -87,7 +134,12 @@ const isList =
 const CHECKS: { [Field in keyof State]: Check<State[Field]> } = {
     tab: (value): value is Tab => TABS.some((tab) => tab === value),
     map: isText,
+    scene: isScene,
+    sceneStack: isText,
     planner: isText,
+    beside: (value): value is string[] => isList(isText)(value) && value.length <= 3,
+    shortest: isFlag,
+    fan: isFlag,
     smoother: isText,
     radius_m: isBetween(0, 1000),
     robot: isText,
@@ -100,6 +152,16 @@ const CHECKS: { [Field in keyof State]: Check<State[Field]> } = {
     discs: isList(isDisc),
     walkers: isList(isWalker),
     drawn: isList(isDrawn),
+    compared: (value): value is Compared => value === "planners" || value === "stacks",
+    planners: isList(isText),
+    smoothers: isList(isText),
+    queries: isWhole(LIMITS.queries),
+    stacks: isList(isText),
+    runs: isWhole(LIMITS.runs),
+    claim: isText,
+    paperScene: isFlag,
+    claimSeed: isWhole(LIMITS.seed),
+    claimMaps: isWhole(LIMITS.claimMaps),
 };
 
 /** The fields that can be used; those that cannot are as at the beginning. */
@@ -137,6 +199,14 @@ export async function fromFragment(fragment: string): Promise<State> {
     } catch {
         return initial();
     }
+}
+
+/** A drive, as a question for the library. */
+export function driveQuestion(state: State, map: string): Question {
+    const { scene, sceneStack, seed, drawn } = state;
+    if (scene === null) return { ask: "drive", scene: sceneFile(state, map), name: map };
+    const stack = sceneStack === "" ? null : sceneStack;
+    return { ask: "drive", scene, name: map, seed, stack, on_open_map: drawn.length > 0 };
 }
 
 /** The scene of a drive, as a file for `keyway navigate --scene`. */

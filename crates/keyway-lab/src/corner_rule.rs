@@ -6,7 +6,7 @@ use keyway::search::CornerRule;
 
 /// Returns the corner rule that the reach of a planner shows: only planners that cut corners reach
 /// cells over a corner.
-pub(crate) fn corner_rule(planner: &dyn GlobalPlanner) -> CornerRule {
+pub fn corner_rule(planner: &dyn GlobalPlanner) -> CornerRule {
     match planner.connectivity() {
         Connectivity::Four => CornerRule::Forbid,
         Connectivity::Eight => CornerRule::Allow,

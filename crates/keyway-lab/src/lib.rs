@@ -6,7 +6,7 @@
 //! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files, and on growing maps |
 //! | [`batch`] | many runs, in parts and on several threads, and summaries by stack |
 //! | [`replay`] | recorded runs, made again |
-//! | [`recording`] | flight recorder: what a navigator observed and decided, decided again |
+//! | `recording` | flight recorder: what a navigator observed and decided, decided again |
 //! | [`claims`] | claims of papers, measured again |
 //! | [`reproduce`] | all claims with their verdicts: measurements, tables and a page |
 //! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
@@ -24,6 +24,7 @@ pub mod compare;
 mod corner_rule;
 pub mod measure;
 pub mod progress;
+#[cfg(feature = "recordings")]
 pub mod recording;
 pub mod replay;
 pub mod reproduce;
@@ -32,3 +33,5 @@ pub mod run_tables;
 pub mod scenes;
 pub mod significance;
 pub mod table;
+
+pub use corner_rule::corner_rule;

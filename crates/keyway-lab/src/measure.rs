@@ -1,5 +1,6 @@
 //! Times of work, and summaries of many values.
 
+#[cfg(not(target_family = "wasm"))]
 use cpu_time::ThreadTime;
 use keyway::route::{Stage, StageObserver};
 use keyway_sim::metrics::statistics::Sample;
@@ -39,9 +40,11 @@ fn micros(time: Duration) -> f64 {
 /// Start of a piece of work in this thread.
 struct Begin {
     wall: Instant,
+    #[cfg(not(target_family = "wasm"))]
     cpu: Option<ThreadTime>,
 }
 
+#[cfg(not(target_family = "wasm"))]
 impl Begin {
     fn now() -> Self {
         Self { wall: Instant::now(), cpu: ThreadTime::try_now().ok() }
@@ -53,11 +56,31 @@ impl Begin {
     }
 }
 
+#[cfg(target_family = "wasm")]
+impl Begin {
+    fn now() -> Self {
+        Self { wall: Instant::now() }
+    }
+
+    fn elapsed(&self) -> Times {
+        Times { wall: self.wall.elapsed(), cpu: None }
+    }
+}
+
 /// Runs a piece of work in this thread, and returns its times.
 pub fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
     let begin = Begin::now();
     let result = work();
     (result, begin.elapsed())
+}
+
+/// [`timed`] where times are wanted; otherwise no clock is read.
+pub fn timed_if<R>(has_times: bool, work: impl FnOnce() -> R) -> (R, Option<Times>) {
+    if !has_times {
+        return (work(), None);
+    }
+    let (result, times) = timed(work);
+    (result, Some(times))
 }
 
 /// Returns a clock that counts the seconds since this call.
@@ -67,18 +90,25 @@ pub fn wall_clock() -> impl Fn() -> f64 {
 }
 
 /// Times of the stages of the last route that ended in this thread.
-#[derive(Default)]
 pub struct StageTimer {
+    has_times: bool,
     begin: Option<Begin>,
-    /// `None` before the first search has ended.
+    /// `None` before the first search has ended, and without times.
     pub search: Option<Times>,
-    /// `None` before the first smoothing has ended.
+    /// `None` before the first smoothing has ended, and without times.
     pub smoothing: Option<Times>,
+}
+
+impl StageTimer {
+    /// Returns a timer that has measured nothing; it reads no clock unless `has_times`.
+    pub const fn new(has_times: bool) -> Self {
+        Self { has_times, begin: None, search: None, smoothing: None }
+    }
 }
 
 impl StageObserver for StageTimer {
     fn begin(&mut self, _stage: Stage) {
-        self.begin = Some(Begin::now());
+        self.begin = self.has_times.then(Begin::now);
     }
 
     fn end(&mut self, stage: Stage) {

@@ -8,7 +8,6 @@ use crate::values::Listed;
 use crate::watched::{Progress, Watch, watched};
 use keyway::files::{Assignment, ParameterLayers, StartingValues};
 use keyway::map::OccupancyGrid;
-use keyway::map::formats::{LoadedMap, MapFormat, digest};
 use keyway::plan::PlanError;
 use keyway_lab::compare::{CompareError, CompareRequest, Comparison as Checked, QueryChoice};
 use pyo3::prelude::*;
@@ -150,9 +149,7 @@ fn names(argument: &str, list: Option<Listed<String>>) -> PyResult<Vec<String>> 
 
 fn compared(grid: OccupancyGrid, request: CompareRequest, watch: &Watch) -> PyResult<Comparison> {
     let checked: Checked = request.check().map_err(bad_value)?;
-    let (digest, format) = (digest(&grid), MapFormat::Ros);
-    let loaded = LoadedMap { grid, format, digest, sources: Vec::new(), warnings: Vec::new() };
-    let map = checked.queried(0, loaded).map_err(bad_value)?;
+    let map = checked.queried(0, grid).map_err(bad_value)?;
     let map = checked.on(map, watch).map_err(|error| match error {
         CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {
             bad_value(format!("{error}; planners=[\"all\"] leaves such planners out"))

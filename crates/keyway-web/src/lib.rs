@@ -24,22 +24,34 @@
 //! | [`names`](names::Names) | the names of all that can be chosen | |
 //! | [`open_map`](map::OpenMap) | facts about the map | `cells` |
 //! | [`edit_map`](map::EditMap) | the number of cells that changed | |
-//! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed` |
-//! | [`search`](route::Plan) | events and path of the search | `events`, `path` |
+//! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed`, `shortest` |
+//! | [`search`](route::Plan) | events and path of the search | see [`search::Search`] |
+//! | [`open_scene`](scene::OpenScene) | facts about the scene and its map | `cells` |
 //! | [`drive`](drive::Drive) | reports `keyway.navigate/4`, and cycles | see [`drive::Driven`] |
+//! | [`compare`](compare::Compare) | the report `keyway.compare/1`, and tables | |
+//! | [`summary`](compare::Summarise) | what runs of several stacks say together | |
+//! | [`claims`](claims::ClaimFacts) | the claims of the papers | |
+//! | [`open_claim`](claims::OpenClaim) | a map of a claim, and its methods there | see [`claims::ClaimMap`] |
+//! | [`measure_claim`](claims::MeasureClaim) | results on one map | |
+//! | [`judge_claim`](claims::JudgeClaim) | the verdict on a claim | |
 //!
 //! An answer to what cannot be done is `{"error": {"kind", "message", "field"}}`; the page keeps
 //! what it had.
 
+pub mod claims;
+pub mod compare;
 pub mod drive;
 mod error;
 #[cfg(target_family = "wasm")]
 mod exports;
+pub mod film;
 pub mod map;
 mod message;
 pub mod names;
 mod page;
 pub mod route;
+pub mod scene;
+pub mod search;
 
 pub use error::{Kind, PageError};
 pub use message::{Message, MessageError};

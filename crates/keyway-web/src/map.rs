@@ -93,33 +93,43 @@ impl From<LoadedMap> for Opened {
 
 /// Reads a map from the parts of a message.
 pub(crate) fn open(ask: &OpenMap, message: &Message) -> Result<(Opened, Message), PageError> {
-    let bytes = part(message, Path::new(&ask.name))
-        .map_err(|error| PageError::new(Kind::Input, error).field("name"))?;
-    let image = |name: &Path| part(message, name).map(<[u8]>::to_vec);
-    let placement = ask
-        .resolution_m
-        .map(|resolution_m| ImagePlacement { resolution_m, origin: Pose::default() });
-    let loaded = map_from_bytes(Path::new(&ask.name), bytes, image, placement)
-        .map_err(|error| PageError::new(Kind::Input, error).field("name"))?;
-    let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    let opened = Opened::from(loaded);
-    let answer = facts(&opened, warnings);
+    let (opened, warnings) = open_file(Path::new(&ask.name), ask.resolution_m, message)?;
+    let answer = Message::new(json(&facts(&opened, warnings))).with("cells", cells_of(&opened));
     Ok((opened, answer))
 }
 
-fn part<'m>(message: &'m Message, name: &Path) -> Result<&'m [u8], ReadError> {
-    let found = name.to_str().and_then(|name| message.part(name));
+/// Reads a map from the parts of a message, and tells strange things in its files.
+pub(crate) fn open_file(
+    name: &Path,
+    resolution_m: Option<f64>,
+    message: &Message,
+) -> Result<(Opened, Vec<String>), PageError> {
+    let blame = |error: &dyn std::fmt::Display| PageError::new(Kind::Input, error).field("name");
+    let bytes = part(message, name).map_err(|error| blame(&error))?;
+    let image = |name: &Path| part(message, name).map(<[u8]>::to_vec);
+    let placement =
+        resolution_m.map(|resolution_m| ImagePlacement { resolution_m, origin: Pose::default() });
+    let loaded = map_from_bytes(name, bytes, image, placement).map_err(|error| blame(&error))?;
+    let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
+    Ok((Opened::from(loaded), warnings))
+}
+
+/// The file of a name. A page knows files by their names alone, so folders before a name are
+/// passed over.
+pub(crate) fn part<'m>(message: &'m Message, name: &Path) -> Result<&'m [u8], ReadError> {
+    let file = name.file_name().and_then(|name| name.to_str());
+    let found = file.and_then(|file| message.part(file));
     let missing =
         || ReadError::System { path: name.to_owned(), reason: ErrorKind::NotFound.into() };
     found.ok_or_else(missing)
 }
 
-/// Facts about a map, and its cells.
-pub(crate) fn facts(opened: &Opened, warnings: Vec<String>) -> Message {
+/// Facts about a map.
+pub(crate) fn facts(opened: &Opened, warnings: Vec<String>) -> MapFacts {
     let Opened { grid, source } = opened;
     let frame = grid.frame();
     let Pose { x, y, theta } = frame.origin();
-    let facts = MapFacts {
+    MapFacts {
         name: source.name.clone(),
         width: frame.width(),
         height: frame.height(),
@@ -127,13 +137,17 @@ pub(crate) fn facts(opened: &Opened, warnings: Vec<String>) -> Message {
         origin: [x, y, theta],
         digest: digest(grid),
         warnings,
-    };
+    }
+}
+
+/// A byte for each cell ([`MapFacts`]).
+pub(crate) fn cells_of(Opened { grid, .. }: &Opened) -> Vec<u8> {
     let state = |cell: Cell| match grid.state(cell) {
         Some(CellState::Occupied) => 1,
         Some(CellState::Unknown) => 2,
         Some(CellState::Free) | None => 0,
     };
-    Message::new(json(&facts)).with("cells", frame.cells().map(state).collect())
+    grid.frame().cells().map(state).collect()
 }
 
 /// Changes cells of the map.

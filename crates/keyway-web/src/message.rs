@@ -100,6 +100,11 @@ impl<'b> Reader<'b> {
     }
 }
 
+/// The bytes of numbers of 32 bits.
+pub(crate) fn numbers(numbers: impl Iterator<Item = i32>) -> Vec<u8> {
+    numbers.flat_map(i32::to_le_bytes).collect()
+}
+
 /// A value as the head of a message. Plain data with string keys: this cannot fail.
 pub(crate) fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()

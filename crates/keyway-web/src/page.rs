@@ -1,11 +1,15 @@
 //! The state of a page, and its answers.
 
+use crate::claims::{self, JudgeClaim, MeasureClaim, OpenClaim};
+use crate::compare::{self, Compare, Summarise};
 use crate::drive::{self, Drive};
 use crate::error::{Kind, PageError};
 use crate::map::{self, EditMap, OpenMap, Opened};
 use crate::message::{Message, json};
 use crate::names::Names;
 use crate::route::{self, Layers, Plan};
+use crate::scene::{self, OpenScene};
+use crate::search;
 use keyway::search::Workspace;
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +30,14 @@ enum Question {
     EditMap(EditMap),
     Plan(Plan),
     Search(Plan),
-    Drive(Box<Drive>),
+    OpenScene(OpenScene),
+    Drive(Drive),
+    Compare(Compare),
+    Summary(Summarise),
+    Claims,
+    OpenClaim(OpenClaim),
+    MeasureClaim(MeasureClaim),
+    JudgeClaim(JudgeClaim),
 }
 
 /// The head of an answer to a question that has none.
@@ -47,11 +58,7 @@ impl Page {
     fn answer_to(&mut self, question: Question, message: &Message) -> Result<Message, PageError> {
         match question {
             Question::Names => Ok(Message::new(json(&Names::ALL))),
-            Question::OpenMap(ask) => {
-                let (opened, answer) = map::open(&ask, message)?;
-                (self.map, self.layers) = (Some(opened), None);
-                Ok(answer)
-            }
+            Question::OpenMap(ask) => Ok(self.open(map::open(&ask, message)?)),
             Question::EditMap(ask) => {
                 let opened = self.map.as_mut().ok_or_else(Opened::none)?;
                 let (edited, edits) = map::edit(&ask, opened);
@@ -66,9 +73,26 @@ impl Page {
             }
             Question::Search(ask) => {
                 let opened = self.map.as_ref().ok_or_else(Opened::none)?;
-                route::search(&ask, opened, &mut self.layers, &mut self.workspace)
+                search::search(&ask, opened, &mut self.layers, &mut self.workspace)
+            }
+            Question::OpenScene(ask) => {
+                Ok(self.open(scene::open_scene(&ask, message, self.map.as_ref())?))
             }
             Question::Drive(ask) => drive::drive(&ask, self.map.as_ref()),
+            Question::Compare(ask) => {
+                compare::compare(&ask, self.map.as_ref().ok_or_else(Opened::none)?)
+            }
+            Question::Summary(ask) => Ok(compare::summarise(ask)),
+            Question::Claims => Ok(claims::claims()),
+            Question::OpenClaim(ask) => Ok(self.open(claims::open_claim(&ask)?)),
+            Question::MeasureClaim(ask) => claims::measure_claim(&ask),
+            Question::JudgeClaim(ask) => claims::judge_claim(ask),
         }
+    }
+
+    /// Goes on with another map.
+    fn open(&mut self, (opened, answer): (Opened, Message)) -> Message {
+        (self.map, self.layers) = (Some(opened), None);
+        answer
     }
 }

@@ -1,4 +1,4 @@
-//! Routes and searches on the map of a page.
+//! Routes on the map of a page.
 
 use crate::error::{Kind, PageError};
 use crate::map::Opened;
@@ -9,20 +9,22 @@ use keyway::files::{
 use keyway::geometry::Point;
 use keyway::map::{LayerConfig, SearchMap};
 use keyway::navigate::Stack;
-use keyway::plan::{GlobalPlanner, Plan as Planned, PlanError};
+use keyway::plan::{GlobalPlanner, PlanError, shortest_line};
 use keyway::robot::Robot;
 use keyway::route::why_no_room;
-use keyway::search::{IfUnreachable, Recording, SearchEvent, Side, Workspace};
+use keyway::search::{IfUnreachable, Workspace};
 use keyway::smooth::{Smoother, SmootherConfig};
+use keyway_lab::corner_rule;
 use keyway_sim::report::{RouteAnswer, RouteRequest};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::Path;
 
 /// `{"ask": "plan", ..}` for a route, `{"ask": "search", ..}` to look into its search. What is not
 /// given is as in `keyway plan`.
 ///
-/// The answer to `plan` is the report `keyway.plan/3`; its parts `line` and `smoothed` are points,
-/// two numbers of 64 bits each \[m\]. The answer to `search` is a [`Search`].
+/// The answer to `plan` is the report `keyway.plan/3`; its parts `line`, `smoothed` and `shortest`
+/// are points, two numbers of 64 bits each \[m\]. The answer to `search` is a
+/// [`Search`](crate::search::Search).
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Plan {
@@ -46,42 +48,20 @@ pub struct Plan {
     pub nearest_reachable: bool,
     /// Limit of expanded nodes.
     pub budget: Option<u64>,
+    /// Tell the shortest line in any direction, too, for a path that is found.
+    pub with_shortest: bool,
 }
-
-/// A search to be looked at. The part `events` has six numbers of 32 bits for each event, in their
-/// order: kind ([`EVENT_KINDS`]), side (0 from the start, 1 from the goal), column and row of the
-/// node, column and row of the other end. The part `path` has two, the column and the row of each
-/// cell of the path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Search {
-    /// Names of the kinds of events, by their numbers.
-    pub kinds: [&'static str; 6],
-    /// Number of events.
-    pub events: usize,
-    /// Nodes that were expanded and generated, on both sides.
-    pub expanded: u64,
-    /// Nodes that were generated, on both sides.
-    pub generated: u64,
-    /// Cost of the path \[cells\]; `null` without a path.
-    pub cost_cells: Option<f64>,
-    /// Reason why there is no path; `null` where there is one.
-    pub why: Option<String>,
-}
-
-/// The kinds of events of a search ([`SearchEvent`]).
-pub const EVENT_KINDS: [&str; 6] =
-    ["expanded", "generated", "reparented", "scanned", "linked", "met"];
 
 /// The layers of the map, kept from plan to plan.
 pub(crate) type Layers = Option<(LayerConfig, RobotSize, SearchMap)>;
 
 /// The robot and the stack of a plan.
-struct Setup {
-    size: RobotSize,
-    stack: Stack,
+pub(crate) struct Setup {
+    pub(crate) size: RobotSize,
+    pub(crate) stack: Stack,
 }
 
-fn setup(ask: &Plan) -> Result<Setup, PageError> {
+pub(crate) fn setup(ask: &Plan) -> Result<Setup, PageError> {
     let config = |error: &dyn std::fmt::Display, field: &str| {
         PageError::new(Kind::Config, error).field(field)
     };
@@ -143,50 +123,33 @@ pub(crate) fn plan(
         if smoothed.is_some() {
             message = message.with("smoothed", points(route.smoothed.points()));
         }
+        message = with_shortest(message, ask, map, &*planner);
     }
     Ok(message)
 }
 
-/// Searches, and tells all that the search did.
-pub(crate) fn search(
+/// The message with the shortest line in any direction, where it is asked for.
+pub(crate) fn with_shortest(
+    message: Message,
     ask: &Plan,
-    opened: &Opened,
-    layers: &mut Layers,
-    workspace: &mut Workspace,
-) -> Result<Message, PageError> {
-    let Setup { size, stack } = setup(ask)?;
-    let (map, planner) = ready(ask, opened, layers, &size, &stack)?;
-    let query = keyway::route::RouteQuery {
-        budget: ask.budget,
-        if_unreachable: if_unreachable(ask),
-        ..keyway::route::RouteQuery::new(point(ask.start), point(ask.goal))
-    };
-    let query = query.on_cells(map).map_err(|error| refused(map, ask, &error))?;
-    let (mut recording, mut plan) = (Recording::default(), Planned::default());
-    let found = planner.plan_into(map, &query, workspace, Some(&mut recording), &mut plan);
-    if let Err(error @ (PlanError::Blocked { .. } | PlanError::OutsideMap { .. })) = &found {
-        return Err(refused(map, ask, error));
+    map: &SearchMap,
+    planner: &dyn GlobalPlanner,
+) -> Message {
+    let wanted = ask
+        .with_shortest
+        .then(|| shortest_line(map, corner_rule(planner), point(ask.start), point(ask.goal)));
+    match wanted.flatten() {
+        Some(line) => message.with("shortest", points(line.points())),
+        None => message,
     }
-    let counted = recording.statistics();
-    let head = Search {
-        kinds: EVENT_KINDS,
-        events: recording.events().len(),
-        expanded: counted.expanded(),
-        generated: counted.generated(),
-        cost_cells: found.is_ok().then(|| plan.cost.cells()),
-        why: found.err().map(|error| error.to_string()),
-    };
-    let events = recording.events().iter().flat_map(|event| event_numbers(*event));
-    let path = plan.cells.iter().flat_map(|cell| [cell.x, cell.y]);
-    Ok(Message::new(json(&head)).with("events", numbers(events)).with("path", numbers(path)))
 }
 
-const fn if_unreachable(ask: &Plan) -> IfUnreachable {
+pub(crate) const fn if_unreachable(ask: &Plan) -> IfUnreachable {
     if ask.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail }
 }
 
 /// The layers for a plan, those of the last one where they are the same, and the planner.
-fn ready<'l>(
+pub(crate) fn ready<'l>(
     ask: &Plan,
     opened: &Opened,
     layers: &'l mut Layers,
@@ -229,7 +192,7 @@ fn smoother(config: &SmootherConfig) -> Result<Option<Box<dyn Smoother + Send + 
 }
 
 /// The positions, not only the cells, of an end without room.
-fn refused(map: &SearchMap, ask: &Plan, error: &PlanError) -> PageError {
+pub(crate) fn refused(map: &SearchMap, ask: &Plan, error: &PlanError) -> PageError {
     let ends = [ask.start, ask.goal].map(point);
     let (PlanError::OutsideMap { end, .. }
     | PlanError::Blocked { end, .. }
@@ -241,27 +204,10 @@ fn refused(map: &SearchMap, ask: &Plan, error: &PlanError) -> PageError {
     PageError::new(Kind::Position, message).field(end.to_string())
 }
 
-const fn point([x, y]: [f64; 2]) -> Point {
+pub(crate) const fn point([x, y]: [f64; 2]) -> Point {
     Point::new(x, y)
 }
 
-fn points(points: &[Point]) -> Vec<u8> {
+pub(crate) fn points(points: &[Point]) -> Vec<u8> {
     points.iter().flat_map(|point| [point.x, point.y]).flat_map(f64::to_le_bytes).collect()
-}
-
-fn numbers(numbers: impl Iterator<Item = i32>) -> Vec<u8> {
-    numbers.flat_map(i32::to_le_bytes).collect()
-}
-
-/// Kind, side, node, other end.
-fn event_numbers(event: SearchEvent) -> [i32; 6] {
-    let (kind, side, at, other) = match event {
-        SearchEvent::Expanded { side, at } => (0, side, at, at),
-        SearchEvent::Generated { side, at, parent } => (1, side, at, parent),
-        SearchEvent::Reparented { side, at, parent } => (2, side, at, parent),
-        SearchEvent::Scanned { side, from, to } => (3, side, from, to),
-        SearchEvent::Linked { side, at, parent } => (4, side, at, parent),
-        SearchEvent::Met { at } => (5, Side::Forward, at, at),
-    };
-    [kind, i32::from(side == Side::Backward), at.x, at.y, other.x, other.y]
 }

@@ -19,7 +19,24 @@ export interface Colors {
     sensed: string;
     disc: string;
     mover: string;
+    expandedback: string;
+    shortest: string;
+    chosen: string;
+    runnerup: string;
+    admissible: string;
+    touching: string;
+    refused: string;
+    /** Colours of methods, stacks and robots that are shown together. */
+    series: string[];
 }
+
+/** Names of the colours in the style sheet. */
+const COLORS = [
+    ...["ground", "wall", "unknown", "line", "smoothed", "start", "goal", "expanded", "generated"],
+    ...["scanned", "robot", "hit", "sensed", "disc", "mover", "expandedback", "shortest", "chosen"],
+    ...["runnerup", "admissible", "touching", "refused"],
+];
+export const SERIES = 8;
 
 export class View {
     readonly context: CanvasRenderingContext2D;
@@ -34,6 +51,10 @@ export class View {
         [0, 0],
     ];
     facts: MapFacts | null = null;
+    /** Pictures of the map side by side: all of them show the same part of it. */
+    private columns = 1;
+    private rows = 1;
+    private offset: Pair = [0, 0];
 
     constructor(readonly canvas: HTMLCanvasElement) {
         const context = canvas.getContext("2d");
@@ -44,20 +65,40 @@ export class View {
     get colors(): Colors {
         const style = getComputedStyle(document.documentElement);
         const color = (name: string) => style.getPropertyValue(`--${name}`).trim();
-        const names = [
-            "ground",
-            "wall",
-            "unknown",
-            "line",
-            "smoothed",
-            "start",
-            "goal",
-            "expanded",
-        ];
-        const more = ["generated", "scanned", "robot", "hit", "sensed", "disc", "mover"];
-        return Object.fromEntries(
-            [...names, ...more].map((name) => [name, color(name)]),
-        ) as unknown as Colors;
+        const named = COLORS.map((name) => [name, color(name)]);
+        const series = Array.from({ length: SERIES }, (_, i) => color(`series-${i}`));
+        return { ...Object.fromEntries(named), series } as unknown as Colors;
+    }
+
+    /** Divides the canvas into up to four pictures. */
+    divide(panes: number): void {
+        const isWide = this.canvas.width >= this.canvas.height;
+        const [more, less] = [panes > 1 ? 2 : 1, panes > 2 ? 2 : 1];
+        const [columns, rows] = isWide ? [more, less] : [less, more];
+        if (columns === this.columns && rows === this.rows) return;
+        [this.columns, this.rows] = [columns, rows];
+        this.fit();
+    }
+
+    /** Draws one of the pictures, and nothing beside it. */
+    inPane(pane: number, draw: () => void): void {
+        const [width, height] = this.paneSize;
+        this.offset = [(pane % this.columns) * width, Math.floor(pane / this.columns) * height];
+        this.context.save();
+        this.context.beginPath();
+        this.context.rect(...this.offset, width, height);
+        this.context.clip();
+        draw();
+        this.context.restore();
+        this.offset = [0, 0];
+    }
+
+    get panes(): number {
+        return this.columns * this.rows;
+    }
+
+    private get paneSize(): Pair {
+        return [this.canvas.width / this.columns, this.canvas.height / this.rows];
     }
 
     /** A new map, which is shown whole. */
@@ -77,12 +118,9 @@ export class View {
         const context = picture.getContext("2d");
         if (!context) return;
         const { ground, wall, unknown } = this.colors;
-        const colors = [ground, wall, unknown].map((color) => rgb(context, color));
         const image = context.createImageData(facts.width, facts.height);
         const pixels = new Uint32Array(image.data.buffer);
-        const words = colors.map(
-            ([red, green, blue]) => (255 << 24) | (blue << 16) | (green << 8) | red,
-        );
+        const words = [ground, wall, unknown].map((color) => word(context, color));
         for (let y = 0; y < facts.height; y++) {
             // Rows come from the bottom.
             const to = (facts.height - 1 - y) * facts.width;
@@ -123,7 +161,8 @@ export class View {
         ];
         const [width, height] = [high[0]! - low[0]!, high[1]! - low[1]!];
         this.middle = [low[0]! + width / 2, low[1]! + height / 2];
-        this.whole = 0.98 * Math.min(this.canvas.width / width, this.canvas.height / height);
+        const [wide, tall] = this.paneSize;
+        this.whole = 0.98 * Math.min(wide / width, tall / height);
         this.scale = this.whole;
     }
 
@@ -168,18 +207,21 @@ export class View {
     }
 
     toScreen([x, y]: Pair): Pair {
-        const [w, h] = [this.canvas.width, this.canvas.height];
+        const [w, h] = this.paneSize;
         return [
-            w / 2 + (x - this.middle[0]) * this.scale,
-            h / 2 - (y - this.middle[1]) * this.scale,
+            this.offset[0] + w / 2 + (x - this.middle[0]) * this.scale,
+            this.offset[1] + h / 2 - (y - this.middle[1]) * this.scale,
         ];
     }
 
+    /** The place under a point of the canvas, in whichever picture it lies. */
     toWorld([x, y]: Pair): Pair {
-        const [w, h] = [this.canvas.width, this.canvas.height];
+        const [w, h] = this.paneSize;
+        const within = (at: number, size: number, count: number) =>
+            at - size * Math.min(count - 1, Math.max(0, Math.floor(at / size)));
         return [
-            this.middle[0] + (x - w / 2) / this.scale,
-            this.middle[1] - (y - h / 2) / this.scale,
+            this.middle[0] + (within(x, w, this.columns) - w / 2) / this.scale,
+            this.middle[1] - (within(y, h, this.rows) - h / 2) / this.scale,
         ];
     }
 
@@ -212,39 +254,89 @@ export class View {
         const { context, canvas } = this;
         context.setTransform(1, 0, 0, 1, 0, 0);
         context.clearRect(0, 0, canvas.width, canvas.height);
-        if (!this.picture || !this.facts) return;
-        const { height, resolution_m, origin } = this.facts;
+    }
+
+    /** Draws the map. */
+    ground(): void {
+        if (this.picture) this.layer(this.picture);
+    }
+
+    /** Draws a picture of the whole map; a pixel of it shows so many cells along each axis. */
+    layer(picture: HTMLCanvasElement, cells = 1): void {
+        if (!this.facts) return;
+        const { context } = this;
+        const { resolution_m, origin } = this.facts;
+        const [width, height] = [picture.width * cells, picture.height * cells];
         const [x, y] = this.toScreen([origin[0], origin[1]]);
         const cell = this.pixels(resolution_m);
         context.save();
         context.translate(x, y);
         context.rotate(-origin[2]);
         context.imageSmoothingEnabled = cell < 1;
-        context.drawImage(
-            this.picture,
-            0,
-            -height * cell,
-            this.picture.width * cell,
-            height * cell,
-        );
+        context.drawImage(picture, 0, -height * cell, width * cell, height * cell);
         context.restore();
     }
 
     line(points: Pair[], color: string, width: number, dashes: number[] = []): void {
-        if (points.length < 2) return;
+        this.lines([points], color, width, dashes);
+    }
+
+    /** Lines of one kind. */
+    lines(lines: Pair[][], color: string, width: number, dashes: number[] = []): void {
         const { context } = this;
+        const ratio = window.devicePixelRatio || 1;
         context.beginPath();
-        points.forEach((point, i) => {
-            const [x, y] = this.toScreen(point);
-            if (i === 0) context.moveTo(x, y);
-            else context.lineTo(x, y);
-        });
+        for (const points of lines) {
+            points.forEach((point, i) => {
+                const [x, y] = this.toScreen(point);
+                if (i === 0) context.moveTo(x, y);
+                else context.lineTo(x, y);
+            });
+        }
         context.strokeStyle = color;
-        context.lineWidth = width * (window.devicePixelRatio || 1);
+        context.lineWidth = width * ratio;
         context.lineJoin = "round";
-        context.setLineDash(dashes.map((dash) => dash * (window.devicePixelRatio || 1)));
+        context.setLineDash(dashes.map((dash) => dash * ratio));
         context.stroke();
         context.setLineDash([]);
+    }
+
+    /** The outline of a disc, with its radius in metres. */
+    circle(at: Pair, radius_m: number, color: string, width: number, dashes: number[] = []): void {
+        const { context } = this;
+        const ratio = window.devicePixelRatio || 1;
+        const [x, y] = this.toScreen(at);
+        context.beginPath();
+        context.arc(x, y, this.pixels(radius_m), 0, 2 * Math.PI);
+        context.strokeStyle = color;
+        context.lineWidth = width * ratio;
+        context.setLineDash(dashes.map((dash) => dash * ratio));
+        context.stroke();
+        context.setLineDash([]);
+    }
+
+    /** Cells, each of at least two pixels. */
+    cells(cells: Pair[], color: string): void {
+        const { context } = this;
+        const side = Math.max(2, this.pixels(this.facts?.resolution_m ?? 1));
+        context.fillStyle = color;
+        for (const cell of cells) {
+            const [x, y] = this.toScreen(this.centre(cell));
+            context.fillRect(x - side / 2, y - side / 2, side, side);
+        }
+    }
+
+    /** A text in the upper left corner of a picture. */
+    title(text: string, color: string): void {
+        const { context } = this;
+        const size = 14 * (window.devicePixelRatio || 1);
+        context.font = `600 ${size}px system-ui, sans-serif`;
+        [context.textAlign, context.textBaseline] = ["left", "top"];
+        context.fillStyle = this.colors.ground;
+        const [x, y] = [this.offset[0] + size / 2, this.offset[1] + size / 2];
+        context.fillRect(x - 4, y - 4, context.measureText(text).width + 8, size + 8);
+        context.fillStyle = color;
+        context.fillText(text, x, y);
     }
 
     disc(at: Pair, radius: number, color: string): void {
@@ -309,6 +401,12 @@ function placed(facts: MapFacts, [x, y]: Pair): Pair {
     const [ox, oy, yaw] = facts.origin;
     const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
     return [ox + x * cos - y * sin, oy + x * sin + y * cos];
+}
+
+/** A colour as a pixel of an image. */
+export function word(context: CanvasRenderingContext2D, color: string): number {
+    const [red, green, blue] = rgb(context, color);
+    return (255 << 24) | (blue << 16) | (green << 8) | red;
 }
 
 /** Red, green and blue of any colour: a canvas gives all of them as #1a2b3c. */

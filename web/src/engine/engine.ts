@@ -69,7 +69,7 @@ export class Engine {
         const answer = await this.send(message, stop);
         const head = JSON.parse(answer.head) as Head & Partial<Failure>;
         if (head.error) throw new Refused(head.error);
-        if (question.ask === "open_map") this.opened = message;
+        if (question.ask.startsWith("open_")) this.opened = message;
         return { head, parts: answer.parts };
     }
 

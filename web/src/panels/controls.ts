@@ -25,6 +25,58 @@ export function choice(
     return labelled(label, select);
 }
 
+/** A choice in groups. */
+export function grouped(
+    label: string,
+    groups: readonly { name: string; options: readonly (readonly [string, string])[] }[],
+    value: string,
+    changed: (value: string) => void,
+): HTMLElement {
+    const select = document.createElement("select");
+    for (const { name, options } of groups) {
+        const group = document.createElement("optgroup");
+        group.label = name;
+        for (const [id, text] of options) group.append(new Option(text, id, false, id === value));
+        select.append(group);
+    }
+    select.onchange = () => changed(select.value);
+    return labelled(label, select);
+}
+
+/** Several of some names. */
+export function checks(
+    label: string,
+    names: readonly string[],
+    chosen: readonly string[],
+    changed: (chosen: string[]) => void,
+): HTMLElement {
+    const box = document.createElement("fieldset");
+    const legend = document.createElement("legend");
+    legend.textContent = label;
+    box.append(legend);
+    const inputs = names.map((name) => {
+        const text = document.createElement("label");
+        const input = document.createElement("input");
+        [input.type, input.checked, input.value] = ["checkbox", chosen.includes(name), name];
+        input.onchange = () => changed(inputs.filter((it) => it.checked).map((it) => it.value));
+        text.append(input, name);
+        box.append(text);
+        return input;
+    });
+    return box;
+}
+
+/** Something that is shown or not. */
+export function check(label: string, value: boolean, changed: (value: boolean) => void) {
+    const text = document.createElement("label");
+    text.className = "check";
+    const input = document.createElement("input");
+    [input.type, input.checked] = ["checkbox", value];
+    input.onchange = () => changed(input.checked);
+    text.append(input, label);
+    return text;
+}
+
 export function named(names: readonly string[]): (readonly [string, string])[] {
     return names.map((name) => [name, name] as const);
 }
@@ -98,17 +150,60 @@ export function button(label: string, pressed: () => void): HTMLButtonElement {
 
 /** A table of names and values. */
 export function facts(rows: readonly (readonly [string, string])[]): HTMLElement {
-    const table = document.createElement("table");
-    const body = table.createTBody();
-    for (const [name, value] of rows) {
+    return table([], rows);
+}
+
+/** A table whose first column names the rows; its header may be empty. */
+export function table(
+    header: readonly string[],
+    rows: readonly (readonly string[])[],
+): HTMLElement {
+    const made = document.createElement("table");
+    if (header.length > 0) {
+        const row = made.createTHead().insertRow();
+        for (const text of header) {
+            const head = document.createElement("th");
+            [head.scope, head.textContent] = ["col", text];
+            row.append(head);
+        }
+    }
+    const body = made.createTBody();
+    for (const [name, ...values] of rows) {
         const row = body.insertRow();
         const head = document.createElement("th");
-        head.scope = "row";
-        head.textContent = name;
+        [head.scope, head.textContent] = ["row", name ?? ""];
         row.append(head);
-        row.insertCell().textContent = value;
+        for (const value of values) row.insertCell().textContent = value;
     }
-    return table;
+    const box = document.createElement("div");
+    box.className = "table";
+    // What is wider than the page can be moved with the keyboard.
+    box.tabIndex = 0;
+    box.append(made);
+    return box;
+}
+
+/** What the colours mean. */
+export function legend(entries: readonly (readonly [string, string])[]): HTMLElement {
+    const list = document.createElement("ul");
+    list.className = "legend";
+    for (const [color, text] of entries) {
+        const item = document.createElement("li");
+        const swatch = document.createElement("span");
+        swatch.style.background = `var(--${color})`;
+        item.append(swatch, text);
+        list.append(item);
+    }
+    return list;
+}
+
+/** Gives the browser a file to keep. */
+export function save(name: string, content: BlobPart): void {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([content]));
+    link.download = name;
+    link.click();
+    URL.revokeObjectURL(link.href);
 }
 
 export const metres = (value: number | null | undefined, digits = 2) =>
@@ -119,6 +214,7 @@ export class Player {
     readonly button: HTMLButtonElement;
     private timer: number | null = null;
 
+    /** `forward` goes one step, and says whether there is more. */
     constructor(
         private readonly words: { play: string; pause: string },
         private readonly forward: () => boolean,

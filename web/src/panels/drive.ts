@@ -1,72 +1,116 @@
 /** A drive in the simulator, moment by moment, and the reasons of each. */
 
-import { integers, singles } from "../engine/message";
-import { Stopped } from "../engine/engine";
-import type { CycleReport, Driven } from "../engine/types";
-import type { View } from "../draw/view";
-import { sceneFile, WALKER_RADIUS_M, type Pair } from "../state";
+import { Film } from "../engine/film";
+import type { CycleReport, Driven, Speeds } from "../engine/types";
+import { drawMind, drawMovers, drawRobot } from "../draw/drive";
+import { SERIES, type View } from "../draw/view";
+import { driveQuestion, sceneFile, WALKER_RADIUS_M } from "../state";
 import { texts } from "../texts";
-import { button, choice, facts, metres, named, number, Player, slider } from "./controls";
+import {
+    button,
+    check,
+    choice,
+    facts,
+    legend,
+    metres,
+    named,
+    number,
+    Player,
+    save,
+    slider,
+} from "./controls";
 import { failure, type Page, type Panel } from "./panel";
 
 export class DrivePanel implements Panel {
     readonly element = document.createElement("div");
+    private readonly controls = document.createElement("div");
     private readonly result = document.createElement("div");
     private readonly moment = document.createElement("div");
     private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
     private readonly player = new Player(texts, () => this.forward());
     private readonly drive = button(texts.drive, () => void this.run());
-    private readonly stop = button(texts.stop, () => this.running?.abort());
     private readonly report = button(texts.saveReport, () => {
-        save("report.json", JSON.stringify(this.driven?.reports[0]));
+        const { reports } = this.driven ?? { reports: [] };
+        save("report.json", JSON.stringify(reports.length === 1 ? reports[0] : reports));
     });
+    private readonly whose = document.createElement("div");
     private running: AbortController | null = null;
     private driven: Driven | null = null;
-    private hits: Pair[][] = [];
-    private sensed: Pair[][] = [];
-    private movers: Float32Array = new Float32Array();
+    private films: Film[] = [];
+    /** The robot whose mind is shown. */
+    private robot = 0;
     private shown = 0;
+    /** The scene for which the controls were made. */
+    private controlled: unknown = undefined;
 
     constructor(private readonly page: Page) {
-        const { state, names } = page;
-        [this.stop.disabled, this.report.disabled] = [true, true];
+        this.report.disabled = true;
         this.element.append(
-            choice(texts.stack, named(names.stacks), state.stack, (name) => {
-                state.stack = name;
-                page.changed();
-            }),
-            choice(texts.robot, named(names.robots), state.robot, (name) => {
-                state.robot = name;
-                page.changed();
-            }),
-            number(texts.seed, state.seed, { min: 0, step: 1 }, (seed) => {
-                state.seed = seed;
-                page.changed();
-            }).element,
-            number(texts.delay, state.delay_s, { min: 0, max: 1, step: 0.05 }, (delay) => {
-                state.delay_s = delay;
-                page.changed();
-            }).element,
-            number(texts.noise, state.noise_m, { min: 0, max: 0.2, step: 0.01 }, (noise) => {
-                state.noise_m = noise;
-                page.changed();
-            }).element,
+            this.controls,
             this.drive,
-            this.stop,
             button(texts.saveScene, () => this.saveScene()),
             this.report,
             this.result,
             this.slider.element,
             this.player.button,
+            check(texts.fan, page.state.fan, (shown) => {
+                page.state.fan = shown;
+                page.redraw();
+            }),
+            this.whose,
             this.moment,
+            legend(Object.entries(texts.driving.legend)),
+        );
+    }
+
+    get hasEnds(): boolean {
+        return this.page.scene === null;
+    }
+
+    private makeControls(): void {
+        const { state, names, scene } = this.page;
+        if (this.controlled === scene && this.controls.hasChildNodes()) return;
+        this.controlled = scene;
+        const set = (change: () => void) => {
+            change();
+            this.page.changed();
+        };
+        const own = [["", texts.asInScene]] as const;
+        const seed = number(texts.seed, state.seed, { min: 0, step: 1 }, (value) =>
+            set(() => (state.seed = value)),
+        );
+        if (scene) {
+            this.controls.replaceChildren(
+                choice(texts.stack, [...own, ...named(names.stacks)], state.sceneStack, (name) =>
+                    set(() => (state.sceneStack = name)),
+                ),
+                seed.element,
+            );
+            return;
+        }
+        const disturbance = (label: string, field: "delay_s" | "noise_m", max: number) =>
+            number(label, state[field], { min: 0, max, step: 0.01 }, (value) =>
+                set(() => (state[field] = value)),
+            ).element;
+        this.controls.replaceChildren(
+            choice(texts.stack, named(names.stacks), state.stack, (name) =>
+                set(() => (state.stack = name)),
+            ),
+            choice(texts.robot, named(names.robots), state.robot, (name) =>
+                set(() => (state.robot = name)),
+            ),
+            seed.element,
+            disturbance(texts.delay, "delay_s", 1),
+            disturbance(texts.noise, "noise_m", 0.2),
         );
     }
 
     /** What was driven before is no longer true, and what is driven just now not needed. */
     async refresh(): Promise<void> {
         this.running?.abort();
+        this.makeControls();
         this.clear();
-        this.page.say(this, texts.driving.ready);
+        this.page.say(this, this.page.scene ? texts.driving.readyScene : texts.driving.ready);
     }
 
     leave(): void {
@@ -76,148 +120,138 @@ export class DrivePanel implements Panel {
 
     private clear(): void {
         this.player.stop();
-        [this.driven, this.hits, this.sensed] = [null, [], []];
+        [this.driven, this.films, this.robot] = [null, [], 0];
         this.report.disabled = true;
-        this.result.replaceChildren();
-        this.moment.replaceChildren();
+        for (const part of [this.result, this.moment, this.whose]) part.replaceChildren();
         this.slider.set(0, 0);
         this.page.redraw();
     }
 
     private async run(): Promise<void> {
-        const { engine, state, say, mapName } = this.page;
+        const { engine, state, say, working, mapName } = this.page;
         this.clear();
         const running = new AbortController();
         this.running = running;
-        [this.drive.disabled, this.stop.disabled] = [true, false];
-        say(this, texts.working);
+        this.drive.disabled = true;
         try {
-            const question = { ask: "drive", scene: sceneFile(state, mapName()) };
-            const { head, parts } = await engine.ask<Driven>(question, {}, running.signal);
+            const question = driveQuestion(state, mapName());
+            const { head, parts } = await working(running.signal, (stop) =>
+                engine.ask<Driven>(question, {}, stop),
+            );
             if (running.signal.aborted) return;
             this.driven = head;
+            this.films = head.reports.map((_, robot) => new Film(head, parts, robot));
             this.report.disabled = false;
-            this.hits = lists(integers(parts["hits 0"]), singles(parts["hits 0"]));
-            const sensed = integers(parts["sensed 0"]);
-            this.sensed = lists(sensed, sensed);
-            this.movers = singles(parts["movers 0"]);
             this.showReport(head);
+            this.showWhose();
             this.showCycle(0);
         } catch (error) {
-            say(this, error instanceof Stopped ? texts.stopped : failure(error));
+            say(this, failure(error));
         } finally {
-            [this.drive.disabled, this.stop.disabled] = [false, true];
+            this.drive.disabled = false;
             this.running = null;
         }
     }
 
     private saveScene(): void {
         const { state, mapName, say } = this.page;
-        save("scene.toml", sceneFile(state, mapName()));
+        save("scene.toml", state.scene ?? sceneFile(state, mapName()));
         if (state.drawn.length > 0) say(this, texts.notInScene);
     }
 
     private showReport({ reports }: Driven): void {
-        const report = reports[0];
-        if (!report) return;
         const words = texts.driving;
-        const seconds = report.run ? `${report.run.time_s.toFixed(1)} s` : "-";
-        this.result.replaceChildren(
-            facts([
+        const one = reports.length === 1;
+        const rows = reports.flatMap((report, robot) => {
+            const of = (name: string) => (one ? name : words.ofRobot(name, robot + 1));
+            return [
                 [
-                    words.outcome,
+                    of(words.outcome),
                     report.reason ? `${report.outcome}: ${report.reason}` : report.outcome,
                 ],
-                [words.runTime, seconds],
-                [words.length, metres(report.run?.length_m)],
-                [words.clearance, metres(report.run?.min_clearance_m)],
-            ]),
+                [of(words.runTime), report.run ? `${report.run.time_s.toFixed(1)} s` : "-"],
+                [of(words.length), metres(report.run?.length_m)],
+                [of(words.clearance), metres(report.run?.min_clearance_m)],
+            ] as const;
+        });
+        this.result.replaceChildren(facts(rows));
+        const ends = reports.map(({ outcome, run }) =>
+            words.driven(outcome, run ? `${run.time_s.toFixed(1)} s` : "-"),
         );
-        this.page.say(this, words.driven(report.outcome, seconds));
+        this.page.say(
+            this,
+            one ? ends.join() : ends.map((end, i) => `${i + 1}: ${end}`).join("; "),
+        );
     }
 
-    private get cycles(): CycleReport[] {
-        return this.driven?.cycles[0] ?? [];
+    /** Whose mind is shown, where there are several robots. */
+    private showWhose(): void {
+        if (this.films.length < 2) return;
+        const robots = this.films.map((_, i) => [String(i), String(i + 1)] as const);
+        this.whose.replaceChildren(
+            choice(texts.whose, robots, "0", (robot) => {
+                this.robot = Number(robot);
+                this.showCycle(this.shown);
+            }),
+        );
+    }
+
+    /** The last cycle of the longest run. */
+    private get last(): number {
+        return Math.max(0, ...this.films.map(({ cycles }) => cycles.length - 1));
     }
 
     private forward(): boolean {
-        const last = this.cycles.length - 1;
-        this.showCycle(this.shown >= last ? 0 : this.shown + 1);
-        return this.shown < last;
+        this.showCycle(this.shown >= this.last ? 0 : this.shown + 1);
+        return this.shown < this.last;
     }
 
     private showCycle(shown: number): void {
         this.shown = shown;
-        this.slider.set(shown, Math.max(0, this.cycles.length - 1));
-        const cycle = this.cycles[shown];
+        this.slider.set(shown, this.last);
+        const film = this.films[this.robot];
+        const cycle = film?.cycle(shown);
         if (cycle) {
             this.slider.input.setAttribute("aria-valuetext", `${cycle.t_s.toFixed(1)} s`);
-            this.moment.replaceChildren(...reasons(cycle));
+            this.moment.replaceChildren(reasons(cycle, film?.refusal(shown)));
         }
         this.page.redraw();
     }
 
     draw(view: View): void {
-        const cycle = this.cycles[this.shown];
-        const colors = view.colors;
-        if (!this.driven || !cycle) {
-            for (const { from } of this.page.state.walkers) {
+        const { colors } = view;
+        const film = this.films[this.robot];
+        if (!film?.cycle(this.shown)) {
+            for (const { from } of this.page.scene ? [] : this.page.state.walkers) {
                 view.disc(from, view.pixels(WALKER_RADIUS_M), colors.mover);
+            }
+            for (const [x, y, radius_m] of this.page.scene?.movers ?? []) {
+                view.disc([x, y], view.pixels(radius_m), colors.mover);
             }
             return;
         }
-        const side = Math.max(2, view.pixels(view.facts?.resolution_m ?? 1));
-        view.context.fillStyle = colors.sensed;
-        for (const cells of this.sensed.slice(0, this.shown + 1)) {
-            for (const cell of cells) {
-                const [x, y] = view.toScreen(view.centre(cell));
-                view.context.fillRect(x - side / 2, y - side / 2, side, side);
-            }
-        }
-        const routes = this.driven.routes[0] ?? [];
-        const route = routes.filter(([from]) => from <= cycle.cycle).at(-1)?.[1] ?? [];
-        view.line(route, colors.line, 1.5, [4, 4]);
-        const way = this.cycles
-            .slice(0, this.shown + 1)
-            .map(({ pose }): Pair => [pose[0], pose[1]]);
-        view.line(way, colors.smoothed, 3);
-        for (const hit of this.hits[this.shown] ?? []) {
-            view.disc(hit, 1.5 * (window.devicePixelRatio || 1), colors.hit);
-        }
-        this.driven.mover_radii_m.forEach((radius_m, mover) => {
-            const at = 2 * (this.shown * this.driven!.mover_radii_m.length + mover);
-            const place: Pair = [this.movers[at]!, this.movers[at + 1]!];
-            view.disc(place, view.pixels(radius_m), colors.mover);
+        drawMind(view, film, this.shown, this.page.state.fan);
+        drawMovers(view, film, this.shown);
+        this.films.forEach((one, i) => {
+            const several = colors.series[i % SERIES] ?? colors.robot;
+            drawRobot(view, one, this.shown, this.films.length > 1 ? several : colors.robot);
         });
-        const [x, y, yaw] = cycle.pose;
-        const { radius_m, vertices } = this.driven.outlines[0]!;
-        if (radius_m === null) view.polygon(vertices, cycle.pose, colors.robot);
-        else view.disc([x, y], view.pixels(radius_m), colors.robot);
-        const tip: Pair = [x + 0.4 * Math.cos(yaw), y + 0.4 * Math.sin(yaw)];
-        view.line([[x, y], tip], colors.robot, 3);
     }
 }
 
-/** Gives the browser a file to keep. */
-function save(name: string, content: string): void {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([content]));
-    link.download = name;
-    link.click();
-    URL.revokeObjectURL(link.href);
-}
-
 /** A moment in words and numbers. */
-function reasons(cycle: CycleReport): HTMLElement[] {
+function reasons(cycle: CycleReport, refusal: string | undefined): HTMLElement {
     const words = texts.driving;
-    const speeds = (it: { v_mps: number; omega_radps: number } | null) =>
+    const speeds = (it: Speeds | null) =>
         it ? `${it.v_mps.toFixed(2)} m/s, ${it.omega_radps.toFixed(2)} rad/s` : words.standing;
     const rows: (readonly [string, string])[] = [
         [words.now, `${cycle.t_s.toFixed(1)} s`],
         [words.step, cycle.reason ? `${cycle.step}: ${cycle.reason}` : cycle.step],
         [words.velocity, speeds(cycle.velocity)],
         [words.command, speeds(cycle.command)],
+        [words.stopRule, refusal ?? words.letPass],
         [words.remaining, metres(cycle.remaining_m)],
+        [words.movers, String(cycle.movers.length)],
         [words.candidates, `${cycle.candidates}`],
     ];
     for (const { because, count } of cycle.rejected.filter(({ count }) => count > 0)) {
@@ -226,21 +260,5 @@ function reasons(cycle: CycleReport): HTMLElement[] {
     const shares = cycle.chosen?.shares ?? [];
     const why = shares.map(({ term, weighted }) => `${term} ${weighted.toFixed(2)}`).join(", ");
     if (why) rows.push([words.reasons, why]);
-    return [facts(rows)];
-}
-
-/** For each cycle a count, and as many pairs. */
-function lists(counts: Int32Array, numbers: Int32Array | Float32Array): Pair[][] {
-    const all: Pair[][] = [];
-    for (let at = 0; at < counts.length;) {
-        const count = counts[at++]!;
-        all.push(
-            Array.from({ length: count }, (_, i) => [
-                numbers[at + 2 * i]!,
-                numbers[at + 2 * i + 1]!,
-            ]),
-        );
-        at += 2 * count;
-    }
-    return all;
+    return facts(rows);
 }

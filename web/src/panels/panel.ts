@@ -1,5 +1,5 @@
-import { Fault, Refused, type Engine } from "../engine/engine";
-import type { Names } from "../engine/types";
+import { Fault, Refused, Stopped, type Engine } from "../engine/engine";
+import type { MapFacts, Names, SceneFacts } from "../engine/types";
 import type { View } from "../draw/view";
 import type { State } from "../state";
 import { texts } from "../texts";
@@ -11,6 +11,15 @@ export interface Page {
     names: Names;
     /** The name under which the library has the map. */
     mapName(): string;
+    /** The scene that is open; `null` for one that is drawn. */
+    scene: SceneFacts | null;
+    /** Shows a map that the library has opened. */
+    showMap(facts: MapFacts, cells: Uint8Array, name: string): void;
+    /**
+     * Shows that the page works, with a button that stops it, until the work is done; `outer` stops
+     * it, too.
+     */
+    working<T>(outer: AbortSignal | null, work: (stop: AbortSignal) => Promise<T>): Promise<T>;
     /** Something that the panel shows has changed: the picture is drawn again. */
     redraw(): void;
     /** The state was changed by the panel. */
@@ -22,12 +31,19 @@ export interface Page {
     say(panel: Panel, text: string): void;
 }
 
-/** One of the three parts of the page. */
+/** One of the parts of the page. */
 export interface Panel {
     readonly element: HTMLElement;
     /** Start, goal, map or settings have changed. */
     refresh(): Promise<void>;
-    draw(view: View): void;
+    /** Draws one of the pictures side by side, or the only one. */
+    draw(view: View, pane: number): void;
+    /** The colours have changed. */
+    repaint?(): void;
+    /** In how many pictures side by side it is drawn; one, unless it says otherwise. */
+    readonly panes?: number;
+    /** True if start, goal and obstacles can be moved in it. */
+    readonly hasEnds: boolean;
     /** Another part is shown from now on. */
     leave?(): void;
 }
@@ -35,28 +51,46 @@ export interface Panel {
 /** What went wrong, for people; what nobody foresaw is thrown on. */
 export function failure(error: unknown): string {
     if (error instanceof Refused) return error.message;
+    if (error instanceof Stopped) return texts.stopped;
     if (error instanceof Fault) return texts.fault(error.message);
     throw error;
 }
 
+/** After so long, work that no longer counts is given up rather than waited for. */
+const PATIENCE_MS = 1000;
+
 /** Questions of which only the last one counts: no other waits while one is answered. */
 export class Latest {
-    private isBusy = false;
+    private busy: { stop: AbortController; since_ms: number } | null = null;
     private isDue = false;
 
-    constructor(private readonly work: () => Promise<void>) {}
+    /** `work` asks whether something newer is due before it asks for more. */
+    constructor(private readonly work: (stop: AbortSignal) => Promise<void>) {}
+
+    get isOver(): boolean {
+        return this.isDue;
+    }
+
+    /** Gives up what is answered just now. */
+    stop(): void {
+        this.isDue = false;
+        this.busy?.stop.abort();
+    }
 
     async run(): Promise<void> {
         this.isDue = true;
-        if (this.isBusy) return;
-        this.isBusy = true;
+        if (this.busy) {
+            if (performance.now() - this.busy.since_ms > PATIENCE_MS) this.busy.stop.abort();
+            return;
+        }
         try {
             while (this.isDue) {
                 this.isDue = false;
-                await this.work();
+                this.busy = { stop: new AbortController(), since_ms: performance.now() };
+                await this.work(this.busy.stop.signal);
             }
         } finally {
-            this.isBusy = false;
+            this.busy = null;
         }
     }
 }

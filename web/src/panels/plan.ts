@@ -5,15 +5,17 @@ import type { RouteReport } from "../engine/types";
 import type { View } from "../draw/view";
 import type { Pair } from "../state";
 import { texts } from "../texts";
-import { choice, facts, metres, named, number } from "./controls";
+import { check, choice, facts, legend, metres, named, number } from "./controls";
 import { failure, Latest, type Page, type Panel } from "./panel";
 
 export class PlanPanel implements Panel {
     readonly element = document.createElement("div");
+    readonly hasEnds = true;
     private readonly result = document.createElement("div");
     private line: Pair[] = [];
     private smoothed: Pair[] = [];
-    private readonly latest = new Latest(() => this.plan());
+    private shortest: Pair[] = [];
+    private readonly latest = new Latest((stop) => this.plan(stop));
 
     constructor(private readonly page: Page) {
         const { state, names } = page;
@@ -31,7 +33,9 @@ export class PlanPanel implements Panel {
             number(texts.radius, state.radius_m, { min: 0, step: 0.05 }, (radius) =>
                 set(() => (state.radius_m = radius)),
             ).element,
+            check(texts.shortest, state.shortest, (shown) => set(() => (state.shortest = shown))),
             this.result,
+            legend(Object.entries(texts.plan.legend)),
         );
     }
 
@@ -39,18 +43,33 @@ export class PlanPanel implements Panel {
         return this.latest.run();
     }
 
-    private async plan(): Promise<void> {
+    leave(): void {
+        this.latest.stop();
+    }
+
+    private async plan(stop: AbortSignal): Promise<void> {
         const { engine, state } = this.page;
         const { planner, smoother, radius_m, start, goal } = state;
+        const question = { ask: "plan", planner, smoother, radius_m, start, goal };
         const begin = performance.now();
         try {
-            const question = { ask: "plan", planner, smoother, radius_m, start, goal };
-            const { head, parts } = await engine.ask<RouteReport>(question);
+            const { head, parts } = await this.page.working(stop, (signal) =>
+                engine.ask<RouteReport>(question, {}, signal),
+            );
             this.line = pairs(parts["line"]);
             this.smoothed = pairs(parts["smoothed"]);
+            this.shortest = [];
             this.show(head, performance.now() - begin);
+            this.page.redraw();
+            // It takes longer than the plan, so a drag does not wait for it.
+            if (!state.shortest || this.latest.isOver || head.outcome !== "found") return;
+            const again = { ...question, smoother: "none", with_shortest: true };
+            const answer = await this.page.working(stop, (signal) =>
+                engine.ask<RouteReport>(again, {}, signal),
+            );
+            this.shortest = pairs(answer.parts["shortest"]);
         } catch (error) {
-            [this.line, this.smoothed] = [[], []];
+            [this.line, this.smoothed, this.shortest] = [[], [], []];
             this.result.replaceChildren();
             this.page.say(this, failure(error));
         }
@@ -82,7 +101,8 @@ export class PlanPanel implements Panel {
     }
 
     draw(view: View): void {
-        const { line, smoothed } = view.colors;
+        const { line, smoothed, shortest } = view.colors;
+        view.line(this.shortest, shortest, 2, [1, 4]);
         view.line(this.line, line, 1.5, this.smoothed.length > 0 ? [4, 4] : []);
         view.line(this.smoothed, smoothed, 3);
     }

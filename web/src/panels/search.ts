@@ -1,134 +1,200 @@
-/** A search, event by event. */
+/** Searches, event by event: one, or up to four side by side. */
 
 import { integers } from "../engine/message";
 import type { SearchReport } from "../engine/types";
+import { EXPANDED, GENERATED, Ink, REPARENTED } from "../draw/ink";
 import type { View } from "../draw/view";
 import type { Pair } from "../state";
 import { texts } from "../texts";
-import { choice, facts, named, Player, slider } from "./controls";
+import { button, check, choice, legend, named, Player, slider, table } from "./controls";
 import { failure, Latest, type Page, type Panel } from "./panel";
+import { pairs } from "./plan";
 
-/** Numbers of an event: kind, side, column and row of the node, column and row of the other end. */
-const NUMBERS = 6;
-const [EXPANDED, GENERATED, SCANNED] = [0, 1, 3];
-/** A search that plays takes about so many frames. */
+/** A search that plays at the usual speed takes about so many frames. */
 const FRAMES = 300;
+
+/** A search of one planner. */
+interface Found {
+    planner: string;
+    report: SearchReport | null;
+    why: string | null;
+    events: Int32Array;
+    path: Pair[];
+    shortest: Pair[];
+}
 
 export class SearchPanel implements Panel {
     readonly element = document.createElement("div");
+    readonly hasEnds = true;
     private readonly result = document.createElement("div");
     private readonly slider = slider(texts.step, (shown) => this.showFirst(shown));
-    private readonly player = new Player(texts, () => this.forward());
-    private events: Int32Array = new Int32Array();
-    private path: Pair[] = [];
-    private report: SearchReport | null = null;
+    private readonly player = new Player(texts, () => this.play(1));
+    private readonly back = new Player({ play: texts.playBack, pause: texts.pause }, () =>
+        this.play(-1),
+    );
+    private found: Found[] = [];
+    private inks: Ink[] = [];
     private shown = 0;
-    private readonly latest = new Latest(() => this.search());
+    private speed = 1;
+    private readonly latest = new Latest((stop) => this.search(stop));
 
     constructor(private readonly page: Page) {
         const { state, names } = page;
-        const legend = document.createElement("ul");
-        legend.className = "legend";
-        for (const [name, text] of Object.entries(texts.search.legend)) {
-            const item = document.createElement("li");
-            const swatch = document.createElement("span");
-            swatch.style.background = `var(--${name})`;
-            item.append(swatch, text);
-            legend.append(item);
-        }
+        const none = [["", texts.nothing]] as const;
+        const set = (change: () => void) => {
+            change();
+            page.changed();
+        };
+        const beside = texts.beside.map((label, i) =>
+            choice(label, [...none, ...named(names.planners)], state.beside[i] ?? "", (name) =>
+                set(() => (state.beside[i] = name)),
+            ),
+        );
+        const speeds = Object.entries(texts.speeds);
         this.element.append(
-            choice(texts.planner, named(names.planners), state.planner, (name) => {
-                state.planner = name;
-                page.changed();
-            }),
+            choice(texts.planner, named(names.planners), state.planner, (name) =>
+                set(() => (state.planner = name)),
+            ),
+            ...beside,
+            check(texts.shortest, state.shortest, (shown) => set(() => (state.shortest = shown))),
             this.slider.element,
             this.player.button,
+            this.back.button,
+            button(texts.stepBack, () => this.showFirst(this.shown - 1)),
+            button(texts.stepForward, () => this.showFirst(this.shown + 1)),
+            choice(texts.speed, speeds, "1", (speed) => (this.speed = Number(speed))),
             this.result,
-            legend,
+            legend(Object.entries(texts.search.legend)),
         );
+    }
+
+    get panes(): number {
+        return Math.max(1, this.found.length);
     }
 
     refresh(): Promise<void> {
         return this.latest.run();
     }
 
-    private async search(): Promise<void> {
-        const { engine, state, say } = this.page;
-        const { planner, radius_m, start, goal } = state;
+    leave(): void {
+        this.latest.stop();
+        this.pause();
+    }
+
+    private pause(): void {
         this.player.stop();
+        this.back.stop();
+    }
+
+    private async search(stop: AbortSignal): Promise<void> {
+        const { state, say, working } = this.page;
+        this.pause();
+        const planners = [state.planner, ...state.beside.filter((name) => name !== "")];
         try {
-            const question = { ask: "search", planner, radius_m, start, goal };
-            const { head, parts } = await engine.ask<SearchReport>(question);
-            this.report = head;
-            this.events = integers(parts["events"]);
-            const cells = integers(parts["path"]);
-            this.path = Array.from({ length: cells.length / 2 }, (_, i) => [
-                cells[2 * i]!,
-                cells[2 * i + 1]!,
-            ]);
-            say(
-                this,
-                head.why ??
-                    `${texts.search.cost}: ${head.cost_cells?.toFixed(2)} ${texts.search.cells}`,
-            );
+            this.found = await working(stop, async (signal) => {
+                const all: Found[] = [];
+                for (const planner of planners) all.push(await this.searchWith(planner, signal));
+                return all;
+            });
+            const costs = this.found.map(({ planner, report, why }) => {
+                const cost = `${report?.cost_cells?.toFixed(2)} ${texts.search.cells}`;
+                const text = why ?? `${texts.search.cost}: ${cost}`;
+                return planners.length > 1 ? `${planner}: ${text}` : text;
+            });
+            const left = this.found.map(({ report }) => report?.left_out ?? 0);
+            const most = Math.max(...left);
+            say(this, [...costs, ...(most > 0 ? [texts.search.leftOut(most)] : [])].join("; "));
         } catch (error) {
-            [this.report, this.events, this.path] = [null, new Int32Array(), []];
+            this.found = [];
             say(this, failure(error));
         }
+        this.inks = [];
         this.showFirst(this.count);
     }
 
-    private get count(): number {
-        return this.events.length / NUMBERS;
+    /** A planner that finds nothing is one more picture, unless there is only one. */
+    private async searchWith(planner: string, stop: AbortSignal): Promise<Found> {
+        const { engine, state } = this.page;
+        const { radius_m, start, goal, shortest } = state;
+        const question = { ask: "search", planner, radius_m, start, goal, with_shortest: shortest };
+        const { head, parts } = await engine.ask<SearchReport>(question, {}, stop);
+        const cells = integers(parts["path"]);
+        const path = Array.from({ length: cells.length / 2 }, (_, i): Pair => [
+            cells[2 * i]!,
+            cells[2 * i + 1]!,
+        ]);
+        const events = integers(parts["events"]);
+        return {
+            planner,
+            report: head,
+            why: head.why,
+            events,
+            path,
+            shortest: pairs(parts["shortest"]),
+        };
     }
 
-    private forward(): boolean {
-        const from = this.shown >= this.count ? 0 : this.shown;
-        this.showFirst(Math.min(this.count, from + Math.max(1, Math.round(this.count / FRAMES))));
-        return this.shown < this.count;
+    /** Events of the longest search. */
+    private get count(): number {
+        return Math.max(0, ...this.found.map(({ report }) => report?.events ?? 0));
+    }
+
+    private play(direction: 1 | -1): boolean {
+        const end = direction > 0 ? this.count : 0;
+        const from = this.shown === end ? this.count - end : this.shown;
+        const by = Math.max(1, Math.round((this.speed * this.count) / FRAMES));
+        this.showFirst(from + direction * by);
+        return this.shown !== end;
     }
 
     private showFirst(shown: number): void {
-        this.shown = shown;
-        this.slider.set(shown, this.count);
-        const counts = [0, 0];
-        for (let i = 0; i < shown; i++) {
-            const kind = this.events[i * NUMBERS]!;
-            if (kind === EXPANDED || kind === GENERATED) counts[kind]!++;
-        }
-        const words = texts.search;
-        const cost = this.report?.cost_cells;
-        this.result.replaceChildren(
-            facts([
-                [words.expanded, String(counts[EXPANDED])],
-                [words.generated, String(counts[GENERATED])],
-                [words.cost, cost == null ? "-" : `${cost.toFixed(2)} ${words.cells}`],
-            ]),
-        );
+        this.shown = Math.min(this.count, Math.max(0, shown));
+        this.slider.set(this.shown, this.count);
         this.page.redraw();
+        this.showCounts();
     }
 
-    draw(view: View): void {
-        const { expanded, generated, scanned, smoothed } = view.colors;
-        const { context } = view;
-        const resolution = view.facts?.resolution_m ?? 1;
-        const side = Math.max(2, view.pixels(resolution));
-        for (let i = 0; i < this.shown; i++) {
-            const [kind, , x, y, x2, y2] = this.events.subarray(i * NUMBERS, (i + 1) * NUMBERS);
-            const at = view.centre([x!, y!]);
-            if (kind === SCANNED) view.line([at, view.centre([x2!, y2!])], scanned, 1);
-            else if (kind === EXPANDED || kind === GENERATED) {
-                const [px, py] = view.toScreen(at);
-                context.fillStyle = kind === EXPANDED ? expanded : generated;
-                context.fillRect(px - side / 2, py - side / 2, side, side);
-            }
-        }
-        if (this.shown === this.count) {
-            view.line(
-                this.path.map((cell) => view.centre(cell)),
-                smoothed,
-                3,
+    /** From the pictures of the searches, which count what they show. */
+    private showCounts(): void {
+        const words = texts.search;
+        const counts = (kind: number) => this.inks.map((ink) => String(ink.counts[kind]));
+        const costs = this.found.map(({ report }) => {
+            const cost = report?.cost_cells;
+            return cost == null ? "-" : `${cost.toFixed(2)} ${words.cells}`;
+        });
+        const header = this.found.length > 1 ? ["", ...this.found.map((it) => it.planner)] : [];
+        if (this.found.length === 0) this.result.replaceChildren();
+        else {
+            this.result.replaceChildren(
+                table(header, [
+                    [words.expanded, ...counts(EXPANDED)],
+                    [words.generated, ...counts(GENERATED)],
+                    [words.reparented, ...counts(REPARENTED)],
+                    [words.cost, ...costs],
+                ]),
             );
         }
+    }
+
+    draw(view: View, pane: number): void {
+        if (this.inks.length !== this.found.length) {
+            this.inks = this.found.map(({ events }) => new Ink(events, view));
+        }
+        const [found, ink] = [this.found[pane], this.inks[pane]];
+        if (!found || !ink) return;
+        ink.show(Math.min(this.shown, ink.count));
+        ink.draw(view);
+        view.line(found.shortest, view.colors.shortest, 2, [1, 4]);
+        if (this.shown >= ink.count) {
+            const line = found.path.map((cell) => view.centre(cell));
+            view.line(line, view.colors.smoothed, 3);
+        }
+        if (this.found.length > 1) view.title(found.planner, view.colors.smoothed);
+        if (pane === this.found.length - 1) this.showCounts();
+    }
+
+    /** The colours have changed, or the map's size. */
+    repaint(): void {
+        this.inks = [];
     }
 }

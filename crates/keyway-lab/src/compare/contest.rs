@@ -8,7 +8,7 @@ use super::ends::Ends;
 use super::left_out::LeftOut;
 use super::{CompareError, Comparison};
 use crate::corner_rule::corner_rule;
-use crate::measure::{StageTimer, Times, timed};
+use crate::measure::{StageTimer, Times, timed_if};
 use crate::progress::Progress;
 use keyway::geometry::{PlannedLine, Polyline};
 use keyway::map::{Connectivity, SearchMap};
@@ -99,7 +99,7 @@ pub(super) fn compete(
     }
     let (mut contenders, mut left_out) = (Vec::new(), Vec::new());
     for planner in planners {
-        match Contender::prepare(planner, smoothers.len(), map) {
+        match Contender::prepare(planner, (smoothers.len(), comparison.has_times), map) {
             Ok(contender) => contenders.push(contender),
             Err(error) if *leaves_out_unfit && LeftOut::is_for(&error) => {
                 left_out.push(LeftOut::new(planner.name(), &error));
@@ -121,22 +121,6 @@ pub(super) fn compete(
     Ok(Contest { entries, left_out, oracles })
 }
 
-impl Contest {
-    /// Removes the times, which differ from run to run.
-    pub(super) fn without_times(mut self) -> Self {
-        for entry in &mut self.entries {
-            entry.preparation = None;
-            for answer in &mut entry.answers {
-                answer.plan = None;
-                if let Some(found) = &mut answer.found {
-                    found.smooth = None;
-                }
-            }
-        }
-        self
-    }
-}
-
 /// Returns an oracle for each corner rule that a planner has.
 fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<Oracle> {
     let rules = [CornerRule::Forbid, CornerRule::Allow];
@@ -155,7 +139,8 @@ type TimedSmoothed = (Smoothed, Option<Times>);
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     name: &'static str,
-    preparation: Times,
+    has_times: bool,
+    preparation: Option<Times>,
     workspace: Workspace,
     plan: Plan,
     /// Plans, one for each query.
@@ -167,7 +152,7 @@ struct Contender {
 struct Planned {
     outcome: PlanOutcome,
     reason: Option<String>,
-    times: Times,
+    times: Option<Times>,
     note: Option<PlanNote>,
     line: Option<PlannedLine>,
 }
@@ -175,10 +160,10 @@ struct Planned {
 impl Contender {
     fn prepare(
         config: &PlannerConfig,
-        smoothers: usize,
+        (smoothers, has_times): (usize, bool),
         map: &SearchMap,
     ) -> Result<Self, PlanError> {
-        let (planner, preparation) = timed(|| config.build(map));
+        let (planner, preparation) = timed_if(has_times, || config.build(map));
         let planner = planner?;
         if planner.needs_uniform_cost() && map.penalised().is_some() {
             return Err(PlanError::NeedsUniformCost { planner: config.name() });
@@ -186,6 +171,7 @@ impl Contender {
         Ok(Self {
             planner,
             name: config.name(),
+            has_times,
             preparation,
             workspace: Workspace::default(),
             plan: Plan::default(),
@@ -207,12 +193,14 @@ impl Contender {
     ) -> Result<(), CompareError> {
         for (i, ends) in queries.iter().enumerate() {
             let query = RouteQuery::new(ends.start, ends.goal);
-            let Self { planner, workspace, plan, .. } = self;
-            let mut timer = StageTimer::default();
+            let Self { planner, workspace, plan, has_times, .. } = self;
+            let mut timer = StageTimer::new(*has_times);
             let result = query.search(map, &**planner, workspace, plan, &mut timer);
-            let times = timer.search.unwrap_or_default();
+            let times = timer.search;
             if let Some(planned) = self.planned.get_mut(i) {
-                planned.times.keep_faster(times);
+                if let (Some(best), Some(times)) = (&mut planned.times, times) {
+                    best.keep_faster(times);
+                }
             } else {
                 let line = result.is_ok().then(|| query.line(map, &self.plan));
                 let outcome = match &result {
@@ -243,7 +231,7 @@ impl Contender {
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| {
-                    let mut timer = StageTimer::default();
+                    let mut timer = StageTimer::new(self.has_times);
                     let done = smooth_line(map, &*smoother, line, clearance_m, &mut timer);
                     (done, timer.smoothing.filter(|_| is_smoother))
                 };
@@ -275,7 +263,7 @@ impl Contender {
             planner: self.name,
             smoother: smoother.name(),
             corners,
-            preparation: Some(self.preparation),
+            preparation: self.preparation,
             answers: (self.planned.iter().zip(smoothed).enumerate())
                 .map(|(i, (planned, smoothed))| {
                     planned.answer(smoothed.as_ref(), map, shortest_m(i))
@@ -299,7 +287,7 @@ impl Planned {
             shortest_m,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
-        Answer { outcome, reason, plan: Some(self.times), note: self.note, found }
+        Answer { outcome, reason, plan: self.times, note: self.note, found }
     }
 }
 

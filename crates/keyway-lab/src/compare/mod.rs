@@ -43,8 +43,7 @@ use choice::Choice;
 use contest::compete;
 use keyway::ConfigError;
 use keyway::files::RobotLayersError;
-use keyway::map::formats::LoadedMap;
-use keyway::map::{Cell, SearchMap};
+use keyway::map::{Cell, OccupancyGrid, SearchMap};
 use keyway::plan::PlanError;
 use keyway_sim::report::PlacementInput;
 use map_names::MapNames;
@@ -67,7 +66,7 @@ pub struct Comparison {
 /// A map with its queries.
 pub struct Queried {
     name: String,
-    loaded: LoadedMap,
+    grid: OccupancyGrid,
     map: SearchMap,
     queries: Vec<Ends>,
 }
@@ -76,8 +75,8 @@ pub struct Queried {
 pub struct Compared {
     /// Unique name of the map.
     pub name: String,
-    /// The map as read.
-    pub loaded: LoadedMap,
+    /// The map.
+    pub grid: OccupancyGrid,
     /// Its layers.
     pub map: SearchMap,
     /// The queries.
@@ -132,10 +131,10 @@ pub enum CompareError {
 impl Queried {
     /// Combines a map with its layers and its queries. Where the layers ask for it, the constraints
     /// that keep paths away from obstacles are lifted around the ends of all queries alike.
-    fn new(name: String, loaded: LoadedMap, mut map: SearchMap, queries: Vec<Ends>) -> Self {
+    fn new(name: String, grid: OccupancyGrid, mut map: SearchMap, queries: Vec<Ends>) -> Self {
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
         map.free_ends(&ends);
-        Self { name, loaded, map, queries }
+        Self { name, grid, map, queries }
     }
 }
 
@@ -162,14 +161,14 @@ impl Comparison {
     ///
     /// # Panics
     /// If the request has no map of this index.
-    pub fn queried(&self, index: usize, loaded: LoadedMap) -> Result<Queried, QueriedError> {
-        let map = self.choice.size.layers(&loaded.grid, self.choice.map.clone());
+    pub fn queried(&self, index: usize, grid: OccupancyGrid) -> Result<Queried, QueriedError> {
+        let map = self.choice.size.layers(&grid, self.choice.map.clone());
         let map = map.map_err(|error| QueriedError::Layers {
             map: self.names.path(index).to_owned(),
             error,
         })?;
         let queries = self.queries.on((&self.names, index), &map)?;
-        Ok(Queried::new(self.names.name(index).to_owned(), loaded, map, queries))
+        Ok(Queried::new(self.names.name(index).to_owned(), grid, map, queries))
     }
 
     /// Answers all queries on a map.
@@ -178,11 +177,10 @@ impl Comparison {
     /// When a planner or a smoother cannot be used, or the observer stops the comparison. Queries
     /// without a path are results.
     pub fn on(&self, map: Queried, progress: &dyn Progress) -> Result<Compared, CompareError> {
-        let Queried { name, loaded, map, queries } = map;
+        let Queried { name, grid, map, queries } = map;
         let contest = compete(&map, self, &queries, progress)?;
-        let contest = if self.has_times { contest } else { contest.without_times() };
         let counts = compared(&contest.entries);
-        Ok(Compared { name, loaded, map, queries, contest, counts })
+        Ok(Compared { name, grid, map, queries, contest, counts })
     }
 
     /// Returns the report of the results on all maps; `placement` is where maps lie that do not say

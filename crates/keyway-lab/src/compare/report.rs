@@ -7,6 +7,7 @@ use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
 use super::{Compared, Comparison};
 use keyway::geometry::{Point, Polyline};
+use keyway::map::formats::digest;
 use keyway::search::CornerRule;
 use keyway_sim::report::{PlacementInput, PlanOutcome};
 use serde::Serialize;
@@ -88,7 +89,7 @@ impl CompareReport {
         let map_part = |(path, map): (String, &Compared)| MapPart {
             name: map.name.clone(),
             map: path,
-            map_digest: map.loaded.digest.clone(),
+            map_digest: digest(&map.grid),
             left_out: map.contest.left_out.clone(),
             queries: (0..map.queries.len()).map(|query| query_part(map, query)).collect(),
             picture_query: map.picture_query().map(|query| query + 1),

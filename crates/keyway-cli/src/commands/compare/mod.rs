@@ -33,7 +33,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
             let Some(out) = &out else { break };
             refuse_to_replace_a_source(&loaded.sources, &out.path(&name), "--out")?;
         }
-        Ok::<_, CliError>(comparison.queried(index, loaded)?)
+        Ok::<_, CliError>(comparison.queried(index, loaded.grid)?)
     };
     let queried: Vec<Queried> = (0..args.maps.len()).map(queried).collect::<Result<_, _>>()?;
     let progress = Progress::over_files(args.maps.len());

@@ -102,7 +102,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
 /// What is drawn under the paths.
 fn common(map: &Compared, query: usize) -> MapPicture<'_> {
     let ends = map.queries[query];
-    let picture = MapPicture::new(&map.loaded.grid)
+    let picture = MapPicture::new(&map.grid)
         .with(CellTint::blocked(map.map.blocked()).color(TOO_CLOSE))
         .with(StartMark(ends.start))
         .with(GoalMark { point: ends.goal, tolerance_m: None });

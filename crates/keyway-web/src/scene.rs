@@ -1,0 +1,122 @@
+//! Scene files.
+
+use crate::drive::{Others, episode_of, scene_error, scene_of};
+use crate::error::{Kind, PageError};
+use crate::map::{MapFacts, Opened, cells_of, facts, open_file, part};
+use crate::message::{Message, json};
+use keyway::geometry::{Disc, Point};
+use keyway_sim::episode::Episode;
+use keyway_sim::scene_files::{SceneFile, SceneMap};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// `{"ask": "open_scene", "name", "seed"}`: opens a scene and its map. The parts are the scene file
+/// by its name, and the files of its map, unless the scene has a world of its own.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenScene {
+    /// The scene file (TOML).
+    pub name: String,
+    /// In the place of the scene's seed.
+    pub seed: Option<u64>,
+}
+
+/// A scene that was opened. The part `cells` is as for a map.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneFacts {
+    /// The map.
+    pub map: MapFacts,
+    /// True if the map is made from the seed.
+    pub is_generated: bool,
+    /// True if another seed gives another drive.
+    pub is_random: bool,
+    /// The seed.
+    pub seed: u64,
+    /// What the scene shows, for people.
+    pub description: Option<String>,
+    /// The robots.
+    pub robots: Vec<SceneRobot>,
+    /// Discs that the map does not show, `[x, y, radius]` \[m\].
+    pub discs: Vec<[f64; 3]>,
+    /// Polygons that the map does not show \[m\].
+    pub polygons: Vec<Vec<Point>>,
+    /// Cells that the map does not show: column, row.
+    pub hidden_cells: Vec<[i32; 2]>,
+    /// Moving obstacles at the beginning, `[x, y, radius]` \[m\].
+    pub movers: Vec<[f64; 3]>,
+}
+
+/// A robot of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneRobot {
+    /// Where it starts \[m\].
+    pub start: Point,
+    /// By way of which points \[m\].
+    pub via: Vec<Point>,
+    /// Where to \[m\].
+    pub goal: Point,
+    /// Name of its stack.
+    pub stack: String,
+}
+
+/// Opens a scene; `known` is the map that is open.
+pub(crate) fn open_scene(
+    ask: &OpenScene,
+    message: &Message,
+    known: Option<&Opened>,
+) -> Result<(Opened, Message), PageError> {
+    let bytes = part(message, Path::new(&ask.name)).map_err(|error| scene_error(&error))?;
+    let text = std::str::from_utf8(bytes).map_err(|error| scene_error(&error))?;
+    let mut scene = scene_of(text)?;
+    scene.seed = ask.seed.unwrap_or(scene.seed);
+    let (opened, warnings) = map_of(&scene, message, known)?;
+    let map = SceneMap { grid: opened.grid.clone(), source: opened.source.clone() };
+    let episode = episode_of(&scene, map, Others::default())?;
+    let scene_facts = scene_facts(&scene, facts(&opened, warnings), &episode);
+    Ok((opened.clone(), Message::new(json(&scene_facts)).with("cells", cells_of(&opened))))
+}
+
+/// The map of a scene: one that it makes, one of the files, or the one that is open.
+fn map_of(
+    scene: &SceneFile,
+    message: &Message,
+    known: Option<&Opened>,
+) -> Result<(Opened, Vec<String>), PageError> {
+    if let Some(made) = scene.generated_map() {
+        let SceneMap { grid, source } = made.map_err(|error| scene_error(&error))?;
+        return Ok((Opened { grid, source }, Vec::new()));
+    }
+    let path = scene.map.as_deref().unwrap_or(Path::new(""));
+    let name = path.file_name().map_or(path, Path::new);
+    if part(message, name).is_ok() {
+        return open_file(name, None, message);
+    }
+    let known = known.filter(|known| Path::new(&known.source.name) == name);
+    known.map(|known| (known.clone(), Vec::new())).ok_or_else(|| {
+        let name = name.display();
+        let message = format!("its map `{name}` is missing: open both files at once");
+        PageError::new(Kind::Input, message).field("scene")
+    })
+}
+
+fn scene_facts(scene: &SceneFile, map: MapFacts, episode: &Episode) -> SceneFacts {
+    let disc = |disc: &Disc| [disc.centre.x, disc.centre.y, disc.radius_m];
+    let robots = episode.robots.iter().map(|robot| SceneRobot {
+        start: robot.start.position,
+        via: robot.via.clone(),
+        goal: robot.goal.position,
+        stack: robot.stack_name.clone(),
+    });
+    SceneFacts {
+        map,
+        is_generated: scene.world.is_some(),
+        is_random: scene.is_random(),
+        seed: scene.seed,
+        description: scene.description.clone(),
+        robots: robots.collect(),
+        discs: episode.obstacles.iter().map(disc).collect(),
+        polygons: episode.polygons.iter().map(|polygon| polygon.vertices().to_vec()).collect(),
+        hidden_cells: episode.hidden_cells.iter().map(|cell| [cell.x, cell.y]).collect(),
+        movers: episode.movers.iter().map(|mover| disc(&mover.at(0.0))).collect(),
+    }
+}

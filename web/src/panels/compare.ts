@@ -1,0 +1,220 @@
+/** Planners on the same queries, and stacks in the same world. */
+
+import { Film } from "../engine/film";
+import type { Comparison, Driven, Row, Summary } from "../engine/types";
+import { drawMovers, drawRobot } from "../draw/drive";
+import { SERIES, type View } from "../draw/view";
+import { driveQuestion, LIMITS } from "../state";
+import { texts } from "../texts";
+import {
+    button,
+    checks,
+    choice,
+    legend,
+    metres,
+    number,
+    Player,
+    save,
+    slider,
+    table,
+} from "./controls";
+import { failure, type Page, type Panel } from "./panel";
+
+export class ComparePanel implements Panel {
+    readonly element = document.createElement("div");
+    private readonly controls = document.createElement("div");
+    private readonly result = document.createElement("div");
+    private readonly race = document.createElement("div");
+    private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
+    private readonly player = new Player(texts, () => this.forward());
+    private readonly go = button(texts.compareNow, () => void this.run());
+    private running: AbortController | null = null;
+    /** The first drive of each stack. */
+    private runners: { stack: string; film: Film }[] = [];
+    private shown = 0;
+
+    constructor(private readonly page: Page) {
+        const what = Object.entries(texts.compared);
+        this.race.append(this.slider.element, this.player.button);
+        this.element.append(
+            choice(texts.compareWhat, what, page.state.compared, (what) => {
+                page.state.compared = what as keyof typeof texts.compared;
+                this.makeControls();
+                page.changed();
+            }),
+            this.controls,
+            this.go,
+            this.race,
+            this.result,
+        );
+        this.makeControls();
+    }
+
+    get hasEnds(): boolean {
+        return this.page.state.compared === "stacks" && this.page.scene === null;
+    }
+
+    private makeControls(): void {
+        const { state, names } = this.page;
+        const set = (change: () => void) => {
+            change();
+            this.page.changed();
+        };
+        const count = (label: string, field: "queries" | "runs" | "seed") => {
+            const bounds = { min: field === "seed" ? 0 : 1, max: LIMITS[field], step: 1 };
+            return number(label, state[field], bounds, (value) => set(() => (state[field] = value)))
+                .element;
+        };
+        const list = (
+            label: string,
+            all: string[],
+            field: "planners" | "smoothers" | "stacks",
+        ): HTMLElement =>
+            checks(label, all, state[field], (chosen) => set(() => (state[field] = chosen)));
+        if (state.compared === "planners") {
+            this.controls.replaceChildren(
+                list(texts.planners, names.planners, "planners"),
+                list(texts.smoothers, names.smoothers, "smoothers"),
+                count(texts.queries, "queries"),
+                count(texts.seed, "seed"),
+            );
+        } else {
+            this.controls.replaceChildren(
+                list(texts.stacks, names.stacks, "stacks"),
+                count(texts.runs, "runs"),
+                count(texts.seed, "seed"),
+            );
+        }
+    }
+
+    async refresh(): Promise<void> {
+        this.running?.abort();
+        this.clear();
+        this.page.say(this, texts.comparing.ready[this.page.state.compared]);
+    }
+
+    leave(): void {
+        this.player.stop();
+        this.running?.abort();
+    }
+
+    private clear(): void {
+        this.player.stop();
+        [this.runners, this.shown] = [[], 0];
+        this.race.hidden = true;
+        this.result.replaceChildren();
+        this.page.redraw();
+    }
+
+    private async run(): Promise<void> {
+        const { state, say, working } = this.page;
+        this.clear();
+        const running = new AbortController();
+        this.running = running;
+        this.go.disabled = true;
+        try {
+            await working(running.signal, (stop) =>
+                state.compared === "planners" ? this.comparePlanners(stop) : this.raceStacks(stop),
+            );
+        } catch (error) {
+            if (!running.signal.aborted) say(this, failure(error));
+        } finally {
+            this.go.disabled = false;
+            this.running = null;
+        }
+    }
+
+    private async comparePlanners(stop: AbortSignal): Promise<void> {
+        const { engine, state, say } = this.page;
+        const { planners, smoothers, radius_m, queries, seed } = state;
+        const question = { ask: "compare", planners, smoothers, radius_m, queries, seed };
+        const { head } = await engine.ask<Comparison>(question, {}, stop);
+        this.result.replaceChildren(
+            table(head.header, head.rows),
+            button("CSV", () => save("compare.csv", head.csv)),
+            button(texts.answersCsv, () => save("queries.csv", head.queries_csv)),
+            button("LaTeX", () => save("compare.tex", head.latex)),
+            button("JSON", () => save("compare.json", JSON.stringify(head.report))),
+        );
+        say(this, texts.comparing.done(head.rows.length));
+    }
+
+    /** Run by run: what is done so far is shown. */
+    private async raceStacks(stop: AbortSignal): Promise<void> {
+        const { engine, state, say, mapName } = this.page;
+        const rows: Row[] = [];
+        for (let run = 0; run < state.runs; run++) {
+            for (const stack of state.stacks) {
+                say(this, texts.comparing.running(rows.length, state.runs * state.stacks.length));
+                const question = {
+                    ...driveQuestion({ ...state, stack, sceneStack: stack }, mapName()),
+                    seed: state.seed + run,
+                    reports_only: run > 0,
+                };
+                const { head, parts } = await engine.ask<Driven>(question, {}, stop);
+                if (stop.aborted) return;
+                rows.push(head.row);
+                if (run === 0) this.runners.push({ stack, film: new Film(head, parts, 0) });
+            }
+            const { head } = await engine.ask<Summary>({ ask: "summary", rows }, {}, stop);
+            this.showSummary(head);
+            if (run === 0) this.showCycle(0);
+        }
+        say(this, texts.comparing.done(state.stacks.length));
+    }
+
+    private showSummary(summary: Summary): void {
+        const words = texts.comparing;
+        const rows = summary.stacks.map((stack) => [
+            stack.stack,
+            `${stack.reached}/${stack.runs}`,
+            String(stack.contacts_driving + stack.contacts_standing),
+            String(stack.stuck + stack.timeout + stack.no_path),
+            stack.mean_time_s === null ? "-" : `${stack.mean_time_s.toFixed(1)} s`,
+            metres(stack.mean_length_m),
+            metres(stack.least_clearance_m),
+        ]);
+        const whole = document.createElement("details");
+        const [title, text] = [document.createElement("summary"), document.createElement("pre")];
+        [title.textContent, text.textContent, text.tabIndex] = [words.whole, summary.text, 0];
+        whole.append(title, text);
+        const colors = this.runners.map(({ stack }, i) => [`series-${i % SERIES}`, stack] as const);
+        this.result.replaceChildren(
+            legend(colors),
+            table(words.header, rows),
+            whole,
+            button("CSV", () => save("summary.csv", summary.csv)),
+            button(texts.runsCsv, () => save("runs.csv", summary.runs_csv)),
+            button("Markdown", () => save("summary.md", summary.markdown)),
+            button("LaTeX", () => save("summary.tex", summary.latex)),
+        );
+    }
+
+    private get last(): number {
+        return Math.max(0, ...this.runners.map(({ film }) => film.cycles.length - 1));
+    }
+
+    private forward(): boolean {
+        this.showCycle(this.shown >= this.last ? 0 : this.shown + 1);
+        return this.shown < this.last;
+    }
+
+    private showCycle(shown: number): void {
+        this.shown = shown;
+        this.race.hidden = this.runners.length === 0;
+        this.slider.set(shown, this.last);
+        const longest = this.runners.find(({ film }) => film.cycles.length - 1 === this.last);
+        const time = longest?.film.cycle(shown)?.t_s ?? 0;
+        this.slider.input.setAttribute("aria-valuetext", `${time.toFixed(1)} s`);
+        this.page.redraw();
+    }
+
+    draw(view: View): void {
+        const first = this.runners[0];
+        if (!first) return;
+        drawMovers(view, first.film, this.shown);
+        this.runners.forEach(({ film }, i) => {
+            drawRobot(view, film, this.shown, view.colors.series[i % SERIES] ?? "");
+        });
+    }
+}

@@ -1,0 +1,178 @@
+/** The claims of the four papers, measured in this page. */
+
+import type { ClaimFacts, ClaimMap, Judged } from "../engine/types";
+import { SERIES, type View } from "../draw/view";
+import { LIMITS, type Pair } from "../state";
+import { texts } from "../texts";
+import { button, check, grouped, legend, metres, number, table } from "./controls";
+import { failure, Latest, type Page, type Panel } from "./panel";
+import { pairs } from "./plan";
+
+export class PapersPanel implements Panel {
+    readonly element = document.createElement("div");
+    readonly hasEnds = false;
+    private readonly about = document.createElement("div");
+    private readonly methods = document.createElement("div");
+    private readonly verdict = document.createElement("div");
+    private readonly measure = button(texts.papers.measure, () => void this.judge());
+    private readonly choices = document.createElement("div");
+    private claims: ClaimFacts[] = [];
+    private lines: Pair[][] = [];
+    private running: AbortController | null = null;
+    private readonly latest = new Latest((stop) => this.open(stop));
+
+    constructor(private readonly page: Page) {
+        const { state } = page;
+        const set = (change: () => void) => {
+            change();
+            page.changed();
+        };
+        const bounds = (most: number) => ({ min: 1, max: most, step: 1 });
+        this.element.append(
+            this.choices,
+            this.about,
+            check(texts.papers.scene, state.paperScene, (shown) =>
+                set(() => (state.paperScene = shown)),
+            ),
+            number(texts.papers.seed, state.claimSeed, bounds(LIMITS.seed), (seed) =>
+                set(() => (state.claimSeed = seed)),
+            ).element,
+            this.methods,
+            number(texts.papers.maps, state.claimMaps, bounds(LIMITS.claimMaps), (maps) =>
+                set(() => (state.claimMaps = maps)),
+            ).element,
+            this.measure,
+            this.verdict,
+        );
+    }
+
+    private get claim(): ClaimFacts | undefined {
+        return this.claims.find(({ id }) => id === this.page.state.claim) ?? this.claims[0];
+    }
+
+    /** The map of the claim, with a seed, or that of the paper. */
+    private get question() {
+        const claim = this.claim;
+        const isScene = this.page.state.paperScene && claim?.has_scene;
+        return { id: claim?.id ?? "", seed: isScene ? null : this.page.state.claimSeed };
+    }
+
+    refresh(): Promise<void> {
+        this.running?.abort();
+        return this.latest.run();
+    }
+
+    leave(): void {
+        this.running?.abort();
+        this.latest.stop();
+    }
+
+    private async open(stop: AbortSignal): Promise<void> {
+        const { engine, working, say, showMap } = this.page;
+        this.verdict.replaceChildren();
+        try {
+            if (this.claims.length === 0) {
+                this.claims = (await engine.ask<ClaimFacts[]>({ ask: "claims" })).head;
+                this.showChoices();
+            }
+            const claim = this.claim;
+            if (!claim) return;
+            this.showAbout(claim);
+            const question = { ask: "open_claim", ...this.question };
+            const { head, parts } = await working(stop, (signal) =>
+                engine.ask<ClaimMap>(question, {}, signal),
+            );
+            const names = `claim ${claim.id} ${question.seed ?? ""}`.trim();
+            [this.page.state.start, this.page.state.goal] = head.ends;
+            showMap(head.map, parts["cells"] ?? new Uint8Array(), names);
+            this.lines = claim.methods.map((_, i) => pairs(parts[`line ${i}`]));
+            const rows = claim.methods.map((name, i) => [name, metres(head.lengths_m[i])]);
+            this.methods.replaceChildren(
+                legend(claim.methods.map((name, i) => [`series-${i % SERIES}`, name])),
+                table([texts.papers.method, texts.papers.length], rows),
+            );
+            say(this, texts.papers.shown(claim.id, head.map.name));
+        } catch (error) {
+            say(this, failure(error));
+        }
+        this.page.redraw();
+    }
+
+    private showChoices(): void {
+        const papers = [...new Set(this.claims.map(({ paper }) => paper))];
+        const groups = papers.map((paper) => ({
+            name: texts.papers.titles[paper] ?? paper,
+            options: this.claims
+                .filter((claim) => claim.paper === paper)
+                .map(({ id, statement }) => [id, `${id}: ${statement}`] as const),
+        }));
+        this.choices.replaceChildren(
+            grouped(texts.papers.claim, groups, this.claim?.id ?? "", (id) => {
+                this.page.state.claim = id;
+                this.page.changed();
+            }),
+        );
+    }
+
+    private showAbout(claim: ClaimFacts): void {
+        const lines = [claim.statement, `${texts.papers.titles[claim.paper] ?? claim.paper}.`];
+        const parts = [...lines, `${texts.papers.family}: ${claim.about}`].map((text) => {
+            const line = document.createElement("p");
+            line.textContent = text;
+            return line;
+        });
+        this.about.replaceChildren(...parts);
+    }
+
+    /** Measures map by map; the verdict so far is shown. */
+    private async judge(): Promise<void> {
+        const { engine, state, say, working } = this.page;
+        const claim = this.claim;
+        if (!claim) return;
+        const running = new AbortController();
+        this.running = running;
+        this.measure.disabled = true;
+        const measured = (seed: number | null, stop: AbortSignal) =>
+            engine.ask<unknown>({ ask: "measure_claim", id: claim.id, seed }, {}, stop);
+        try {
+            await working(running.signal, async (stop) => {
+                const scene = claim.has_scene ? (await measured(null, stop)).head : null;
+                const rows: unknown[] = [];
+                while (rows.length < state.claimMaps) {
+                    say(this, texts.papers.measuring(rows.length, state.claimMaps));
+                    rows.push((await measured(state.claimSeed + rows.length, stop)).head);
+                    const question = { ask: "judge_claim", id: claim.id, rows, scene };
+                    const isShown = rows.length % 5 === 0 || rows.length === state.claimMaps;
+                    if (isShown) this.showVerdict((await engine.ask<Judged>(question)).head);
+                }
+            });
+            say(this, texts.papers.measured(claim.id, state.claimMaps));
+        } catch (error) {
+            if (!running.signal.aborted) say(this, failure(error));
+        } finally {
+            this.measure.disabled = false;
+            this.running = null;
+        }
+    }
+
+    private showVerdict({ report, figures }: Judged): void {
+        const words = texts.papers;
+        const verdict = document.createElement("p");
+        const { maps, left_out } = report.family;
+        verdict.textContent = words.verdict(words.verdicts[report.verdict] ?? report.verdict);
+        verdict.append(` ${words.over(maps, left_out)}`);
+        const rows = figures.map(({ statement, published, measured, verdict }) => [
+            statement,
+            published,
+            measured,
+            verdict === null ? "-" : (words.verdicts[verdict] ?? verdict),
+        ]);
+        this.verdict.replaceChildren(verdict, table(words.header, rows));
+    }
+
+    draw(view: View): void {
+        this.lines.forEach((line, i) => {
+            view.line(line, view.colors.series[i % SERIES] ?? "", 4 - Math.min(3, i * 0.6));
+        });
+    }
+}
