@@ -85,7 +85,7 @@ fn refuse(error: &clap::Error, json: bool) -> u8 {
     BAD_INPUT
 }
 
-/// Whether JSON was asked for, even where the arguments as a whole cannot be understood.
+/// True if JSON was asked for, even where the arguments as a whole cannot be understood.
 fn wants_json(argv: &[OsString]) -> bool {
     let is_pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
     argv.windows(2).any(is_pair) || argv.iter().any(|arg| arg == "--format=json")

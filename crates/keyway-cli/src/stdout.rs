@@ -16,7 +16,7 @@ pub(crate) fn print_files(files: &[String]) -> Result<(), CliError> {
     if files.is_empty() { Ok(()) } else { print(&format!("\nwrote {}\n", files.join("\nwrote "))) }
 }
 
-/// Whether writing to the standard output succeeded.
+/// True if writing to the standard output succeeded.
 pub(crate) fn check_written(written: std::io::Result<()>) -> Result<(), CliError> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

@@ -143,7 +143,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Whether the picture shows unknown cells, or ground outside the map, which is unknown, too.
+    /// True if the picture shows unknown cells, or ground outside the map, which is unknown, too.
     pub(crate) fn shows_unknown(&self) -> bool {
         let frame = self.map.frame();
         let (min, max) = self.view.corners();

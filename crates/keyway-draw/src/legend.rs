@@ -49,7 +49,7 @@ pub enum LegendMark {
     Letter {
         /// The letter.
         letter: char,
-        /// Whether the disc is dark.
+        /// True if the disc is dark.
         dark: bool,
     },
 }

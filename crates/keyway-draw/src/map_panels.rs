@@ -222,7 +222,7 @@ impl Grid {
         grid
     }
 
-    /// Whether there is no row below this one, which then has the x axis.
+    /// True if there is no row below this one, which then has the x axis.
     const fn is_lowest(&self, row: usize) -> bool {
         (row + 1) * self.columns >= self.count
     }

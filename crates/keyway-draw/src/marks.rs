@@ -112,7 +112,7 @@ pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, d
 mod tests {
     use super::*;
 
-    /// Whether a point is inside, by how often a line from it to the right meets the border.
+    /// True if a point is inside, by how often a line from it to the right meets the border.
     fn holds(vertices: &[(f64, f64)], (x, y): (f64, f64)) -> bool {
         let next = vertices.iter().cycle().skip(1);
         let meets = |((ax, ay), (bx, by)): (&(f64, f64), &(f64, f64))| {

@@ -24,7 +24,7 @@ pub struct PointPanels<'a> {
     pub y_label: &'a str,
     /// The ends of the upright axis; `None`: those of the points.
     pub y_ends: Option<(f64, f64)>,
-    /// Whether a line leads from point to point of a series.
+    /// True if a line leads from point to point of a series.
     pub are_joined: bool,
     /// The series, line by line.
     pub series: &'a [PointSeries<'a>],

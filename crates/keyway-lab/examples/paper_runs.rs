@@ -96,7 +96,7 @@ fn cell(row: &Row) -> String {
     }
 }
 
-/// Whether the robot drove into something: what moves may also run into one that stands.
+/// True if the robot drove into something: what moves may also run into one that stands.
 fn touched_something(row: &Row) -> bool {
     let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
     contact.is_some_and(|contact| !contact.robot_stood)

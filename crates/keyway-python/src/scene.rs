@@ -218,7 +218,7 @@ impl Scene {
         &self.file.stack
     }
 
-    /// Whether another seed gives another run.
+    /// True if another seed gives another run.
     #[getter]
     fn is_random(&self) -> bool {
         self.file.is_random()

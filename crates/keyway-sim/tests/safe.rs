@@ -77,7 +77,7 @@ fn ends() -> impl Strategy<Value = [(f64, f64); 2]> {
     [end().boxed(), end().boxed()].prop_filter("apart", |[a, b]| (a.0 - b.0).hypot(a.1 - b.1) > 1.5)
 }
 
-/// Whether an episode can be driven at all.
+/// True if an episode can be driven at all.
 fn driven(episode: &Episode) -> Option<RobotReport> {
     // Ends without room are refused.
     let report = run_episode(episode).ok()?.first();

@@ -71,7 +71,7 @@ impl Wave {
         self.reach(root, root, 0);
     }
 
-    /// Whether a cell is reached for the first time.
+    /// True if a cell is reached for the first time.
     fn reach(&mut self, at: CellIndex, from: CellIndex, steps: u32) -> bool {
         let known = &mut self.reached[at.as_usize()];
         let is_new = known.wave != self.number;

@@ -160,7 +160,7 @@ impl Steps {
         (bx - ax) * (py - ay) - (by - ay) * (px - ax)
     }
 
-    /// Whether the line runs through the inside of a square, or between two that meet in a corner.
+    /// True if the line runs through the inside of a square, or between two that meet in a corner.
     fn meets_obstacle(&self, a: At, b: At) -> bool {
         let is_crossed = |&(x, y): &At| {
             let overlaps_x = a.0.max(b.0) > x && a.0.min(b.0) < x + 2;

@@ -72,7 +72,7 @@ fn distance(raw: &Raw, rules: &Rules, cell: Cell) -> u32 {
     obstacles.map(|o| o.x.abs_diff(cell.x) + o.y.abs_diff(cell.y)).min().unwrap_or(u32::MAX)
 }
 
-/// Whether steps over allowed cells lead from the start to the goal.
+/// True if steps over allowed cells lead from the start to the goal.
 fn is_connected(raw: &Raw, query: &Query, rules: &Rules, allows: impl Fn(Cell) -> bool) -> bool {
     let mut reached = vec![false; raw.states.len()];
     let mut waiting = vec![query.start];

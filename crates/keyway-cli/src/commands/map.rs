@@ -166,7 +166,7 @@ fn refuse_to_replace_an_image(
     Err(CliError::new(Kind::Output, message).field("OUT"))
 }
 
-/// Whether a YAML file names an image as its own.
+/// True if a YAML file names an image as its own.
 fn is_image_of(yaml: &Path, image: &Path) -> bool {
     let named = read_file(yaml, MAX_MAP_BYTES).ok().and_then(|bytes| RosMap::parse(&bytes).ok());
     let folder = yaml.parent().unwrap_or(Path::new(""));

@@ -50,7 +50,7 @@ fn tables(text: &str) -> Vec<(String, String)> {
     found
 }
 
-/// Whether most of a table's cells, after the first column, are numbers.
+/// True if most of a table's cells, after the first column, are numbers.
 fn is_measured(table: &str) -> bool {
     let cells = table.lines().skip(2).flat_map(|row| row.trim_matches('|').split('|').skip(1));
     let (mut numbers, mut all) = (0, 0);
@@ -78,7 +78,7 @@ fn every_table_of_measurements_names_what_prints_it() {
     assert!(measured > 15, "{measured} tables");
 }
 
-/// Whether a cell says between what its values lie: `6.92 (2.1 to 14.3)`, or `median / worst`.
+/// True if a cell says between what its values lie: `6.92 (2.1 to 14.3)`, or `median / worst`.
 fn is_range(cell: &str) -> bool {
     let is_digit = |letter: char| letter.is_ascii_digit();
     [" to ", " / "].iter().any(|between| {
@@ -89,7 +89,7 @@ fn is_range(cell: &str) -> bool {
     })
 }
 
-/// Whether at least every second row has a range.
+/// True if at least every second row has a range.
 fn has_ranges(table: &str) -> bool {
     let rows: Vec<&str> = table.lines().skip(2).collect();
     2 * rows.iter().filter(|row| row.split('|').any(is_range)).count() >= rows.len()

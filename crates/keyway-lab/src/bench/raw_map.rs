@@ -16,7 +16,7 @@ impl RawMap {
         Self { rows: rows.map(|row| row.trim_end().as_bytes().to_vec()).collect() }
     }
 
-    /// Whether a cell, counted from the lower left, can be passed.
+    /// True if a cell, counted from the lower left, can be passed.
     pub(super) fn is_passable(&self, cell: Cell) -> bool {
         // From the bottom to from the top.
         let row = usize::try_from(cell.y).ok().and_then(|y| self.height().checked_sub(y + 1));
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    /// Whether the leg meets the cell's square: its interior, or any of its corners. In a frame
+    /// True if the leg meets the cell's square: its interior, or any of its corners. In a frame
     /// along the leg: a square is met when its corners lie on both sides of the leg's line, and its
     /// extent along the leg overlaps the leg's.
     fn is_crossed((dx, dy): (i32, i32), from: Cell, cell: Cell, corners: CornerRule) -> bool {

@@ -59,7 +59,7 @@ pub(super) enum PathFound {
 }
 
 impl GridAnswer {
-    /// Whether the answer contradicts the published one. An illegal path is counted as such, but
+    /// True if the answer contradicts the published one. An illegal path is counted as such, but
     /// says that there is a path, as does a planner that says that it missed one.
     fn is_mismatch(&self, is_optimal: bool) -> bool {
         match (self.path, self.optimum) {

@@ -31,7 +31,7 @@ pub struct Journal<E> {
     file: File,
     /// What it held when it was opened.
     held: Vec<E>,
-    /// Whether nothing would be lost without it.
+    /// True if nothing would be lost without it.
     is_needless: bool,
     /// Until the file is removed, where it is.
     _lock: Arc<OutputLock>,

@@ -98,7 +98,7 @@ impl Manifest {
         own.chain(unfinished).collect()
     }
 
-    /// Whether a file is as Keyway wrote it.
+    /// True if a file is as Keyway wrote it.
     pub(super) fn is_own(&self, name: &str, path: &Path) -> bool {
         let Some(digests) = self.own.get(name) else { return false };
         digest_of_file(path).is_ok_and(|digest| digests.contains(&digest))

@@ -812,7 +812,7 @@ class Scene:
     @property
     def is_random(self, /) -> bool:
         """
-        Whether another seed gives another run.
+        True if another seed gives another run.
         """
     @staticmethod
     def read(path: str | PathLike[str]) -> Scene:

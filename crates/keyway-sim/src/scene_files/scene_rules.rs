@@ -14,7 +14,7 @@ pub struct SceneRules {
     /// stack.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal_tolerance_m: Option<f64>,
-    /// Whether the robot has to stand at its goal; `None`: it has to.
+    /// True if the robot has to stand at its goal; `None`: it has to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrival: Option<Arrival>,
     /// Pose by which the goal is reached; `None`: the true one.

@@ -104,7 +104,7 @@ impl Cubic {
         cross / (speed * speed * speed)
     }
 
-    /// Whether the curvature is nowhere larger than `limit`, to either side; `true` is certain.
+    /// True if the curvature is nowhere larger than `limit`, to either side; `true` is certain.
     /// Also false where it comes within a millionth of the limit, and where the curve stands still
     /// in a bend.
     pub(crate) fn is_curvature_at_most(&self, limit: f64) -> bool {

@@ -147,7 +147,7 @@ pub struct Path {
     pieces: Vec<PathPiece>,
 }
 
-/// Whether the joints of the pieces are samples too.
+/// True if the joints of the pieces are samples too.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Joints {
     Passed,

@@ -99,7 +99,7 @@ impl Polyline {
     }
 }
 
-/// Whether the heading changes by rounding only.
+/// True if the heading changes by rounding only.
 fn is_straight_on(before: Point, after: Point) -> bool {
     let (sine, limit) = (before.cross(after).abs(), COLLINEAR_TOLERANCE_RAD * before.dot(after));
     // Nearly all angles are decided without trigonometry.

@@ -111,7 +111,7 @@ impl Segment {
         }
     }
 
-    /// Whether the segment and the square have a column and a row in common.
+    /// True if the segment and the square have a column and a row in common.
     fn spans_meet(&self, square: Square) -> bool {
         let meet = |a: f64, b: f64, low: f64| a.max(b) >= low && a.min(b) <= low + 1.0;
         meet(self.a.x, self.b.x, square.corner.x) && meet(self.a.y, self.b.y, square.corner.y)

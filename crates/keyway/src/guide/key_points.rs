@@ -100,7 +100,7 @@ fn key_points(path: &Polyline) -> &[Point] {
 }
 
 impl KeyPoints {
-    /// Whether the robot has passed a key point, as the next one shows.
+    /// True if the robot has passed a key point, as the next one shows.
     fn is_passed(&self, view: &GuideView<'_>, current: Point, following: Point) -> bool {
         let is_within_reach = view.position.distance(current) <= self.config.reach_m;
         let is_free =

@@ -38,7 +38,7 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Whether the robot comes on no faster because of something that moves: the best way on comes
+    /// True if the robot comes on no faster because of something that moves: the best way on comes
     /// near it, or nothing lets the robot drive and it is in the way ([`Rejections::MOVER`]). Then
     /// it is better to wait than to look for another way.
     pub fn waits_for_mover(&self) -> bool {

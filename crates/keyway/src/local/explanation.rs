@@ -66,7 +66,7 @@ pub struct Remedy {
     /// What was changed, and by how much. Where it does not help: by how much at most.
     #[serde(flatten)]
     pub change: Change,
-    /// Whether some candidate drives then.
+    /// True if some candidate drives then.
     pub frees: bool,
 }
 

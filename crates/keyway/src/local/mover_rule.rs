@@ -1,4 +1,4 @@
-//! Whether a velocity leads into something that moves.
+//! True if a velocity leads into something that moves.
 //!
 //! # The rule
 //! | symbol | meaning | unit |
@@ -66,7 +66,7 @@ impl<'a> MoverRule<'a> {
         Self { robot, movers, pose, velocity, horizon_s, margin_m }
     }
 
-    /// Whether a velocity leads into one of the movers.
+    /// True if a velocity leads into one of the movers.
     pub(crate) fn refuses(&self, candidate: Velocity) -> bool {
         self.room_m(candidate).is_none()
     }
@@ -168,7 +168,7 @@ mod tests {
         Mover { velocity_mps, ..Mover::standing(0, Point::new(x, y), 0.3) }
     }
 
-    /// Whether a small robot at the origin that moves may take a velocity, for 2 s and with 2 cm of
+    /// True if a small robot at the origin that moves may take a velocity, for 2 s and with 2 cm of
     /// room.
     fn admits(velocity: Velocity, candidate: Velocity, mover: Mover) -> bool {
         let (robot, movers) = (Robot::small(), [mover]);

@@ -26,13 +26,13 @@ pub(super) trait Remediable: Sized {
     /// The robot that it drives.
     fn robot(&self) -> &Robot;
 
-    /// Whether some candidate drives.
+    /// True if some candidate drives.
     fn drives(&self, scene: &Scene<'_>) -> bool;
 
     /// The same planner for another robot; `None` where its parameters do not fit.
     fn for_other(&self, robot: Robot) -> Option<Self>;
 
-    /// Whether it may drive backwards with a robot that can.
+    /// True if it may drive backwards with a robot that can.
     fn backs_up(&self) -> bool;
 
     /// The same planner for a robot that backs up, and doing so.

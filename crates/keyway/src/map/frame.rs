@@ -90,7 +90,7 @@ pub enum FrameError {
     },
 }
 
-/// Whether cells so far away can be told apart.
+/// True if cells so far away can be told apart.
 pub(super) fn is_origin(origin: Pose) -> bool {
     [origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9)
 }

@@ -1,4 +1,4 @@
-//! Whether a footprint fits along a route: straight along each stretch, turning on the spot where
+//! True if a footprint fits along a route: straight along each stretch, turning on the spot where
 //! two of them meet.
 //!
 //! Routes are planned for a disc. Where that is smaller than the robot, a route leads where the

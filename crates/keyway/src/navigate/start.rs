@@ -1,4 +1,4 @@
-//! Whether a robot can begin where it stands.
+//! True if a robot can begin where it stands.
 //!
 //! A localisation is off by a little, and what it tells may be a place at which the robot touches a
 //! wall. So a start counts when the robot fits anywhere as near to it as that error
@@ -29,7 +29,7 @@ pub struct StartTooNear {
     pub off_m: f64,
 }
 
-/// Whether a footprint touches an obstacle or the border of the map, or is beyond it: what the
+/// True if a footprint touches an obstacle or the border of the map, or is beyond it: what the
 /// simulator calls a contact.
 pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
     // Farther away than this, a distance says nothing about contact.
@@ -38,7 +38,7 @@ pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> 
         || footprint.distance_m(pose, clearance, REACH_M) <= 0.0
 }
 
-/// Whether a footprint touches something whatever its heading. A controller is given the heading
+/// True if a footprint touches something whatever its heading. A controller is given the heading
 /// later, so one without contact is enough; they are tried degree by degree.
 pub(super) fn touches_at_every_heading(
     footprint: &Footprint,

@@ -129,7 +129,7 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// Whether another path leads the same way: from the robot on, no vertex of either is farther
+    /// True if another path leads the same way: from the robot on, no vertex of either is farther
     /// than `apart_m` from the other.
     pub(super) fn is_same_way(&self, other: &Polyline, apart_m: f64) -> bool {
         let whole = RestOfRoute { path: other, covered_m: 0.0 };

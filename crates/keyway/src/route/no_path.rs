@@ -11,7 +11,7 @@ use std::fmt::{self, Display, Formatter};
 pub struct NoPath {
     /// The clearance that would leave a path, or how the two are parted.
     pub separation: Separation,
-    /// Whether there would be a path if unknown cells were not obstacles.
+    /// True if there would be a path if unknown cells were not obstacles.
     pub is_joined_through_unknown: bool,
 }
 

@@ -1,6 +1,6 @@
 //! Scans along the padded rows of a bit grid.
 
-/// Whether a bit is set.
+/// True if a bit is set.
 #[inline]
 pub(crate) fn is_set(words: &[u64], bit: usize) -> bool {
     words[bit / 64] >> (bit % 64) & 1 == 1

@@ -179,7 +179,7 @@ impl Frontier {
         self.set(at, g, parent, true);
     }
 
-    /// Whether a node was taken from the open list in this query.
+    /// True if a node was taken from the open list in this query.
     pub(crate) fn is_closed(&self, at: CellIndex) -> bool {
         self.nodes[at.as_usize()][1] as u32 == self.epoch << 1 | 1
     }

@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(gone(CornerRule::Forbid), cut);
     }
 
-    /// Whether the segment from the centre of (0, 0) to that of `to` meets the square of a cell:
+    /// True if the segment from the centre of (0, 0) to that of `to` meets the square of a cell:
     /// its inside, or with `closed` its border as well. All numbers are quarters, so exact.
     fn meets(to: (i32, i32), cell: (i32, i32), closed: bool) -> bool {
         let (mut low, mut high) = (0.0f64, 1.0f64);

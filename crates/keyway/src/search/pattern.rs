@@ -13,7 +13,7 @@ pub(crate) fn around(words: &[u64], stride: usize, index: usize) -> usize {
     row(left - stride) | row(left) << 3 | row(left + stride) << 6
 }
 
-/// Whether the neighbour in a direction (modulo 8, counter-clockwise from east) is blocked.
+/// True if the neighbour in a direction (modulo 8, counter-clockwise from east) is blocked.
 pub(crate) const fn is_blocked(pattern: usize, direction: u32) -> bool {
     const BIT: [usize; 8] = [5, 8, 7, 6, 3, 0, 1, 2];
     pattern >> BIT[direction as usize % 8] & 1 == 1

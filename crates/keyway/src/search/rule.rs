@@ -10,14 +10,14 @@ use crate::map::CellIndex;
 /// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent
 /// is always closed before its children, parents never form a circle.
 pub(crate) trait Rule {
-    /// Whether an open node takes over another way of the same value, and not only of a smaller
+    /// True if an open node takes over another way of the same value, and not only of a smaller
     /// one.
     const TAKES_EQUAL: bool = false;
-    /// Whether the search ends when the goal is put into the open list, and not only when it is
+    /// True if the search ends when the goal is put into the open list, and not only when it is
     /// taken out.
     const ENDS_AT_GENERATION: bool = false;
 
-    /// Whether a closed node is opened again when a way of smaller value to it is found. Only for
+    /// True if a closed node is opened again when a way of smaller value to it is found. Only for
     /// rules whose values grow along every step: each node is then opened finitely often.
     fn reopens(&self) -> bool {
         false

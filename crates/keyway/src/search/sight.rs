@@ -30,7 +30,7 @@ impl<'m> Sight<'m> {
         Self { blocked: map.blocked(), transposed: map.blocked_transposed(), corners }
     }
 
-    /// Whether the straight line between the centres of two cells of the map is free. Between
+    /// True if the straight line between the centres of two cells of the map is free. Between
     /// neighbours it is free when there is a step from one to the other.
     pub fn is_free(&self, a: Cell, b: Cell) -> bool {
         let is_steep = a.y.abs_diff(b.y) > a.x.abs_diff(b.x);
@@ -42,7 +42,7 @@ impl<'m> Sight<'m> {
     }
 }
 
-/// Whether the line from `left` to `right`, at most as high as it is wide, is free.
+/// True if the line from `left` to `right`, at most as high as it is wide, is free.
 fn is_line_free(blocked: &BitGrid, left: Cell, right: Cell, corners: CornerRule) -> bool {
     let width = left.x.abs_diff(right.x) as usize;
     let height = left.y.abs_diff(right.y) as usize;
@@ -73,7 +73,7 @@ fn is_line_free(blocked: &BitGrid, left: Cell, right: Cell, corners: CornerRule)
 struct Crossing {
     /// The column, counted from that in which the line begins.
     column: usize,
-    /// Whether it is the corner between that column and the one before.
+    /// True if it is the corner between that column and the one before.
     is_corner: bool,
 }
 
@@ -126,7 +126,7 @@ impl Iterator for Crossings {
     }
 }
 
-/// Whether no bit from `first` to `last` is set.
+/// True if no bit from `first` to `last` is set.
 fn is_run_free(words: &[u64], mut first: usize, last: usize) -> bool {
     loop {
         let words = &words[first / 64..first / 64 + 2];

@@ -146,7 +146,7 @@ impl Mover {
         bounds.speed_mps.max(self.velocity_mps.norm())
     }
 
-    /// Whether every number is one, and no length is negative.
+    /// True if every number is one, and no length is negative.
     pub(crate) fn is_usable(&self) -> bool {
         let lengths = [self.radius_m, self.position_uncertainty_m, self.velocity_uncertainty_mps];
         self.centre.is_finite()

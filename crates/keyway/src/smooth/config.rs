@@ -61,7 +61,7 @@ impl SmootherConfig {
         self.parameters().safe_distance_m(cell_m)
     }
 
-    /// Whether a parameter limits how sharply a path may bend.
+    /// True if a parameter limits how sharply a path may bend.
     pub fn has_turning_limit(&self) -> bool {
         self.parameters().has_turning_limit()
     }

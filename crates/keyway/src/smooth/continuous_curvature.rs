@@ -141,7 +141,7 @@ struct Rounding<'a> {
     clearance_m: f64,
     /// For the inner points, from the second on.
     corners: Vec<Corner>,
-    /// Whether each edge keeps the clearance.
+    /// True if each edge keeps the clearance.
     is_clear: Vec<bool>,
     /// How much of each edge curves may use.
     room_m: Vec<f64>,
@@ -240,7 +240,7 @@ impl<'a> Rounding<'a> {
         Some(fits_m)
     }
 
-    /// Whether the curves of a cut keep the clearance; where the line does not keep it, whether
+    /// True if the curves of a cut keep the clearance; where the line does not keep it, whether
     /// they are no nearer to obstacles than the part of it that they replace.
     fn fits(&self, index: usize, cut_m: f64) -> bool {
         let corner = &self.corners[index - 1];
@@ -264,7 +264,7 @@ impl<'a> Rounding<'a> {
         kept_m > slack_m && at_least_m.all(|distance_m| distance_m >= kept_m - slack_m)
     }
 
-    /// Whether both edges of the corner at a point keep the clearance.
+    /// True if both edges of the corner at a point keep the clearance.
     fn is_clear_corner(&self, index: usize) -> bool {
         self.is_clear[index - 1] && self.is_clear[index]
     }

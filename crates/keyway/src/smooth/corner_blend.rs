@@ -69,7 +69,7 @@ impl Corner {
         Self { at, back, ahead, sin_half, cos_half }
     }
 
-    /// Whether the line turns back on itself.
+    /// True if the line turns back on itself.
     pub(super) fn is_reversal(&self) -> bool {
         self.cos_half < REVERSAL_COSINE
     }

@@ -50,7 +50,7 @@ impl HiddenRegion {
         }
     }
 
-    /// Whether all of a box is hidden.
+    /// True if all of a box is hidden.
     pub(super) fn hides(&self, places: Span) -> bool {
         let Span { low, high } = places;
         self.half_planes.iter().all(|&(normal, begin)| {

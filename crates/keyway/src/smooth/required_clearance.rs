@@ -33,23 +33,23 @@ impl<'a> RequiredClearance<'a> {
         (self.safe_m - SAFE_TOLERANCE_M).max(self.clearance_m)
     }
 
-    /// Whether a connection is free: it keeps the clearance.
+    /// True if a connection is free: it keeps the clearance.
     pub(super) fn is_free(&self, connection: Segment) -> bool {
         self.clearance.is_clear(connection, self.clearance_m)
     }
 
-    /// Whether all connections within a triangle are certainly free; they may be even when this is
+    /// True if all connections within a triangle are certainly free; they may be even when this is
     /// false.
     pub(super) fn is_free_triangle(&self, corners: [Point; 3]) -> bool {
         self.clearance.is_clear_triangle(corners, self.clearance_m)
     }
 
-    /// Whether the safe distance to obstacles is kept, whatever the clearance.
+    /// True if the safe distance to obstacles is kept, whatever the clearance.
     pub(super) fn keeps_safe_distance(&self, connection: Segment) -> bool {
         self.too_near(connection).is_none()
     }
 
-    /// Whether a connection is free and keeps the safe distance.
+    /// True if a connection is free and keeps the safe distance.
     pub(super) fn is_safe(&self, connection: Segment) -> bool {
         self.obstruction(connection).is_none()
     }
@@ -111,7 +111,7 @@ impl<'a> RequiredClearance<'a> {
         pieces.filter(|piece| !is_clear(piece)).collect()
     }
 
-    /// Whether a square is certainly nearer to one of two points than what was asked for.
+    /// True if a square is certainly nearer to one of two points than what was asked for.
     fn is_too_near(&self, square: Square, one: Point, other: Point) -> bool {
         let cells = |at| self.clearance.frame().grid_from_world(at);
         let too_near_sq = self.clearance.margin(self.safe_m).powi(2);
@@ -150,7 +150,7 @@ impl<'a> RequiredClearance<'a> {
         self.is_short(kept_m, self.clearance_m, slack_m).then_some(kept_m)
     }
 
-    /// Whether a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for
+    /// True if a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for
     /// it.
     fn is_short(&self, kept_m: f64, asked_m: f64, slack_m: f64) -> bool {
         let scale_m = asked_m + self.clearance.frame().resolution_m();
@@ -161,7 +161,7 @@ impl<'a> RequiredClearance<'a> {
         self.clearance.obstacle_within(connection, self.safe_m - SAFE_TOLERANCE_M)
     }
 
-    /// Whether a safe connection can begin or end at a point.
+    /// True if a safe connection can begin or end at a point.
     pub(super) fn is_safe_point(&self, point: Point) -> bool {
         self.is_safe(Segment::new(point, point))
     }

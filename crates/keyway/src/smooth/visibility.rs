@@ -125,7 +125,7 @@ impl<'a> Visibility<'a> {
         None
     }
 
-    /// Whether a safe connection leads from point `eye` to another one.
+    /// True if a safe connection leads from point `eye` to another one.
     pub(super) fn is_safe(
         &mut self,
         line: &Stretches<'_>,
@@ -158,7 +158,7 @@ impl<'a> Visibility<'a> {
         self.solids.last().map(|&(_, shadow)| shadow)
     }
 
-    /// Whether something that is remembered stops a connection \[cells\].
+    /// True if something that is remembered stops a connection \[cells\].
     fn is_stopped(&mut self, from: Point, to: Point) -> bool {
         let Some(found) = self.solids.iter().rposition(|(solid, _)| solid.stops(from, to)) else {
             return false;
@@ -200,7 +200,7 @@ struct Solid {
 }
 
 impl Solid {
-    /// Whether it stops the connection of two points.
+    /// True if it stops the connection of two points.
     fn stops(&self, from: Point, to: Point) -> bool {
         let Self { low, high, radius } = *self;
         let apart = |by: f64| {
@@ -224,7 +224,7 @@ impl Solid {
         off < shadow + radius * way.norm() && self.is_rounded_near(Segment::new(from, to))
     }
 
-    /// Whether a connection past the box is nearer than the radius: then it is so at one of its
+    /// True if a connection past the box is nearer than the radius: then it is so at one of its
     /// ends or at a corner.
     fn is_rounded_near(&self, connection: Segment) -> bool {
         let Self { low, high, radius } = *self;

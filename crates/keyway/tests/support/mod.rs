@@ -24,7 +24,7 @@ pub(crate) struct Rules {
     pub(crate) corners: CornerRule,
     pub(crate) unknown: UnknownPolicy,
     pub(crate) penalty: u32,
-    /// Whether there are diagonal steps.
+    /// True if there are diagonal steps.
     pub(crate) diagonals: bool,
 }
 

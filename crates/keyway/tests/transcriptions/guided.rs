@@ -259,7 +259,7 @@ fn is_free(world: &World, p: P) -> bool {
     border >= D - 1e-9 && world.squares().all(|square| to_square(p.0, p.1, square) >= D)
 }
 
-/// Whether a line runs through the inside of a square: through the square without its rim.
+/// True if a line runs through the inside of a square: through the square without its rim.
 fn enters(a: P, b: P, square: &P) -> bool {
     let n = 4000;
     (0..=n).any(|i| {

@@ -37,7 +37,7 @@ pub(crate) enum Wanted {
     BestOf {
         /// All of them, slowest first.
         all: Vec<Evaluated>,
-        /// Whether a candidate passes something so near that it may be refused.
+        /// True if a candidate passes something so near that it may be refused.
         has_doubt: bool,
     },
     /// This velocity, without any candidates.

@@ -96,7 +96,7 @@ pub(crate) fn to_square(x: f64, y: f64, &(left, low): &(f64, f64)) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }
 
-/// Whether a straight line comes to a square that is so much larger on each side: by the part of
+/// True if a straight line comes to a square that is so much larger on each side: by the part of
 /// the line between its sides.
 pub(crate) fn meets(
     (x0, y0): (f64, f64),

@@ -27,7 +27,7 @@ pub(crate) fn length(a: Cell, b: Cell) -> f64 {
     f64::from(a.x - b.x).hypot(f64::from(a.y - b.y))
 }
 
-/// Whether the line between two centres meets no blocked cell. It meets those whose open square is
+/// True if the line between two centres meets no blocked cell. It meets those whose open square is
 /// not all on one side of it; where corners are not cut, also those that it touches at a corner.
 pub(crate) fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
     let columns = a.x.min(b.x)..=a.x.max(b.x);

@@ -54,7 +54,7 @@ fn ratio(corners: CornerRule) -> Vec<PlannerConfig> {
     with_x.into_iter().chain([to_the_end]).map(PlannerConfig::RatioAStar).collect()
 }
 
-/// Whether cells may be expanded more than once.
+/// True if cells may be expanded more than once.
 fn reopens(planner: &PlannerConfig) -> bool {
     matches!(planner, PlannerConfig::DensityAStar(config) if config.closed == Closed::Reopen)
 }

@@ -24,7 +24,7 @@ fn all(corners: CornerRule) -> impl Iterator<Item = (PlannerConfig, CornerRule)>
     })
 }
 
-/// Whether a planner's method may miss a path.
+/// True if a planner's method may miss a path.
 fn may_miss(planner: &PlannerConfig) -> bool {
     ["hsta", "rrt"].contains(&planner.name())
 }

@@ -100,7 +100,7 @@ impl Obstacles {
         None
     }
 
-    /// Whether all points of a line are corners or centres of cells.
+    /// True if all points of a line are corners or centres of cells.
     pub(crate) fn is_exact(line: &Polyline) -> bool {
         line.points().iter().all(|&point| Half::new(point).is_some())
     }
@@ -122,7 +122,7 @@ impl Obstacles {
             })
     }
 
-    /// Whether a straight line stays in the map, enters no obstacle, and does not pass between two
+    /// True if a straight line stays in the map, enters no obstacle, and does not pass between two
     /// blocked cells that it touches in the same place.
     fn is_free(&self, a: Half, b: Half) -> bool {
         let is_inside = |p: Half| {

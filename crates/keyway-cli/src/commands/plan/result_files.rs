@@ -29,7 +29,7 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Whether somebody wants to see the search.
+/// True if somebody wants to see the search.
 pub(super) const fn show_search(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }

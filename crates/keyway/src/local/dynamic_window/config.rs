@@ -27,7 +27,7 @@ pub struct WindowConfig {
     pub v_step_mps: f64,
     /// Spacing of the candidates' turn rates \[rad/s\].
     pub omega_step_radps: f64,
-    /// Whether a robot that can drive backwards does so to follow its guide. Otherwise only
+    /// True if a robot that can drive backwards does so to follow its guide. Otherwise only
     /// recoveries back up.
     pub backwards: bool,
     /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.

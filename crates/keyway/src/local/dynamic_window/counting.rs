@@ -14,11 +14,11 @@ pub(super) struct Counting {
     pub(super) certain: f64,
     /// Distances that are at least this count as this.
     pub(super) farthest: f64,
-    /// Whether the nearest of all poses counts, or the last one alone.
+    /// True if the nearest of all poses counts, or the last one alone.
     pub(super) counts_all: bool,
     /// What is at least so far away leaves no doubt, neither between two poses.
     pub(super) enough: f64,
-    /// Whether the map's border can matter.
+    /// True if the map's border can matter.
     pub(super) is_near_border: bool,
 }
 

@@ -53,12 +53,12 @@ impl Doubt {
         Self { pose, what: What::Anything, apart }
     }
 
-    /// Whether both bounds are the distance itself.
+    /// True if both bounds are the distance itself.
     fn is_exact(&self) -> bool {
         !self.is_nearer_than(self.apart.at_most)
     }
 
-    /// Whether it may be nearer somewhere.
+    /// True if it may be nearer somewhere.
     #[inline]
     fn is_nearer_than(&self, other: Line) -> bool {
         let Line { begin, end } = self.apart.at_least;
@@ -117,7 +117,7 @@ struct Known {
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     doubt: Doubt,
-    /// Whether it is what was known before.
+    /// True if it is what was known before.
     is_known: bool,
 }
 
@@ -263,7 +263,7 @@ impl Speeds<'_, '_> {
         Some(nearest.doubt)
     }
 
-    /// Whether something may be too near, or the nearest.
+    /// True if something may be too near, or the nearest.
     #[inline]
     fn is_in_doubt(&self, part: &Part, doubt: &Doubt, nearest: &Nearest) -> bool {
         let least = doubt.apart.at_least.least();
@@ -369,7 +369,7 @@ impl Speeds<'_, '_> {
         nearest.doubt.apart.at_most.most().min(self.counting.farthest).max(needed)
     }
 
-    /// Whether something counts for the smallest distance; the border does not.
+    /// True if something counts for the smallest distance; the border does not.
     #[inline]
     fn counts(&self, doubt: &Doubt) -> bool {
         doubt.what != What::Border && self.counts_pose(doubt.pose)
@@ -394,7 +394,7 @@ impl Speeds<'_, '_> {
         self.counting.certain + if index < 2 { first.max(other) } else { other }
     }
 
-    /// Whether a single speed touches nothing, given what is so near that there may be too little
+    /// True if a single speed touches nothing, given what is so near that there may be too little
     /// room.
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
         let candidate = Velocity::new(part.low_mps, self.omega_radps);
@@ -428,7 +428,7 @@ impl Speeds<'_, '_> {
         (first, last)
     }
 
-    /// Whether the way from a pose to the next is free. After a move by s, of l in all, there is at
+    /// True if the way from a pose to the next is free. After a move by s, of l in all, there is at
     /// least the room r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c it is at least c
     /// everywhere; otherwise the way is looked at as a straight line, and each half of it.
     fn is_stretch_free(&mut self, number: usize, candidate: Velocity) -> bool {
@@ -477,7 +477,7 @@ impl Speeds<'_, '_> {
         is_free
     }
 
-    /// Whether a way that deviates so little from a straight line is free. The border's distance is
+    /// True if a way that deviates so little from a straight line is free. The border's distance is
     /// concave, so it is smallest at an end.
     fn is_straight_way_free(&mut self, from: Stop<'_>, to: Stop<'_>, deviation: f64) -> bool {
         let (from, to) = (&from.placement, &to.placement);

@@ -225,7 +225,7 @@ impl GuidePoints<'_> {
         Err(AllCovered { tried })
     }
 
-    /// Whether the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive
+    /// True if the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive
     /// around.
     fn crosses_nothing_else(&self, from: Point, to: Point, cluster: &Cluster) -> bool {
         let (frame, obstacles) = (self.scene.obstacles.frame(), self.scene.obstacles.clearance());

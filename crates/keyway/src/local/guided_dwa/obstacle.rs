@@ -53,7 +53,7 @@ impl Cluster {
         Some(Unknown { along_m, centre: self.fill(seed, search) })
     }
 
-    /// Whether a cell belongs to it.
+    /// True if a cell belongs to it.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         self.members.get(cell)
     }

@@ -18,7 +18,7 @@ pub(super) fn reluctance_s(
     if are_apart(rest, new, start, judge) { DECIDED_S } else { 0.0 }
 }
 
-/// Whether two courses pass something on different sides: where the robot would be at some instant
+/// True if two courses pass something on different sides: where the robot would be at some instant
 /// on the one, it could not come straight from where it would be on the other.
 fn are_apart(one: &[Velocity], other: &[Velocity], start: &State, judge: &Judge<'_>) -> bool {
     let (mut a, mut b) = (*start, *start);
@@ -35,7 +35,7 @@ fn are_apart(one: &[Velocity], other: &[Velocity], start: &State, judge: &Judge<
     false
 }
 
-/// Whether the inscribed disc fits everywhere on a line.
+/// True if the inscribed disc fits everywhere on a line.
 fn is_open_between(a: Point, b: Point, judge: &Judge<'_>) -> bool {
     let steps = (a.distance(b) / judge.room.spacing_m()).ceil().max(1.0);
     let fits = |step: u32| {

@@ -36,7 +36,7 @@ pub struct SpaceTimeConfig {
     pub contact: f64,
     /// a: a standard deviation of what movers accelerate \[m/s²\].
     pub mover_acceleration_mps2: f64,
-    /// Whether courses may lead backwards, if the robot can, and where it has looked.
+    /// True if courses may lead backwards, if the robot can, and where it has looked.
     pub backwards: bool,
 }
 

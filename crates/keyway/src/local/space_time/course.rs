@@ -216,13 +216,13 @@ impl Judge<'_> {
     /// With less room to each side than this part of what the robot likes, a way is narrow.
     const NARROW: f64 = 0.5;
 
-    /// Whether the robot drives backwards where it has not looked: what is there would be touched
+    /// True if the robot drives backwards where it has not looked: what is there would be touched
     /// before it is seen.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
         v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
     }
 
-    /// Whether the robot could brake along its arc from a state without touching anything: the stop
+    /// True if the robot could brake along its arc from a state without touching anything: the stop
     /// rule will ask for it.
     pub(super) fn can_stop(&self, from: &State) -> bool {
         let Velocity { v, omega, .. } = from.velocity;
@@ -310,7 +310,7 @@ impl Judge<'_> {
         profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
     }
 
-    /// Whether a course need not go on from a state: it is at the end of the route before another
+    /// True if a course need not go on from a state: it is at the end of the route before another
     /// stretch has passed, or faces the end of what is seen of the route across open ground without
     /// movers. There the time to go is exact, while the speeds of further stretches would be those
     /// of whole stretches.

@@ -60,7 +60,7 @@ impl SpaceTime {
         explanation
     }
 
-    /// Whether some candidate drives.
+    /// True if some candidate drives.
     fn drives_on(&self, scene: &Scene<'_>, memory: &mut DriveMemory) -> bool {
         let decided = self.decide(scene, memory, &mut Scratch::default());
         let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);

@@ -65,7 +65,7 @@ impl Lattice {
         self.side * self.side
     }
 
-    /// Whether every point is the centre of a cell.
+    /// True if every point is the centre of a cell.
     pub(super) const fn is_of_centres(&self) -> bool {
         self.parts == 1
     }
@@ -110,7 +110,7 @@ impl Lattice {
         })
     }
 
-    /// Whether everything that is no farther than this from a place, in points from the first one,
+    /// True if everything that is no farther than this from a place, in points from the first one,
     /// is between the points.
     #[inline]
     pub(super) fn holds(&self, place: Point, within_m: f64) -> bool {

@@ -138,7 +138,7 @@ fn polish_at(
     }
 }
 
-/// Whether the robot could stop at the end of each stretch of a free course, up to where it
+/// True if the robot could stop at the end of each stretch of a free course, up to where it
 /// arrives.
 pub(super) fn can_stop(start: &State, course: &[Velocity], judge: &Judge<'_>) -> bool {
     let mut state = *start;
@@ -155,7 +155,7 @@ pub(super) fn can_stop(start: &State, course: &[Velocity], judge: &Judge<'_>) ->
     true
 }
 
-/// Whether a velocity can be reached within a stretch.
+/// True if a velocity can be reached within a stretch.
 fn can_follow(velocity: Velocity, from: Velocity, judge: &Judge<'_>) -> bool {
     let reached = judge.limits.reached(from, velocity, judge.stretch_s);
     (reached.v - velocity.v).abs() < 1e-9 && (reached.omega - velocity.omega).abs() < 1e-9

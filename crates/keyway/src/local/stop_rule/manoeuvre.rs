@@ -156,7 +156,7 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// Whether a manoeuvre that begins with a cycle towards `first` is admissible.
+    /// True if a manoeuvre that begins with a cycle towards `first` is admissible.
     pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
         let from = self.from(first);
         let is_moved = self.around.smoothed.is_some_and(|robot| !robot.window.is_zero());

@@ -248,7 +248,7 @@ pub struct Gated {
 }
 
 impl Gated {
-    /// Whether the command is another one than was asked for.
+    /// True if the command is another one than was asked for.
     pub const fn changed(&self) -> bool {
         self.why.is_some()
     }

@@ -177,9 +177,9 @@ struct Judge<'a> {
     clearance: &'a Clearance<'a>,
     /// What has to be kept; for 0 squares may be touched, as in [`Clearance::is_clear`].
     distance: f64,
-    /// Whether it has to be kept from the map's border as well.
+    /// True if it has to be kept from the map's border as well.
     is_border_kept: bool,
-    /// Whether a part that is known is judged by its control polygon's hull, or counts as not
+    /// True if a part that is known is judged by its control polygon's hull, or counts as not
     /// clear.
     is_hull_judged: bool,
     /// A part that deviates from its chord by no more than this counts as known.
@@ -221,7 +221,7 @@ impl Judge<'_> {
         self.is_clear(&cubic, all, 0)
     }
 
-    /// Whether a part is clear of the squares that are near the curve that it is a part of.
+    /// True if a part is clear of the squares that are near the curve that it is a part of.
     fn is_clear(&mut self, part: &Cubic, near: Range<usize>, halvings: u32) -> bool {
         let (chord, deviation) = (part.chord(), rounded_up_deviation(part));
         let is_straight = deviation <= TOUCH_TOLERANCE_CELLS;

@@ -161,7 +161,7 @@ impl Clearance<'_> {
         }
     }
 
-    /// Whether an arc that touches a corner of `touched` runs between it and the obstacle square
+    /// True if an arc that touches a corner of `touched` runs between it and the obstacle square
     /// diagonally across. (Between two squares that share an edge no arc fits: it is straight or
     /// enters one of them.)
     fn arc_slips_past(&self, arc: &Arc, touched: Square) -> bool {
@@ -186,7 +186,7 @@ impl ShortArc {
         Self { arc, chord: chord(&arc), sagitta: arc.sagitta() }
     }
 
-    /// Whether a square is certainly farther than this. The distance from the chord, which takes no
+    /// True if a square is certainly farther than this. The distance from the chord, which takes no
     /// trigonometry, decides it for most squares.
     fn is_beyond(&self, square: Square, distance: f64) -> bool {
         let limit = distance + self.sagitta + TOUCH_TOLERANCE_CELLS;
@@ -206,7 +206,7 @@ fn chord(arc: &Arc) -> Segment {
     Segment::new(arc.start(), arc.end())
 }
 
-/// Whether the arc enters the square's interior by more than the tolerance.
+/// True if the arc enters the square's interior by more than the tolerance.
 fn enters(arc: &Arc, square: Square) -> bool {
     // The unit square, on coordinates scaled so that the shrunk square is one.
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;

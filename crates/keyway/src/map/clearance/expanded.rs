@@ -1,4 +1,4 @@
-//! Whether a line touches the cells around obstacles.
+//! True if a line touches the cells around obstacles.
 
 use crate::geometry::{Point, Segment, Square};
 use crate::map::Clearance;
@@ -17,7 +17,7 @@ impl Clearance<'_> {
     }
 }
 
-/// Whether the segment touches the square with `reach` added on all sides.
+/// True if the segment touches the square with `reach` added on all sides.
 fn meets_expanded(segment: Segment, square: Square, reach: f64) -> bool {
     // On coordinates scaled so that the larger square is the unit square.
     let corner = square.corner - Point::new(reach, reach);

@@ -276,7 +276,7 @@ impl<'a> Clearance<'a> {
         self.obstacles.get(Cell::new(floor_to_i32(grid.x), floor_to_i32(grid.y)))
     }
 
-    /// Whether a segment that touches `touched` runs between it and another obstacle square.
+    /// True if a segment that touches `touched` runs between it and another obstacle square.
     pub(in crate::map) fn slips_past(&self, segment: Segment, touched: Square) -> bool {
         let (x, y) = (touched.corner.x, touched.corner.y);
         let at = |dx: i32, dy: i32| self.obstacles.get(Cell::new(x as i32 + dx, y as i32 + dy));
@@ -313,7 +313,7 @@ pub(in crate::map) fn square(x: i32, y: i32) -> Square {
     Square { corner: Point::new(f64::from(x), f64::from(y)) }
 }
 
-/// Whether the segment enters the square's interior by more than the tolerance.
+/// True if the segment enters the square's interior by more than the tolerance.
 pub(in crate::map) fn enters(segment: Segment, square: Square) -> bool {
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);

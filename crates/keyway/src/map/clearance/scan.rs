@@ -97,7 +97,7 @@ impl Clearance<'_> {
     }
 }
 
-/// Whether a square through which no edge of a triangle passes lies within it.
+/// True if a square through which no edge of a triangle passes lies within it.
 fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     let middle = square.corner + Point::new(0.5, 0.5);
     let side = |edge: &Segment| (edge.b - edge.a).cross(middle - edge.a);

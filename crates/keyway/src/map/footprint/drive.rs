@@ -1,4 +1,4 @@
-//! Whether a footprint is free while the robot drives straight on.
+//! True if a footprint is free while the robot drives straight on.
 
 use super::turn::LEAST_CELLS;
 use crate::geometry::{Point, Pose, Segment};

@@ -1,4 +1,4 @@
-//! Whether the ground that a robot covers is free at a pose.
+//! True if the ground that a robot covers is free at a pose.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
 use super::{Clearance, DistanceField};

@@ -394,7 +394,7 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
-    /// Whether a frame is so far to the left, to the right, above or below: what is in it then
+    /// True if a frame is so far to the left, to the right, above or below: what is in it then
     /// keeps this distance.
     #[inline]
     pub(super) fn is_beside(&self, frame: &Frame, distance: f64) -> bool {
@@ -402,7 +402,7 @@ impl NearBox {
         larger(larger(before.x, after.x), larger(before.y, after.y)) >= distance
     }
 
-    /// Whether a whole convex core surely keeps a distance on a way; for `outward` see
+    /// True if a whole convex core surely keeps a distance on a way; for `outward` see
     /// [`Winding::outward`].
     ///
     /// It does where all its vertices are, at both ends, that far from the box on the other side of

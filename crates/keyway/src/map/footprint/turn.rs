@@ -1,4 +1,4 @@
-//! Whether a footprint is free while it turns on the spot.
+//! True if a footprint is free while it turns on the spot.
 
 use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::map::{Clearance, DistanceField};
@@ -78,7 +78,7 @@ impl Polygon {
             && self.is_free_between(point, [middle_rad, to_rad], room, clearance)
     }
 
-    /// Whether a pose is clear with this much room \[cells\] around the footprint.
+    /// True if a pose is clear with this much room \[cells\] around the footprint.
     pub(super) fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
         let frame = clearance.frame();
         let to_grid = |&vertex: &Point| frame.grid_from_world(pose.world_from_body(vertex));

@@ -16,7 +16,7 @@ impl FreeEnds {
         Self { ends: Vec::new(), radius_cells }
     }
 
-    /// Whether the centre of a cell lies in one of the discs.
+    /// True if the centre of a cell lies in one of the discs.
     pub(in crate::map) fn contain(&self, cell: Cell) -> bool {
         let limit = self.radius_cells * (1.0 + CLEARANCE_TOLERANCE);
         self.ends.iter().any(|end| {
@@ -25,7 +25,7 @@ impl FreeEnds {
         })
     }
 
-    /// Whether one of the discs comes within `reach` columns and rows of a cell.
+    /// True if one of the discs comes within `reach` columns and rows of a cell.
     pub(in crate::map) fn are_near(&self, cell: Cell, reach: i32) -> bool {
         let reach = self.reach() + reach;
         self.ends.iter().any(|end| {

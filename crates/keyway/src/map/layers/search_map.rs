@@ -390,7 +390,7 @@ impl SearchMap {
         below(i64::from(b) + 1) | !below(i64::from(width - b) + 1)
     }
 
-    /// Whether a cell is blocked, from obstacles and config alone.
+    /// True if a cell is blocked, from obstacles and config alone.
     fn follows_blocked(&self, cell: Cell) -> bool {
         let in_zone =
             || self.near_border(cell) || self.neighbourhood.is_blocked(cell, &self.obstacles);

@@ -37,7 +37,7 @@ pub enum Separation {
         start_cells: u32,
         /// Cells of the goal's part.
         goal_cells: u32,
-        /// Whether steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with
+        /// True if steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with
         /// the clearance as it is.
         meet_at_corners: bool,
     },

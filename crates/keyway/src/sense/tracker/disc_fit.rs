@@ -21,7 +21,7 @@ pub(super) struct Fit {
     /// Twice the standard deviation of the centre where it is known worst \[m\], to first order in
     /// the errors of the hits; never less than what one hit may be off.
     pub(super) off_m: f64,
-    /// Whether the hits lie on an arc; otherwise the disc is the smallest one around their ends,
+    /// True if the hits lie on an arc; otherwise the disc is the smallest one around their ends,
     /// and what is hidden of the thing may be as large.
     pub(super) is_round: bool,
 }

@@ -110,7 +110,7 @@ impl Hits {
     }
 }
 
-/// Whether the known map has something within so many cells.
+/// True if the known map has something within so many cells.
 fn is_near_known(known: &OccupancyGrid, cell: Cell, cells: i32) -> bool {
     let (low, high) = (cell.x.saturating_sub(cells), cell.x.saturating_add(cells));
     let rows = cell.y.saturating_sub(cells).max(0)

@@ -185,7 +185,7 @@ impl Tracker {
         movers.flat_map(move |track| track.surface_after(after_s))
     }
 
-    /// Whether a beam of the last scan, which ended at `place`, hit a mover: one that is followed,
+    /// True if a beam of the last scan, which ended at `place`, hit a mover: one that is followed,
     /// or something that is not followed itself on ground that a mover in view may cover. What is
     /// seen where a mover is only expected is not that mover.
     pub fn hits_mover(&self, beam: usize, place: Point) -> bool {
@@ -348,7 +348,7 @@ impl Tracker {
         self.own.drain(..best.start);
     }
 
-    /// Whether beams see through between two successive hits of a track that are far apart.
+    /// True if beams see through between two successive hits of a track that are far apart.
     fn is_split(&self, at: usize, scan: &ProjectedScan) -> bool {
         let (a, b) = (self.own[at - 1], self.own[at]);
         let far_m = a.distance(scan.pose().point()).max(b.distance(scan.pose().point()));

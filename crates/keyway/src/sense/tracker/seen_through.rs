@@ -1,4 +1,4 @@
-//! Whether beams pass where a surface is said to be: what stands is never seen through.
+//! True if beams pass where a surface is said to be: what stands is never seen through.
 
 use super::TrackerConfig;
 use super::track::{Sight, Track};
@@ -135,7 +135,7 @@ impl<'a> Surface<'a> {
         count
     }
 
-    /// Whether a line has parts of the surface to both sides of it, farther from it than errors
+    /// True if a line has parts of the surface to both sides of it, farther from it than errors
     /// explain: of a thing that stands there, it then meets something.
     fn is_inside(&self, run: &[Point], from: Point, direction: Point) -> bool {
         let aside = run.iter().map(|&hit| direction.cross(hit - from));
@@ -144,7 +144,7 @@ impl<'a> Surface<'a> {
         low.abs().min(high) >= 2.0 * self.noise_m
     }
 
-    /// Whether a beam that is free for so far passes between two hits and goes on.
+    /// True if a beam that is free for so far passes between two hits and goes on.
     fn passes(&self, free_m: f64, direction: Point, (a, b): (Point, Point), from: Point) -> bool {
         let side = b - a;
         let across = direction.cross(side);

@@ -201,7 +201,7 @@ impl Track {
         }
     }
 
-    /// Whether it is farther from its anchor than the errors of both places explain.
+    /// True if it is farther from its anchor than the errors of both places explain.
     pub(super) fn has_left_its_anchor(&self) -> bool {
         let shape_m = if self.is_round { 0.0 } else { self.radius_m };
         let off_m = self.off_m() + shape_m + self.anchor.off_m;

@@ -60,7 +60,7 @@ impl<'m> Corners<'m> {
         tight.map_or(self.radius, |found| self.tight[found].1)
     }
 
-    /// Whether an obstacle at a corner lies on one side (1 left, -1 right) of all these directions.
+    /// True if an obstacle at a corner lies on one side (1 left, -1 right) of all these directions.
     pub(super) fn has_obstacle_beside(&self, at: Corner, directions: &[Point], side: f64) -> bool {
         [(-1, -1), (0, -1), (-1, 0), (0, 0)].into_iter().any(|(dx, dy)| {
             let inner = Point::new(f64::from(2 * dx + 1), f64::from(2 * dy + 1));

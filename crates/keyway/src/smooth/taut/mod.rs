@@ -204,7 +204,7 @@ fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
     }
 }
 
-/// Whether a path is not longer than the line, and nearer to obstacles only as far as it may be.
+/// True if a path is not longer than the line, and nearer to obstacles only as far as it may be.
 fn is_as_good(
     smoothed: &Smoothed,
     line: &Polyline,

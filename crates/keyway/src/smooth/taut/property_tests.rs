@@ -86,7 +86,7 @@ fn walk(map: &SearchMap, first: usize, steps: &[u8]) -> Option<Polyline> {
     Some(Polyline::new(points))
 }
 
-/// Whether each corner of a line is a lattice point, around which it turns towards a blocked cell.
+/// True if each corner of a line is a lattice point, around which it turns towards a blocked cell.
 fn is_taut(line: &Polyline, map: &SearchMap) -> bool {
     line.points().windows(3).all(|p| {
         let (came, goes) = (p[1] - p[0], p[2] - p[1]);

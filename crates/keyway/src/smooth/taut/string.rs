@@ -67,7 +67,7 @@ impl Contact {
         Disc { centre: self.centre, bend: self.side * self.radius }
     }
 
-    /// Whether it has no extent.
+    /// True if it has no extent.
     pub(super) fn is_point(&self) -> bool {
         self.radius <= TOUCH_CELLS
     }
@@ -256,7 +256,7 @@ impl TautString<'_, '_> {
         (!is_grazed || self.turns_inwards(sweep, &hit, is_at_end)).then_some(hit)
     }
 
-    /// Whether a corner that is grazed, by the leg or by its end, has an obstacle where the leg
+    /// True if a corner that is grazed, by the leg or by its end, has an obstacle where the leg
     /// turns to.
     fn turns_inwards(&self, sweep: &Sweep, hit: &Hit, is_at_end: bool) -> bool {
         let ahead = hit.leg.direction;
