@@ -15,7 +15,7 @@ import { PlanPanel } from "./panels/plan";
 import { SearchPanel } from "./panels/search";
 import { Pointer, type Tool } from "./pointer";
 import { Source } from "./source";
-import { fromFragment, TABS, toFragment, type State, type Tab } from "./state";
+import { fromFragment, TABS, toFragment, type Pair, type State, type Tab } from "./state";
 import { texts } from "./texts";
 
 /** Work that is done sooner is not announced. */
@@ -76,6 +76,11 @@ class App implements Page {
         this.showSource(name);
         this.showPlaces();
         this.writeLink();
+    };
+
+    readonly lookAt = (place: Pair, width_m: number) => {
+        this.view.lookAt(place, width_m);
+        this.redraw();
     };
 
     readonly say = (panel: Panel | null, text: string) => {
@@ -173,6 +178,7 @@ class App implements Page {
         this.panel = known ?? this.made(tab);
         if (tab === "drive" || tab === "compare") this.kept.set(tab, this.panel);
         side.replaceChildren(this.panel.element);
+        element("wide").replaceChildren(...(this.panel.wide ? [this.panel.wide] : []));
         if (!known) void this.panel.refresh();
         this.redraw();
         this.writeLink();
@@ -332,8 +338,14 @@ class App implements Page {
                 this.redraw();
             }),
             button(texts.share, () => void this.share()),
-            button(texts.savePicture, () => {
+            button(texts.savePng, () => {
                 this.view.canvas.toBlob((picture) => picture && save("keyway.png", picture));
+            }),
+            button(texts.saveSvg, () => {
+                save(
+                    "keyway.svg",
+                    this.view.svg(() => this.draw()),
+                );
             }),
         );
     }

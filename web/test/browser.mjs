@@ -1,6 +1,6 @@
 // A browser and a server of the built page, for tests.
 
-import { readFileSync, mkdtempSync, rmSync } from "node:fs";
+import { mkdirSync, readFileSync, mkdtempSync, rmSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { extname, join } from "node:path";
@@ -68,6 +68,14 @@ export async function open(context, address) {
     await page.goto(address);
     await page.waitForSelector("body[data-ready]");
     return page;
+}
+
+/** A picture of the page, where SCREENSHOTS names a folder. */
+export async function shot(page, name) {
+    const folder = process.env.SCREENSHOTS;
+    if (!folder) return;
+    mkdirSync(folder, { recursive: true });
+    await page.screenshot({ path: join(folder, `${name}.png`) });
 }
 
 /** The line that says what is shown, once it matches. */

@@ -49,12 +49,12 @@ function natively(questions) {
     return answers;
 }
 
-function compare(questions, accepts) {
+function equal(questions, accepts) {
     const [own, others] = [inModule(questions), natively(questions)];
     assert.equal(own.length, others.length);
     questions.forEach((question, i) => {
         const about = question.subarray(4, 200).toString();
-        const head = JSON.parse(own[i].subarray(4, 4 + own[i].readUInt32LE(0)).toString());
+        const head = JSON.parse(headOf(own[i]));
         accepts(head, about);
         assert.ok(own[i].equals(others[i]), `another answer to ${about}`);
     });
@@ -68,10 +68,8 @@ const openRooms = bytesOf(
     { ask: "open_map", name: "rooms.map" },
     { "rooms.map": file("rooms.map") },
 );
-const names = () => {
-    const [answer] = inModule([bytesOf({ ask: "names" })]);
-    return JSON.parse(answer.subarray(4, 4 + answer.readUInt32LE(0)).toString());
-};
+const headOf = (answer) => answer.subarray(4, 4 + answer.readUInt32LE(0)).toString();
+const names = () => JSON.parse(headOf(inModule([bytesOf({ ask: "names" })])[0]));
 const skip = process.env.NATIVE ? false : "NATIVE is not given";
 
 test("every planner and every smoother", { skip }, () => {
@@ -88,10 +86,38 @@ test("every planner and every smoother", { skip }, () => {
     );
     const questions = [openHouse, ...ask(ends), ...smoothed, openRooms, ...ask(inRooms)];
     let found = 0;
-    compare(questions, (head) => {
+    equal(questions, (head) => {
         found += Number(head.outcome === "found" || head.cost_cells > 0);
     });
     assert.ok(found > 60, `${found} paths of ${questions.length} answers`);
+});
+
+test("scenes, comparisons and claims", { skip }, () => {
+    const fleet = (name) => readFileSync(new URL(`../../scenes/fleet/${name}`, import.meta.url));
+    const bay = Object.fromEntries(
+        ["bay.toml", "bay.yaml", "bay.pgm"].map((name) => [name, fleet(name)]),
+    );
+    const claims = JSON.parse(headOf(inModule([bytesOf({ ask: "claims" })])[0]));
+    const drive = { ask: "drive", scene: bay["bay.toml"].toString(), stack: "s0-key-point" };
+    const compare = { planners: ["jps", "theta-star"], smoothers: ["none", "taut"], radius_m: 0.2 };
+    const questions = [
+        bytesOf({ ask: "claims" }),
+        bytesOf({ ask: "open_scene", name: "bay.toml" }, bay),
+        bytesOf({ ...drive, name: "bay", without_reasons: true }),
+        openHouse,
+        bytesOf({ ask: "compare", ...compare, queries: 5, seed: 1 }),
+        ...claims.flatMap(({ id }) => [
+            bytesOf({ ask: "open_claim", id, seed: 2 }),
+            bytesOf({ ask: "measure_claim", id, seed: 3 }),
+        ]),
+    ];
+    const rows = claims.map(({ id }) => {
+        const [row] = inModule([bytesOf({ ask: "measure_claim", id, seed: 4 })]);
+        return bytesOf({ ask: "judge_claim", id, rows: [JSON.parse(headOf(row))] });
+    });
+    equal([...questions, ...rows], (head, about) => {
+        assert.equal(head.error, undefined, `${about}: ${head.error?.message}`);
+    });
 });
 
 test("every stack in three scenes", { skip }, () => {
@@ -109,7 +135,7 @@ test("every stack in three scenes", { skip }, () => {
         scenes.map((more) => bytesOf({ ask: "drive", scene: scene(stack, more) })),
     );
     let reached = 0;
-    compare([openHouse, ...questions], (head, about) => {
+    equal([openHouse, ...questions], (head, about) => {
         assert.equal(head.error, undefined, `${about}: ${head.error?.message}`);
         reached += Number(head.reports?.[0].outcome === "reached");
     });

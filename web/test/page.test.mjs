@@ -3,23 +3,16 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { copyFileSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { copyFileSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { brotliCompressSync } from "node:zlib";
-import { inBrowser, open, status } from "./browser.mjs";
+import { inBrowser, open, shot, status } from "./browser.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const DIST = new URL("../dist/", import.meta.url).pathname;
-const SHOTS = process.env.SCREENSHOTS;
-
-async function shot(page, name) {
-    if (!SHOTS) return;
-    mkdirSync(SHOTS, { recursive: true });
-    await page.screenshot({ path: join(SHOTS, `${name}.png`) });
-}
 
 const cell = (page, name) =>
     page.locator(`#panel tr:has(th:text-is("${name}")) td`).first().textContent();
@@ -156,9 +149,13 @@ for (const colorScheme of ["light", "dark"]) {
         await inBrowser({ colorScheme }, async (address, context) => {
             const page = await open(context, address);
             await page.evaluate(AXE);
-            for (const tab of ["Plan", "Search", "Drive"]) {
+            for (const tab of ["Plan", "Search", "Drive", "Compare", "Papers"]) {
                 await page.getByRole("tab", { name: tab }).click();
                 await page.waitForTimeout(300);
+                if (tab === "Compare") {
+                    await page.getByRole("button", { name: "Compare them" }).click();
+                    await status(page, /compared: 3 rows/);
+                }
                 const { violations } = await page.evaluate(() => globalThis.axe.run());
                 const found = violations.map(
                     ({ id, nodes }) => `${id}: ${nodes.map((it) => it.html).join(" ")}`,

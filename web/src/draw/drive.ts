@@ -7,7 +7,7 @@ import type { Colors, View } from "./view";
 /** How far ahead a moving obstacle's velocity is drawn [s]. */
 const AHEAD_S = 1.5;
 
-/** Everything that a robot knows and decides; the other robots are drawn without that. */
+/** What a robot knows and decides, as far as it lies below the robots. */
 export function drawMind(view: View, film: Film, shown: number, withFan: boolean): void {
     const cycle = film.cycle(shown);
     if (!cycle) return;
@@ -17,7 +17,13 @@ export function drawMind(view: View, film: Film, shown: number, withFan: boolean
     view.line(film.route(shown), colors.line, 1.5, [4, 4]);
     const ratio = window.devicePixelRatio || 1;
     for (const hit of film.hitsAt(shown)) view.disc(hit, 1.5 * ratio, colors.hit);
-    for (const { centre, velocity_mps, radius_m, unseen_s } of cycle.movers) {
+    if (cycle.target_m) view.circle(cycle.target_m, 0.12, colors.chosen, 2);
+}
+
+/** Moving obstacles as a robot believes them, with their velocities. */
+export function drawBelieved(view: View, film: Film, shown: number): void {
+    const { colors } = view;
+    for (const { centre, velocity_mps, radius_m, unseen_s } of film.cycle(shown)?.movers ?? []) {
         const ahead: Pair = [
             centre[0] + AHEAD_S * velocity_mps[0],
             centre[1] + AHEAD_S * velocity_mps[1],
@@ -25,7 +31,6 @@ export function drawMind(view: View, film: Film, shown: number, withFan: boolean
         view.circle(centre, radius_m, colors.hit, 2, unseen_s > 0 ? [3, 3] : []);
         view.line([centre, ahead], colors.hit, 2);
     }
-    if (cycle.target_m) view.circle(cycle.target_m, 0.12, colors.chosen, 2);
 }
 
 /** A robot, and where it drove so far. */

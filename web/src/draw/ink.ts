@@ -8,6 +8,8 @@ export const NUMBERS = 6;
 export const [EXPANDED, GENERATED, REPARENTED, SCANNED, LINKED, MET] = [0, 1, 2, 3, 4, 5];
 /** What a pixel shows; what is higher stays. */
 const [SCANNED_INK, GENERATED_INK, EXPANDED_INK, BACK_INK] = [1, 2, 3, 4];
+/** Fewer nodes that lie apart are drawn as dots, which are seen on a large map, too. */
+const MOST_DOTS = 5000;
 /** Larger maps are shown coarser. */
 const MOST_PIXELS = 1 << 22;
 
@@ -25,6 +27,10 @@ export class Ink {
     /** Links of a tree, as far as it is shown: the places in the events. */
     links: number[] = [];
     met: Pair | null = null;
+    /** Nodes that were expanded: the places in the events. */
+    private nodes: number[] = [];
+    /** True if nodes lie apart: jump points, and those of a tree. */
+    private isSparse = false;
     /** How many events of each kind are shown. */
     counts: number[] = [];
 
@@ -68,14 +74,18 @@ export class Ink {
         this.inks.fill(0);
         this.dirty = [0, 0, this.canvas.width - 1, this.canvas.height - 1];
         [this.shown, this.links, this.met, this.counts] = [0, [], null, [0, 0, 0, 0, 0, 0]];
+        [this.nodes, this.isSparse] = [[], false];
     }
 
     private add(at: number): void {
         const { events } = this;
         const [kind, side, x, y] = [events[at]!, events[at + 1]!, events[at + 2]!, events[at + 3]!];
         this.counts[kind]!++;
-        if (kind === EXPANDED) this.dot(x, y, side === 1 ? BACK_INK : EXPANDED_INK);
-        else if (kind === GENERATED) this.dot(x, y, GENERATED_INK);
+        this.isSparse ||= kind === SCANNED || kind === LINKED;
+        if (kind === EXPANDED) {
+            this.dot(x, y, side === 1 ? BACK_INK : EXPANDED_INK);
+            if (this.nodes.length <= MOST_DOTS) this.nodes.push(at);
+        } else if (kind === GENERATED) this.dot(x, y, GENERATED_INK);
         else if (kind === SCANNED) this.line([x, y], [events[at + 4]!, events[at + 5]!]);
         else if (kind === LINKED) this.links.push(at);
         else if (kind === MET) this.met = [x, y];
@@ -118,6 +128,16 @@ export class Ink {
             ];
             view.lines(this.links.map(link), view.colors.expanded, 1);
         }
+        if (this.isSparse && this.nodes.length <= MOST_DOTS) this.drawNodes(view);
         if (this.met) view.disc(view.centre(this.met), 5, view.colors.goal);
+    }
+
+    private drawNodes(view: View): void {
+        const { expanded, expandedback } = view.colors;
+        const radius = 2.5 * (window.devicePixelRatio || 1);
+        for (const at of this.nodes) {
+            const place = view.centre([this.events[at + 2]!, this.events[at + 3]!]);
+            view.disc(place, radius, this.events[at + 1] === 1 ? expandedback : expanded);
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 import type { MapFacts } from "../engine/types";
 import type { Pair } from "../state";
+import { SvgContext } from "./svg";
 
 export interface Colors {
     ground: string;
@@ -39,7 +40,7 @@ const COLORS = [
 export const SERIES = 8;
 
 export class View {
-    readonly context: CanvasRenderingContext2D;
+    context: CanvasRenderingContext2D;
     private scale = 1;
     /** The scale at which the whole map is shown. */
     private whole = 1;
@@ -68,6 +69,20 @@ export class View {
         const named = COLORS.map((name) => [name, color(name)]);
         const series = Array.from({ length: SERIES }, (_, i) => color(`series-${i}`));
         return { ...Object.fromEntries(named), series } as unknown as Colors;
+    }
+
+    /** What `draw` draws, as SVG. */
+    svg(draw: () => void): string {
+        const real = this.context;
+        const written = new SvgContext(real, this.canvas.width, this.canvas.height);
+        // It has all that the view uses.
+        this.context = written as unknown as CanvasRenderingContext2D;
+        try {
+            draw();
+        } finally {
+            this.context = real;
+        }
+        return written.text;
     }
 
     /** Divides the canvas into up to four pictures. */
@@ -200,6 +215,11 @@ export class View {
             this.middle[0] + before[0] - after[0],
             this.middle[1] + before[1] - after[1],
         ];
+    }
+
+    lookAt(place: Pair, width_m: number): void {
+        this.middle = place;
+        this.scale = Math.min(100 * this.whole, this.paneSize[0] / width_m);
     }
 
     pan([x, y]: Pair): void {

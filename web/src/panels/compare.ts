@@ -9,9 +9,9 @@ import { texts } from "../texts";
 import {
     button,
     checks,
+    decimals,
     choice,
     legend,
-    metres,
     number,
     Player,
     save,
@@ -23,8 +23,9 @@ import { failure, type Page, type Panel } from "./panel";
 export class ComparePanel implements Panel {
     readonly element = document.createElement("div");
     private readonly controls = document.createElement("div");
-    private readonly result = document.createElement("div");
+    readonly wide = document.createElement("div");
     private readonly race = document.createElement("div");
+    private readonly colors = document.createElement("div");
     private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
     private readonly player = new Player(texts, () => this.forward());
     private readonly go = button(texts.compareNow, () => void this.run());
@@ -35,7 +36,7 @@ export class ComparePanel implements Panel {
 
     constructor(private readonly page: Page) {
         const what = Object.entries(texts.compared);
-        this.race.append(this.slider.element, this.player.button);
+        this.race.append(this.slider.element, this.player.button, this.colors);
         this.element.append(
             choice(texts.compareWhat, what, page.state.compared, (what) => {
                 page.state.compared = what as keyof typeof texts.compared;
@@ -45,7 +46,6 @@ export class ComparePanel implements Panel {
             this.controls,
             this.go,
             this.race,
-            this.result,
         );
         this.makeControls();
     }
@@ -102,7 +102,7 @@ export class ComparePanel implements Panel {
         this.player.stop();
         [this.runners, this.shown] = [[], 0];
         this.race.hidden = true;
-        this.result.replaceChildren();
+        this.wide.replaceChildren();
         this.page.redraw();
     }
 
@@ -129,8 +129,12 @@ export class ComparePanel implements Panel {
         const { planners, smoothers, radius_m, queries, seed } = state;
         const question = { ask: "compare", planners, smoothers, radius_m, queries, seed };
         const { head } = await engine.ask<Comparison>(question, {}, stop);
-        this.result.replaceChildren(
-            table(head.header, head.rows),
+        this.wide.replaceChildren(
+            // There is one map.
+            table(
+                head.header.slice(1),
+                head.rows.map((row) => row.slice(1)),
+            ),
             button("CSV", () => save("compare.csv", head.csv)),
             button(texts.answersCsv, () => save("queries.csv", head.queries_csv)),
             button("LaTeX", () => save("compare.tex", head.latex)),
@@ -150,6 +154,7 @@ export class ComparePanel implements Panel {
                     ...driveQuestion({ ...state, stack, sceneStack: stack }, mapName()),
                     seed: state.seed + run,
                     reports_only: run > 0,
+                    without_reasons: true,
                 };
                 const { head, parts } = await engine.ask<Driven>(question, {}, stop);
                 if (stop.aborted) return;
@@ -158,7 +163,9 @@ export class ComparePanel implements Panel {
             }
             const { head } = await engine.ask<Summary>({ ask: "summary", rows }, {}, stop);
             this.showSummary(head);
-            if (run === 0) this.showCycle(0);
+            if (run > 0) continue;
+            this.showColors();
+            this.showCycle(0);
         }
         say(this, texts.comparing.done(state.stacks.length));
     }
@@ -170,17 +177,15 @@ export class ComparePanel implements Panel {
             `${stack.reached}/${stack.runs}`,
             String(stack.contacts_driving + stack.contacts_standing),
             String(stack.stuck + stack.timeout + stack.no_path),
-            stack.mean_time_s === null ? "-" : `${stack.mean_time_s.toFixed(1)} s`,
-            metres(stack.mean_length_m),
-            metres(stack.least_clearance_m),
+            decimals(stack.mean_time_s, 1),
+            decimals(stack.mean_length_m),
+            decimals(stack.least_clearance_m),
         ]);
         const whole = document.createElement("details");
         const [title, text] = [document.createElement("summary"), document.createElement("pre")];
         [title.textContent, text.textContent, text.tabIndex] = [words.whole, summary.text, 0];
         whole.append(title, text);
-        const colors = this.runners.map(({ stack }, i) => [`series-${i % SERIES}`, stack] as const);
-        this.result.replaceChildren(
-            legend(colors),
+        this.wide.replaceChildren(
             table(words.header, rows),
             whole,
             button("CSV", () => save("summary.csv", summary.csv)),
@@ -188,6 +193,11 @@ export class ComparePanel implements Panel {
             button("Markdown", () => save("summary.md", summary.markdown)),
             button("LaTeX", () => save("summary.tex", summary.latex)),
         );
+    }
+
+    private showColors(): void {
+        const colors = this.runners.map(({ stack }, i) => [`series-${i % SERIES}`, stack] as const);
+        this.colors.replaceChildren(legend(colors));
     }
 
     private get last(): number {

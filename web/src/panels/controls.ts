@@ -206,8 +206,11 @@ export function save(name: string, content: BlobPart): void {
     URL.revokeObjectURL(link.href);
 }
 
+export const decimals = (value: number | null | undefined, digits = 2) =>
+    value === null || value === undefined ? "-" : value.toFixed(digits);
+
 export const metres = (value: number | null | undefined, digits = 2) =>
-    value === null || value === undefined ? "-" : `${value.toFixed(digits)} m`;
+    value === null || value === undefined ? "-" : `${decimals(value, digits)} m`;
 
 /** Numbers that go on by themselves while a button is pressed in. */
 export class Player {

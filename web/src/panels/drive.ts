@@ -1,8 +1,9 @@
 /** A drive in the simulator, moment by moment, and the reasons of each. */
 
+import type { Answer } from "../engine/engine";
 import { Film } from "../engine/film";
-import type { CycleReport, Driven, Speeds } from "../engine/types";
-import { drawMind, drawMovers, drawRobot } from "../draw/drive";
+import type { CycleReport, Driven, RobotReport, Speeds } from "../engine/types";
+import { drawBelieved, drawMind, drawMovers, drawRobot } from "../draw/drive";
 import { SERIES, type View } from "../draw/view";
 import { driveQuestion, sceneFile, WALKER_RADIUS_M } from "../state";
 import { texts } from "../texts";
@@ -18,6 +19,7 @@ import {
     Player,
     save,
     slider,
+    table,
 } from "./controls";
 import { failure, type Page, type Panel } from "./panel";
 
@@ -56,6 +58,10 @@ export class DrivePanel implements Panel {
             check(texts.fan, page.state.fan, (shown) => {
                 page.state.fan = shown;
                 page.redraw();
+            }),
+            button(texts.zoomToRobot, () => {
+                const pose = this.films[this.robot]?.cycle(this.shown)?.pose;
+                if (pose) page.lookAt([pose[0], pose[1]], 5);
             }),
             this.whose,
             this.moment,
@@ -107,7 +113,7 @@ export class DrivePanel implements Panel {
 
     /** What was driven before is no longer true, and what is driven just now not needed. */
     async refresh(): Promise<void> {
-        this.running?.abort();
+        this.give();
         this.makeControls();
         this.clear();
         this.page.say(this, this.page.scene ? texts.driving.readyScene : texts.driving.ready);
@@ -115,7 +121,13 @@ export class DrivePanel implements Panel {
 
     leave(): void {
         this.player.stop();
+        this.give();
+    }
+
+    /** Gives up what is driven just now. */
+    private give(): void {
         this.running?.abort();
+        [this.drive.disabled, this.running] = [false, null];
     }
 
     private clear(): void {
@@ -135,22 +147,28 @@ export class DrivePanel implements Panel {
         this.drive.disabled = true;
         try {
             const question = driveQuestion(state, mapName());
-            const { head, parts } = await working(running.signal, (stop) =>
-                engine.ask<Driven>(question, {}, stop),
-            );
-            if (running.signal.aborted) return;
-            this.driven = head;
-            this.films = head.reports.map((_, robot) => new Film(head, parts, robot));
-            this.report.disabled = false;
-            this.showReport(head);
+            const ask = (without_reasons: boolean) =>
+                working(running.signal, (stop) =>
+                    engine.ask<Driven>({ ...question, without_reasons }, {}, stop),
+                );
+            this.take(await ask(true));
             this.showWhose();
             this.showCycle(0);
+            // Reasons take several times as long as the drive.
+            this.take(await ask(false));
+            this.showCycle(this.shown);
         } catch (error) {
-            say(this, failure(error));
+            if (this.running === running) say(this, failure(error));
         } finally {
-            this.drive.disabled = false;
-            this.running = null;
+            if (this.running === running) [this.drive.disabled, this.running] = [false, null];
         }
+    }
+
+    private take({ head, parts }: Answer<Driven>): void {
+        this.driven = head;
+        this.films = head.reports.map((_, robot) => new Film(head, parts, robot));
+        this.report.disabled = false;
+        this.showReport(head);
     }
 
     private saveScene(): void {
@@ -162,22 +180,18 @@ export class DrivePanel implements Panel {
     private showReport({ reports }: Driven): void {
         const words = texts.driving;
         const one = reports.length === 1;
-        const rows = reports.flatMap((report, robot) => {
-            const of = (name: string) => (one ? name : words.ofRobot(name, robot + 1));
-            return [
-                [
-                    of(words.outcome),
-                    report.reason ? `${report.outcome}: ${report.reason}` : report.outcome,
-                ],
-                [of(words.runTime), report.run ? `${report.run.time_s.toFixed(1)} s` : "-"],
-                [of(words.length), metres(report.run?.length_m)],
-                [of(words.clearance), metres(report.run?.min_clearance_m)],
-            ] as const;
-        });
-        this.result.replaceChildren(facts(rows));
-        const ends = reports.map(({ outcome, run }) =>
-            words.driven(outcome, run ? `${run.time_s.toFixed(1)} s` : "-"),
-        );
+        const header = one ? [] : ["", ...reports.map((_, robot) => words.robot(robot + 1))];
+        const outcome = ({ outcome, reason }: RobotReport) =>
+            reason ? `${outcome}: ${reason}` : outcome;
+        const seconds = ({ run }: RobotReport) => (run ? `${run.time_s.toFixed(1)} s` : "-");
+        const rows = [
+            [words.outcome, ...reports.map(outcome)],
+            [words.runTime, ...reports.map(seconds)],
+            [words.length, ...reports.map(({ run }) => metres(run?.length_m))],
+            [words.clearance, ...reports.map(({ run }) => metres(run?.min_clearance_m))],
+        ];
+        this.result.replaceChildren(table(header, rows));
+        const ends = reports.map((report) => words.driven(report.outcome, seconds(report)));
         this.page.say(
             this,
             one ? ends.join() : ends.map((end, i) => `${i + 1}: ${end}`).join("; "),
@@ -236,6 +250,7 @@ export class DrivePanel implements Panel {
             const several = colors.series[i % SERIES] ?? colors.robot;
             drawRobot(view, one, this.shown, this.films.length > 1 ? several : colors.robot);
         });
+        drawBelieved(view, film, this.shown);
     }
 }
 

@@ -1,7 +1,7 @@
 import { Fault, Refused, Stopped, type Engine } from "../engine/engine";
 import type { MapFacts, Names, SceneFacts } from "../engine/types";
 import type { View } from "../draw/view";
-import type { State } from "../state";
+import type { Pair, State } from "../state";
 import { texts } from "../texts";
 
 /** What the panels have of the page. */
@@ -20,6 +20,8 @@ export interface Page {
      * it, too.
      */
     working<T>(outer: AbortSignal | null, work: (stop: AbortSignal) => Promise<T>): Promise<T>;
+    /** Shows the surroundings of a place, so many metres wide. */
+    lookAt(place: Pair, width_m: number): void;
     /** Something that the panel shows has changed: the picture is drawn again. */
     redraw(): void;
     /** The state was changed by the panel. */
@@ -44,6 +46,8 @@ export interface Panel {
     readonly panes?: number;
     /** True if start, goal and obstacles can be moved in it. */
     readonly hasEnds: boolean;
+    /** Tables that need the whole width of the page. */
+    readonly wide?: HTMLElement;
     /** Another part is shown from now on. */
     leave?(): void;
 }

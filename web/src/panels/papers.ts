@@ -4,7 +4,7 @@ import type { ClaimFacts, ClaimMap, Judged } from "../engine/types";
 import { SERIES, type View } from "../draw/view";
 import { LIMITS, type Pair } from "../state";
 import { texts } from "../texts";
-import { button, check, grouped, legend, metres, number, table } from "./controls";
+import { button, check, decimals, grouped, legend, number, table } from "./controls";
 import { failure, Latest, type Page, type Panel } from "./panel";
 import { pairs } from "./plan";
 
@@ -13,7 +13,7 @@ export class PapersPanel implements Panel {
     readonly hasEnds = false;
     private readonly about = document.createElement("div");
     private readonly methods = document.createElement("div");
-    private readonly verdict = document.createElement("div");
+    readonly wide = document.createElement("div");
     private readonly measure = button(texts.papers.measure, () => void this.judge());
     private readonly choices = document.createElement("div");
     private claims: ClaimFacts[] = [];
@@ -42,7 +42,6 @@ export class PapersPanel implements Panel {
                 set(() => (state.claimMaps = maps)),
             ).element,
             this.measure,
-            this.verdict,
         );
     }
 
@@ -69,7 +68,7 @@ export class PapersPanel implements Panel {
 
     private async open(stop: AbortSignal): Promise<void> {
         const { engine, working, say, showMap } = this.page;
-        this.verdict.replaceChildren();
+        this.wide.replaceChildren();
         try {
             if (this.claims.length === 0) {
                 this.claims = (await engine.ask<ClaimFacts[]>({ ask: "claims" })).head;
@@ -86,7 +85,7 @@ export class PapersPanel implements Panel {
             [this.page.state.start, this.page.state.goal] = head.ends;
             showMap(head.map, parts["cells"] ?? new Uint8Array(), names);
             this.lines = claim.methods.map((_, i) => pairs(parts[`line ${i}`]));
-            const rows = claim.methods.map((name, i) => [name, metres(head.lengths_m[i])]);
+            const rows = claim.methods.map((name, i) => [name, decimals(head.lengths_m[i])]);
             this.methods.replaceChildren(
                 legend(claim.methods.map((name, i) => [`series-${i % SERIES}`, name])),
                 table([texts.papers.method, texts.papers.length], rows),
@@ -167,7 +166,7 @@ export class PapersPanel implements Panel {
             measured,
             verdict === null ? "-" : (words.verdicts[verdict] ?? verdict),
         ]);
-        this.verdict.replaceChildren(verdict, table(words.header, rows));
+        this.wide.replaceChildren(verdict, table(words.header, rows));
     }
 
     draw(view: View): void {

@@ -47,7 +47,12 @@ export class SearchPanel implements Panel {
         };
         const beside = texts.beside.map((label, i) =>
             choice(label, [...none, ...named(names.planners)], state.beside[i] ?? "", (name) =>
-                set(() => (state.beside[i] = name)),
+                set(
+                    () =>
+                        (state.beside = texts.beside.map((_, other) =>
+                            other === i ? name : (state.beside[other] ?? ""),
+                        )),
+                ),
             ),
         );
         const speeds = Object.entries(texts.speeds);
@@ -160,7 +165,7 @@ export class SearchPanel implements Panel {
         const counts = (kind: number) => this.inks.map((ink) => String(ink.counts[kind]));
         const costs = this.found.map(({ report }) => {
             const cost = report?.cost_cells;
-            return cost == null ? "-" : `${cost.toFixed(2)} ${words.cells}`;
+            return cost == null ? "-" : cost.toFixed(2);
         });
         const header = this.found.length > 1 ? ["", ...this.found.map((it) => it.planner)] : [];
         if (this.found.length === 0) this.result.replaceChildren();
@@ -170,7 +175,7 @@ export class SearchPanel implements Panel {
                     [words.expanded, ...counts(EXPANDED)],
                     [words.generated, ...counts(GENERATED)],
                     [words.reparented, ...counts(REPARENTED)],
-                    [words.cost, ...costs],
+                    [words.costInCells, ...costs],
                 ]),
             );
         }
