@@ -120,7 +120,8 @@ export const texts = {
         letPass: "lets the command pass",
         movers: "Moving obstacles that it believes in",
         legend: {
-            hit: "hits of the lidar; moving obstacles as the robot believes them",
+            hit: "hits of the lidar",
+            believed: "moving obstacle as the robot believes it, and its velocity",
             sensed: "cells that the robot sensed",
             disc: "obstacle that the map does not show",
             mover: "moving obstacle",

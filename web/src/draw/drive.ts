@@ -28,8 +28,8 @@ export function drawBelieved(view: View, film: Film, shown: number): void {
             centre[0] + AHEAD_S * velocity_mps[0],
             centre[1] + AHEAD_S * velocity_mps[1],
         ];
-        view.circle(centre, radius_m, colors.hit, 2, unseen_s > 0 ? [3, 3] : []);
-        view.line([centre, ahead], colors.hit, 2);
+        view.circle(centre, radius_m, colors.believed, 2, unseen_s > 0 ? [3, 3] : []);
+        view.line([centre, ahead], colors.believed, 2);
     }
 }
 

@@ -22,6 +22,7 @@ export interface Colors {
     mover: string;
     expandedback: string;
     shortest: string;
+    believed: string;
     chosen: string;
     runnerup: string;
     admissible: string;
@@ -34,7 +35,18 @@ export interface Colors {
 /** Names of the colours in the style sheet. */
 const COLORS = [
     ...["ground", "wall", "unknown", "line", "smoothed", "start", "goal", "expanded", "generated"],
-    ...["scanned", "robot", "hit", "sensed", "disc", "mover", "expandedback", "shortest", "chosen"],
+    ...[
+        "scanned",
+        "robot",
+        "hit",
+        "sensed",
+        "disc",
+        "mover",
+        "expandedback",
+        "shortest",
+        "believed",
+        "chosen",
+    ],
     ...["runnerup", "admissible", "touching", "refused"],
 ];
 export const SERIES = 8;
