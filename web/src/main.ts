@@ -203,9 +203,10 @@ class App implements Page {
 
     private async openOwn(files: File[]): Promise<void> {
         try {
-            const name = await this.source.openOwn(files);
-            if (name === null) return;
-            this.showSource(name);
+            const names = await this.source.openOwn(files);
+            if (names.length === 0) return;
+            names.forEach((name) => this.showSource(name));
+            this.showSource(names[0]!);
             this.showPlaces();
             this.changed();
         } catch (error) {
@@ -323,8 +324,7 @@ class App implements Page {
             { name: texts.groups.scenes, options: scenes },
         ];
         const maps = grouped(texts.map, groups, this.state.map, (map) => {
-            const isOwn = maps.querySelector("select")?.selectedOptions[0]?.parentElement === null;
-            if (!isOwn) void this.choose(map);
+            if (this.source.isKnown(map)) void this.choose(map);
         });
         this.maps = maps.querySelector("select");
         const tools = Object.entries(texts.tools);

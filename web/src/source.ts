@@ -15,6 +15,8 @@ const CLAIM = "claim ";
 export class Source {
     /** The scene that is open; `null` for one that is drawn. */
     scene: SceneFacts | null = null;
+    /** Texts of the scenes of a table, by their names. */
+    private readonly own = new Map<string, string>();
     /** The files of that scene, for another seed. */
     private sceneFiles: { name: string; parts: Parts } | null = null;
 
@@ -44,8 +46,18 @@ export class Source {
         }
     }
 
-    /** Opens a bundled map or scene anew. */
+    /** True for what can be opened again. */
+    isKnown(map: string): boolean {
+        return isBundled(map) || isScene(map.slice(SCENE.length)) || this.own.has(map);
+    }
+
+    /** Opens a bundled map or scene anew, or one of a table. */
     async open(map: string): Promise<void> {
+        const text = this.own.get(map);
+        if (text !== undefined) {
+            await this.openScene(map, { [map]: new TextEncoder().encode(text) }, null);
+            return;
+        }
         if (map.startsWith(SCENE)) {
             const { name, parts } = await loadScene(map.slice(SCENE.length));
             const { seed } = this.state;
@@ -67,16 +79,20 @@ export class Source {
         return ends;
     }
 
-    /** Own files: a map, or a scene with its map. */
-    async openOwn(files: File[]): Promise<string | null> {
+    /**
+     * Own files: a map, a scene with its map, or a table of scenes. The names of what was opened,
+     * and of what can be opened from now on.
+     */
+    async openOwn(files: File[]): Promise<string[]> {
         const named = (pattern: RegExp) => files.find(({ name }) => pattern.test(name));
-        const first = named(/\.toml$/i) ?? named(/\.(ya?ml|map)$/i) ?? files[0];
-        if (!first) return null;
+        const first = named(/\.(toml|csv)$/i) ?? named(/\.(ya?ml|map)$/i) ?? files[0];
+        if (!first) return [];
         const read = files.map(async (file): Promise<[string, Uint8Array]> => [
             file.name,
             new Uint8Array(await file.arrayBuffer()),
         ]);
         const parts = Object.fromEntries(await Promise.all(read));
+        if (/\.csv$/i.test(first.name)) return this.openTable(first.name, parts);
         if (/\.toml$/i.test(first.name)) await this.openScene(first.name, parts, null);
         else {
             this.tell(await this.ground.open(this.engine, first.name, parts));
@@ -87,7 +103,16 @@ export class Source {
             this.state.goal = this.ground.freeNear(0.75, radius_m);
         }
         this.state.map = first.name;
-        return first.name;
+        return [first.name];
+    }
+
+    private async openTable(name: string, parts: Parts): Promise<string[]> {
+        const question = { ask: "barn_scenes", name };
+        const { head } = await this.engine.ask<{ name: string; text: string }[]>(question, parts);
+        for (const scene of head) this.own.set(scene.name, scene.text);
+        const names = head.map((scene) => scene.name);
+        await this.open(names[0]!);
+        return names;
     }
 
     /** A map that a part of the page has opened. */

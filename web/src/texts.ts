@@ -13,7 +13,7 @@ export const texts = {
     map: "Map",
     groups: { maps: "Maps", scenes: "Scenes" },
     openFiles:
-        "Open a map (ROS .yaml with its image, MovingAI .map, .pgm, .png) or a scene (.toml)",
+        "Open a map (ROS .yaml with its image, MovingAI .map, .pgm, .png), a scene (.toml), or BARN's worlds (.csv)",
     bundled: { house: "A small house, 25 x 25 m", rooms: "Rooms, 32 x 32 cells" },
     planner: "Planner",
     smoother: "Smoother",

@@ -94,6 +94,12 @@ test("own scenes are opened, with a world of their own or with their map", async
         const files = ["bay.toml", "bay.yaml", "bay.pgm"].map(bundled);
         await page.locator("#files").setInputFiles(files);
         await status(page, /Press Drive to simulate the scene/);
+        const table = "world,x,y,radius\n7,-2.0,8.0,0.075\n9,-2.2,5.0,0.3\n";
+        await page.locator("#files").setInputFiles(given("worlds.csv", table));
+        await status(page, /Press Drive to simulate the scene/);
+        await chooseMap(page, "barn_009.toml");
+        await press(page, "Drive");
+        await status(page, /the drive: reached after/);
         const world =
             "version = 2\nseed = 4\nstart = [1.0, 1.0]\ngoal = [9.0, 9.0]\n[world]\nwidth_m = 10.0\n" +
             "height_m = 10.0\nresolution_m = 0.1\nobstacles = { blocks = { share = 0.12, side_m = [0.2, 0.6] } }\n";

@@ -27,6 +27,7 @@
 //! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed`, `shortest` |
 //! | [`search`](route::Plan) | events and path of the search | see [`search::Search`] |
 //! | [`open_scene`](scene::OpenScene) | facts about the scene and its map | `cells` |
+//! | [`barn_scenes`](scene::BarnScenes) | the scenes of a table of BARN | |
 //! | [`drive`](drive::Drive) | reports `keyway.navigate/4`, and cycles | see [`drive::Driven`] |
 //! | [`compare`](compare::Compare) | the report `keyway.compare/1`, and tables | |
 //! | [`summary`](compare::Summarise) | what runs of several stacks say together | |

@@ -8,7 +8,7 @@ use crate::map::{self, EditMap, OpenMap, Opened};
 use crate::message::{Message, json};
 use crate::names::Names;
 use crate::route::{self, Layers, Plan};
-use crate::scene::{self, OpenScene};
+use crate::scene::{self, BarnScenes, OpenScene};
 use crate::search;
 use keyway::search::Workspace;
 use serde::{Deserialize, Serialize};
@@ -31,6 +31,7 @@ enum Question {
     Plan(Plan),
     Search(Plan),
     OpenScene(OpenScene),
+    BarnScenes(BarnScenes),
     Drive(Drive),
     Compare(Compare),
     Summary(Summarise),
@@ -78,6 +79,7 @@ impl Page {
             Question::OpenScene(ask) => {
                 Ok(self.open(scene::open_scene(&ask, message, self.map.as_ref())?))
             }
+            Question::BarnScenes(ask) => scene::barn_scenes(&ask, message),
             Question::Drive(ask) => drive::drive(&ask, self.map.as_ref()),
             Question::Compare(ask) => {
                 compare::compare(&ask, self.map.as_ref().ok_or_else(Opened::none)?)

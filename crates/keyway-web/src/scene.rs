@@ -5,6 +5,7 @@ use crate::error::{Kind, PageError};
 use crate::map::{MapFacts, Opened, cells_of, facts, open_file, part};
 use crate::message::{Message, json};
 use keyway::geometry::{Disc, Point};
+use keyway_lab::scenes::{BarnRequest, NamedScene};
 use keyway_sim::episode::Episode;
 use keyway_sim::scene_files::{SceneFile, SceneMap};
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,24 @@ pub struct OpenScene {
     pub name: String,
     /// In the place of the scene's seed.
     pub seed: Option<u64>,
+}
+
+/// `{"ask": "barn_scenes", "name"}`: the scenes of a table of BARN's cylinders, which is the part
+/// of that name. The answer is a list of [`SceneText`].
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BarnScenes {
+    /// The table (CSV) with the columns `world`, `x`, `y` and `radius` \[m\].
+    pub name: String,
+}
+
+/// A scene as a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SceneText {
+    /// Its name.
+    pub name: String,
+    /// The scene (TOML).
+    pub text: String,
 }
 
 /// A scene that was opened. The part `cells` is as for a map.
@@ -57,6 +76,21 @@ pub struct SceneRobot {
     pub goal: Point,
     /// Name of its stack.
     pub stack: String,
+}
+
+/// The scenes of a table of BARN.
+pub(crate) fn barn_scenes(ask: &BarnScenes, message: &Message) -> Result<Message, PageError> {
+    let blame = |error: &dyn std::fmt::Display| PageError::new(Kind::Input, error).field("name");
+    let path = Path::new(&ask.name);
+    let bytes = part(message, path).map_err(|error| blame(&error))?;
+    let scenes =
+        BarnRequest::scenes_from_bytes(path, bytes, false).map_err(|error| blame(&error))?;
+    let text = |NamedScene { file, scene }: NamedScene| SceneText {
+        name: file,
+        // A scene is plain data with string keys: this cannot fail.
+        text: toml::to_string(&scene).unwrap_or_default(),
+    };
+    Ok(Message::new(json(&scenes.into_iter().map(text).collect::<Vec<_>>())))
 }
 
 /// Opens a scene; `known` is the map that is open.

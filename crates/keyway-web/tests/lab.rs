@@ -65,6 +65,24 @@ fn a_world_follows_its_seed() {
 }
 
 #[test]
+fn tables_of_barn_give_a_scene_for_each_world() {
+    let mut page = Page::default();
+    let table = "world,x,y,radius\n7,-2.0,8.0,0.075\n9,-1.0,5.0,0.075\n7,-3.0,9.0,0.075\n";
+    let ask_for = json!({"ask": "barn_scenes", "name": "worlds.csv"});
+    let (scenes, _) = with_files(&mut page, &ask_for, &[("worlds.csv", table.as_bytes())]);
+    assert_eq!(scenes.as_array().unwrap().len(), 2, "{scenes}");
+    assert_eq!(scenes[0]["name"], "barn_007.toml");
+    let text = scenes[0]["text"].as_str().unwrap();
+    let open = json!({"ask": "open_scene", "name": "barn_007.toml"});
+    let (scene, _) = with_files(&mut page, &open, &[("barn_007.toml", text.as_bytes())]);
+    assert_eq!(scene["discs"], json!([[-2.0, 8.0, 0.075], [-3.0, 9.0, 0.075]]));
+    let cut = [("worlds.csv", &b"world,x,y\n7,1,2\n"[..])];
+    let (refused, _) = with_files(&mut page, &ask_for, &cut);
+    let message = refused["error"]["message"].as_str().unwrap();
+    assert!(message.starts_with("worlds.csv: line 2: missing field `radius`"), "{message}");
+}
+
+#[test]
 fn a_drive_on_the_map_as_it_was_edited() {
     let mut page = Page::default();
     let open = json!({"ask": "open_scene", "name": "made.toml"});

@@ -7,7 +7,7 @@
 //! If the cylinders are known, the map has them: the cells whose centres they hold. These cells
 //! then stand in the world instead of the cylinders.
 
-use super::table::{rows, some_rows};
+use super::table::{rows, rows_from_bytes, some_rows};
 use super::{NamedScene, ScenesError};
 use keyway::geometry::Point;
 use keyway_sim::episode::Start;
@@ -17,7 +17,7 @@ use keyway_sim::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const START: Point = Point::new(-2.25, 3.0);
 const START_HEADING_RAD: f64 = FRAC_PI_2;
@@ -70,19 +70,23 @@ impl BarnRequest {
     /// # Errors
     /// When a table cannot be used, or the cylinders of a world make no scene.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
-        let cylinders: Vec<Cylinder> =
-            some_rows(&self.cylinders).map_err(ScenesError::of_table("cylinders"))?;
-        let mut worlds: BTreeMap<u32, Vec<UnknownDisc>> = BTreeMap::new();
-        for Cylinder { world, x, y, radius } in cylinders {
-            let circle = UnknownDisc { position: Point::new(x, y), radius_m: radius };
-            worlds.entry(world).or_default().push(circle);
-        }
-        let best_s = self.best_times_s()?;
-        let scene = |(world, cylinders)| {
-            named(world, cylinders, self.is_known, best_s.get(&world).copied())
-                .map_err(|reason| ScenesError::Cylinders { world, reason })
-        };
-        worlds.into_iter().map(scene).collect()
+        let cylinders = some_rows(&self.cylinders).map_err(ScenesError::of_table("cylinders"))?;
+        scenes(cylinders, self.is_known, &self.best_times_s()?)
+    }
+
+    /// Returns the same for a table of cylinders in memory, without best times; errors call it
+    /// `name`.
+    ///
+    /// # Errors
+    /// As for [`Self::scenes`].
+    pub fn scenes_from_bytes(
+        name: &Path,
+        cylinders: &[u8],
+        is_known: bool,
+    ) -> Result<Vec<NamedScene>, ScenesError> {
+        let cylinders =
+            rows_from_bytes(name, cylinders).map_err(ScenesError::of_table("cylinders"))?;
+        scenes(cylinders, is_known, &BTreeMap::new())
     }
 
     /// Returns the best times by the numbers of their worlds.
@@ -91,6 +95,23 @@ impl BarnRequest {
         let rows: Vec<Summary> = rows(path).map_err(ScenesError::of_table("summary"))?;
         Ok(rows.into_iter().map(|row| (row.world, row.optimal_time_s)).collect())
     }
+}
+
+fn scenes(
+    cylinders: Vec<Cylinder>,
+    is_known: bool,
+    best_s: &BTreeMap<u32, f64>,
+) -> Result<Vec<NamedScene>, ScenesError> {
+    let mut worlds: BTreeMap<u32, Vec<UnknownDisc>> = BTreeMap::new();
+    for Cylinder { world, x, y, radius } in cylinders {
+        let circle = UnknownDisc { position: Point::new(x, y), radius_m: radius };
+        worlds.entry(world).or_default().push(circle);
+    }
+    let scene = |(world, cylinders)| {
+        named(world, cylinders, is_known, best_s.get(&world).copied())
+            .map_err(|reason| ScenesError::Cylinders { world, reason })
+    };
+    worlds.into_iter().map(scene).collect()
 }
 
 fn named(

@@ -1,6 +1,6 @@
 //! Lines of a CSV file, by the names of its columns.
 
-use keyway::files::{TextFileError, read_text};
+use keyway::files::{TextFileError, file_text, read_text};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -35,7 +35,18 @@ pub enum TableError {
 
 /// Reads all lines below the header, and ignores columns that `T` does not have.
 pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableError> {
-    let text = read_text(path, LARGEST_BYTES)?;
+    rows_of(path, &read_text(path, LARGEST_BYTES)?)
+}
+
+/// The same for a file in memory; errors call it `path`.
+pub(super) fn rows_from_bytes<T: DeserializeOwned>(
+    path: &Path,
+    bytes: &[u8],
+) -> Result<Vec<T>, TableError> {
+    some(path, rows_of(path, file_text(path, bytes, LARGEST_BYTES)?)?)
+}
+
+fn rows_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, TableError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let blame = |error: csv::Error| TableError::Line {
         path: path.to_owned(),
@@ -50,7 +61,10 @@ pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableErro
 
 /// Reads all lines below the header, and refuses a table without any.
 pub(super) fn some_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableError> {
-    let rows = rows(path)?;
+    some(path, rows(path)?)
+}
+
+fn some<T>(path: &Path, rows: Vec<T>) -> Result<Vec<T>, TableError> {
     if rows.is_empty() {
         return Err(TableError::Empty { path: path.to_owned() });
     }
