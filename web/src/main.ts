@@ -92,6 +92,7 @@ class App implements Page {
     readonly working = async <T>(
         outer: AbortSignal | null,
         work: (stop: AbortSignal) => Promise<T>,
+        text: string = texts.working,
     ): Promise<T> => {
         const own = new AbortController();
         const abort = () => own.abort();
@@ -99,7 +100,7 @@ class App implements Page {
         this.stops.push(own);
         const timer = setTimeout(() => {
             this.stop.hidden = false;
-            this.say(null, texts.working);
+            this.say(null, text);
         }, SOON_MS);
         try {
             return await work(own.signal);

@@ -143,6 +143,7 @@ export const texts = {
         rejected: "Rejected, because they",
         reasons: "Why this velocity",
         standing: "none",
+        explaining: (outcome: string) => `${outcome}; the reasons follow ...`,
         driven: (outcome: string, seconds: string) => `the drive: ${outcome} after ${seconds}`,
     },
     comparing: {

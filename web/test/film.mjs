@@ -11,6 +11,7 @@ const { GIFEncoder, quantize, applyPalette } = gifenc;
 const [WIDTH, HEIGHT] = [1040, 620];
 /** Every so many cycles is a frame; a cycle takes 0.1 s. */
 const STEP = 6;
+const COLORS = 63;
 const DELAY_MS = 120;
 
 const state = {
@@ -18,8 +19,8 @@ const state = {
     fan: true,
     discs: [{ at: [0.3, -0.275], radius_m: 0.15 }],
     walkers: [
-        { from: [-0.5, 2.5], to: [0.2, -1.2] },
-        { from: [4.2, -2.2], to: [4.6, 1.6] },
+        { from: [2.4, 3.2], to: [2.4, -0.6] },
+        { from: [4.6, 2.4], to: [6.2, -0.4] },
     ],
 };
 
@@ -28,7 +29,8 @@ await inBrowser({ viewport: { width: WIDTH, height: HEIGHT } }, async (address, 
     const page = await open(context, `${address}#${link}`);
     await page.getByRole("button", { name: "Drive", exact: true }).click();
     await status(page, /the drive: reached/);
-    await page.getByRole("button", { name: "Stop" }).waitFor({ state: "hidden" });
+    // Reasons come after the drive.
+    await page.locator('th:text-is("Why this velocity")').waitFor();
     // The decisions beside the picture.
     await page.getByLabel("Moment").scrollIntoViewIfNeeded();
     await page.evaluate(() => {
@@ -37,13 +39,20 @@ await inBrowser({ viewport: { width: WIDTH, height: HEIGHT } }, async (address, 
     });
     const last = Number(await page.getByLabel("Moment").getAttribute("max"));
     const gif = GIFEncoder();
-    let palette = null;
+    let [palette, before] = [null, null];
     for (let cycle = 0; cycle <= last; cycle += STEP) {
         await page.getByLabel("Moment").fill(String(cycle));
         await page.waitForTimeout(60);
         const { data, width, height } = PNG.sync.read(await page.screenshot());
-        palette ??= quantize(data, 64);
-        gif.writeFrame(applyPalette(data, palette), width, height, { palette, delay: DELAY_MS });
+        palette ??= quantize(data, COLORS);
+        const now = applyPalette(data, palette);
+        // What is as before is left out: the last colour is not drawn.
+        const shown = before ? now.map((color, i) => (color === before[i] ? COLORS : color)) : now;
+        const colors = [...palette];
+        while (colors.length <= COLORS) colors.push([0, 0, 0]);
+        const holes = before ? { transparent: true, transparentIndex: COLORS, dispose: 1 } : {};
+        gif.writeFrame(shown, width, height, { palette: colors, delay: DELAY_MS, ...holes });
+        before = now;
     }
     gif.finish();
     writeFileSync(process.argv[2], gif.bytes());

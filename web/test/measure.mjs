@@ -26,7 +26,30 @@ function blocks() {
     return `type octile\nheight 512\nwidth 512\nmap\n${rows.map((row) => row.join("")).join("\n")}\n`;
 }
 
+/** The longest time for which the page does not answer, while a large map is opened. */
+async function frozen(context, address) {
+    const page = await open(context, address);
+    await page.evaluate(() => {
+        globalThis.longest_ = 0;
+        const watch = new PerformanceObserver((list) => {
+            for (const { duration } of list.getEntries()) {
+                globalThis.longest_ = Math.max(globalThis.longest_, duration);
+            }
+        });
+        watch.observe({ type: "longtask" });
+    });
+    const row = `${".".repeat(4096)}\n`;
+    const text = `type octile\nheight 4096\nwidth 4096\nmap\n${row.repeat(4096)}`;
+    const file = { name: "large.map", mimeType: "text/plain", buffer: Buffer.from(text) };
+    await page.locator("#files").setInputFiles(file);
+    await status(page, /a path of/);
+    const longest = await page.evaluate(() => globalThis.longest_);
+    console.log(`4096 x 4096 opened: the page did not answer for ${longest.toFixed(0)} ms at most`);
+    await page.close();
+}
+
 await inBrowser({}, async (address, context) => {
+    await frozen(context, address);
     const page = await open(context, address);
     const ready = await page.evaluate(() => performance.now());
     console.log(`answers after ${ready.toFixed(0)} ms`);

@@ -144,6 +144,41 @@ test("own maps are opened, and bad ones leave what was there", async () => {
     });
 });
 
+/** Files that cannot be used, and what is said of them. */
+const BAD = [
+    ["empty.map", "", /empty\.map/],
+    ["kind.map", "type hexagons\nheight 1\nwidth 1\nmap\n.\n", /kind\.map: line 1/],
+    ["huge.map", "type octile\nheight 99999\nwidth 99999\nmap\n", /huge\.map/],
+    ["letter.map", "type octile\nheight 1\nwidth 2\nmap\n.x\n", /letter\.map: line 5/],
+    ["no.pgm", "P5\n4 4\n255\n..", /no\.pgm/],
+    ["text.png", "this is no picture", /text\.png/],
+    ["list.yaml", "- 1\n- 2\n", /list\.yaml/],
+    ["res.yaml", "image: a.png\nresolution: -1\norigin: [0, 0, 0]\n", /res\.yaml/],
+    ["binary.yaml", Buffer.from([0xff, 0xfe, 0x00, 0x80]), /binary\.yaml/],
+    ["empty.toml", "", /scene|version/],
+    ["binary.toml", Buffer.from([0xff, 0xfe, 0x00, 0x80]), /utf-8|UTF-8/],
+    ["old.toml", "version = 99\n", /99/],
+    ["robot.toml", "version = 2\nrobot = 7\nstart = [0, 0]\ngoal = [1, 1]\n", /robot/],
+    ["empty.csv", "world,x,y,radius\n", /empty\.csv/],
+];
+
+test("files that cannot be used leave what was there", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await status(page, /17\.64 m/);
+        for (const [name, content, expected] of BAD) {
+            const buffer = Buffer.from(content);
+            await page.locator("#files").setInputFiles({ name, mimeType: "text/plain", buffer });
+            await status(page, expected);
+            // The map and its path are still there.
+            await page.getByLabel("Smoother").selectOption("none");
+            await status(page, /a path of 18\.43 m/);
+            await page.getByLabel("Smoother").selectOption("taut");
+            await status(page, /a path of 17\.64 m/);
+        }
+    });
+});
+
 for (const colorScheme of ["light", "dark"]) {
     test(`everything can be used without seeing it (${colorScheme})`, async () => {
         await inBrowser({ colorScheme }, async (address, context) => {

@@ -407,26 +407,27 @@ export class View {
     }
 }
 
+const UNKNOWN = 2;
+
 /** Columns and rows from the first to behind the last cell that is not unknown, and two beside. */
 function knownCells({ width, height }: MapFacts, cells: Uint8Array): [Pair, Pair] {
-    const [low, high]: [Pair, Pair] = [
-        [width, height],
-        [0, 0],
-    ];
-    for (let i = 0; i < cells.length; i++) {
-        if (cells[i] === 2) continue;
-        const at: Pair = [i % width, Math.floor(i / width)];
-        for (const axis of [0, 1] as const) {
-            low[axis] = Math.min(low[axis], at[axis] - 2);
-            high[axis] = Math.max(high[axis], at[axis] + 3);
-        }
+    let [left, right, low, high] = [width, -1, -1, -1];
+    for (let row = 0; row < height; row++) {
+        const from = row * width;
+        let [first, last] = [0, width - 1];
+        while (first <= last && cells[from + first] === UNKNOWN) first++;
+        if (first > last) continue;
+        while (cells[from + last] === UNKNOWN) last--;
+        if (low < 0) low = row;
+        [left, right, high] = [Math.min(left, first), Math.max(right, last), row];
     }
-    return high[0] > low[0]
-        ? [low, high]
-        : [
-              [0, 0],
-              [width, height],
-          ];
+    if (high < 0) {
+        [left, low, right, high] = [2, 2, width - 3, height - 3];
+    }
+    return [
+        [left - 2, low - 2],
+        [right + 3, high + 3],
+    ];
 }
 
 function placed(facts: MapFacts, [x, y]: Pair): Pair {

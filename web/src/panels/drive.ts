@@ -147,15 +147,17 @@ export class DrivePanel implements Panel {
         this.drive.disabled = true;
         try {
             const question = driveQuestion(state, mapName());
-            const ask = (without_reasons: boolean) =>
-                working(running.signal, (stop) =>
-                    engine.ask<Driven>({ ...question, without_reasons }, {}, stop),
+            const ask = (without_reasons: boolean, text?: string) =>
+                working(
+                    running.signal,
+                    (stop) => engine.ask<Driven>({ ...question, without_reasons }, {}, stop),
+                    text,
                 );
-            this.take(await ask(true));
+            const outcome = this.take(await ask(true));
             this.showWhose();
             this.showCycle(0);
             // Reasons take several times as long as the drive.
-            this.take(await ask(false));
+            this.take(await ask(false, texts.driving.explaining(outcome)));
             this.showCycle(this.shown);
         } catch (error) {
             if (this.running === running) say(this, failure(error));
@@ -164,11 +166,11 @@ export class DrivePanel implements Panel {
         }
     }
 
-    private take({ head, parts }: Answer<Driven>): void {
+    private take({ head, parts }: Answer<Driven>): string {
         this.driven = head;
         this.films = head.reports.map((_, robot) => new Film(head, parts, robot));
         this.report.disabled = false;
-        this.showReport(head);
+        return this.showReport(head);
     }
 
     private saveScene(): void {
@@ -177,7 +179,8 @@ export class DrivePanel implements Panel {
         if (state.drawn.length > 0) say(this, texts.notInScene);
     }
 
-    private showReport({ reports }: Driven): void {
+    /** Shows the report, and returns what it says. */
+    private showReport({ reports }: Driven): string {
         const words = texts.driving;
         const one = reports.length === 1;
         const header = one ? [] : ["", ...reports.map((_, robot) => words.robot(robot + 1))];
@@ -192,10 +195,9 @@ export class DrivePanel implements Panel {
         ];
         this.result.replaceChildren(table(header, rows));
         const ends = reports.map((report) => words.driven(report.outcome, seconds(report)));
-        this.page.say(
-            this,
-            one ? ends.join() : ends.map((end, i) => `${i + 1}: ${end}`).join("; "),
-        );
+        const text = one ? ends.join() : ends.map((end, i) => `${i + 1}: ${end}`).join("; ");
+        this.page.say(this, text);
+        return text;
     }
 
     /** Whose mind is shown, where there are several robots. */

@@ -17,9 +17,13 @@ export interface Page {
     showMap(facts: MapFacts, cells: Uint8Array, name: string): void;
     /**
      * Shows that the page works, with a button that stops it, until the work is done; `outer` stops
-     * it, too.
+     * it, too. `text` is what is said meanwhile.
      */
-    working<T>(outer: AbortSignal | null, work: (stop: AbortSignal) => Promise<T>): Promise<T>;
+    working<T>(
+        outer: AbortSignal | null,
+        work: (stop: AbortSignal) => Promise<T>,
+        text?: string,
+    ): Promise<T>;
     /** Shows the surroundings of a place, so many metres wide. */
     lookAt(place: Pair, width_m: number): void;
     /** Something that the panel shows has changed: the picture is drawn again. */

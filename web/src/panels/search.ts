@@ -1,5 +1,6 @@
 /** Searches, event by event: one, or up to four side by side. */
 
+import { Refused } from "../engine/engine";
 import { integers } from "../engine/message";
 import type { SearchReport } from "../engine/types";
 import { EXPANDED, GENERATED, Ink, REPARENTED } from "../draw/ink";
@@ -98,7 +99,12 @@ export class SearchPanel implements Panel {
         try {
             this.found = await working(stop, async (signal) => {
                 const all: Found[] = [];
-                for (const planner of planners) all.push(await this.searchWith(planner, signal));
+                for (const planner of planners) {
+                    const asked = this.searchWith(planner, signal);
+                    // A planner that cannot search here is one more picture.
+                    const found = planners.length === 1 ? asked : asked.catch(notFound(planner));
+                    all.push(await found);
+                }
                 return all;
             });
             const costs = this.found.map(({ planner, report, why }) => {
@@ -117,7 +123,6 @@ export class SearchPanel implements Panel {
         this.showFirst(this.count);
     }
 
-    /** A planner that finds nothing is one more picture, unless there is only one. */
     private async searchWith(planner: string, stop: AbortSignal): Promise<Found> {
         const { engine, state } = this.page;
         const { radius_m, start, goal, shortest } = state;
@@ -203,3 +208,12 @@ export class SearchPanel implements Panel {
         this.inks = [];
     }
 }
+
+/** A search that was refused. */
+const notFound =
+    (planner: string) =>
+    (error: unknown): Found => {
+        if (!(error instanceof Refused)) throw error;
+        const events = new Int32Array();
+        return { planner, report: null, why: error.message, events, path: [], shortest: [] };
+    };
