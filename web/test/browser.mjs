@@ -23,13 +23,15 @@ const ARGUMENTS = [
     "--disable-sync",
 ];
 
-/** Calls `use` with the address of the page and a context of a browser. */
+/** Calls `use` with the address of the page, a context of a browser, and the files it loaded. */
 export async function inBrowser(options, use) {
+    const served = new Set();
     const server = createServer((question, answer) => {
         const path = new URL(question.url, "http://localhost").pathname;
         try {
             const file = join(DIST, path === "/" ? "index.html" : decodeURIComponent(path));
             const content = readFileSync(file);
+            served.add(file);
             answer.writeHead(200, {
                 "content-type": TYPES[extname(file)] ?? "application/octet-stream",
             });
@@ -48,7 +50,7 @@ export async function inBrowser(options, use) {
         ...options,
     });
     try {
-        await use(`http://127.0.0.1:${server.address().port}/`, context);
+        await use(`http://127.0.0.1:${server.address().port}/`, context, served);
     } finally {
         await context.close();
         server.close();
