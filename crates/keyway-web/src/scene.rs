@@ -95,36 +95,35 @@ pub(crate) fn barn_scenes(ask: &BarnScenes, message: &Message) -> Result<Message
 
 /// The text of a scene of BARN. What writes any scene would make the page a twentieth larger.
 fn text(scene: &SceneFile) -> String {
-    let mut text = format!(
-        "version = 2\ndescription = {:?}\nrobot = {:?}\n",
-        scene.description.as_deref().unwrap_or_default(),
-        scene.robot
-    );
-    let mut add = |line: std::fmt::Arguments<'_>| text += &format!("{line}\n");
+    let description = scene.description.as_deref().unwrap_or_default();
+    let mut lines = vec![
+        "version = 2".to_owned(),
+        format!("description = {description:?}"),
+        format!("robot = {:?}", scene.robot),
+    ];
     if let (Some(start), Some(goal)) = (scene.start, scene.goal) {
         let (at, heading) = (start.position, start.heading_rad.unwrap_or_default());
-        add(format_args!("start = [{:?}, {:?}, {:?}]", at.x, at.y, heading.to_degrees()));
-        add(format_args!("goal = [{:?}, {:?}]", goal.position.x, goal.position.y));
+        lines.push(format!("start = [{:?}, {:?}, {:?}]", at.x, at.y, heading.to_degrees()));
+        lines.push(format!("goal = [{:?}, {:?}]", goal.position.x, goal.position.y));
     }
+    lines.push("\n[rules]\narrival = \"passing\"".to_owned());
     let SceneRules { goal_tolerance_m, time_limit_s, .. } = scene.rules;
-    add(format_args!("\n[rules]\narrival = \"passing\""));
-    for (name, value) in [("goal_tolerance_m", goal_tolerance_m), ("time_limit_s", time_limit_s)] {
-        if let Some(value) = value {
-            add(format_args!("{name} = {value:?}"));
-        }
-    }
+    let values = [("goal_tolerance_m", goal_tolerance_m), ("time_limit_s", time_limit_s)];
+    let given = values.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    lines.extend(given.map(|(name, value)| format!("{name} = {value:?}")));
     if let Some(GeneratedMap { width_m, height_m, resolution_m, origin, .. }) = &scene.world {
-        add(format_args!("\n[world]\nwidth_m = {width_m:?}\nheight_m = {height_m:?}"));
-        add(format_args!("resolution_m = {resolution_m:?}"));
-        add(format_args!("origin = [{:?}, {:?}]", origin.x, origin.y));
+        lines.push(format!("\n[world]\nwidth_m = {width_m:?}\nheight_m = {height_m:?}"));
+        lines.push(format!("resolution_m = {resolution_m:?}"));
+        lines.push(format!("origin = [{:?}, {:?}]", origin.x, origin.y));
     }
     for unknown in &scene.unknown {
         if let GroundShape::Disc(UnknownDisc { position: Point { x, y }, radius_m }) = unknown.shape
         {
-            add(format_args!("\n[[unknown]]\nposition = [{x:?}, {y:?}]\nradius_m = {radius_m:?}"));
+            lines.push(format!("\n[[unknown]]\nposition = [{x:?}, {y:?}]"));
+            lines.push(format!("radius_m = {radius_m:?}"));
         }
     }
-    text
+    lines.join("\n") + "\n"
 }
 
 /// Opens a scene; `known` is the map that is open.
