@@ -30,8 +30,8 @@ export class ComparePanel implements Panel {
     private readonly player = new Player(texts, () => this.forward());
     private readonly go = button(texts.compareNow, () => void this.run());
     private running: AbortController | null = null;
-    /** The first drive of each stack. */
-    private runners: { stack: string; film: Film }[] = [];
+    /** The first drive of each stack, with all its robots. */
+    private runners: { stack: string; films: Film[] }[] = [];
     private shown = 0;
 
     constructor(private readonly page: Page) {
@@ -159,7 +159,8 @@ export class ComparePanel implements Panel {
                 const { head, parts } = await engine.ask<Driven>(question, {}, stop);
                 if (stop.aborted) return;
                 rows.push(head.row);
-                if (run === 0) this.runners.push({ stack, film: new Film(head, parts, 0) });
+                const films = head.cycles.map((_, robot) => new Film(head, parts, robot));
+                if (run === 0) this.runners.push({ stack, films });
             }
             const { head } = await engine.ask<Summary>({ ask: "summary", rows }, {}, stop);
             this.showSummary(head);
@@ -200,8 +201,12 @@ export class ComparePanel implements Panel {
         this.colors.replaceChildren(legend(colors));
     }
 
+    private get films(): Film[] {
+        return this.runners.flatMap(({ films }) => films);
+    }
+
     private get last(): number {
-        return Math.max(0, ...this.runners.map(({ film }) => film.cycles.length - 1));
+        return Math.max(0, ...this.films.map(({ cycles }) => cycles.length - 1));
     }
 
     private forward(): boolean {
@@ -213,18 +218,18 @@ export class ComparePanel implements Panel {
         this.shown = shown;
         this.race.hidden = this.runners.length === 0;
         this.slider.set(shown, this.last);
-        const longest = this.runners.find(({ film }) => film.cycles.length - 1 === this.last);
-        const time = longest?.film.cycle(shown)?.t_s ?? 0;
+        const longest = this.films.find(({ cycles }) => cycles.length - 1 === this.last);
+        const time = longest?.cycle(shown)?.t_s ?? 0;
         this.slider.input.setAttribute("aria-valuetext", `${time.toFixed(1)} s`);
         this.page.redraw();
     }
 
     draw(view: View): void {
-        const first = this.runners[0];
-        if (!first) return;
-        drawMovers(view, first.film, this.shown);
-        this.runners.forEach(({ film }, i) => {
-            drawRobot(view, film, this.shown, view.colors.series[i % SERIES] ?? "");
+        const [first] = this.films;
+        if (first) drawMovers(view, first, this.shown);
+        this.runners.forEach(({ films }, i) => {
+            const color = view.colors.series[i % SERIES] ?? "";
+            for (const film of films) drawRobot(view, film, this.shown, color);
         });
     }
 }
