@@ -22,8 +22,8 @@ export class Ground {
     ) {}
 
     /** Opens a map; when it cannot be read, the one before stays. */
-    async open(engine: Engine, name: string, parts: Parts): Promise<MapFacts> {
-        const answer = await engine.ask<MapFacts>({ ask: "open_map", name }, parts);
+    async open(engine: Engine, name: string, parts: Parts, stop?: AbortSignal): Promise<MapFacts> {
+        const answer = await engine.ask<MapFacts>({ ask: "open_map", name }, parts, stop);
         this.show(answer.head, answer.parts["cells"] ?? new Uint8Array());
         return answer.head;
     }
@@ -96,7 +96,7 @@ export class Ground {
     freeNear(share: number, radius_m: number): Pair {
         const { width, height, resolution_m } = this.view.facts!;
         const [low, high] = this.view.knownCells;
-        const around = Math.min(20, Math.ceil(radius_m / resolution_m));
+        const around = Math.min(20, Math.max(0, Math.ceil(radius_m / resolution_m - 0.5)));
         const isFree = (x: number, y: number) => {
             for (let dy = -around; dy <= around; dy++) {
                 for (let dx = -around; dx <= around; dx++) {

@@ -15,7 +15,7 @@ import { PlanPanel } from "./panels/plan";
 import { SearchPanel } from "./panels/search";
 import { Pointer, type Tool } from "./pointer";
 import { Source } from "./source";
-import { fromFragment, TABS, toFragment, type Pair, type State, type Tab } from "./state";
+import { fromFragment, LIMITS, TABS, toFragment, type Pair, type State, type Tab } from "./state";
 import { texts } from "./texts";
 
 /** Work that is done sooner is not announced. */
@@ -37,6 +37,13 @@ class App implements Page {
     private panel: Panel | null = null;
     /** These stay when another part is looked at, unless something has changed. */
     private readonly kept = new Map<Tab, Panel>();
+    /** The last thing that each part has said. */
+    private readonly said = new WeakMap<Panel, string>();
+    /** One part is opened after the other. */
+    private opening: Promise<void> = Promise.resolve();
+    private turns = 0;
+    /** The map that is opened just now. */
+    private bringing: AbortController | null = null;
     private places: NumberField[] = [];
     private maps: HTMLSelectElement | null = null;
 
@@ -62,7 +69,8 @@ class App implements Page {
     private readonly has = () => {
         const ends = this.panel?.hasEnds ?? false;
         const { tab } = this.state;
-        return { ends, obstacles: ends && (tab === "drive" || tab === "compare") };
+        const isDriven = tab === "drive" || tab === "compare";
+        return { ends, obstacles: ends && isDriven, walls: tab !== "papers" };
     };
 
     get scene(): SceneFacts | null {
@@ -73,9 +81,15 @@ class App implements Page {
 
     readonly showMap = (facts: MapFacts, cells: Uint8Array, name: string) => {
         this.source.show(facts, cells, name);
+        this.kept.clear();
         this.showSource(name);
         this.showPlaces();
         this.writeLink();
+    };
+
+    readonly keepMap = () => {
+        this.source.keep();
+        void this.open("plan");
     };
 
     readonly lookAt = (place: Pair, width_m: number) => {
@@ -84,6 +98,7 @@ class App implements Page {
     };
 
     readonly say = (panel: Panel | null, text: string) => {
+        if (panel) this.said.set(panel, text);
         if (panel !== null && panel !== this.panel) return;
         this.status.textContent = text;
         this.view.canvas.setAttribute("aria-label", texts.pictureOf(text));
@@ -98,8 +113,10 @@ class App implements Page {
         const abort = () => own.abort();
         outer?.addEventListener("abort", abort);
         this.stops.push(own);
+        let before: string | null = null;
         const timer = setTimeout(() => {
             this.stop.hidden = false;
+            before = this.status.textContent;
             this.say(null, text);
         }, SOON_MS);
         try {
@@ -109,6 +126,7 @@ class App implements Page {
             outer?.removeEventListener("abort", abort);
             this.stops.splice(this.stops.indexOf(own), 1);
             this.stop.hidden = this.stops.length === 0;
+            if (before !== null && this.status.textContent === text) this.say(null, before);
         }
     };
 
@@ -156,18 +174,34 @@ class App implements Page {
         this.makeControls();
         this.listen();
         this.view.resize();
-        await this.source.restore();
+        const notice = await this.source.restore();
         this.showSource(this.state.map);
-        this.showPlaces();
         await this.ground.tell(this.engine);
-        const opened = this.status.textContent ?? "";
-        this.open(this.state.tab);
-        this.say(null, opened);
+        await this.open(this.state.tab);
+        if (notice === null) return;
+        await this.panel?.refresh();
+        this.say(null, notice);
     }
 
     /** Shows one of the parts. */
-    private open(tab: Tab): void {
-        this.panel?.leave?.();
+    private open(tab: Tab): Promise<void> {
+        const turn = ++this.turns;
+        this.opening = this.opening.then(async () => {
+            if (turn !== this.turns) return;
+            this.panel?.leave?.();
+            try {
+                if (this.state.tab === "papers" && tab !== "papers") await this.source.goBack();
+            } catch (error) {
+                this.say(null, failure(error));
+            }
+            this.showSource(this.state.map);
+            this.show(tab);
+        });
+        return this.opening;
+    }
+
+    private show(tab: Tab): void {
+        if (tab === "papers") this.source.remember();
         this.state.tab = tab;
         for (const other of TABS) {
             element(`tab-${other}`).setAttribute("aria-selected", String(other === tab));
@@ -180,7 +214,9 @@ class App implements Page {
         if (tab === "drive" || tab === "compare") this.kept.set(tab, this.panel);
         side.replaceChildren(this.panel.element);
         element("wide").replaceChildren(...(this.panel.wide ? [this.panel.wide] : []));
-        if (!known) void this.panel.refresh();
+        if (known) this.say(null, this.said.get(known) ?? "");
+        else void this.panel.refresh();
+        this.showPlaces();
         this.redraw();
         this.writeLink();
     }
@@ -192,25 +228,34 @@ class App implements Page {
         return tab === "compare" ? new ComparePanel(this) : new PapersPanel(this);
     }
 
-    private async choose(map: string): Promise<void> {
-        try {
-            await this.source.open(map);
-            this.showPlaces();
-            this.changed();
-        } catch (error) {
-            this.say(null, failure(error));
-        }
+    private choose(map: string): Promise<void> {
+        return this.bring(async (stop) => {
+            await this.source.open(map, stop);
+            return [map];
+        });
     }
 
-    private async openOwn(files: File[]): Promise<void> {
+    private openOwn(files: File[]): Promise<void> {
+        return this.bring((stop) => this.source.openOwn(files, stop));
+    }
+
+    /** Opens a map in the place of what is done just now; only the last one counts. */
+    private async bring(open: (stop: AbortSignal) => Promise<string[]>): Promise<void> {
+        this.bringing?.abort();
+        const bringing = new AbortController();
+        this.bringing = bringing;
+        this.panel?.leave?.();
         try {
-            const names = await this.source.openOwn(files);
-            if (names.length === 0) return;
-            names.forEach((name) => this.showSource(name));
-            this.showSource(names[0]!);
+            const names = await this.working(bringing.signal, open);
+            if (this.bringing !== bringing || names.length === 0) return;
+            for (const name of [...names, this.state.map]) this.showSource(name);
+            // A claim would bring its own map again.
+            if (this.state.tab === "papers") await this.open("plan");
             this.showPlaces();
             this.changed();
         } catch (error) {
+            if (this.bringing !== bringing) return;
+            this.showSource(this.state.map);
             this.say(null, failure(error));
         }
     }
@@ -232,7 +277,8 @@ class App implements Page {
             view.inPane(pane, () => {
                 view.ground();
                 const { tab } = this.state;
-                if (this.has().obstacles || (this.scene && tab === "drive")) this.drawObstacles();
+                const isDriven = tab === "drive" || tab === "compare";
+                if (isDriven) this.drawObstacles();
                 panel?.draw(view, pane);
                 this.drawEnds();
             });
@@ -291,7 +337,7 @@ class App implements Page {
 
     private makeTabs(): void {
         for (const tab of TABS) {
-            const made = button(texts.tabs[tab], () => this.open(tab));
+            const made = button(texts.tabs[tab], () => void this.open(tab));
             made.id = `tab-${tab}`;
             made.setAttribute("role", "tab");
             made.setAttribute("aria-controls", "panel");
@@ -299,7 +345,7 @@ class App implements Page {
                 const by = key === "ArrowRight" ? 1 : key === "ArrowLeft" ? -1 : 0;
                 const next = TABS[(TABS.indexOf(tab) + by + TABS.length) % TABS.length]!;
                 if (by === 0) return;
-                this.open(next);
+                void this.open(next);
                 element(`tab-${next}`).focus();
             };
             element("tabs").append(made);
@@ -371,10 +417,18 @@ class App implements Page {
 
     private showPlaces(): void {
         const numbers = [...this.state.start, ...this.state.goal];
-        this.places.forEach((field, i) => field.set(numbers[i]!));
+        const isFixed = !this.has().ends;
+        this.places.forEach((field, i) => {
+            field.set(numbers[i]!);
+            field.input.disabled = isFixed;
+        });
     }
 
     private async share(): Promise<void> {
+        if (this.state.drawn.length > LIMITS.drawn) {
+            this.say(null, texts.tooManyWalls(LIMITS.drawn));
+            return;
+        }
         history.replaceState(null, "", `#${await toFragment(this.state)}`);
         try {
             await navigator.clipboard.writeText(location.href);

@@ -30,7 +30,7 @@ export class Pointer {
         private readonly drawn: () => void,
         private readonly redraw: () => void,
         /** What can be moved. */
-        private readonly has: () => { ends: boolean; obstacles: boolean },
+        private readonly has: () => { ends: boolean; obstacles: boolean; walls: boolean },
     ) {
         const { canvas } = view;
         canvas.onpointerdown = (event) => this.down(event);
@@ -126,7 +126,8 @@ export class Pointer {
             else if (from >= 0) return { kind: "walker", index: from };
             else if (to >= 0) return { kind: "walker end", index: to };
         }
-        return { kind: this.tool === "wall" || this.tool === "erase" ? "draw" : "pan" };
+        const isDrawing = has.walls && (this.tool === "wall" || this.tool === "erase");
+        return { kind: isDrawing ? "draw" : "pan" };
     }
 
     private remove(disc: number, walker: number): void {

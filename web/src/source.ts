@@ -1,8 +1,8 @@
 /** Where the map comes from: bundled maps and scenes, own files, and claims of papers. */
 
-import { isBundled, isScene, load, loadScene } from "./bundled";
+import { bundledFiles, isBundled, isScene, load, loadScene } from "./bundled";
 import type { Engine } from "./engine/engine";
-import type { Parts } from "./engine/message";
+import type { Message, Parts } from "./engine/message";
 import type { ClaimMap, MapFacts, SceneFacts } from "./engine/types";
 import type { Ground } from "./ground";
 import type { Pair, State } from "./state";
@@ -12,13 +12,29 @@ import { texts } from "./texts";
 const SCENE = "scene ";
 const CLAIM = "claim ";
 
+interface Files {
+    name: string;
+    parts: Parts;
+}
+
+/** What was on the map, beside the map itself. */
+const placed = ({ start, goal, discs, walkers, drawn, scene, sceneStack, seed, map }: State) =>
+    structuredClone({ start, goal, discs, walkers, drawn, scene, sceneStack, seed, map });
+
 export class Source {
     /** The scene that is open; `null` for one that is drawn. */
     scene: SceneFacts | null = null;
-    /** Texts of the scenes of a table, by their names. */
-    private readonly own = new Map<string, string>();
     /** The files of that scene, for another seed. */
-    private sceneFiles: { name: string; parts: Parts } | null = null;
+    private sceneFiles: Files | null = null;
+    /** Own files that were opened, and scenes of own tables, by the names in the list of maps. */
+    private readonly own = new Map<string, Files>();
+    /** What was there before a claim was looked at. */
+    private before: {
+        opened: Message;
+        placed: ReturnType<typeof placed>;
+        scene: SceneFacts | null;
+        sceneFiles: Files | null;
+    } | null = null;
 
     constructor(
         private readonly engine: Engine,
@@ -27,52 +43,54 @@ export class Source {
         private readonly say: (text: string) => void,
     ) {}
 
-    /** Opens what a link names, or the house where that is not to be had. */
-    async restore(): Promise<void> {
-        const { map, drawn, scene, seed } = this.state;
+    /** Opens what a link names; where that is not to be had, the house, and says so. */
+    async restore(): Promise<string | null> {
+        const linked = placed(this.state);
+        const { map, scene, seed } = linked;
         try {
             if (isBundled(map)) await this.openBundled(map);
             else if (map.startsWith(CLAIM)) await this.openClaim(map);
             else if (isScene(map.slice(SCENE.length))) await this.open(map);
-            else if (scene !== null) {
-                const parts = { [map]: new TextEncoder().encode(scene) };
-                await this.openScene(map, parts, seed);
-            } else throw new Error(map);
-            this.state.seed = seed;
-            this.ground.draw(this.engine, drawn);
+            else if (scene !== null) await this.openScene(await withMaps(map, scene), seed);
+            else throw new Error(map);
         } catch {
             await this.open("house");
-            this.say(texts.notInLink(map));
+            return texts.notInLink(map);
         }
+        Object.assign(this.state, linked);
+        this.ground.draw(this.engine, linked.drawn);
+        return null;
     }
 
     /** True for what can be opened again. */
     isKnown(map: string): boolean {
-        return isBundled(map) || isScene(map.slice(SCENE.length)) || this.own.has(map);
+        const scene = map.startsWith(SCENE) && isScene(map.slice(SCENE.length));
+        return isBundled(map) || scene || map.startsWith(CLAIM) || this.own.has(map);
     }
 
-    /** Opens a bundled map or scene anew, or one of a table. */
-    async open(map: string): Promise<void> {
-        const text = this.own.get(map);
-        if (text !== undefined) {
-            await this.openScene(map, { [map]: new TextEncoder().encode(text) }, null);
-            return;
-        }
-        if (map.startsWith(SCENE)) {
-            const { name, parts } = await loadScene(map.slice(SCENE.length));
+    /** Opens something of the list of maps anew. */
+    async open(map: string, stop?: AbortSignal): Promise<void> {
+        const own = this.own.get(map);
+        if (own) await this.openFiles(own, stop);
+        else if (map.startsWith(CLAIM)) await this.openClaim(map, stop);
+        else if (map.startsWith(SCENE)) {
             const { seed } = this.state;
-            await this.openScene(name, parts, this.state.map === map ? seed : null);
-            this.state.map = map;
-            return;
+            const files = await loadScene(map.slice(SCENE.length));
+            stop?.throwIfAborted();
+            await this.openScene(files, this.state.map === map ? seed : null, stop);
+        } else {
+            const [start, goal] = await this.openBundled(map, stop);
+            this.forget();
+            Object.assign(this.state, { start, goal });
         }
-        const [start, goal] = await this.openBundled(map);
-        this.forget();
-        Object.assign(this.state, { start, goal });
+        this.state.map = map;
+        this.before = null;
     }
 
-    private async openBundled(map: string): Promise<[Pair, Pair]> {
+    private async openBundled(map: string, stop?: AbortSignal): Promise<[Pair, Pair]> {
         const { name, parts, ends } = await load(map);
-        const facts = await this.ground.open(this.engine, name, parts);
+        stop?.throwIfAborted();
+        const facts = await this.ground.open(this.engine, name, parts, stop);
         this.leaveScene();
         this.tell(facts);
         this.state.map = map;
@@ -83,7 +101,7 @@ export class Source {
      * Own files: a map, a scene with its map, or a table of scenes. The names of what was opened,
      * and of what can be opened from now on.
      */
-    async openOwn(files: File[]): Promise<string[]> {
+    async openOwn(files: File[], stop?: AbortSignal): Promise<string[]> {
         const named = (pattern: RegExp) => files.find(({ name }) => pattern.test(name));
         const first = named(/\.(toml|csv)$/i) ?? named(/\.(ya?ml|map)$/i) ?? files[0];
         if (!first) return [];
@@ -92,30 +110,40 @@ export class Source {
             new Uint8Array(await file.arrayBuffer()),
         ]);
         const parts = Object.fromEntries(await Promise.all(read));
-        if (/\.csv$/i.test(first.name)) return this.openTable(first.name, parts);
-        if (/\.toml$/i.test(first.name)) await this.openScene(first.name, parts, null);
-        else {
-            this.tell(await this.ground.open(this.engine, first.name, parts));
-            this.leaveScene();
-            this.forget();
-            const { radius_m } = this.state;
-            this.state.start = this.ground.freeNear(0.25, radius_m);
-            this.state.goal = this.ground.freeNear(0.75, radius_m);
-        }
-        this.state.map = first.name;
+        if (/\.csv$/i.test(first.name)) return this.openTable(first.name, parts, stop);
+        const own = { name: first.name, parts: { ...(await bundledFiles()), ...parts } };
+        await this.openFiles(own, stop);
+        this.own.set(first.name, own);
+        [this.state.map, this.before] = [first.name, null];
         return [first.name];
     }
 
-    private async openTable(name: string, parts: Parts): Promise<string[]> {
+    private async openFiles(files: Files, stop?: AbortSignal): Promise<void> {
+        if (/\.toml$/i.test(files.name)) {
+            await this.openScene(files, null, stop);
+            return;
+        }
+        this.tell(await this.ground.open(this.engine, files.name, files.parts, stop));
+        this.leaveScene();
+        this.forget();
+        const { radius_m } = this.state;
+        this.state.start = this.ground.freeNear(0.25, radius_m);
+        this.state.goal = this.ground.freeNear(0.75, radius_m);
+    }
+
+    private async openTable(name: string, parts: Parts, stop?: AbortSignal): Promise<string[]> {
         const question = { ask: "barn_scenes", name };
-        const { head } = await this.engine.ask<{ name: string; text: string }[]>(question, parts);
-        for (const scene of head) this.own.set(scene.name, scene.text);
+        type Scenes = { name: string; text: string }[];
+        const { head } = await this.engine.ask<Scenes>(question, parts, stop);
+        for (const { name, text } of head) {
+            this.own.set(name, { name, parts: { [name]: new TextEncoder().encode(text) } });
+        }
         const names = head.map((scene) => scene.name);
-        await this.open(names[0]!);
+        await this.open(names[0]!, stop);
         return names;
     }
 
-    /** A map that a part of the page has opened. */
+    /** A map of a claim, which the part of the papers has opened. */
     show(facts: MapFacts, cells: Uint8Array, name: string): void {
         this.ground.show(facts, cells);
         this.leaveScene();
@@ -123,19 +151,50 @@ export class Source {
         this.state.map = name;
     }
 
+    /** Remembers what is there, before a claim is looked at. */
+    remember(): void {
+        const { opened } = this.engine;
+        if (this.before || !opened || this.state.map.startsWith(CLAIM)) return;
+        const { scene, sceneFiles } = this;
+        this.before = { opened, placed: placed(this.state), scene, sceneFiles };
+    }
+
+    /** The map of the claim stays. */
+    keep(): void {
+        this.before = null;
+    }
+
+    /** Goes back to what was there before claims were looked at. */
+    async goBack(): Promise<void> {
+        const { before } = this;
+        if (!before) return;
+        this.before = null;
+        const { head, parts } = await this.engine.reopen<MapFacts | SceneFacts>(before.opened);
+        const facts = "map" in head ? head.map : head;
+        this.ground.show(facts, parts["cells"] ?? new Uint8Array());
+        Object.assign(this.state, before.placed);
+        [this.scene, this.sceneFiles] = [before.scene, before.sceneFiles];
+        this.ground.draw(this.engine, before.placed.drawn);
+    }
+
     /** The scene has another world with another seed. */
     async reseed(): Promise<void> {
         const { scene, sceneFiles, state } = this;
         if (!scene || !sceneFiles || !scene.is_random || scene.seed === state.seed) return;
-        await this.openScene(sceneFiles.name, sceneFiles.parts, state.seed);
+        const { drawn } = state;
+        const map = state.map;
+        await this.openScene(sceneFiles, state.seed);
+        Object.assign(state, { map, drawn });
+        this.ground.draw(this.engine, drawn);
     }
 
-    private async openScene(name: string, parts: Parts, seed: number | null): Promise<void> {
+    private async openScene(files: Files, seed: number | null, stop?: AbortSignal): Promise<void> {
+        const { name, parts } = files;
         const question = { ask: "open_scene", name, seed };
-        const { head, parts: answer } = await this.engine.ask<SceneFacts>(question, parts);
+        const { head, parts: answer } = await this.engine.ask<SceneFacts>(question, parts, stop);
         this.ground.show(head.map, answer["cells"] ?? new Uint8Array());
         this.forget();
-        [this.scene, this.sceneFiles] = [head, { name, parts }];
+        [this.scene, this.sceneFiles] = [head, files];
         const robot = head.robots[0];
         Object.assign(this.state, {
             scene: new TextDecoder().decode(parts[name]),
@@ -146,13 +205,12 @@ export class Source {
         this.say([head.description ?? name, ...head.map.warnings].join("; "));
     }
 
-    private async openClaim(map: string): Promise<void> {
+    private async openClaim(map: string, stop?: AbortSignal): Promise<void> {
         const [, id, seed] = map.split(" ");
         const question = { ask: "open_claim", id, seed: seed ? Number(seed) : null };
-        const { head, parts } = await this.engine.ask<ClaimMap>(question);
-        const { drawn } = this.state;
+        const { head, parts } = await this.engine.ask<ClaimMap>(question, {}, stop);
         this.show(head.map, parts["cells"] ?? new Uint8Array(), map);
-        this.state.drawn = drawn;
+        [this.state.start, this.state.goal] = head.ends;
     }
 
     private leaveScene(): void {
@@ -168,4 +226,10 @@ export class Source {
     private tell({ name, width, height, warnings }: MapFacts): void {
         this.say([`${name}, ${width} x ${height}`, ...warnings].join("; "));
     }
+}
+
+/** A scene, with all maps that it may name. */
+async function withMaps(name: string, scene: string): Promise<Files> {
+    const parts = { ...(await bundledFiles()), [name]: new TextEncoder().encode(scene) };
+    return { name, parts };
 }

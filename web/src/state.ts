@@ -57,7 +57,7 @@ export interface State {
     claimMaps: number;
 }
 
-export const LIMITS = { queries: 1000, runs: 100, seed: 1e9, claimMaps: 200 };
+export const LIMITS = { queries: 1000, runs: 100, seed: 1e9, claimMaps: 200, drawn: 100_000 };
 
 export const initial = (): State => ({
     tab: "plan",
@@ -93,7 +93,7 @@ export const initial = (): State => ({
 });
 
 /** A link cannot hold more of a kind. */
-const MOST = 20_000;
+const MOST = 1000;
 const FARTHEST_M = 1e5;
 
 type Check<T> = (value: unknown) => value is T;
@@ -127,9 +127,9 @@ const MOST_SCENE = 100_000;
 const isScene: Check<string | null> = (value): value is string | null =>
     value === null || (typeof value === "string" && value.length < MOST_SCENE);
 const isList =
-    <T>(is: Check<T>): Check<T[]> =>
+    <T>(is: Check<T>, most = MOST): Check<T[]> =>
     (value): value is T[] =>
-        Array.isArray(value) && value.length <= MOST && value.every(is);
+        Array.isArray(value) && value.length <= most && value.every(is);
 
 const CHECKS: { [Field in keyof State]: Check<State[Field]> } = {
     tab: (value): value is Tab => TABS.some((tab) => tab === value),
@@ -151,7 +151,7 @@ const CHECKS: { [Field in keyof State]: Check<State[Field]> } = {
     goal: isPair,
     discs: isList(isDisc),
     walkers: isList(isWalker),
-    drawn: isList(isDrawn),
+    drawn: isList(isDrawn, LIMITS.drawn),
     compared: (value): value is Compared => value === "planners" || value === "stacks",
     planners: isList(isText),
     smoothers: isList(isText),

@@ -70,8 +70,12 @@ export const texts = {
         `This page's memory or time was not enough for that, and the library was started anew (${why}).`,
     notInLink: (map: string) =>
         `The map ${map} is not in the link: open it as a file. Here is the house.`,
+    sceneCommand: (options: string) =>
+        `The scene is as it was opened: drive it with keyway navigate --scene FILE${options}`,
     notInScene: "The walls that were drawn are not in the scene.",
     clipboard: "The address of this page is the link: copy it.",
+    tooManyWalls: (most: number) =>
+        `More than ${most} cells were drawn, which is too much for a link.`,
     stopped: "Stopped.",
     whole: "Show the whole map",
     notStarted: (why: string) => `The page could not start: ${why}.`,
@@ -140,6 +144,7 @@ export const texts = {
         command: "Command",
         remaining: "Path that remains",
         candidates: "Velocities tried",
+        notYet: "not worked out",
         rejected: "Rejected, because they",
         reasons: "Why this velocity",
         standing: "none",
@@ -148,8 +153,8 @@ export const texts = {
     },
     comparing: {
         ready: {
-            planners: "Press Compare to answer the same random queries with every planner.",
-            stacks: "Press Compare to drive every stack in the same world.",
+            planners: "Press Compare them to answer the same random queries with every planner.",
+            stacks: "Press Compare them to drive every stack in the same world.",
         },
         running: (done: number, all: number) => `${done} of ${all} drives are done`,
         done: (rows: number) => `compared: ${rows} rows, in the table below`,
@@ -179,6 +184,8 @@ export const texts = {
         measure: "Measure it again",
         method: "Method",
         length: "Length [m]",
+        keep: "Use this map in the other parts",
+        cutOff: (length: string) => `did not arrive (${length})`,
         shown: (claim: string, map: string) => `${claim} on ${map}`,
         measuring: (done: number, all: number) => `${done} of ${all} maps are measured`,
         measured: (claim: string, maps: number) =>

@@ -157,7 +157,11 @@ const BAD = [
     ["empty.toml", "", /empty\.toml: .*scene/],
     ["binary.toml", Buffer.from([0xff, 0xfe, 0x00, 0x80]), /binary\.toml: .*UTF-8/],
     ["old.toml", "version = 99\n", /old\.toml: .*99/],
-    ["robot.toml", "version = 2\nrobot = 7\nstart = [0, 0]\ngoal = [1, 1]\n", /robot\.toml: .*robot/],
+    [
+        "robot.toml",
+        "version = 2\nrobot = 7\nstart = [0, 0]\ngoal = [1, 1]\n",
+        /robot\.toml: .*robot/,
+    ],
     ["empty.csv", "world,x,y,radius\n", /empty\.csv/],
 ];
 

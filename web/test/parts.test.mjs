@@ -78,6 +78,50 @@ test("a scene with several robots, and a link to it", async () => {
     });
 });
 
+test("a scene that needs the house is opened from anywhere, with the house as it is", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await status(page, /17\.64 m/);
+        await page.getByRole("tab", { name: "Drive" }).click();
+        await chooseMap(page, "scene complaints/blocked_path");
+        await status(page, /Press Drive to simulate the scene/);
+        await press(page, "Drive");
+        const driven = await status(page, /the drive: reached after [^;]*$/);
+        // A wall of the house is not one of the scene's.
+        await chooseMap(page, "house");
+        await status(page, /Press Drive to simulate the drive/);
+        await page.getByLabel("The pointer").selectOption("wall");
+        const map = await page.locator("#map").boundingBox();
+        await page.mouse.move(map.x + 0.52 * map.width, map.y + 0.35 * map.height);
+        await page.mouse.down();
+        await page.mouse.move(map.x + 0.52 * map.width, map.y + 0.5 * map.height, { steps: 3 });
+        await page.mouse.up();
+        await chooseMap(page, "scene complaints/blocked_path");
+        await status(page, /Press Drive to simulate the scene/);
+        await press(page, "Drive");
+        assert.equal(await status(page, /the drive: reached after [^;]*$/), driven);
+        const other = await open(context, await link(page));
+        await press(other, "Drive");
+        assert.equal(await status(other, /the drive: reached after [^;]*$/), driven);
+    });
+});
+
+test("the last map that is chosen is shown", async () => {
+    await inBrowser({}, async (address, context) => {
+        const page = await open(context, address);
+        await page.route(/small_house.*png/, async (route) => {
+            await new Promise((later) => setTimeout(later, 1000));
+            await route.continue();
+        });
+        await chooseMap(page, "scene fleet/bay");
+        await chooseMap(page, "rooms");
+        await status(page, /a path of 5\d\.\d+ m/);
+        await page.waitForTimeout(1500);
+        assert.match(await page.locator("#status").textContent(), /a path of 5\d\.\d+ m/);
+        assert.equal(await page.locator("#controls select").first().inputValue(), "rooms");
+    });
+});
+
 test("own scenes are opened, with a world of their own or with their map", async () => {
     await inBrowser({}, async (address, context) => {
         const page = await open(context, address);
@@ -171,10 +215,15 @@ test("a claim is shown and measured", async () => {
         await shot(page, "papers");
         const other = await open(context, await link(page));
         await status(other, /S0-1 on scene of S0-1/);
-        await choose(other, "Claim", "S1-6");
-        await status(other, /S1-6 on/);
-        // Its map is the map of the page from now on.
-        await other.getByRole("tab", { name: "Plan" }).click();
-        await status(other, /a path of|no path|obstacle/);
+        await choose(other, "Claim", "S1-4");
+        await status(other, /S1-4 on/);
+        assert.match((await row(other, "dwa-to-goal"))[0], /did not arrive/);
+        // What was there before comes back, unless the map is kept.
+        await page.getByRole("tab", { name: "Plan" }).click();
+        await status(page, /a path of 17\.64 m/);
+        await page.getByRole("tab", { name: "Papers" }).click();
+        await status(page, /S0-1 on/);
+        await press(page, "Use this map in the other parts");
+        await status(page, /a path of (?!17\.64)/);
     });
 });

@@ -4,14 +4,15 @@ use crate::error::{Kind, PageError};
 use crate::map::{MapFacts, Opened, cells_of, facts};
 use crate::message::{Message, json};
 use crate::route::points;
-use keyway::geometry::Point;
+use keyway::geometry::{Disc, Point};
 use keyway::map::formats::digest;
 use keyway_lab::claims::{
-    Claim, ClaimReport, Experiment, Family, FamilyFigure, FigureVerdict, MapRow, Place,
+    Claim, ClaimReport, Experiment, Family, FamilyFigure, FigureVerdict, MapRow, Place, Shown,
 };
 use keyway_lab::reproduce::{measured_text, published_text, statement};
 use keyway_sim::episode::EpisodeError;
 use keyway_sim::report::MapSource;
+use keyway_sim::sim::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// `{"ask": "open_claim", "id", "seed"}`: opens a map of a claim's experiment, and shows what all
@@ -69,6 +70,12 @@ pub struct ClaimMap {
     pub ends: [Point; 2],
     /// Length of the line of each method \[m\]; `null` where it failed.
     pub lengths_m: Vec<Option<f64>>,
+    /// True for each drive that did not reach its goal: its line stops before.
+    pub is_cut_off: Vec<bool>,
+    /// Discs that the map does not show, `[x, y, radius]` \[m\].
+    pub discs: Vec<[f64; 3]>,
+    /// Moving obstacles at the beginning, `[x, y, radius]` \[m\].
+    pub movers: Vec<[f64; 3]>,
 }
 
 /// A claim and its verdict.
@@ -121,9 +128,19 @@ pub(crate) fn open_claim(ask: &OpenClaim) -> Result<(Opened, Message), PageError
         placement: None,
     };
     let opened = Opened { grid: map, source };
+    let is_cut_off = |shown: &Option<Shown>| {
+        let run = shown.as_ref().and_then(|shown| shown.run.as_ref());
+        run.is_some_and(|run| run.outcome != Outcome::Reached)
+    };
+    let disc = |disc: Disc| [disc.centre.x, disc.centre.y, disc.radius_m];
+    // Of several drives, the last one has the most obstacles.
+    let last = || shown.iter().rev().flatten().find(|shown| shown.run.is_some()).into_iter();
     let head = ClaimMap {
         map: facts(&opened, Vec::new()),
         ends,
+        is_cut_off: shown.iter().map(is_cut_off).collect(),
+        discs: last().flat_map(|shown| &shown.obstacles).map(|it| disc(*it)).collect(),
+        movers: last().flat_map(|shown| &shown.movers).map(|it| disc(it.at(0.0))).collect(),
         lengths_m: lines().map(|line| line.map(keyway::geometry::Polyline::length_m)).collect(),
     };
     let mut message = Message::new(json(&head)).with("cells", cells_of(&opened));

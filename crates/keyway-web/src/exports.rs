@@ -19,7 +19,7 @@ thread_local! {
 /// Makes room for a question of so many bytes; returns the address of the first one.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
-pub extern "C" fn room(bytes: usize) -> usize {
+pub(crate) extern "C" fn room(bytes: usize) -> usize {
     EXCHANGE.with_borrow_mut(|exchange| {
         exchange.question = vec![0; bytes];
         exchange.question.as_mut_ptr().addr()
@@ -29,7 +29,7 @@ pub extern "C" fn room(bytes: usize) -> usize {
 /// Answers the question; returns the address of the answer's first byte.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
-pub extern "C" fn ask() -> usize {
+pub(crate) extern "C" fn ask() -> usize {
     EXCHANGE.with_borrow_mut(|exchange| {
         let question = Message::from_bytes(&std::mem::take(&mut exchange.question));
         let question = question.unwrap_or_else(|error| Message::new(error.to_string()));
@@ -41,6 +41,6 @@ pub extern "C" fn ask() -> usize {
 /// The number of bytes of the answer.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
-pub extern "C" fn answer_bytes() -> usize {
+pub(crate) extern "C" fn answer_bytes() -> usize {
     EXCHANGE.with_borrow(|exchange| exchange.answer.len())
 }

@@ -76,9 +76,7 @@ impl Page {
                 let opened = self.map.as_ref().ok_or_else(Opened::none)?;
                 search::search(&ask, opened, &mut self.layers, &mut self.workspace)
             }
-            Question::OpenScene(ask) => {
-                Ok(self.open(scene::open_scene(&ask, message, self.map.as_ref())?))
-            }
+            Question::OpenScene(ask) => Ok(self.open(scene::open_scene(&ask, message)?)),
             Question::BarnScenes(ask) => scene::barn_scenes(&ask, message),
             Question::Drive(ask) => drive::drive(&ask, self.map.as_ref()),
             Question::Compare(ask) => {

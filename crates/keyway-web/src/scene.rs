@@ -126,44 +126,36 @@ fn text(scene: &SceneFile) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Opens a scene; `known` is the map that is open.
+/// Opens a scene.
 pub(crate) fn open_scene(
     ask: &OpenScene,
     message: &Message,
-    known: Option<&Opened>,
 ) -> Result<(Opened, Message), PageError> {
     let path = Path::new(&ask.name);
     let bytes = part(message, path).map_err(|error| scene_error(&error))?;
     let mut scene = scene_from_bytes(path, bytes).map_err(|error| scene_error(&error))?;
     scene.seed = ask.seed.unwrap_or(scene.seed);
-    let (opened, warnings) = map_of(&scene, message, known)?;
+    let (opened, warnings) = map_of(&scene, message)?;
     let map = SceneMap { grid: opened.grid.clone(), source: opened.source.clone() };
     let episode = episode_of(&scene, map, Others::default())?;
     let scene_facts = scene_facts(&scene, facts(&opened, warnings), &episode);
     Ok((opened.clone(), Message::new(json(&scene_facts)).with("cells", cells_of(&opened))))
 }
 
-/// The map of a scene: one that it makes, one of the files, or the one that is open.
-fn map_of(
-    scene: &SceneFile,
-    message: &Message,
-    known: Option<&Opened>,
-) -> Result<(Opened, Vec<String>), PageError> {
+/// The map of a scene: one that it makes, or one of the files.
+fn map_of(scene: &SceneFile, message: &Message) -> Result<(Opened, Vec<String>), PageError> {
     if let Some(made) = scene.generated_map() {
         let SceneMap { grid, source } = made.map_err(|error| scene_error(&error))?;
         return Ok((Opened { grid, source }, Vec::new()));
     }
     let path = scene.map.as_deref().unwrap_or(Path::new(""));
     let name = path.file_name().map_or(path, Path::new);
-    if part(message, name).is_ok() {
-        return open_file(name, None, message);
-    }
-    let known = known.filter(|known| Path::new(&known.source.name) == name);
-    known.map(|known| (known.clone(), Vec::new())).ok_or_else(|| {
+    if part(message, name).is_err() {
         let name = name.display();
         let message = format!("its map `{name}` is missing: open both files at once");
-        PageError::new(Kind::Input, message).field("scene")
-    })
+        return Err(PageError::new(Kind::Input, message).field("scene"));
+    }
+    open_file(name, None, message)
 }
 
 fn scene_facts(scene: &SceneFile, map: MapFacts, episode: &Episode) -> SceneFacts {

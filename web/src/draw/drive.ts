@@ -46,8 +46,10 @@ export function drawRobot(view: View, film: Film, shown: number, color: string):
     view.line([[x, y], tip], color, 3);
 }
 
-export function drawMovers(view: View, film: Film, shown: number): void {
-    for (const { at, radius_m } of film.moversAt(shown)) {
+/** Moving obstacles; one of the runs still goes on. */
+export function drawMovers(view: View, films: Film[], shown: number): void {
+    const film = films.find(({ cycles }) => cycles.length > shown) ?? films[0];
+    for (const { at, radius_m } of film?.moversAt(shown) ?? []) {
         view.disc(at, view.pixels(radius_m), view.colors.mover);
     }
 }

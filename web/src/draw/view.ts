@@ -215,7 +215,10 @@ export class View {
         const ratio = window.devicePixelRatio || 1;
         this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
         this.canvas.height = Math.max(1, Math.round(clientHeight * ratio));
+        const { middle, scale } = this;
+        const isWhole = scale === this.whole;
         this.fit();
+        if (!isWhole) [this.middle, this.scale] = [middle, scale];
     }
 
     /** Enlarges what is shown around a place, between a tenth and a hundred times the whole map. */

@@ -38,7 +38,8 @@ export class Engine {
     /** In the order in which they were asked: the library works at the first one. */
     private waiting = new Map<number, Waiting>();
     private next = 0;
-    private opened: Message | null = null;
+    /** The question by which the map was opened. */
+    opened: Message | null = null;
 
     /** `edits` are all changes of the map since it was opened. */
     constructor(private readonly edits: () => Question[]) {}
@@ -66,14 +67,27 @@ export class Engine {
         stop?: AbortSignal,
     ): Promise<Answer<Head>> {
         const message = { head: JSON.stringify(question), parts };
+        const answer = await this.answer<Head>(message, stop);
+        if (question.ask.startsWith("open_")) this.opened = message;
+        return answer;
+    }
+
+    /** Opens again what was open once. */
+    async reopen<Head>(opened: Message): Promise<Answer<Head>> {
+        const answer = await this.answer<Head>(opened);
+        this.opened = opened;
+        return answer;
+    }
+
+    private async answer<Head>(message: Message, stop?: AbortSignal): Promise<Answer<Head>> {
         const answer = await this.send(message, stop);
         const head = JSON.parse(answer.head) as Head & Partial<Failure>;
         if (head.error) throw new Refused(head.error);
-        if (question.ask.startsWith("open_")) this.opened = message;
         return { head, parts: answer.parts };
     }
 
     private send(message: Message, stop?: AbortSignal): Promise<Message> {
+        if (stop?.aborted) return Promise.reject(new Stopped("stopped"));
         const id = this.next++;
         return new Promise((resolve, reject) => {
             this.waiting.set(id, { message, resolve, reject });

@@ -143,6 +143,9 @@ export interface ClaimMap {
     map: MapFacts;
     ends: [Point, Point];
     lengths_m: (number | null)[];
+    is_cut_off: boolean[];
+    discs: [number, number, number][];
+    movers: [number, number, number][];
 }
 
 export interface Judged {

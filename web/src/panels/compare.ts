@@ -90,6 +90,11 @@ export class ComparePanel implements Panel {
     async refresh(): Promise<void> {
         this.running?.abort();
         this.clear();
+        const { compared, stacks, planners, smoothers } = this.page.state;
+        this.go.disabled =
+            compared === "stacks"
+                ? stacks.length === 0
+                : planners.length === 0 || smoothers.length === 0;
         this.page.say(this, texts.comparing.ready[this.page.state.compared]);
     }
 
@@ -225,8 +230,7 @@ export class ComparePanel implements Panel {
     }
 
     draw(view: View): void {
-        const [first] = this.films;
-        if (first) drawMovers(view, first, this.shown);
+        drawMovers(view, this.films, this.shown);
         this.runners.forEach(({ films }, i) => {
             const color = view.colors.series[i % SERIES] ?? "";
             for (const film of films) drawRobot(view, film, this.shown, color);

@@ -83,6 +83,7 @@ export function named(names: readonly string[]): (readonly [string, string])[] {
 
 export interface NumberField {
     element: HTMLElement;
+    input: HTMLInputElement;
     set(value: number): void;
 }
 
@@ -113,6 +114,7 @@ export function number(
     };
     return {
         element: labelled(label, input),
+        input,
         set: (now) => {
             known = Number(now.toFixed(3));
             input.value = String(known);

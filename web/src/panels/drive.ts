@@ -42,6 +42,7 @@ export class DrivePanel implements Panel {
     /** The robot whose mind is shown. */
     private robot = 0;
     private shown = 0;
+    private hasReasons = false;
     /** The scene for which the controls were made. */
     private controlled: unknown = undefined;
 
@@ -154,10 +155,12 @@ export class DrivePanel implements Panel {
                     text,
                 );
             const outcome = this.take(await ask(true));
+            this.hasReasons = false;
             this.showWhose();
             this.showCycle(0);
             // Reasons take several times as long as the drive.
             this.take(await ask(false, texts.driving.explaining(outcome)));
+            this.hasReasons = true;
             this.showCycle(this.shown);
         } catch (error) {
             if (this.running === running) say(this, failure(error));
@@ -176,6 +179,11 @@ export class DrivePanel implements Panel {
     private saveScene(): void {
         const { state, mapName, say } = this.page;
         save("scene.toml", state.scene ?? sceneFile(state, mapName()));
+        if (state.scene !== null) {
+            const { sceneStack, seed } = state;
+            const stack = sceneStack === "" ? "" : ` --stack ${sceneStack}`;
+            say(this, texts.sceneCommand(`${stack} --seed ${seed}`));
+        }
         if (state.drawn.length > 0) say(this, texts.notInScene);
     }
 
@@ -229,7 +237,7 @@ export class DrivePanel implements Panel {
         const cycle = film?.cycle(shown);
         if (cycle) {
             this.slider.input.setAttribute("aria-valuetext", `${cycle.t_s.toFixed(1)} s`);
-            this.moment.replaceChildren(reasons(cycle, film?.refusal(shown)));
+            this.moment.replaceChildren(reasons(cycle, film?.refusal(shown), this.hasReasons));
         }
         this.page.redraw();
     }
@@ -247,7 +255,7 @@ export class DrivePanel implements Panel {
             return;
         }
         drawMind(view, film, this.shown, this.page.state.fan);
-        drawMovers(view, film, this.shown);
+        drawMovers(view, this.films, this.shown);
         this.films.forEach((one, i) => {
             const several = colors.series[i % SERIES] ?? colors.robot;
             drawRobot(view, one, this.shown, this.films.length > 1 ? several : colors.robot);
@@ -257,7 +265,11 @@ export class DrivePanel implements Panel {
 }
 
 /** A moment in words and numbers. */
-function reasons(cycle: CycleReport, refusal: string | undefined): HTMLElement {
+function reasons(
+    cycle: CycleReport,
+    refusal: string | undefined,
+    hasReasons: boolean,
+): HTMLElement {
     const words = texts.driving;
     const speeds = (it: Speeds | null) =>
         it ? `${it.v_mps.toFixed(2)} m/s, ${it.omega_radps.toFixed(2)} rad/s` : words.standing;
@@ -269,7 +281,7 @@ function reasons(cycle: CycleReport, refusal: string | undefined): HTMLElement {
         [words.stopRule, refusal ?? words.letPass],
         [words.remaining, metres(cycle.remaining_m)],
         [words.movers, String(cycle.movers.length)],
-        [words.candidates, `${cycle.candidates}`],
+        [words.candidates, hasReasons ? `${cycle.candidates}` : words.notYet],
     ];
     for (const { because, count } of cycle.rejected.filter(({ count }) => count > 0)) {
         rows.push([words.rejected, `${because}: ${count}`]);

@@ -15,6 +15,8 @@ export interface Page {
     scene: SceneFacts | null;
     /** Shows a map that the library has opened. */
     showMap(facts: MapFacts, cells: Uint8Array, name: string): void;
+    /** The map of a claim stays in all parts. */
+    keepMap(): void;
     /**
      * Shows that the page works, with a button that stops it, until the work is done; `outer` stops
      * it, too. `text` is what is said meanwhile.
@@ -59,7 +61,8 @@ export interface Panel {
 /** What went wrong, for people; what nobody foresaw is thrown on. */
 export function failure(error: unknown): string {
     if (error instanceof Refused) return error.message;
-    if (error instanceof Stopped) return texts.stopped;
+    const isStopped = error instanceof DOMException && error.name === "AbortError";
+    if (error instanceof Stopped || isStopped) return texts.stopped;
     if (error instanceof Fault) return texts.fault(error.message);
     throw error;
 }

@@ -4,7 +4,16 @@ import type { ClaimFacts, ClaimMap, Judged } from "../engine/types";
 import { SERIES, type View } from "../draw/view";
 import { LIMITS, type Pair } from "../state";
 import { texts } from "../texts";
-import { button, check, decimals, grouped, legend, number, table } from "./controls";
+import {
+    button,
+    check,
+    decimals,
+    grouped,
+    legend,
+    number,
+    table,
+    type NumberField,
+} from "./controls";
 import { failure, Latest, type Page, type Panel } from "./panel";
 import { pairs } from "./plan";
 
@@ -15,6 +24,10 @@ export class PapersPanel implements Panel {
     private readonly methods = document.createElement("div");
     readonly wide = document.createElement("div");
     private readonly measure = button(texts.papers.measure, () => void this.judge());
+    private readonly scene: HTMLElement;
+    private readonly seed: NumberField;
+    private discs: [number, number, number][] = [];
+    private movers: [number, number, number][] = [];
     private readonly choices = document.createElement("div");
     private claims: ClaimFacts[] = [];
     private lines: Pair[][] = [];
@@ -28,15 +41,18 @@ export class PapersPanel implements Panel {
             page.changed();
         };
         const bounds = (most: number) => ({ min: 1, max: most, step: 1 });
+        this.scene = check(texts.papers.scene, state.paperScene, (shown) =>
+            set(() => (state.paperScene = shown)),
+        );
+        this.seed = number(texts.papers.seed, state.claimSeed, bounds(LIMITS.seed), (seed) =>
+            set(() => (state.claimSeed = seed)),
+        );
         this.element.append(
             this.choices,
             this.about,
-            check(texts.papers.scene, state.paperScene, (shown) =>
-                set(() => (state.paperScene = shown)),
-            ),
-            number(texts.papers.seed, state.claimSeed, bounds(LIMITS.seed), (seed) =>
-                set(() => (state.claimSeed = seed)),
-            ).element,
+            this.scene,
+            this.seed.element,
+            button(texts.papers.keep, () => page.keepMap()),
             this.methods,
             number(texts.papers.maps, state.claimMaps, bounds(LIMITS.claimMaps), (maps) =>
                 set(() => (state.claimMaps = maps)),
@@ -77,6 +93,8 @@ export class PapersPanel implements Panel {
             const claim = this.claim;
             if (!claim) return;
             this.showAbout(claim);
+            this.scene.hidden = !claim.has_scene;
+            this.seed.input.disabled = this.question.seed === null;
             const question = { ask: "open_claim", ...this.question };
             const { head, parts } = await working(stop, (signal) =>
                 engine.ask<ClaimMap>(question, {}, signal),
@@ -85,7 +103,12 @@ export class PapersPanel implements Panel {
             [this.page.state.start, this.page.state.goal] = head.ends;
             showMap(head.map, parts["cells"] ?? new Uint8Array(), names);
             this.lines = claim.methods.map((_, i) => pairs(parts[`line ${i}`]));
-            const rows = claim.methods.map((name, i) => [name, decimals(head.lengths_m[i])]);
+            [this.discs, this.movers] = [head.discs, head.movers];
+            const length = (i: number) => {
+                const text = decimals(head.lengths_m[i]);
+                return head.is_cut_off[i] ? texts.papers.cutOff(text) : text;
+            };
+            const rows = claim.methods.map((name, i) => [name, length(i)]);
             this.methods.replaceChildren(
                 legend(claim.methods.map((name, i) => [`series-${i % SERIES}`, name])),
                 table([texts.papers.method, texts.papers.length], rows),
@@ -170,6 +193,12 @@ export class PapersPanel implements Panel {
     }
 
     draw(view: View): void {
+        for (const [x, y, radius_m] of this.discs) {
+            view.disc([x, y], view.pixels(radius_m), view.colors.disc);
+        }
+        for (const [x, y, radius_m] of this.movers) {
+            view.disc([x, y], view.pixels(radius_m), view.colors.mover);
+        }
         this.lines.forEach((line, i) => {
             view.line(line, view.colors.series[i % SERIES] ?? "", 4 - Math.min(3, i * 0.6));
         });

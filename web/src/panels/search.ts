@@ -29,10 +29,14 @@ export class SearchPanel implements Panel {
     readonly hasEnds = true;
     private readonly result = document.createElement("div");
     private readonly slider = slider(texts.step, (shown) => this.showFirst(shown));
-    private readonly player = new Player(texts, () => this.play(1));
-    private readonly back = new Player({ play: texts.playBack, pause: texts.pause }, () =>
-        this.play(-1),
-    );
+    private readonly player: Player = new Player(texts, () => {
+        this.back.stop();
+        return this.play(1);
+    });
+    private readonly back = new Player({ play: texts.playBack, pause: texts.pause }, () => {
+        this.player.stop();
+        return this.play(-1);
+    });
     private found: Found[] = [];
     private inks: Ink[] = [];
     private shown = 0;
@@ -75,7 +79,12 @@ export class SearchPanel implements Panel {
     }
 
     get panes(): number {
-        return Math.max(1, this.found.length);
+        return this.planners.length;
+    }
+
+    private get planners(): string[] {
+        const { planner, beside } = this.page.state;
+        return [planner, ...beside.filter((name) => name !== "")];
     }
 
     refresh(): Promise<void> {
@@ -93,9 +102,9 @@ export class SearchPanel implements Panel {
     }
 
     private async search(stop: AbortSignal): Promise<void> {
-        const { state, say, working } = this.page;
+        const { say, working } = this.page;
         this.pause();
-        const planners = [state.planner, ...state.beside.filter((name) => name !== "")];
+        const { planners } = this;
         try {
             this.found = await working(stop, async (signal) => {
                 const all: Found[] = [];
