@@ -192,7 +192,7 @@ export const texts = {
             `${claim}, measured on ${maps} maps: the verdict is below`,
         verdict: (verdict: string) => `Verdict: ${verdict}.`,
         over: (maps: number, left: number) =>
-            `${maps} maps count; on ${left} a method failed that must succeed.`,
+            `Maps that count: ${maps}; left out, because a method failed that must succeed: ${left}.`,
         header: ["Claimed", "Published", "Measured", "Verdict"],
         verdicts: {
             holds: "holds",

@@ -115,9 +115,9 @@ test("the last map that is chosen is shown", async () => {
         });
         await chooseMap(page, "scene fleet/bay");
         await chooseMap(page, "rooms");
-        await status(page, /a path of 46\.28 m/);
+        await status(page, /a path of 4\d\.\d+ m/);
         await page.waitForTimeout(1500);
-        assert.match(await page.locator("#status").textContent(), /a path of 46\.28 m/);
+        assert.match(await page.locator("#status").textContent(), /a path of 4\d\.\d+ m/);
         assert.equal(await page.locator("#controls select").first().inputValue(), "rooms");
     });
 });
