@@ -46,6 +46,7 @@ class App implements Page {
     private bringing: AbortController | null = null;
     private places: NumberField[] = [];
     private maps: HTMLSelectElement | null = null;
+    private tools: HTMLSelectElement | null = null;
 
     constructor(readonly state: State) {
         this.engine = new Engine(this.ground.edits);
@@ -375,10 +376,14 @@ class App implements Page {
         });
         this.maps = maps.querySelector("select");
         const tools = Object.entries(texts.tools);
+        const pointer = choice(texts.pointer, tools, "move", (tool) => {
+            this.pointer.tool = tool as Tool;
+        });
+        this.tools = pointer.querySelector("select");
         element("controls").append(
             maps,
             box,
-            choice(texts.pointer, tools, "move", (tool) => (this.pointer.tool = tool as Tool)),
+            pointer,
             this.makePlaces(),
             button(texts.whole, () => {
                 this.view.fit();
@@ -418,6 +423,11 @@ class App implements Page {
     private showPlaces(): void {
         const numbers = [...this.state.start, ...this.state.goal];
         const isFixed = !this.has().ends;
+        const { obstacles, walls } = this.has();
+        const can: Record<string, boolean> = { wall: walls, disc: obstacles, walker: obstacles };
+        for (const option of this.tools?.options ?? []) {
+            option.disabled = can[option.value] === false;
+        }
         this.places.forEach((field, i) => {
             field.set(numbers[i]!);
             field.input.disabled = isFixed;

@@ -17,6 +17,8 @@ const ratio = () => window.devicePixelRatio || 1;
 export class Pointer {
     tool: Tool = "move";
     private held: Held | null = null;
+    /** True if what is held was put by this very pointer. */
+    private isNew = false;
     private last: Pair = [0, 0];
     /** Fingers on the canvas, by their numbers. */
     private readonly fingers = new Map<number, Pair>();
@@ -73,8 +75,14 @@ export class Pointer {
         this.last = place(event);
         this.fingers.set(event.pointerId, this.last);
         const at = this.view.toWorld(this.last);
-        // Two fingers zoom.
-        this.held = this.fingers.size > 1 ? null : this.under(at);
+        // Two fingers zoom; what the first one has put was not meant.
+        if (this.fingers.size > 1) {
+            this.takeBack();
+            this.held = null;
+            return;
+        }
+        this.held = this.under(at);
+        this.isNew = false;
         if (this.held?.kind === "draw") this.stroke(at, at);
         else if (this.held?.kind === "pan" && this.has().obstacles) this.put(at);
     }
@@ -136,6 +144,13 @@ export class Pointer {
         if (disc >= 0 || walker >= 0) this.moved();
     }
 
+    private takeBack(): void {
+        if (!this.isNew) return;
+        if (this.held?.kind === "disc") this.remove(this.held.index, -1);
+        else if (this.held?.kind === "walker end") this.remove(-1, this.held.index);
+        this.isNew = false;
+    }
+
     /** Puts what the tool says, and holds it. */
     private put(at: Pair): void {
         const { discs, walkers } = this.state;
@@ -146,6 +161,7 @@ export class Pointer {
             walkers.push({ from: rounded(at), to: at });
             this.held = { kind: "walker end", index: walkers.length - 1 };
         } else return;
+        this.isNew = true;
         this.moveTo(at);
     }
 
