@@ -33,7 +33,11 @@ const BUNDLED = new Map<string, Bundled>([
 /** Addresses of the files of scenes, by their paths. */
 const FILES: Record<string, string> = import.meta.glob(
     // One is a robot, and another one is driven by that robot.
-    ["../../scenes/{fleet,complaints}/*", "!**/long.toml", "!**/wrong_heading.toml"],
+    [
+        "../../scenes/{fleet,complaints,s1,you2021,zhuyin2024}/*",
+        "!**/long.toml",
+        "!**/wrong_heading.toml",
+    ],
     { query: "?url", import: "default", eager: true },
 );
 

@@ -122,6 +122,26 @@ export function number(
     };
 }
 
+/** A number that is slid, and shown beside its name. */
+export function range(
+    label: string,
+    value: number,
+    bounds: { min: number; max: number; step: number },
+    changed: (value: number) => void,
+): HTMLElement {
+    const input = document.createElement("input");
+    input.type = "range";
+    [input.min, input.max] = [String(bounds.min), String(bounds.max)];
+    [input.step, input.value] = [String(bounds.step), String(value)];
+    const shown = document.createElement("output");
+    shown.textContent = String(value);
+    input.oninput = () => (shown.textContent = input.value);
+    input.onchange = () => changed(input.valueAsNumber);
+    const box = labelled(label, input);
+    box.querySelector("label")?.after(shown);
+    return box;
+}
+
 export interface Slider {
     element: HTMLElement;
     input: HTMLInputElement;

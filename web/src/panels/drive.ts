@@ -17,6 +17,7 @@ import {
     named,
     number,
     Player,
+    range,
     save,
     slider,
     table,
@@ -96,9 +97,9 @@ export class DrivePanel implements Panel {
             return;
         }
         const disturbance = (label: string, field: "delay_s" | "noise_m", max: number) =>
-            number(label, state[field], { min: 0, max, step: 0.01 }, (value) =>
+            range(label, state[field], { min: 0, max, step: 0.01 }, (value) =>
                 set(() => (state[field] = value)),
-            ).element;
+            );
         this.controls.replaceChildren(
             choice(texts.stack, named(names.stacks), state.stack, (name) =>
                 set(() => (state.stack = name)),
