@@ -89,7 +89,7 @@ export class Ground {
 
     /** Draws all cells in the colours of now. */
     repaint(): void {
-        this.view.paint(this.cells);
+        void this.view.paint(this.cells);
     }
 
     /** The middle of a free cell near a place of the map, with free cells around as far as that. */

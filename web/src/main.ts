@@ -62,6 +62,7 @@ class App implements Page {
         const { view, ground, engine, has } = this;
         this.source = new Source(engine, ground, state, (text) => this.say(null, text));
         this.pointer = new Pointer(view, ground, engine, state, moved, drawn, this.redraw, has);
+        view.painted = this.redraw;
         this.stop.hidden = true;
         this.status.after(this.stop);
     }

@@ -50,6 +50,8 @@ const COLORS = [
     ...["runnerup", "admissible", "touching", "refused"],
 ];
 export const SERIES = 8;
+/** So many cells are painted at once: more would freeze the page. */
+const STRIP_CELLS = 1 << 21;
 
 export class View {
     context: CanvasRenderingContext2D;
@@ -64,6 +66,8 @@ export class View {
         [0, 0],
     ];
     facts: MapFacts | null = null;
+    /** Called whenever more of the map is painted. */
+    painted: () => void = () => {};
     /** Pictures of the map side by side: all of them show the same part of it. */
     private columns = 1;
     private rows = 1;
@@ -132,31 +136,40 @@ export class View {
     show(facts: MapFacts, cells: Uint8Array): void {
         this.facts = facts;
         this.known = knownCells(facts, cells);
-        this.paint(cells);
+        void this.paint(cells);
         this.fit();
     }
 
-    /** Draws the cells anew, in the colours of now. */
-    paint(cells: Uint8Array): void {
+    /** Draws the cells anew, in the colours of now: a large map strip by strip. */
+    async paint(cells: Uint8Array): Promise<void> {
         const facts = this.facts;
         if (!facts) return;
+        const { width, height } = facts;
         const picture = document.createElement("canvas");
-        [picture.width, picture.height] = [facts.width, facts.height];
+        [picture.width, picture.height] = [width, height];
         const context = picture.getContext("2d");
         if (!context) return;
-        const { ground, wall, unknown } = this.colors;
-        const image = context.createImageData(facts.width, facts.height);
-        const pixels = new Uint32Array(image.data.buffer);
-        const words = [ground, wall, unknown].map((color) => word(context, color));
-        for (let y = 0; y < facts.height; y++) {
-            // Rows come from the bottom.
-            const to = (facts.height - 1 - y) * facts.width;
-            for (let x = 0; x < facts.width; x++) {
-                pixels[to + x] = words[cells[y * facts.width + x] ?? 0]!;
-            }
-        }
-        context.putImageData(image, 0, 0);
         this.picture = picture;
+        const { ground, wall, unknown } = this.colors;
+        const words = new Uint32Array([ground, wall, unknown].map((color) => word(context, color)));
+        const rows = Math.max(1, Math.floor(STRIP_CELLS / width));
+        for (let first = 0; first < height; first += rows) {
+            if (first > 0) {
+                this.painted();
+                await new Promise(requestAnimationFrame);
+                if (this.picture !== picture) return;
+            }
+            const count = Math.min(rows, height - first);
+            const image = context.createImageData(width, count);
+            const pixels = new Uint32Array(image.data.buffer);
+            for (let y = 0; y < count; y++) {
+                // Rows come from the bottom.
+                const from = (height - 1 - first - y) * width;
+                for (let x = 0; x < width; x++) pixels[y * width + x] = words[cells[from + x]!]!;
+            }
+            context.putImageData(image, 0, first);
+        }
+        this.painted();
     }
 
     get knownCells(): [Pair, Pair] {
