@@ -67,7 +67,7 @@ class App implements Page {
         this.status.after(this.stop);
     }
 
-    /** What can be moved in the part that is shown. */
+    /** The things that can be moved in the part that is shown. */
     private readonly has = () => {
         const ends = this.panel?.hasEnds ?? false;
         const { tab } = this.state;

@@ -31,7 +31,7 @@ export class Pointer {
         private readonly moved: () => void,
         private readonly drawn: () => void,
         private readonly redraw: () => void,
-        /** What can be moved. */
+        /** The things that can be moved. */
         private readonly has: () => { ends: boolean; obstacles: boolean; walls: boolean },
     ) {
         const { canvas } = view;
@@ -112,7 +112,7 @@ export class Pointer {
         this.redraw();
     }
 
-    /** What lies under the pointer. */
+    /** The thing under the pointer. */
     private under(at: Pair): Held {
         const reach = 14 * ratio();
         const isNear = (place: Pair, size = reach) => {

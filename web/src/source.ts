@@ -1,4 +1,4 @@
-/** Where the map comes from: bundled maps and scenes, own files, and claims of papers. */
+/** The sources of maps: bundled maps and scenes, own files, and claims of papers. */
 
 import { bundledFiles, isBundled, isScene, load, loadScene } from "./bundled";
 import type { Engine } from "./engine/engine";
@@ -17,7 +17,7 @@ interface Files {
     parts: Parts;
 }
 
-/** What was on the map, beside the map itself. */
+/** All that was on the map, beside the map itself. */
 const placed = ({ start, goal, discs, walkers, drawn, scene, sceneStack, seed, map }: State) =>
     structuredClone({ start, goal, discs, walkers, drawn, scene, sceneStack, seed, map });
 
@@ -28,7 +28,7 @@ export class Source {
     private sceneFiles: Files | null = null;
     /** Own files that were opened, and scenes of own tables, by the names in the list of maps. */
     private readonly own = new Map<string, Files>();
-    /** What was there before a claim was looked at. */
+    /** The map and all on it before a claim was looked at. */
     private before: {
         opened: Message;
         placed: ReturnType<typeof placed>;

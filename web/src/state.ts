@@ -1,10 +1,10 @@
-/** What is shown: all of it fits into a link. */
+/** The state of the page: all of it fits into a link. */
 
 import type { Question } from "./engine/engine";
 
 export type Tab = "plan" | "search" | "drive" | "compare" | "papers";
 export const TABS: readonly Tab[] = ["plan", "search", "drive", "compare", "papers"];
-/** What is compared. */
+/** The things that are compared. */
 export type Compared = "planners" | "stacks";
 export type Pair = [number, number];
 export type Disc = { at: Pair; radius_m: number };

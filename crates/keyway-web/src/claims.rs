@@ -90,11 +90,11 @@ pub struct Judged {
 /// A figure of a claim, for people.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct JudgedFigure {
-    /// What is claimed of it.
+    /// The claim about it.
     pub statement: String,
-    /// What was published; a dash if nothing comparable was.
+    /// The published value; a dash if nothing comparable was published.
     pub published: String,
-    /// What was measured.
+    /// The measured value.
     pub measured: String,
     /// The verdict; `null` where nothing is judged.
     pub verdict: Option<FigureVerdict>,

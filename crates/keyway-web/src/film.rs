@@ -1,4 +1,4 @@
-//! What a page shows of a drive, cycle by cycle.
+//! Recordings of drives for a page, cycle by cycle.
 
 use keyway::geometry::{Point, Pose};
 use keyway::local::{Explanation, Fate};

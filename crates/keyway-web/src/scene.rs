@@ -54,7 +54,7 @@ pub struct SceneFacts {
     pub is_random: bool,
     /// The seed.
     pub seed: u64,
-    /// What the scene shows, for people.
+    /// Its description, for people.
     pub description: Option<String>,
     /// The robots.
     pub robots: Vec<SceneRobot>,

@@ -4,10 +4,10 @@ import type { Candidate, Film } from "../engine/film";
 import type { Pair } from "../state";
 import type { Colors, View } from "./view";
 
-/** How far ahead a moving obstacle's velocity is drawn [s]. */
+/** The time for which a moving obstacle's velocity is drawn ahead [s]. */
 const AHEAD_S = 1.5;
 
-/** What a robot knows and decides, as far as it lies below the robots. */
+/** The knowledge and the decision of a robot, as far as they lie below the robots. */
 export function drawMind(view: View, film: Film, shown: number, withFan: boolean): void {
     const cycle = film.cycle(shown);
     if (!cycle) return;
@@ -54,7 +54,7 @@ export function drawMovers(view: View, films: Film[], shown: number): void {
     }
 }
 
-/** Where all velocities that were tried would lead, the best ones on top. */
+/** The ways to which all velocities that were tried would lead, the best ones on top. */
 function drawFan(view: View, fan: Candidate[], from: Pair): void {
     const kinds: [Candidate["fate"], keyof Colors, number][] = [
         ["refused", "refused", 0.7],

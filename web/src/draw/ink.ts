@@ -6,7 +6,7 @@ import { word, type View } from "./view";
 /** Numbers of an event: kind, side, column and row of the node, column and row of the other end. */
 export const NUMBERS = 6;
 export const [EXPANDED, GENERATED, REPARENTED, SCANNED, LINKED, MET] = [0, 1, 2, 3, 4, 5];
-/** What a pixel shows; what is higher stays. */
+/** Contents of a pixel; the higher one stays. */
 const [SCANNED_INK, GENERATED_INK, EXPANDED_INK, BACK_INK] = [1, 2, 3, 4];
 /** Fewer nodes that lie apart are drawn as dots, which are seen on a large map, too. */
 const MOST_DOTS = 5000;
@@ -31,7 +31,7 @@ export class Ink {
     private nodes: number[] = [];
     /** True if nodes lie apart: jump points, and those of a tree. */
     private isSparse = false;
-    /** How many events of each kind are shown. */
+    /** The number of events of each kind that are shown. */
     counts: number[] = [];
 
     constructor(

@@ -87,7 +87,7 @@ export class View {
         return { ...Object.fromEntries(named), series } as unknown as Colors;
     }
 
-    /** What `draw` draws, as SVG. */
+    /** The picture that `draw` draws, as SVG. */
     svg(draw: () => void): string {
         const real = this.context;
         const written = new SvgContext(real, this.canvas.width, this.canvas.height);

@@ -85,7 +85,7 @@ export class Film {
         });
     }
 
-    /** Why the stop rule refused the command; nothing where it let it pass. */
+    /** The reason why the stop rule refused the command; nothing where it let it pass. */
     refusal(shown: number): string | undefined {
         return this.refusals.get(this.cycle(shown)?.cycle ?? -1);
     }

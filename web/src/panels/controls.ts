@@ -205,7 +205,7 @@ export function table(
     return box;
 }
 
-/** What the colours mean. */
+/** The meaning of the colours. */
 export function legend(entries: readonly (readonly [string, string])[]): HTMLElement {
     const list = document.createElement("ul");
     list.className = "legend";

@@ -113,7 +113,7 @@ export class DrivePanel implements Panel {
         );
     }
 
-    /** What was driven before is no longer true, and what is driven just now not needed. */
+    /** The last drive is no longer true, and one that goes on is not needed. */
     async refresh(): Promise<void> {
         this.give();
         this.makeControls();
@@ -209,7 +209,7 @@ export class DrivePanel implements Panel {
         return text;
     }
 
-    /** Whose mind is shown, where there are several robots. */
+    /** Chooses the robot whose mind is shown, where there are several. */
     private showWhose(): void {
         if (this.films.length < 2) return;
         const robots = this.films.map((_, i) => [String(i), String(i + 1)] as const);

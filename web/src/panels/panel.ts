@@ -4,7 +4,7 @@ import type { View } from "../draw/view";
 import type { Pair, State } from "../state";
 import { texts } from "../texts";
 
-/** What the panels have of the page. */
+/** The page, as far as the panels know it. */
 export interface Page {
     state: State;
     engine: Engine;
@@ -58,7 +58,7 @@ export interface Panel {
     leave?(): void;
 }
 
-/** What went wrong, for people; what nobody foresaw is thrown on. */
+/** The fault, for people; one that nobody foresaw is thrown on. */
 export function failure(error: unknown): string {
     if (error instanceof Refused) return error.message;
     const isStopped = error instanceof DOMException && error.name === "AbortError";
