@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
 
 const SCENES = new URL("../../crates/keyway-cli/scenes/", import.meta.url);
@@ -90,6 +90,38 @@ test("every planner and every smoother", { skip }, () => {
         found += Number(head.outcome === "found" || head.cost_cells > 0);
     });
     assert.ok(found > 60, `${found} paths of ${questions.length} answers`);
+});
+
+/** The cases of `testdata/plan`, as its README says. */
+function cases() {
+    const folder = new URL("../../testdata/plan/", import.meta.url);
+    const files = readdirSync(folder).filter((name) => name.endsWith(".toml"));
+    const texts = files.map((name) => readFileSync(new URL(name, folder), "utf8"));
+    return texts
+        .flatMap((text) => text.split("[[case]]").slice(1))
+        .map((text) => {
+            const rows = text.match(/map = "+\n?([^"]*?)\n?"/)[1].split("\n");
+            const end = (name) => JSON.parse(text.match(new RegExp(`${name} = (\\[.*\\])`))[1]);
+            return { rows, start: end("start"), goal: end("goal") };
+        });
+}
+
+test("every planner on the cases that every shell gives", { skip }, () => {
+    const { planners } = names();
+    const centre = ([x, y]) => [x + 0.5, y + 0.5];
+    const questions = cases().flatMap(({ rows, start, goal }) => {
+        const drawn = rows.map((row) => row.replaceAll(/[#?]/g, "@")).join("\n");
+        const size = `height ${rows.length}\nwidth ${rows[0].length}`;
+        const map = Buffer.from(`type octile\n${size}\nmap\n${drawn}\n`);
+        const ends = { start: centre(start), goal: centre(goal), radius_m: 0 };
+        return [
+            bytesOf({ ask: "open_map", name: "case.map" }, { "case.map": map }),
+            ...planners.map((planner) => bytesOf({ ask: "search", planner, ...ends })),
+        ];
+    });
+    let found = 0;
+    equal(questions, (head) => (found += Number(head.cost_cells > 0)));
+    assert.ok(found > 100, `${found} paths of ${questions.length} answers`);
 });
 
 test("scenes, comparisons and claims", { skip }, () => {
