@@ -460,6 +460,10 @@ async function main(): Promise<void> {
     document.title = texts.title;
     element("title").textContent = texts.title;
     element("subtitle").textContent = texts.subtitle;
+    document.documentElement.lang = texts.language;
+    for (const [id, label] of Object.entries(texts.regions)) {
+        element(id).setAttribute("aria-label", label);
+    }
     try {
         await new App(await fromFragment(location.hash.slice(1))).start();
     } catch (error) {

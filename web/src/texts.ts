@@ -1,5 +1,6 @@
 /** All texts of the page. Another language is another file with the same names. */
 export const texts = {
+    language: "en",
     title: "Keyway playground",
     subtitle:
         "Watch a robot's path planner decide. It is the library that drives robots, in this page.",
@@ -10,6 +11,15 @@ export const texts = {
         compare: "Compare",
         papers: "Papers",
     },
+    /** Names of the regions of the page, which screen readers read out. */
+    regions: {
+        stage: "Picture",
+        side: "Settings and results",
+        tabs: "Parts",
+        wide: "Tables",
+        map: "Picture of the map",
+    },
+    noCanvas: "this browser has no 2D canvas",
     map: "Map",
     groups: { maps: "Maps", scenes: "Scenes" },
     openFiles:

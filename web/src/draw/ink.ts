@@ -1,6 +1,7 @@
 /** A search as a picture of the map, to which each event adds a cell or a line of cells. */
 
 import type { Pair } from "../state";
+import { texts } from "../texts";
 import { word, type View } from "./view";
 
 /** Numbers of an event: kind, side, column and row of the node, column and row of the other end. */
@@ -43,7 +44,7 @@ export class Ink {
         this.canvas.width = Math.ceil(width / this.cells);
         this.canvas.height = Math.ceil(height / this.cells);
         const context = this.canvas.getContext("2d");
-        if (!context) throw new Error("this browser has no 2D canvas");
+        if (!context) throw new Error(texts.noCanvas);
         this.context = context;
         this.image = context.createImageData(this.canvas.width, this.canvas.height);
         this.pixels = new Uint32Array(this.image.data.buffer);

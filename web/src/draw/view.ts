@@ -2,6 +2,7 @@
 
 import type { MapFacts } from "../engine/types";
 import type { Pair } from "../state";
+import { texts } from "../texts";
 import { SvgContext } from "./svg";
 
 export interface Colors {
@@ -75,7 +76,7 @@ export class View {
 
     constructor(readonly canvas: HTMLCanvasElement) {
         const context = canvas.getContext("2d");
-        if (!context) throw new Error("this browser has no 2D canvas");
+        if (!context) throw new Error(texts.noCanvas);
         this.context = context;
     }
 
