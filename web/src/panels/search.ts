@@ -169,6 +169,7 @@ export class SearchPanel implements Panel {
     private showFirst(shown: number): void {
         this.shown = Math.min(this.count, Math.max(0, shown));
         this.slider.set(this.shown, this.count);
+        for (const ink of this.inks) ink.show(Math.min(this.shown, ink.count));
         this.page.redraw();
         this.showCounts();
     }
