@@ -4,8 +4,10 @@ import "./style.css";
 import { SCENES } from "./bundled";
 import { View } from "./draw/view";
 import { Engine } from "./engine/engine";
+import type { Parts } from "./engine/message";
 import type { MapFacts, Names, SceneFacts } from "./engine/types";
 import { Ground } from "./ground";
+import { fromFragment, toFragment } from "./link";
 import { button, choice, grouped, number, save, type NumberField } from "./panels/controls";
 import { ComparePanel } from "./panels/compare";
 import { DrivePanel } from "./panels/drive";
@@ -15,7 +17,7 @@ import { PlanPanel } from "./panels/plan";
 import { SearchPanel } from "./panels/search";
 import { Pointer, type Tool } from "./pointer";
 import { Source } from "./source";
-import { fromFragment, LIMITS, TABS, toFragment, type Pair, type State, type Tab } from "./state";
+import { LIMITS, TABS, type Pair, type State, type Tab } from "./state";
 import { texts } from "./texts";
 
 /** Work that is done sooner is not announced. */
@@ -166,17 +168,24 @@ class App implements Page {
         this.isLinkDue = true;
         setTimeout(async () => {
             this.isLinkDue = false;
-            history.replaceState(null, "", `#${await toFragment(this.state)}`);
+            await this.putLink();
         }, 300);
     }
 
-    async start(): Promise<void> {
+    /** Writes the state into the address; returns whether all of it has found room. */
+    private async putLink(): Promise<boolean> {
+        const { fragment, isWhole } = await toFragment(this.state, this.source.files);
+        history.replaceState(null, "", `#${fragment}`);
+        return isWhole;
+    }
+
+    async start(files: Parts): Promise<void> {
         this.names = (await this.engine.ask<Names>({ ask: "names" })).head;
         this.makeTabs();
         this.makeControls();
         this.listen();
         this.view.resize();
-        const notice = await this.source.restore();
+        const notice = await this.source.restore(files);
         this.showSource(this.state.map);
         await this.ground.tell(this.engine);
         await this.open(this.state.tab);
@@ -440,7 +449,11 @@ class App implements Page {
             this.say(null, texts.tooManyWalls(LIMITS.drawn));
             return;
         }
-        history.replaceState(null, "", `#${await toFragment(this.state)}`);
+        const isWhole = await this.putLink();
+        if (!isWhole) {
+            this.say(null, texts.mapTooLarge);
+            return;
+        }
         try {
             await navigator.clipboard.writeText(location.href);
             this.say(null, texts.copied);
@@ -465,7 +478,8 @@ async function main(): Promise<void> {
         element(id).setAttribute("aria-label", label);
     }
     try {
-        await new App(await fromFragment(location.hash.slice(1))).start();
+        const { state, files } = await fromFragment(location.hash.slice(1));
+        await new App(state).start(files);
     } catch (error) {
         element("status").textContent = texts.notStarted(String(error));
         throw error;

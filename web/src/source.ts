@@ -26,6 +26,8 @@ export class Source {
     scene: SceneFacts | null = null;
     /** The files of that scene, for another seed. */
     private sceneFiles: Files | null = null;
+    /** Own files of what is open, for a link. */
+    files: Parts = {};
     /** Own files that were opened, and scenes of own tables, by the names in the list of maps. */
     private readonly own = new Map<string, Files>();
     /** The map and all on it before a claim was looked at. */
@@ -34,6 +36,7 @@ export class Source {
         placed: ReturnType<typeof placed>;
         scene: SceneFacts | null;
         sceneFiles: Files | null;
+        files: Parts;
     } | null = null;
 
     constructor(
@@ -44,15 +47,18 @@ export class Source {
     ) {}
 
     /** Opens what a link names; where that is not to be had, the house, and says so. */
-    async restore(): Promise<string | null> {
+    async restore(files: Parts): Promise<string | null> {
         const linked = placed(this.state);
         const { map, scene, seed } = linked;
+        if (files[map]) this.own.set(map, { name: map, parts: files });
         try {
             if (isBundled(map)) await this.openBundled(map);
             else if (map.startsWith(CLAIM)) await this.openClaim(map);
             else if (isScene(map.slice(SCENE.length))) await this.open(map);
-            else if (scene !== null) await this.openScene(await withMaps(map, scene), seed);
-            else throw new Error(map);
+            else if (this.own.has(map)) await this.open(map);
+            else if (scene === null) throw new Error(map);
+            else await this.openFiles({ name: map, parts: sceneAlone(map, scene) });
+            await this.reseedTo(seed);
         } catch {
             await this.open("house");
             return texts.notInLink(map);
@@ -74,17 +80,16 @@ export class Source {
         if (own) await this.openFiles(own, stop);
         else if (map.startsWith(CLAIM)) await this.openClaim(map, stop);
         else if (map.startsWith(SCENE)) {
-            const { seed } = this.state;
             const files = await loadScene(map.slice(SCENE.length));
             stop?.throwIfAborted();
-            await this.openScene(files, this.state.map === map ? seed : null, stop);
+            await this.openScene(files, null, stop);
         } else {
             const [start, goal] = await this.openBundled(map, stop);
             this.forget();
             Object.assign(this.state, { start, goal });
         }
         this.state.map = map;
-        this.before = null;
+        [this.before, this.files] = [null, own?.parts ?? {}];
     }
 
     private async openBundled(map: string, stop?: AbortSignal): Promise<[Pair, Pair]> {
@@ -111,16 +116,18 @@ export class Source {
         ]);
         const parts = Object.fromEntries(await Promise.all(read));
         if (/\.csv$/i.test(first.name)) return this.openTable(first.name, parts, stop);
-        const own = { name: first.name, parts: { ...(await bundledFiles()), ...parts } };
+        const own = { name: first.name, parts };
         await this.openFiles(own, stop);
         this.own.set(first.name, own);
-        [this.state.map, this.before] = [first.name, null];
+        [this.state.map, this.before, this.files] = [first.name, null, parts];
         return [first.name];
     }
 
     private async openFiles(files: Files, stop?: AbortSignal): Promise<void> {
         if (/\.toml$/i.test(files.name)) {
-            await this.openScene(files, null, stop);
+            // It may name a bundled map.
+            const parts = { ...(await bundledFiles()), ...files.parts };
+            await this.openScene({ ...files, parts }, null, stop);
             return;
         }
         this.tell(await this.ground.open(this.engine, files.name, files.parts, stop));
@@ -136,7 +143,7 @@ export class Source {
         type Scenes = { name: string; text: string }[];
         const { head } = await this.engine.ask<Scenes>(question, parts, stop);
         for (const { name, text } of head) {
-            this.own.set(name, { name, parts: { [name]: new TextEncoder().encode(text) } });
+            this.own.set(name, { name, parts: sceneAlone(name, text) });
         }
         const names = head.map((scene) => scene.name);
         await this.open(names[0]!, stop);
@@ -155,8 +162,9 @@ export class Source {
     remember(): void {
         const { opened } = this.engine;
         if (this.before || !opened || this.state.map.startsWith(CLAIM)) return;
-        const { scene, sceneFiles } = this;
-        this.before = { opened, placed: placed(this.state), scene, sceneFiles };
+        const { scene, sceneFiles, files } = this;
+        this.before = { opened, placed: placed(this.state), scene, sceneFiles, files };
+        this.files = {};
     }
 
     /** The map of the claim stays. */
@@ -173,19 +181,24 @@ export class Source {
         const facts = "map" in head ? head.map : head;
         this.ground.show(facts, parts["cells"] ?? new Uint8Array());
         Object.assign(this.state, before.placed);
-        [this.scene, this.sceneFiles] = [before.scene, before.sceneFiles];
+        const { scene, sceneFiles, files } = before;
+        Object.assign(this, { scene, sceneFiles, files });
         this.ground.draw(this.engine, before.placed.drawn);
     }
 
     /** The scene has another world with another seed. */
     async reseed(): Promise<void> {
-        const { scene, sceneFiles, state } = this;
-        if (!scene || !sceneFiles || !scene.is_random || scene.seed === state.seed) return;
-        const { drawn } = state;
-        const map = state.map;
-        await this.openScene(sceneFiles, state.seed);
-        Object.assign(state, { map, drawn });
+        const { drawn, map, seed } = this.state;
+        if (!(await this.reseedTo(seed))) return;
+        Object.assign(this.state, { map, drawn });
         this.ground.draw(this.engine, drawn);
+    }
+
+    private async reseedTo(seed: number): Promise<boolean> {
+        const { scene, sceneFiles } = this;
+        if (!scene || !sceneFiles || !scene.is_random || scene.seed === seed) return false;
+        await this.openScene(sceneFiles, seed);
+        return true;
     }
 
     private async openScene(files: Files, seed: number | null, stop?: AbortSignal): Promise<void> {
@@ -228,8 +241,6 @@ export class Source {
     }
 }
 
-/** A scene, with all maps that it may name. */
-async function withMaps(name: string, scene: string): Promise<Files> {
-    const parts = { ...(await bundledFiles()), [name]: new TextEncoder().encode(scene) };
-    return { name, parts };
-}
+const sceneAlone = (name: string, scene: string): Parts => ({
+    [name]: new TextEncoder().encode(scene),
+});

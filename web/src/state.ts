@@ -176,31 +176,6 @@ export function checked(given: unknown): State {
     return state;
 }
 
-async function through(bytes: Uint8Array, stream: TransformStream): Promise<Uint8Array> {
-    const body = new Blob([bytes as BlobPart]).stream().pipeThrough(stream);
-    return new Uint8Array(await new Response(body).arrayBuffer());
-}
-
-/** The state as the fragment of an address. */
-export async function toFragment(state: State): Promise<string> {
-    const text = new TextEncoder().encode(JSON.stringify(state));
-    const packed = await through(text, new CompressionStream("deflate-raw"));
-    const letters = btoa(Array.from(packed, (byte) => String.fromCharCode(byte)).join(""));
-    return letters.replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
-}
-
-/** The state of a fragment, as far as it can be read. */
-export async function fromFragment(fragment: string): Promise<State> {
-    try {
-        const letters = atob(fragment.replaceAll("-", "+").replaceAll("_", "/"));
-        const packed = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-        const text = await through(packed, new DecompressionStream("deflate-raw"));
-        return checked(JSON.parse(new TextDecoder().decode(text)));
-    } catch {
-        return initial();
-    }
-}
-
 /** A drive, as a question for the library. */
 export function driveQuestion(state: State, map: string): Question {
     const { scene, sceneStack, seed, drawn } = state;

@@ -84,6 +84,7 @@ export const texts = {
         `The scene is as it was opened: drive it with keyway navigate --scene FILE${options}`,
     notInScene: "The walls that were drawn are not in the scene.",
     clipboard: "The address of this page is the link: copy it.",
+    mapTooLarge: "The own map is too large for a link: give its files with it.",
     tooManyWalls: (most: number) =>
         `More than ${most} cells were drawn, which is too much for a link.`,
     stopped: "Stopped.",

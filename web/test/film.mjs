@@ -46,7 +46,7 @@ await inBrowser({ viewport: { width: WIDTH, height: HEIGHT } }, async (address, 
         const { data, width, height } = PNG.sync.read(await page.screenshot());
         palette ??= quantize(data, COLORS);
         const now = applyPalette(data, palette);
-        // What is as before is left out: the last colour is not drawn.
+        // Pixels that stay are left out: the last colour is not drawn.
         const shown = before ? now.map((color, i) => (color === before[i] ? COLORS : color)) : now;
         const colors = [...palette];
         while (colors.length <= COLORS) colors.push([0, 0, 0]);

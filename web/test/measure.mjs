@@ -7,7 +7,7 @@ import { inBrowser, open, status } from "./browser.mjs";
 const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(2)} MB`;
 
-/** What a browser loads until the page answers. */
+/** The sizes of all that a browser loads until the page answers. */
 function sizes(served) {
     const contents = [...served].map((file) => readFileSync(file));
     const sum = (pack) => contents.reduce((all, content) => all + pack(content).length, 0);

@@ -140,6 +140,23 @@ test("own maps are opened, and bad ones leave what was there", async () => {
         assert.match(await status(page, /a path of/), /17\.\d+ m/);
         await give("own.map", "type octile\nheight 4\nwidth 4\nmap\n....\n....\n....\n....\n");
         await status(page, /a path of 4\.24 m/);
+        // It is in the link, unless it is too large.
+        await page.getByRole("button", { name: "Copy a link" }).click();
+        await status(page, /the link|clipboard/);
+        const other = await open(context, page.url());
+        await status(other, /a path of 4\.24 m/);
+        // Pixels that nothing makes smaller.
+        let seed = 1;
+        const pixels = Array.from({ length: 1200 * 1200 }, () => {
+            seed = (seed * 48271) % 2147483647;
+            return seed & 255;
+        });
+        const buffer = Buffer.concat([Buffer.from("P5\n1200 1200\n255\n"), Buffer.from(pixels)]);
+        const file = { name: "noise.pgm", mimeType: "image/x-portable-graymap", buffer };
+        await page.locator("#files").setInputFiles(file);
+        await status(page, /a path of (?!4\.24)|no path|obstacle|no cell/);
+        await page.getByRole("button", { name: "Copy a link" }).click();
+        await status(page, /too large for a link/);
     });
 });
 

@@ -218,7 +218,7 @@ test("a claim is shown and measured", async () => {
         await choose(other, "Claim", "S1-4");
         await status(other, /S1-4 on/);
         assert.match((await row(other, "dwa-to-goal"))[0], /did not arrive/);
-        // What was there before comes back, unless the map is kept.
+        // The map of before comes back, unless that of the claim is kept.
         await page.getByRole("tab", { name: "Plan" }).click();
         await status(page, /a path of 17\.64 m/);
         await page.getByRole("tab", { name: "Papers" }).click();

@@ -32,7 +32,7 @@
 //! | [`compare`](compare::Compare) | the report `keyway.compare/1`, and tables | |
 //! | [`summary`](compare::Summarise) | what runs of several stacks say together | |
 //! | [`claims`](claims::ClaimFacts) | the claims of the papers | |
-//! | [`open_claim`](claims::OpenClaim) | a map of a claim, and its methods there | see [`claims::ClaimMap`] |
+//! | [`open_claim`](claims::OpenClaim) | a map of a claim | see [`claims::ClaimMap`] |
 //! | [`measure_claim`](claims::MeasureClaim) | results on one map | |
 //! | [`judge_claim`](claims::JudgeClaim) | the verdict on a claim | |
 //!

@@ -55,13 +55,15 @@ pub struct Plan {
 /// The layers of the map, kept from plan to plan.
 pub(crate) type Layers = Option<(LayerConfig, RobotSize, SearchMap)>;
 
-/// The robot and the stack of a plan.
-pub(crate) struct Setup {
-    pub(crate) size: RobotSize,
-    pub(crate) stack: Stack,
+/// The robot and the stack of a plan, the layers of the map for them, and the planner.
+pub(crate) struct Ready<'l> {
+    size: RobotSize,
+    stack: Stack,
+    pub(crate) map: &'l SearchMap,
+    pub(crate) planner: Box<dyn GlobalPlanner + Send + Sync>,
 }
 
-pub(crate) fn setup(ask: &Plan) -> Result<Setup, PageError> {
+fn setup(ask: &Plan) -> Result<(RobotSize, Stack), PageError> {
     let config = |error: &dyn std::fmt::Display, field: &str| {
         PageError::new(Kind::Config, error).field(field)
     };
@@ -81,7 +83,7 @@ pub(crate) fn setup(ask: &Plan) -> Result<Setup, PageError> {
     let values = StartingValues::published_if(ask.as_published);
     let stack =
         size.plan_stack(values, &layers, &[]).map_err(|error| config(&error.fault, &error.path))?;
-    Ok(Setup { size, stack })
+    Ok((size, stack))
 }
 
 /// A bundled robot.
@@ -100,8 +102,7 @@ pub(crate) fn plan(
     layers: &mut Layers,
     workspace: &mut Workspace,
 ) -> Result<Message, PageError> {
-    let Setup { size, stack } = setup(ask)?;
-    let (map, planner) = ready(ask, opened, layers, &size, &stack)?;
+    let Ready { size, stack, map, planner } = ready(ask, opened, layers)?;
     let smoother = smoother(&stack.smoother)?;
     let goals = [point(ask.goal)];
     let request = RouteRequest {
@@ -148,15 +149,14 @@ pub(crate) const fn if_unreachable(ask: &Plan) -> IfUnreachable {
     if ask.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail }
 }
 
-/// The layers for a plan, those of the last one where they are the same, and the planner.
+/// Makes a plan ready; its layers are those of the last one where they are the same.
 pub(crate) fn ready<'l>(
     ask: &Plan,
     opened: &Opened,
     layers: &'l mut Layers,
-    size: &RobotSize,
-    stack: &Stack,
-) -> Result<(&'l SearchMap, Box<dyn GlobalPlanner + Send + Sync>), PageError> {
-    let known = layers.take().filter(|(config, of, _)| (config, of) == (&stack.map, size));
+) -> Result<Ready<'l>, PageError> {
+    let (size, stack) = setup(ask)?;
+    let known = layers.take().filter(|(config, of, _)| (config, of) == (&stack.map, &size));
     let map = match known {
         Some((.., map)) => map,
         None => size.layers(&opened.grid, stack.map.clone()).map_err(|error| no_layers(&error))?,
@@ -168,7 +168,7 @@ pub(crate) fn ready<'l>(
         .planner
         .build(map)
         .map_err(|error| PageError::new(Kind::Config, error).field("planner"))?;
-    Ok((map, planner))
+    Ok(Ready { size, stack, map, planner })
 }
 
 fn no_layers(error: &RobotLayersError) -> PageError {

@@ -71,11 +71,11 @@ pub struct SceneFacts {
 /// A robot of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneRobot {
-    /// Where it starts \[m\].
+    /// Its start \[m\].
     pub start: Point,
-    /// By way of which points \[m\].
+    /// Its way-points, in their order \[m\].
     pub via: Vec<Point>,
-    /// Where to \[m\].
+    /// Its goal \[m\].
     pub goal: Point,
     /// Name of its stack.
     pub stack: String,

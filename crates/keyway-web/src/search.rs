@@ -3,9 +3,7 @@
 use crate::error::PageError;
 use crate::map::Opened;
 use crate::message::{Message, json, numbers};
-use crate::route::{
-    Layers, Plan, Setup, if_unreachable, point, ready, refused, setup, with_shortest,
-};
+use crate::route::{Layers, Plan, Ready, if_unreachable, point, ready, refused, with_shortest};
 use keyway::map::Cell;
 use keyway::plan::{Plan as Planned, PlanError};
 use keyway::route::RouteQuery;
@@ -48,8 +46,7 @@ pub(crate) fn search(
     layers: &mut Layers,
     workspace: &mut Workspace,
 ) -> Result<Message, PageError> {
-    let Setup { size, stack } = setup(ask)?;
-    let (map, planner) = ready(ask, opened, layers, &size, &stack)?;
+    let Ready { map, planner, .. } = ready(ask, opened, layers)?;
     let query = RouteQuery {
         budget: ask.budget,
         if_unreachable: if_unreachable(ask),

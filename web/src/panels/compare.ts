@@ -6,19 +6,8 @@ import { drawMovers, drawRobot } from "../draw/drive";
 import { SERIES, type View } from "../draw/view";
 import { driveQuestion, LIMITS } from "../state";
 import { texts } from "../texts";
-import {
-    button,
-    checks,
-    decimals,
-    choice,
-    legend,
-    number,
-    Player,
-    save,
-    slider,
-    table,
-} from "./controls";
-import { failure, type Page, type Panel } from "./panel";
+import { button, checks, choice, decimals, legend, Moments, number, save, table } from "./controls";
+import { Job, type Page, type Panel } from "./panel";
 
 export class ComparePanel implements Panel {
     readonly element = document.createElement("div");
@@ -26,17 +15,18 @@ export class ComparePanel implements Panel {
     readonly wide = document.createElement("div");
     private readonly race = document.createElement("div");
     private readonly colors = document.createElement("div");
-    private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
-    private readonly player = new Player(texts, () => this.forward());
-    private readonly go = button(texts.compareNow, () => void this.run());
-    private running: AbortController | null = null;
+    private readonly moments = new Moments(texts, (cycle) => this.timeOf(cycle));
+    private readonly job = new Job(
+        texts.compareNow,
+        (stop) => this.run(stop),
+        (text) => this.page.say(this, text),
+    );
     /** The first drive of each stack, with all its robots. */
     private runners: { stack: string; films: Film[] }[] = [];
-    private shown = 0;
 
     constructor(private readonly page: Page) {
         const what = Object.entries(texts.compared);
-        this.race.append(this.slider.element, this.player.button, this.colors);
+        this.race.append(this.moments.slider.element, this.moments.player.button, this.colors);
         this.element.append(
             choice(texts.compareWhat, what, page.state.compared, (what) => {
                 page.state.compared = what as keyof typeof texts.compared;
@@ -44,7 +34,7 @@ export class ComparePanel implements Panel {
                 page.changed();
             }),
             this.controls,
-            this.go,
+            this.job.button,
             this.race,
         );
         this.makeControls();
@@ -88,45 +78,32 @@ export class ComparePanel implements Panel {
     }
 
     async refresh(): Promise<void> {
-        this.running?.abort();
-        this.clear();
         const { compared, stacks, planners, smoothers } = this.page.state;
-        this.go.disabled =
-            compared === "stacks"
-                ? stacks.length === 0
-                : planners.length === 0 || smoothers.length === 0;
-        this.page.say(this, texts.comparing.ready[this.page.state.compared]);
+        const lists = compared === "stacks" ? [stacks] : [planners, smoothers];
+        this.job.stop(lists.some((list) => list.length === 0));
+        this.clear();
+        this.page.say(this, texts.comparing.ready[compared]);
     }
 
     leave(): void {
-        this.player.stop();
-        this.running?.abort();
+        this.moments.player.stop();
+        this.job.stop();
     }
 
     private clear(): void {
-        this.player.stop();
-        [this.runners, this.shown] = [[], 0];
+        this.runners = [];
+        this.moments.begin([]);
         this.race.hidden = true;
         this.wide.replaceChildren();
-        this.page.redraw();
     }
 
-    private async run(): Promise<void> {
-        const { state, say, working } = this.page;
+    private run(stop: AbortSignal): Promise<void> {
         this.clear();
-        const running = new AbortController();
-        this.running = running;
-        this.go.disabled = true;
-        try {
-            await working(running.signal, (stop) =>
-                state.compared === "planners" ? this.comparePlanners(stop) : this.raceStacks(stop),
-            );
-        } catch (error) {
-            if (!running.signal.aborted) say(this, failure(error));
-        } finally {
-            this.go.disabled = false;
-            this.running = null;
-        }
+        return this.page.working(stop, (stop) =>
+            this.page.state.compared === "planners"
+                ? this.comparePlanners(stop)
+                : this.raceStacks(stop),
+        );
     }
 
     private async comparePlanners(stop: AbortSignal): Promise<void> {
@@ -171,7 +148,8 @@ export class ComparePanel implements Panel {
             this.showSummary(head);
             if (run > 0) continue;
             this.showColors();
-            this.showCycle(0);
+            this.race.hidden = false;
+            this.moments.begin(this.films.map(({ cycles }) => cycles.length));
         }
         say(this, texts.comparing.done(state.stacks.length));
     }
@@ -210,30 +188,17 @@ export class ComparePanel implements Panel {
         return this.runners.flatMap(({ films }) => films);
     }
 
-    private get last(): number {
-        return Math.max(0, ...this.films.map(({ cycles }) => cycles.length - 1));
-    }
-
-    private forward(): boolean {
-        this.showCycle(this.shown >= this.last ? 0 : this.shown + 1);
-        return this.shown < this.last;
-    }
-
-    private showCycle(shown: number): void {
-        this.shown = shown;
-        this.race.hidden = this.runners.length === 0;
-        this.slider.set(shown, this.last);
-        const longest = this.films.find(({ cycles }) => cycles.length - 1 === this.last);
-        const time = longest?.cycle(shown)?.t_s ?? 0;
-        this.slider.input.setAttribute("aria-valuetext", `${time.toFixed(1)} s`);
+    private timeOf(cycle: number): number {
         this.page.redraw();
+        const going = this.films.find(({ cycles }) => cycles.length > cycle);
+        return going?.cycle(cycle)?.t_s ?? 0;
     }
 
     draw(view: View): void {
-        drawMovers(view, this.films, this.shown);
+        drawMovers(view, this.films, this.moments.shown);
         this.runners.forEach(({ films }, i) => {
             const color = view.colors.series[i % SERIES] ?? "";
-            for (const film of films) drawRobot(view, film, this.shown, color);
+            for (const film of films) drawRobot(view, film, this.moments.shown, color);
         });
     }
 }

@@ -199,7 +199,7 @@ export function table(
     }
     const box = document.createElement("div");
     box.className = "table";
-    // What is wider than the page can be moved with the keyboard.
+    // A table wider than the page is moved with the keyboard.
     box.tabIndex = 0;
     box.append(made);
     return box;
@@ -233,6 +233,40 @@ export const decimals = (value: number | null | undefined, digits = 2) =>
 
 export const metres = (value: number | null | undefined, digits = 2) =>
     value === null || value === undefined ? "-" : `${decimals(value, digits)} m`;
+
+/** A slider over the cycles of drives, and a button that plays them. */
+export class Moments {
+    readonly slider: Slider;
+    readonly player: Player;
+    shown = 0;
+    private last = 0;
+
+    /** `changed` shows a cycle, and returns its time. */
+    constructor(
+        words: { time: string; play: string; pause: string },
+        private readonly changed: (cycle: number) => number,
+    ) {
+        this.slider = slider(words.time, (cycle) => this.show(cycle));
+        this.player = new Player(words, () => {
+            this.show(this.shown >= this.last ? 0 : this.shown + 1);
+            return this.shown < this.last;
+        });
+    }
+
+    /** The lengths of all drives that are shown together. */
+    begin(lengths: number[]): void {
+        this.player.stop();
+        this.last = Math.max(0, ...lengths.map((length) => length - 1));
+        this.show(0);
+    }
+
+    show(cycle: number): void {
+        this.shown = cycle;
+        this.slider.set(cycle, this.last);
+        const time_s = this.changed(cycle);
+        this.slider.input.setAttribute("aria-valuetext", `${time_s.toFixed(1)} s`);
+    }
+}
 
 /** Numbers that go on by themselves while a button is pressed in. */
 export class Player {

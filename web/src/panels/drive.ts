@@ -14,35 +14,35 @@ import {
     facts,
     legend,
     metres,
+    Moments,
     named,
     number,
-    Player,
     range,
     save,
-    slider,
     table,
 } from "./controls";
-import { failure, type Page, type Panel } from "./panel";
+import { Job, type Page, type Panel } from "./panel";
 
 export class DrivePanel implements Panel {
     readonly element = document.createElement("div");
     private readonly controls = document.createElement("div");
     private readonly result = document.createElement("div");
     private readonly moment = document.createElement("div");
-    private readonly slider = slider(texts.time, (cycle) => this.showCycle(cycle));
-    private readonly player = new Player(texts, () => this.forward());
-    private readonly drive = button(texts.drive, () => void this.run());
+    private readonly moments = new Moments(texts, (cycle) => this.showCycle(cycle));
+    private readonly job = new Job(
+        texts.drive,
+        (stop) => this.run(stop),
+        (text) => this.page.say(this, text),
+    );
     private readonly report = button(texts.saveReport, () => {
         const { reports } = this.driven ?? { reports: [] };
         save("report.json", JSON.stringify(reports.length === 1 ? reports[0] : reports));
     });
     private readonly whose = document.createElement("div");
-    private running: AbortController | null = null;
     private driven: Driven | null = null;
     private films: Film[] = [];
     /** The robot whose mind is shown. */
     private robot = 0;
-    private shown = 0;
     private hasReasons = false;
     /** The scene for which the controls were made. */
     private controlled: unknown = undefined;
@@ -51,18 +51,18 @@ export class DrivePanel implements Panel {
         this.report.disabled = true;
         this.element.append(
             this.controls,
-            this.drive,
+            this.job.button,
             button(texts.saveScene, () => this.saveScene()),
             this.report,
             this.result,
-            this.slider.element,
-            this.player.button,
+            this.moments.slider.element,
+            this.moments.player.button,
             check(texts.fan, page.state.fan, (shown) => {
                 page.state.fan = shown;
                 page.redraw();
             }),
             button(texts.zoomToRobot, () => {
-                const pose = this.films[this.robot]?.cycle(this.shown)?.pose;
+                const pose = this.films[this.robot]?.cycle(this.moments.shown)?.pose;
                 if (pose) page.lookAt([pose[0], pose[1]], 5);
             }),
             this.whose,
@@ -115,59 +115,43 @@ export class DrivePanel implements Panel {
 
     /** The last drive is no longer true, and one that goes on is not needed. */
     async refresh(): Promise<void> {
-        this.give();
+        this.job.stop();
         this.makeControls();
         this.clear();
         this.page.say(this, this.page.scene ? texts.driving.readyScene : texts.driving.ready);
     }
 
     leave(): void {
-        this.player.stop();
-        this.give();
-    }
-
-    /** Gives up what is driven just now. */
-    private give(): void {
-        this.running?.abort();
-        [this.drive.disabled, this.running] = [false, null];
+        this.moments.player.stop();
+        this.job.stop();
     }
 
     private clear(): void {
-        this.player.stop();
         [this.driven, this.films, this.robot] = [null, [], 0];
         this.report.disabled = true;
+        this.moments.begin([]);
         for (const part of [this.result, this.moment, this.whose]) part.replaceChildren();
-        this.slider.set(0, 0);
-        this.page.redraw();
     }
 
-    private async run(): Promise<void> {
-        const { engine, state, say, working, mapName } = this.page;
+    private async run(stop: AbortSignal): Promise<void> {
+        const { engine, state, working, mapName } = this.page;
         this.clear();
-        const running = new AbortController();
-        this.running = running;
-        this.drive.disabled = true;
-        try {
-            const question = driveQuestion(state, mapName());
-            const ask = (without_reasons: boolean, text?: string) =>
-                working(
-                    running.signal,
-                    (stop) => engine.ask<Driven>({ ...question, without_reasons }, {}, stop),
-                    text,
-                );
-            const outcome = this.take(await ask(true));
-            this.hasReasons = false;
-            this.showWhose();
-            this.showCycle(0);
-            // Reasons take several times as long as the drive.
-            this.take(await ask(false, texts.driving.explaining(outcome)));
-            this.hasReasons = true;
-            this.showCycle(this.shown);
-        } catch (error) {
-            if (this.running === running) say(this, failure(error));
-        } finally {
-            if (this.running === running) [this.drive.disabled, this.running] = [false, null];
-        }
+        const question = driveQuestion(state, mapName());
+        const ask = (without_reasons: boolean, text?: string) =>
+            working(
+                stop,
+                (stop) => engine.ask<Driven>({ ...question, without_reasons }, {}, stop),
+                text,
+            );
+        this.hasReasons = false;
+        const outcome = this.take(await ask(true));
+        this.showWhose();
+        this.moments.begin(this.films.map(({ cycles }) => cycles.length));
+        // Reasons take several times as long as the drive.
+        const explained = await ask(false, texts.driving.explaining(outcome));
+        this.hasReasons = true;
+        this.take(explained);
+        this.moments.show(this.moments.shown);
     }
 
     private take({ head, parts }: Answer<Driven>): string {
@@ -216,37 +200,26 @@ export class DrivePanel implements Panel {
         this.whose.replaceChildren(
             choice(texts.whose, robots, "0", (robot) => {
                 this.robot = Number(robot);
-                this.showCycle(this.shown);
+                this.moments.show(this.moments.shown);
             }),
         );
     }
 
-    /** The last cycle of the longest run. */
-    private get last(): number {
-        return Math.max(0, ...this.films.map(({ cycles }) => cycles.length - 1));
-    }
-
-    private forward(): boolean {
-        this.showCycle(this.shown >= this.last ? 0 : this.shown + 1);
-        return this.shown < this.last;
-    }
-
-    private showCycle(shown: number): void {
-        this.shown = shown;
-        this.slider.set(shown, this.last);
+    /** Shows a cycle, and returns its time. */
+    private showCycle(shown: number): number {
         const film = this.films[this.robot];
         const cycle = film?.cycle(shown);
-        if (cycle) {
-            this.slider.input.setAttribute("aria-valuetext", `${cycle.t_s.toFixed(1)} s`);
+        if (cycle)
             this.moment.replaceChildren(reasons(cycle, film?.refusal(shown), this.hasReasons));
-        }
         this.page.redraw();
+        return cycle?.t_s ?? 0;
     }
 
     draw(view: View): void {
         const { colors } = view;
+        const { shown } = this.moments;
         const film = this.films[this.robot];
-        if (!film?.cycle(this.shown)) {
+        if (!film?.cycle(shown)) {
             for (const { from } of this.page.scene ? [] : this.page.state.walkers) {
                 view.disc(from, view.pixels(WALKER_RADIUS_M), colors.mover);
             }
@@ -255,13 +228,13 @@ export class DrivePanel implements Panel {
             }
             return;
         }
-        drawMind(view, film, this.shown, this.page.state.fan);
-        drawMovers(view, this.films, this.shown);
+        drawMind(view, film, shown, this.page.state.fan);
+        drawMovers(view, this.films, shown);
         this.films.forEach((one, i) => {
             const several = colors.series[i % SERIES] ?? colors.robot;
-            drawRobot(view, one, this.shown, this.films.length > 1 ? several : colors.robot);
+            drawRobot(view, one, shown, this.films.length > 1 ? several : colors.robot);
         });
-        drawBelieved(view, film, this.shown);
+        drawBelieved(view, film, shown);
     }
 }
 

@@ -3,6 +3,7 @@ import type { MapFacts, Names, SceneFacts } from "../engine/types";
 import type { View } from "../draw/view";
 import type { Pair, State } from "../state";
 import { texts } from "../texts";
+import { button } from "./controls";
 
 /** The page, as far as the panels know it. */
 export interface Page {
@@ -102,6 +103,39 @@ export class Latest {
             }
         } finally {
             this.busy = null;
+        }
+    }
+}
+
+/** Work that a button starts; only the last one counts. */
+export class Job {
+    readonly button: HTMLButtonElement;
+    private running: AbortController | null = null;
+
+    constructor(
+        label: string,
+        private readonly work: (stop: AbortSignal) => Promise<void>,
+        private readonly failed: (text: string) => void,
+    ) {
+        this.button = button(label, () => void this.run());
+    }
+
+    /** Gives up what is done just now; another one can begin unless there is nothing to do. */
+    stop(isEmpty = false): void {
+        this.running?.abort();
+        [this.button.disabled, this.running] = [isEmpty, null];
+    }
+
+    private async run(): Promise<void> {
+        const running = new AbortController();
+        this.running = running;
+        this.button.disabled = true;
+        try {
+            await this.work(running.signal);
+        } catch (error) {
+            if (this.running === running) this.failed(failure(error));
+        } finally {
+            if (this.running === running) [this.button.disabled, this.running] = [false, null];
         }
     }
 }

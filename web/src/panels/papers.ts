@@ -14,7 +14,7 @@ import {
     table,
     type NumberField,
 } from "./controls";
-import { failure, Latest, type Page, type Panel } from "./panel";
+import { failure, Job, Latest, type Page, type Panel } from "./panel";
 import { pairs } from "./plan";
 
 export class PapersPanel implements Panel {
@@ -23,7 +23,11 @@ export class PapersPanel implements Panel {
     private readonly about = document.createElement("div");
     private readonly methods = document.createElement("div");
     readonly wide = document.createElement("div");
-    private readonly measure = button(texts.papers.measure, () => void this.judge());
+    private readonly job = new Job(
+        texts.papers.measure,
+        (stop) => this.judge(stop),
+        (text) => this.page.say(this, text),
+    );
     private readonly scene: HTMLElement;
     private readonly seed: NumberField;
     private discs: [number, number, number][] = [];
@@ -31,7 +35,6 @@ export class PapersPanel implements Panel {
     private readonly choices = document.createElement("div");
     private claims: ClaimFacts[] = [];
     private lines: Pair[][] = [];
-    private running: AbortController | null = null;
     private readonly latest = new Latest((stop) => this.open(stop));
 
     constructor(private readonly page: Page) {
@@ -57,7 +60,7 @@ export class PapersPanel implements Panel {
             number(texts.papers.maps, state.claimMaps, bounds(LIMITS.claimMaps), (maps) =>
                 set(() => (state.claimMaps = maps)),
             ).element,
-            this.measure,
+            this.job.button,
         );
     }
 
@@ -73,12 +76,12 @@ export class PapersPanel implements Panel {
     }
 
     refresh(): Promise<void> {
-        this.running?.abort();
+        this.job.stop();
         return this.latest.run();
     }
 
     leave(): void {
-        this.running?.abort();
+        this.job.stop();
         this.latest.stop();
     }
 
@@ -147,34 +150,24 @@ export class PapersPanel implements Panel {
     }
 
     /** Measures map by map; the verdict so far is shown. */
-    private async judge(): Promise<void> {
+    private async judge(outer: AbortSignal): Promise<void> {
         const { engine, state, say, working } = this.page;
         const claim = this.claim;
         if (!claim) return;
-        const running = new AbortController();
-        this.running = running;
-        this.measure.disabled = true;
-        const measured = (seed: number | null, stop: AbortSignal) =>
-            engine.ask<unknown>({ ask: "measure_claim", id: claim.id, seed }, {}, stop);
-        try {
-            await working(running.signal, async (stop) => {
-                const scene = claim.has_scene ? (await measured(null, stop)).head : null;
-                const rows: unknown[] = [];
-                while (rows.length < state.claimMaps) {
-                    say(this, texts.papers.measuring(rows.length, state.claimMaps));
-                    rows.push((await measured(state.claimSeed + rows.length, stop)).head);
-                    const question = { ask: "judge_claim", id: claim.id, rows, scene };
-                    const isShown = rows.length % 5 === 0 || rows.length === state.claimMaps;
-                    if (isShown) this.showVerdict((await engine.ask<Judged>(question)).head);
-                }
-            });
-            say(this, texts.papers.measured(claim.id, state.claimMaps));
-        } catch (error) {
-            if (!running.signal.aborted) say(this, failure(error));
-        } finally {
-            this.measure.disabled = false;
-            this.running = null;
-        }
+        await working(outer, async (stop) => {
+            const measured = (seed: number | null) =>
+                engine.ask<unknown>({ ask: "measure_claim", id: claim.id, seed }, {}, stop);
+            const scene = claim.has_scene ? (await measured(null)).head : null;
+            const rows: unknown[] = [];
+            while (rows.length < state.claimMaps) {
+                say(this, texts.papers.measuring(rows.length, state.claimMaps));
+                rows.push((await measured(state.claimSeed + rows.length)).head);
+                if (rows.length % 5 !== 0 && rows.length < state.claimMaps) continue;
+                const question = { ask: "judge_claim", id: claim.id, rows, scene };
+                this.showVerdict((await engine.ask<Judged>(question, {}, stop)).head);
+            }
+        });
+        say(this, texts.papers.measured(claim.id, state.claimMaps));
     }
 
     private showVerdict({ report, figures }: Judged): void {

@@ -213,7 +213,7 @@ export class SearchPanel implements Panel {
         if (pane === this.found.length - 1) this.showCounts();
     }
 
-    /** The colours have changed, or the map's size. */
+    /** The colours have changed. */
     repaint(): void {
         this.inks = [];
     }
