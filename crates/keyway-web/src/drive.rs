@@ -30,8 +30,6 @@ pub struct Drive {
     pub seed: Option<u64>,
     /// Name of the stack in the place of those of all robots.
     pub stack: Option<String>,
-    /// Name of the robot in the place of all robots.
-    pub robot: Option<String>,
     /// Drive on the map that is open, also where the scene has a world of its own.
     pub on_open_map: bool,
     /// Leave out the cycles: only reports.
@@ -95,6 +93,10 @@ impl From<&Footprint> for Outline {
 pub(crate) fn drive(ask: &Drive, opened: Option<&Opened>) -> Result<Message, PageError> {
     let mut scene = scene_of(&ask.scene)?;
     scene.seed = ask.seed.unwrap_or(scene.seed);
+    if let Some(stack) = &ask.stack {
+        scene.stack.clone_from(stack);
+        scene.robots.iter_mut().for_each(|robot| robot.stack = Some(stack.clone()));
+    }
     let map = match (scene.generated_map().filter(|_| !ask.on_open_map), opened) {
         (Some(map), _) => map.map_err(|error| scene_error(&error))?,
         (None, Some(Opened { grid, source })) => {
@@ -102,8 +104,7 @@ pub(crate) fn drive(ask: &Drive, opened: Option<&Opened>) -> Result<Message, Pag
         }
         (None, None) => return Err(Opened::none()),
     };
-    let others = Others { robot: ask.robot.as_deref(), stack: ask.stack.as_deref() };
-    let episode = episode_of(&scene, map, others)?;
+    let episode = episode_of(&scene, map)?;
     drive_episode(&episode, ask, &scene)
 }
 
@@ -116,32 +117,14 @@ pub(crate) fn scene_error(error: &dyn std::fmt::Display) -> PageError {
     PageError::new(Kind::Input, error).field("scene")
 }
 
-/// Names in the place of those of a scene.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Others<'a> {
-    pub(crate) robot: Option<&'a str>,
-    pub(crate) stack: Option<&'a str>,
-}
-
 /// The run of a scene, with bundled robots and stacks.
-pub(crate) fn episode_of(
-    scene: &SceneFile,
-    map: SceneMap,
-    others: Others<'_>,
-) -> Result<Episode, PageError> {
+pub(crate) fn episode_of(scene: &SceneFile, map: SceneMap) -> Result<Episode, PageError> {
     let episode = scene.episode(map, |robot, stack| {
-        let robot = named_robot(others.robot.unwrap_or(robot))?;
-        let name = others.stack.unwrap_or(stack);
-        let stack = Stack::by_name(name, &robot).ok_or_else(|| no_stack(name))?;
+        let robot = named_robot(robot)?;
+        let stack = Stack::by_name(stack, &robot).ok_or_else(|| no_stack(stack))?;
         Ok((robot, stack))
     });
-    let mut episode = episode.map_err(|Refused(error)| error)?;
-    if let Some(stack) = others.stack {
-        for robot in &mut episode.robots {
-            stack.clone_into(&mut robot.stack_name);
-        }
-    }
-    Ok(episode)
+    episode.map_err(|Refused(error)| error)
 }
 
 /// A scene's error as one of the page.

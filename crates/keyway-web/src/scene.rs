@@ -1,6 +1,6 @@
 //! Scene files.
 
-use crate::drive::{Others, episode_of, scene_error};
+use crate::drive::{episode_of, scene_error};
 use crate::error::{Kind, PageError};
 use crate::map::{MapFacts, Opened, cells_of, facts, open_file, part};
 use crate::message::{Message, json};
@@ -137,7 +137,7 @@ pub(crate) fn open_scene(
     scene.seed = ask.seed.unwrap_or(scene.seed);
     let (opened, warnings) = map_of(&scene, message)?;
     let map = SceneMap { grid: opened.grid.clone(), source: opened.source.clone() };
-    let episode = episode_of(&scene, map, Others::default())?;
+    let episode = episode_of(&scene, map)?;
     let scene_facts = scene_facts(&scene, facts(&opened, warnings), &episode);
     Ok((opened.clone(), Message::new(json(&scene_facts)).with("cells", cells_of(&opened))))
 }
@@ -187,7 +187,8 @@ mod tests {
     /// Worlds as they are published, with digits that nobody would choose.
     #[test]
     fn scenes_of_barn_are_the_same_after_writing_and_reading() {
-        let table = b"world,x,y,radius\n0,-0.075,0.075,0.075\n0,1e-7,12.3456789012345,0.1\n\
+        let table =
+            b"world,x,y,radius\n0,-0.075,0.075,0.075\n0,1e-7,12.3456789012345,0.123456789\n\
             3,-2.1000000000000001,8.0,0.3\n";
         let scenes = BarnRequest::scenes_from_bytes(Path::new("worlds.csv"), table, false).unwrap();
         assert_eq!(scenes.len(), 2);

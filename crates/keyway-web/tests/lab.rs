@@ -108,6 +108,9 @@ fn fans_hold_what_was_tried() {
     let mut drive = json!({"ask": "drive", "scene": scene, "stack": "s0-key-point"});
     let (driven, answer) = ask(&mut page, &drive);
     assert_eq!(driven["row"]["stack"], "s0-key-point", "{}", driven["error"]);
+    let own = format!("stack = \"s0-key-point\"\n{scene}");
+    let (named, _) = ask(&mut page, &json!({"ask": "drive", "scene": own}));
+    assert_eq!(named["cycles"], driven["cycles"], "as if the scene had named it");
     let bytes = answer.part("fans 0").unwrap().chunks_exact(4);
     let words: Vec<[u8; 4]> = bytes.map(|bytes| bytes.try_into().unwrap()).collect();
     let (mut at, mut chosen) = (0, 0);
