@@ -154,7 +154,17 @@ test("own scenes are opened, with a world of their own or with their map", async
         const other = await open(context, await link(page));
         await press(other, "Drive");
         assert.equal(await status(other, /the drive: reached after/), driven);
+        // Another seed is another world, in all parts.
+        const planned = async () => {
+            await other.getByRole("tab", { name: "Plan" }).click();
+            const text = await status(other, /a path of/);
+            await other.getByRole("tab", { name: "Drive" }).click();
+            return text;
+        };
+        const before = await planned();
         await fill(other, "Seed", "6");
+        await status(other, /Press Drive/);
+        assert.notEqual(await planned(), before);
         await status(other, /Press Drive/);
         await press(other, "Drive");
         assert.notEqual(await status(other, /the drive: /), driven);
