@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the pictures of docs/PLANNERS.md and prints its table of figures. Needs Rust alone.
+# Draws the pictures of docs/planners.md and docs/concepts.md, and prints the table of the former. Needs Rust alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -32,3 +32,6 @@ for name in dijkstra greedy astar astar4 bidirectional-optimal jps prepared bidi
             END { print "| `" name "` | " length_m " | " excess " | " expanded " | " generated " | " turns " | " why " |" }'
 done
 plan bidirectional-jps --animate "$images/bidirectional-jps.gif" > /dev/null
+
+# The picture of docs/concepts.md.
+plan jps --smoother continuous-curvature --picture "$PWD/docs/images/concepts/smoothed.png" > /dev/null

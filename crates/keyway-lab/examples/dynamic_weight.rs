@@ -1,5 +1,5 @@
 //! What the dynamic weight of [ZhuYin2024] does on empty maps: a table of nodes expanded and of
-//! lengths, for `docs/FINDINGS.md`.
+//! lengths, for `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example dynamic_weight`
 

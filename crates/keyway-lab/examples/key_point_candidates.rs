@@ -1,6 +1,6 @@
 //! Key points of [You2021] chosen from jump points, as in the paper, and from all cells: how often
 //! the paths differ, and how often they keep D; a table of measurements on seeded random maps, for
-//! `docs/FINDINGS.md`.
+//! `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example key_point_candidates`
 

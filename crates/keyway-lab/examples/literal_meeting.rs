@@ -1,5 +1,5 @@
 //! What the literal reading of \[You2021\]'s meeting rule costs, and what its moving targets gain:
-//! two tables of measurements on seeded random maps, for `docs/FINDINGS.md`.
+//! two tables of measurements on seeded random maps, for `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example literal_meeting`
 

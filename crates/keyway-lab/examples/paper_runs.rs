@@ -2,7 +2,7 @@
 //! long the way is, and how near the robot comes to anything.
 //!
 //! `cargo run --release -p keyway-lab --example paper_runs -- scenes runs.json`
-//! prints the tables of docs/FINDINGS.md,
+//! prints the tables of docs/lab/findings.md,
 //! and writes what is measured of each run into the file, which may be left out.
 
 use keyway::files::find_robot;

@@ -1,4 +1,4 @@
-//! What the curvature-continuous smoother makes of corners: a table for `docs/SMOOTHING.md`, of
+//! What the curvature-continuous smoother makes of corners: a table for `docs/smoothers.md`, of
 //! paths of `jps` between random free cells of the given maps.
 //!
 //! `cargo run --release -p keyway-lab --example rounded_corners -- PATHS_PER_MAP MAP...`

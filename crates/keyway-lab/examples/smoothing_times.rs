@@ -1,4 +1,4 @@
-//! How long each smoother takes: a table for `docs/PERFORMANCE.md`, of paths of `jps` between
+//! How long each smoother takes: a table for `docs/lab/performance.md`, of paths of `jps` between
 //! random free cells of the given maps; microseconds of wall clock, for each path the fastest of
 //! several rounds.
 //!

@@ -1,4 +1,4 @@
-"""Keyway beside other packages for Python, measured in one run; prints the tables of docs/PYTHON.md.
+"""Keyway beside other packages for Python, measured in one run; prints the tables of docs/python.md.
 
     pip install keyway-nav pathfinding pyastar2d scikit-image ir-sim
     python side_by_side.py small_house.yaml nav2_depot.yaml Berlin_0_1024.map

@@ -164,7 +164,7 @@ impl<'py> IntoPyObject<'py> for JsonRows {
     }
 }
 
-/// A report as a dictionary, with the names of `docs/JSON.md`.
+/// A report as a dictionary, with the names of `docs/reference/json.md`.
 pub(crate) fn json(py: Python<'_>, report: &impl serde::Serialize) -> PyResult<Json> {
     Ok(Json(pythonize::pythonize(py, report)?.cast_into::<PyDict>()?.unbind()))
 }

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 /// not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
 /// called meanwhile.
 ///
-/// Gives the report `keyway.batch/1` of `docs/JSON.md`.
+/// Gives the report `keyway.batch/1` of `docs/reference/json.md`.
 ///
 /// >>> import keyway
 /// >>> keyway.batch(["nowhere.toml"], out="unused")

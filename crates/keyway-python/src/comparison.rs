@@ -33,13 +33,13 @@ pub(crate) struct Comparison {
 
 #[pymethods]
 impl Comparison {
-    /// The rows as dictionaries, with the names of the columns of `table.csv` in `docs/JSON.md`.
+    /// The rows as dictionaries, with the names of the columns of `table.csv` in `docs/reference/json.md`.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<JsonRows> {
         Ok(JsonRows(pythonize::pythonize(py, &self.report["rows"])?.unbind()))
     }
 
-    /// The whole report, `keyway.compare/1` of `docs/JSON.md`: also every query, and the tests of each row against the first.
+    /// The whole report, `keyway.compare/1` of `docs/reference/json.md`: also every query, and the tests of each row against the first.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<Json> {
         json(py, &self.report)

@@ -64,7 +64,7 @@ impl Run {
         Floats2(of_points(py, smoothed.map_or(&[], Polyline::points)))
     }
 
-    /// What was measured, with the names of `run` in `docs/JSON.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
+    /// What was measured, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
     /// route it is empty.
     #[getter]
     fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
@@ -74,7 +74,7 @@ impl Run {
         }
     }
 
-    /// The whole report, `keyway.navigate/4` of `docs/JSON.md`.
+    /// The whole report, `keyway.navigate/4` of `docs/reference/json.md`.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<Json> {
         json(py, &self.report)

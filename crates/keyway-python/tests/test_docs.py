@@ -5,7 +5,7 @@ import re
 import pytest
 from conftest import REPOSITORY
 
-DOCUMENTS = [REPOSITORY / "docs" / "PYTHON.md", REPOSITORY / "crates" / "keyway-python" / "README.md", REPOSITORY / "README.md"]
+DOCUMENTS = [REPOSITORY / "docs" / "python.md", REPOSITORY / "crates" / "keyway-python" / "README.md", REPOSITORY / "README.md"]
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.parent.name + "/" + path.name)

@@ -1,4 +1,4 @@
-//! What users of navigation stacks complain about, driven: the scenes of `docs/COMPLAINTS.md`.
+//! What users of navigation stacks complain about, driven: the scenes of `docs/lab/complaints.md`.
 //!
 //! The bounds say what a user would still call solved. They are not what is measured today.
 
@@ -340,7 +340,7 @@ fn a_wrong_heading_at_the_start_is_mended_backwards() {
 /// Every scene is in the page, and every test that the page names is here.
 #[test]
 fn the_page_lists_scenes_and_tests() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/COMPLAINTS.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lab/complaints.md");
     let page = std::fs::read_to_string(page).unwrap();
     for entry in std::fs::read_dir(folder()).unwrap() {
         let path = entry.unwrap().path();

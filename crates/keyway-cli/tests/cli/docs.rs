@@ -29,7 +29,7 @@ const TEAM: &str = "version = 2\n[world]\nwidth_m = 4\nheight_m = 3\nresolution_
 
 #[test]
 fn every_member_of_every_report_is_documented() {
-    let (folder, text) = (folder(), doc("JSON.md"));
+    let (folder, text) = (folder(), doc("reference/json.md"));
     let curve = "plan rooms.map --start 1.5,1.5 --goal 9.5,9.5 --curve c.json --spacing 1";
     keyway(folder.path(), curve).expect_code(0);
     let curve = read(&folder, "c.json").parse::<Value>().unwrap();
@@ -88,7 +88,7 @@ fn every_member_of_every_report_is_documented() {
 
 #[test]
 fn every_column_of_the_answers_is_documented_in_its_order() {
-    let (folder, text) = (folder(), doc("JSON.md"));
+    let (folder, text) = (folder(), doc("reference/json.md"));
     keyway(folder.path(), "compare rooms.map --queries 1 --out out").expect_code(0);
     let csv = read(&folder, "out/queries.csv");
     let (_, rest) = text.split_once("| column | unit |").unwrap();
@@ -101,7 +101,7 @@ fn every_column_of_the_answers_is_documented_in_its_order() {
 #[test]
 fn the_files_of_the_scene_guide_can_be_used() {
     let folder = folder();
-    let text = doc("SCENES.md");
+    let text = doc("scenes.md");
     let mut blocks = text.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
     let scene = blocks.next().unwrap();
     write(&folder, "scene.toml", scene);

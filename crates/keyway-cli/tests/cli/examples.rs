@@ -46,6 +46,18 @@ fn run(folder: &Path, line: &str) {
     }
 }
 
+/// A file that examples name, as small as it can be.
+fn example_file(name: &str) -> &'static str {
+    match name {
+        "pairs.csv" => {
+            "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
+             keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n"
+        }
+        "noise.toml" => "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n",
+        _ => unreachable!("{name}"),
+    }
+}
+
 #[test]
 fn every_command_is_known_here() {
     let folder = tempfile::tempdir().unwrap();
@@ -73,11 +85,9 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("dynabarn_keyframes.csv"), frames).unwrap();
     let worlds = "world,plugin,radius\n0,a,0.5\n";
     std::fs::write(folder.path().join("dynabarn_worlds.csv"), worlds).unwrap();
-    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
-                 keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n";
-    std::fs::write(folder.path().join("pairs.csv"), pairs).unwrap();
-    let noise = "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n";
-    std::fs::write(folder.path().join("noise.toml"), noise).unwrap();
+    for name in ["pairs.csv", "noise.toml"] {
+        std::fs::write(folder.path().join(name), example_file(name)).unwrap();
+    }
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));
@@ -90,42 +100,53 @@ fn every_help_text_has_examples_that_work() {
     }
 }
 
-/// Those in the text of a page, between backticks; a flag or a name alone is none.
+/// The pages whose commands run here; the others are about ROS, records or files of a reader.
+const PAGES: [&str; 8] = [
+    "README.md",
+    "docs/choosing.md",
+    "docs/compare.md",
+    "docs/getting-started.md",
+    "docs/recipes.md",
+    "docs/safety.md",
+    "docs/stack.md",
+    "docs/your-robot.md",
+];
+
+/// The commands of a page's code blocks.
+fn fenced_commands(text: &str) -> Vec<String> {
+    let blocks = text.split("```").skip(1).step_by(2);
+    let lines = blocks.filter_map(|block| block.strip_prefix("sh\n")).flat_map(str::lines);
+    let commands = lines.filter_map(|line| line.trim().strip_prefix("keyway "));
+    // Text after a `#` is for people.
+    commands.map(|line| line.split(" #").next().unwrap().to_owned()).collect()
+}
+
+/// The whole commands in the text of a page, between backticks: those with options and without a
+/// name to fill in.
 fn inline_commands(text: &str) -> Vec<String> {
-    let text = text.replace('\n', " ");
-    let spans = text.split('`').skip(1).step_by(2);
-    let commands =
-        spans.filter_map(|span| span.strip_prefix("keyway ")).filter(|line| !line.contains("NAME"));
+    let text = text.split("```").step_by(2).collect::<Vec<_>>().join("\n").replace('\n', " ");
+    let commands = text.split('`').skip(1).step_by(2).filter_map(|it| it.strip_prefix("keyway "));
+    let is_whole = |line: &&str| {
+        line.contains(" --") && !["NAME", "FILE", "COMMAND", "..."].iter().any(|open| line.contains(open))
+    };
+    let commands = commands.filter(is_whole);
     commands.map(|line| line.split(" >").next().unwrap().to_owned()).collect()
 }
 
 #[test]
-fn every_command_on_the_page_of_the_stack_works() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/STACK.md");
-    let Ok(text) = std::fs::read_to_string(page) else { return };
-    let folder = tempfile::tempdir().unwrap();
-    keyway(folder.path(), "demo").expect_code(0);
-    let commands = inline_commands(&text);
-    assert!(commands.len() >= 2, "{commands:?}");
-    for line in commands.iter().filter(|line| *line != "batch") {
-        run(folder.path(), line);
-    }
-}
-
-#[test]
-fn every_command_in_the_readme_works() {
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
-    // The crate on its own has none.
-    let Ok(text) = std::fs::read_to_string(readme) else { return };
-    let folder = tempfile::tempdir().unwrap();
-    keyway(folder.path(), "demo").expect_code(0);
-    let mut is_fenced = false;
-    for line in text.lines() {
-        is_fenced ^= line.starts_with("```");
-        let line = line.trim().trim_start_matches("$ ");
-        if let Some(line) = line.strip_prefix("keyway ").filter(|_| is_fenced) {
-            // What follows a `#` is for people.
-            let line = line.split(" #").next().unwrap();
+fn every_command_of_the_pages_works() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for page in PAGES {
+        // The crate on its own has none.
+        let Ok(text) = std::fs::read_to_string(root.join(page)) else { return };
+        let folder = tempfile::tempdir().unwrap();
+        keyway(folder.path(), "demo").expect_code(0);
+        for name in ["pairs.csv", "noise.toml"] {
+            std::fs::write(folder.path().join(name), example_file(name)).unwrap();
+        }
+        let (fenced, inline) = (fenced_commands(&text), inline_commands(&text));
+        assert!(!fenced.is_empty() || !inline.is_empty(), "{page}");
+        for line in fenced.iter().chain(&inline) {
             run(folder.path(), line);
         }
     }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 const DOCUMENTS: [&str; 6] = [
     "README.md",
-    "docs/FINDINGS.md",
-    "docs/PERFORMANCE.md",
-    "docs/PLANNERS.md",
-    "docs/PYTHON.md",
-    "docs/SMOOTHING.md",
+    "docs/lab/findings.md",
+    "docs/lab/performance.md",
+    "docs/planners.md",
+    "docs/python.md",
+    "docs/smoothers.md",
 ];
 
 /// What a table comes from: a command, a test, or something that is not here.

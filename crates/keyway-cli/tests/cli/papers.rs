@@ -1,4 +1,4 @@
-//! Every source is defined once, in `docs/PAPERS.md`, and cited by its key.
+//! Every source is defined once, in `docs/papers.md`, and cited by its key.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -7,14 +7,14 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// All text that may cite something: sources and documentation, `PAPERS.md` itself left out.
+/// All text that may cite something: sources and documentation, `docs/papers.md` itself left out.
 fn texts() -> Vec<(PathBuf, String)> {
     let mut folders = ["crates", "docs", "scenes"].map(|folder| root().join(folder)).to_vec();
     let mut texts = Vec::new();
     let mut read = |path: PathBuf| {
         let is_text =
             path.extension().is_some_and(|extension| extension == "rs" || extension == "md");
-        if is_text && !path.ends_with("PAPERS.md") {
+        if is_text && !path.ends_with("docs/papers.md") {
             texts.push((path.clone(), std::fs::read_to_string(path).unwrap()));
         }
     };
@@ -30,7 +30,7 @@ fn texts() -> Vec<(PathBuf, String)> {
 
 /// `[Key]` at the beginning of a table's row, and the row.
 fn definitions() -> BTreeMap<String, String> {
-    let text = std::fs::read_to_string(root().join("docs/PAPERS.md")).unwrap();
+    let text = std::fs::read_to_string(root().join("docs/papers.md")).unwrap();
     let mut all = BTreeMap::new();
     for line in text.lines() {
         let Some((key, row)) = line.strip_prefix("| [").and_then(|row| row.split_once("] |"))
@@ -78,7 +78,7 @@ fn every_citation_is_defined_and_every_definition_is_cited() {
     );
 }
 
-/// Titles are in `PAPERS.md` alone, where they cannot differ.
+/// Titles are in `docs/papers.md` alone, where they cannot differ.
 #[test]
 fn no_source_is_cited_by_its_title() {
     let plain = |text: &str| -> String {
@@ -108,5 +108,5 @@ fn no_source_is_cited_by_its_title() {
 #[test]
 fn the_readme_names_the_papers() {
     let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
-    assert!(readme.contains("](docs/PAPERS.md)"));
+    assert!(readme.contains("](docs/papers.md)"));
 }

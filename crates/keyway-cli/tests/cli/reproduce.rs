@@ -392,7 +392,7 @@ fn the_documentation_has_the_tables_that_are_written() {
         std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name))
             .unwrap()
     };
-    let (findings, readme) = (document("docs/FINDINGS.md"), document("README.md"));
+    let (findings, readme) = (document("docs/lab/findings.md"), document("README.md"));
     for (text, header, columns) in [
         (&findings, "| claim | figure |", 3),
         (&findings, "| claim | what it says |", 3),

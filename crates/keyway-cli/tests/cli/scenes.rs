@@ -228,9 +228,9 @@ fn movers_pass_through_nothing() {
     assert_eq!(movers, 6);
 }
 
-/// What docs/FINDINGS.md says of a scene with the default stack, on the robot of the scene.
+/// What docs/lab/findings.md says of a scene with the default stack, on the robot of the scene.
 fn documented(scene: &str) -> EpisodeOutcome {
-    let path = folder().join("../docs/FINDINGS.md");
+    let path = folder().join("../docs/lab/findings.md");
     let text = std::fs::read_to_string(path).unwrap();
     let cells = |line: &str| -> Vec<String> {
         line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()

@@ -8,7 +8,7 @@ use std::time::Duration;
 /// Published lengths have few digits: they may differ by this much \[cells\].
 const TOLERANCE_CELLS: f64 = 0.01;
 
-/// One row of `keyway.bench.grid/1`, whose members docs/JSON.md explains.
+/// One row of `keyway.bench.grid/1`, whose members docs/reference/json.md explains.
 #[derive(Clone, Debug, Serialize)]
 pub struct GridRow {
     pub(crate) map: String,

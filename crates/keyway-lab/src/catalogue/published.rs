@@ -9,7 +9,7 @@ use keyway::navigate::Stack;
 /// A method of a paper in which a part is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PublishedUse {
-    /// Key of the paper in docs/PAPERS.md.
+    /// Key of the paper in docs/papers.md.
     pub source: &'static str,
     /// Description of the method.
     pub method: &'static str,

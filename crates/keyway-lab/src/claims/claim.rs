@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct Claim {
     /// Name such as `S0-1`; see [`Self::all`].
     pub id: &'static str,
-    /// Key of the paper in docs/PAPERS.md.
+    /// Key of the paper in docs/papers.md.
     pub paper: &'static str,
     /// The claim in a sentence.
     pub statement: &'static str,

@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Lengths that differ by less are equal \[m\].
 pub(super) const SAME_M: f64 = 1e-6;
 
-/// One row of `keyway.compare/1`, whose members docs/JSON.md explains.
+/// One row of `keyway.compare/1`, whose members docs/reference/json.md explains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CompareRow {
     pub(super) map: String,

@@ -31,12 +31,12 @@ class Comparison:
     @property
     def report(self, /) -> dict[str, Any]:
         """
-        The whole report, `keyway.compare/1` of `docs/JSON.md`: also every query, and the tests of each row against the first.
+        The whole report, `keyway.compare/1` of `docs/reference/json.md`: also every query, and the tests of each row against the first.
         """
     @property
     def rows(self, /) -> list[dict[str, Any]]:
         """
-        The rows as dictionaries, with the names of the columns of `table.csv` in `docs/JSON.md`.
+        The rows as dictionaries, with the names of the columns of `table.csv` in `docs/reference/json.md`.
         """
     def to_latex(self, /) -> str:
         """
@@ -701,7 +701,7 @@ class Run:
     @property
     def metrics(self, /) -> dict[str, Any]:
         """
-        What was measured, with the names of `run` in `docs/JSON.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
+        What was measured, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
         route it is empty.
         """
     @property
@@ -717,7 +717,7 @@ class Run:
     @property
     def report(self, /) -> dict[str, Any]:
         """
-        The whole report, `keyway.navigate/4` of `docs/JSON.md`.
+        The whole report, `keyway.navigate/4` of `docs/reference/json.md`.
         """
     @property
     def route(self, /) -> NDArray[float64]:
@@ -1010,7 +1010,7 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
     called meanwhile.
 
-    Gives the report `keyway.batch/1` of `docs/JSON.md`.
+    Gives the report `keyway.batch/1` of `docs/reference/json.md`.
 
     >>> import keyway
     >>> keyway.batch(["nowhere.toml"], out="unused")

@@ -1,5 +1,5 @@
 //! Reports of routes and runs, as types that serde writes: the JSON of the program, for every other
-//! caller as well. `docs/JSON.md` lists all fields with their units.
+//! caller as well. `docs/reference/json.md` lists all fields with their units.
 //!
 //! [`RouteReport`] is `keyway.plan/3`, [`CurveReport`] `keyway.curve/3`,
 //! [`crate::episode::RobotReport`] `keyway.navigate/4`. Figures are computed in

@@ -37,7 +37,7 @@ struct Parts {
     name: &'static str,
     /// What it is, in a sentence.
     about: &'static str,
-    /// The key in docs/PAPERS.md, where it was published.
+    /// The key in docs/papers.md, where it was published.
     source: Option<&'static str>,
     planner: &'static str,
     smoother: &'static str,
@@ -223,7 +223,7 @@ impl Stack {
         of_name(name).map(|parts| parts.about)
     }
 
-    /// The key in docs/PAPERS.md of the paper that published the stack of this name; `None` for one
+    /// The key in docs/papers.md of the paper that published the stack of this name; `None` for one
     /// that is nobody's.
     pub fn source(name: &str) -> Option<&'static str> {
         of_name(name)?.source

@@ -10,7 +10,7 @@
 //! what is left (half of the edge, where it is too short for both); then, in the order of the line,
 //! each that no obstacle limits takes what its neighbours left over. What is certified is the curve
 //! itself, not samples of it: [`Clearance::is_clear_curve`]. Why this method, and its proofs:
-//! `docs/SMOOTHING.md`.
+//! `docs/smoothers.md`.
 //!
 //! # Once more
 //! The path depends on the shortened line alone, and that is not shortened again: smoothing it

@@ -133,7 +133,7 @@ mod tests {
         assert!((corner.cut_for_radius(1.0 / peak) - 640.0).abs() < 1e-6);
     }
 
-    /// The table of `docs/SMOOTHING.md`: cut and depth for a radius of 1 m, of a circle and of
+    /// The table of `docs/smoothers.md`: cut and depth for a radius of 1 m, of a circle and of
     /// these curves.
     #[test]
     fn cuts_and_depths_for_a_radius_of_1_m() {

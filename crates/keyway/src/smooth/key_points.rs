@@ -23,7 +23,7 @@
 //!   which the sides met. A planner without jump points has the turning points of its path. Start
 //!   and goal need not be centres of cells; then those centres are jump points, too.
 //! - [`KeyPointCandidates::Cells`] is not in the paper: Q then holds every cell of the path, even
-//!   those between jump points. `docs/FINDINGS.md` compares the two.
+//!   those between jump points. `docs/lab/findings.md` compares the two.
 //! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
 //!   clearance stands in for D.
 //! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would

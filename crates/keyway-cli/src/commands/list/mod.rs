@@ -141,7 +141,7 @@ fn show_published(entry: &CatalogueEntry) -> Result<(), CliError> {
         return Ok(());
     }
     let command = if entry.kind == EntryKind::LocalPlanner { "navigate" } else { "plan" };
-    print(&format!("\nIn the papers (docs/PAPERS.md), as options of `keyway {command}`:"))?;
+    print(&format!("\nIn the papers (docs/papers.md), as options of `keyway {command}`:"))?;
     for Published { source, method, options } in entry.published.iter().map(published) {
         print(&format!("  [{source}] {method}:\n    {}", options.join(" ")))?;
     }

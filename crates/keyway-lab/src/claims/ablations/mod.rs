@@ -22,7 +22,7 @@ use serde::Serialize;
 /// Variants of a method, each compared with the method as published.
 #[derive(Debug)]
 pub struct Ablation {
-    /// Key of the paper in docs/PAPERS.md.
+    /// Key of the paper in docs/papers.md.
     pub paper: &'static str,
     /// Subject of the variation, in one sentence.
     pub about: &'static str,
@@ -42,7 +42,7 @@ pub struct Ablation {
 pub struct AblationReport {
     /// The experiment.
     pub experiment: &'static str,
-    /// Key of the paper in docs/PAPERS.md.
+    /// Key of the paper in docs/papers.md.
     pub paper: &'static str,
     /// Subject of the variation, in one sentence.
     pub about: &'static str,

@@ -24,7 +24,7 @@
 //! - **Target.** "The jump point before" those just found is the node that the other side expanded
 //!   last; at first its root. In eq. (2) `H1` and `G2` belong to that one point.
 //! - **Meeting.** The paper ends when the same jump point is in both lists. Taken literally
-//!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/FINDINGS.md`. By
+//!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/lab/findings.md`. By
 //!   default ([`JumpMeeting::Generated`]) every node of the other side, open or closed, stops a
 //!   scan and becomes a node of this side, too, even where it is not a jump point of this one.
 //! - **Several meetings** in one expansion: the one with the cheapest path counts, in a tie the
@@ -37,7 +37,7 @@
 //! - **An empty open list** of either side ends the search.
 //!
 //! The two halves of a path may share cells before they meet: the path then doubles back (6 of
-//! 92,513 random queries; `docs/FINDINGS.md`). It is returned as the method makes it.
+//! 92,513 random queries; `docs/lab/findings.md`). It is returned as the method makes it.
 //!
 //! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the
 //! search ends at the first meeting: paths need not be shortest ones.

@@ -40,7 +40,7 @@
 //!   ([`OpenKeys::Kept`], [`WeightAt::Node`]). Its definitions make x1 the *current* node of the
 //!   side, of which k is a function: then one k weighs the whole open list, and changes with every
 //!   turn ([`OpenKeys::Renewed`], [`WeightAt::Current`]). As published means the first here;
-//!   `docs/FINDINGS.md` has the figures of both.
+//!   `docs/lab/findings.md` has the figures of both.
 //! - The sides have met when their best nodes are the same (step 5), and also when one takes a node
 //!   that the other has expanded before: otherwise they might never meet. The first is a case of
 //!   the second: the forward side expands the common best node, then the backward side takes it.
@@ -59,7 +59,7 @@
 //!   constraint allows that cell or not.
 //! - Equation (3) makes k grow with the distance from the side's own root, even where h is still
 //!   large. On open maps much larger than the paper's the search then wanders: see
-//!   `docs/FINDINGS.md`.
+//!   `docs/lab/findings.md`.
 //! - A start or goal nearer than L to an obstacle lowers L likewise (with [`IfNoPath::Fail`] it is
 //!   an error), unless L is lifted in discs around both ends with `free_ends_m`.
 //! - The corner rule only matters for L of at most one cell: all side neighbours of an obstacle are
