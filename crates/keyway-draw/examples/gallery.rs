@@ -1,4 +1,4 @@
-//! Draws a made-up room with everything on it, and speed curves, into a folder:
+//! Draws an invented room with all layers, and speed curves, into a folder:
 //! `cargo run -p keyway-draw --example gallery -- pictures`
 
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
@@ -65,7 +65,7 @@ fn room_map(origin: Pose) -> Result<OccupancyGrid, Box<dyn Error>> {
     }))
 }
 
-/// Everything that can be put on a map.
+/// Draws all layers on a map.
 fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
     let map = room_map(origin)?;
     let frame = *map.frame();
@@ -105,7 +105,7 @@ fn room(origin: Pose) -> Result<Svg, Box<dyn Error>> {
         .svg())
 }
 
-/// A smooth way through the room \[m from the map's corner\].
+/// A smooth route through the room \[m from the map's corner\].
 fn route(count: u32) -> Vec<(f64, f64)> {
     (0..=count)
         .map(|i| {
@@ -115,7 +115,7 @@ fn route(count: u32) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A robot that strays a little from the route, and is slower where it turns.
+/// A robot that deviates a little from the route, and is slower in turns.
 fn drive(cruise: f64) -> Vec<TrajectoryPoint> {
     let way = route(400);
     let mut run: Vec<TrajectoryPoint> = Vec::new();

@@ -1,5 +1,5 @@
-//! A chart of your own, from the public interface alone: the empirical distribution of how far a
-//! way keeps from obstacles, with its 95 % confidence band (Dvoretzky, Kiefer and Wolfowitz).
+//! A custom chart made with the public interface only: the empirical distribution of the
+//! clearance along a path, with its 95 % confidence band (Dvoretzky, Kiefer and Wolfowitz).
 //!
 //! `cargo run -p keyway-draw --example own_chart -- clearances.svg`
 
@@ -10,7 +10,7 @@ use std::error::Error;
 const BAND: Rgb = Rgb(0xcf, 0xdf, 0xee);
 const RADIUS_M: f64 = 0.45;
 
-/// Distances to the nearest of three posts along a straight way \[m\], rising.
+/// Distances to the nearest of three posts along a straight path \[m\], ascending.
 fn clearances_m() -> Vec<f64> {
     let posts = [[2.0, 0.3], [5.0, -1.0], [7.5, 0.6]].map(Point::from);
     let places = (0..=200).map(|i| Point::new(0.05 * f64::from(i), 0.0));
@@ -20,7 +20,7 @@ fn clearances_m() -> Vec<f64> {
     clearances
 }
 
-/// A step at each of the values, which rise, with the confidence band.
+/// Step function of the ascending values, with the confidence band.
 fn distribution(values: &[f64]) -> Vec<ChartPoint> {
     let count = values.len() as f64;
     let half = ((2.0 / 0.05_f64).ln() / (2.0 * count)).sqrt();

@@ -15,10 +15,10 @@ const HALF_DIGIT_PX: f64 = 0.5 * DIGIT_HEIGHT * SMALL_TEXT_PX;
 /// Height of everything below the panel that belongs to its lower axis \[px\].
 pub(crate) const BOTTOM_AXIS_PX: f64 = TICK_PX + GAP_PX + SMALL_TEXT_PX + GAP_PX + TEXT_PX + 4.0;
 
-/// A place on the page.
+/// A position on the page.
 type Px = (f64, f64);
 
-/// An axis with the places of its ends.
+/// An axis with the positions of its ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale<'a> {
     pub(crate) axis: &'a Axis,
@@ -31,7 +31,7 @@ impl<'a> Scale<'a> {
         Self { axis, low_px: left_px, high_px: right_px }
     }
 
-    /// Categories lead downwards, values upwards.
+    /// A vertical axis: categories run downwards, values upwards.
     pub(crate) const fn upright(axis: &'a Axis, top_px: f64, bottom_px: f64) -> Self {
         if axis.is_of_categories {
             Self { axis, low_px: top_px + ROWS_INSET_PX, high_px: bottom_px - ROWS_INSET_PX }
@@ -44,7 +44,7 @@ impl<'a> Scale<'a> {
         self.px_at(self.axis.fraction(value))
     }
 
-    /// Like [`Self::px`], or the end of the axis where a value is beyond it.
+    /// Like [`Self::px`], with values beyond the axis moved to its end.
     pub(crate) fn px_within(&self, value: f64) -> f64 {
         self.px_at(self.axis.fraction(value).clamp(0.0, 1.0))
     }
@@ -53,7 +53,8 @@ impl<'a> Scale<'a> {
         self.low_px + (self.high_px - self.low_px) * fraction
     }
 
-    /// Ticks with their texts: each from a place to another one, with the text at a third one.
+    /// Draws ticks with their texts: each from one position to another, with the text at a third
+    /// one.
     fn draw_ticks(&self, out: &mut SvgWriter, anchor: Anchor, places: impl Fn(f64) -> [Px; 3]) {
         for (value, text) in &self.axis.marks {
             let [from, to, (x, base)] = places(self.px(*value));
@@ -62,7 +63,7 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// Ticks, their texts and the label below a panel whose lower edge is at `y`.
+    /// Draws the ticks, their texts and the label below a panel whose lower edge is at `y`.
     pub(crate) fn draw_below(&self, out: &mut SvgWriter, y: f64) {
         let base = y + TICK_PX + GAP_PX + DIGIT_HEIGHT * SMALL_TEXT_PX;
         self.draw_ticks(out, Anchor::Middle, |x| [(x, y), (x, y + TICK_PX), (x, base)]);
@@ -71,9 +72,9 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// Ticks, their texts and the label left of a panel whose left edge is at `x`; `width_px` is
-    /// the room taken ([`Axis::side_px`], or more to align several panels). Categories have names
-    /// alone.
+    /// Draws the ticks, their texts and the label left of a panel whose left edge is at `x`;
+    /// `width_px` is the space taken ([`Axis::side_px`], or more to align several panels).
+    /// Categories have only names.
     pub(crate) fn draw_left(&self, out: &mut SvgWriter, x: f64, width_px: f64) {
         if self.axis.is_of_categories {
             self.draw_rows(out, &self.axis.names, x - NAME_GAP_PX, Anchor::End);
@@ -85,12 +86,12 @@ impl<'a> Scale<'a> {
         self.draw_upright_label(out, x - width_px + DIGIT_HEIGHT * TEXT_PX);
     }
 
-    /// The notes of categories right of a panel whose right edge is at `x`.
+    /// Draws the notes of categories right of a panel whose right edge is at `x`.
     pub(crate) fn draw_notes(&self, out: &mut SvgWriter, x: f64) {
         self.draw_rows(out, &self.axis.notes, x + NOTE_GAP_PX, Anchor::Start);
     }
 
-    /// Each in the middle of its row.
+    /// Draws each text in the middle of its row.
     fn draw_rows(&self, out: &mut SvgWriter, texts: &[NameLines], x: f64, anchor: Anchor) {
         for (text, (value, _)) in texts.iter().zip(&self.axis.marks) {
             let below = 0.36 * SMALL_TEXT_PX + 0.5 * (text.height_px() - NameLines::LINE_PX);
@@ -118,7 +119,7 @@ impl<'a> Scale<'a> {
     }
 }
 
-/// The border of a panel.
+/// Draws the border of a panel.
 pub(crate) fn border(out: &mut SvgWriter, x: f64, y: f64, width: f64, height: f64) {
     out.tag("rect").at(x, y).size(width, height).attr("fill", "none").stroke(INK, LINE_PX).leaf();
 }

@@ -1,36 +1,36 @@
-//! Axes of charts: their ends, and the texts along them.
+//! Axes of charts: their ranges, and the texts along them.
 
 use crate::name_lines::NameLines;
 use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::ticks::{Ticks, span};
 
-/// With fewer marks an axis cannot be read.
+/// Minimum number of marks of a readable axis.
 const MIN_MARKS: usize = 3;
-/// At most how many intervals an axis has whose marks are not powers of ten.
+/// Maximum number of intervals of an axis whose marks are not powers of ten.
 const EVEN_INTERVALS: usize = 5;
 /// Width of grid lines \[px\].
 const GRID_PX: f64 = 0.7;
-/// Length of ticks, and room around texts \[px\].
+/// Length of ticks, and space around texts \[px\].
 pub(crate) const TICK_PX: f64 = 4.0;
 pub(crate) const GAP_PX: f64 = 4.0;
 /// Size of axis labels \[px\].
 pub(crate) const TEXT_PX: f64 = 12.0;
-/// Least distance of two categories below each other \[px\].
+/// Minimum distance between two categories in a column \[px\].
 const ROW_PX: f64 = 30.0;
-/// Room that the name or the note of a category leaves to the next one, and the outer categories
-/// to the ends of the axis \[px\].
+/// Space between the name or the note of a category and the next one, and between the outer
+/// categories and the ends of the axis \[px\].
 const ROW_GAP_PX: f64 = 6.0;
 pub(crate) const ROWS_INSET_PX: f64 = 4.0;
-/// Between a category's name or note and the panel \[px\].
+/// Distance between a category's name or note and the panel \[px\].
 pub(crate) const NAME_GAP_PX: f64 = 8.0;
 pub(crate) const NOTE_GAP_PX: f64 = 6.0;
 
-/// The axis of a chart: its ends, the texts along it, and what it shows.
+/// The axis of a chart: its range, the texts along it, and its quantity.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Axis {
     is_logarithmic: bool,
     pub(crate) is_of_categories: bool,
-    /// Its ends; of a logarithmic axis their logarithms.
+    /// Ends of the range; logarithms of them for a logarithmic axis.
     low: f64,
     high: f64,
     /// Values, each with its text.
@@ -41,24 +41,24 @@ pub struct Axis {
     /// The texts of an axis of categories, at both sides of the panel.
     pub(crate) names: Vec<NameLines>,
     pub(crate) notes: Vec<NameLines>,
-    /// Least distance of two categories below each other \[px\].
+    /// Minimum distance between two categories in a column \[px\].
     pub(crate) row_px: f64,
 }
 
 impl Axis {
-    /// A linear axis with round numbers that make at most `max_intervals` intervals.
+    /// Creates a linear axis with round numbers that make at most `max_intervals` intervals.
     pub fn linear(low: f64, high: f64, max_intervals: usize) -> Self {
         Self::with_ticks(low, high, &Ticks::new(low, high, max_intervals))
     }
 
-    /// A linear axis with the given ticks, which need not reach its ends.
+    /// Creates a linear axis with the given ticks, which need not reach its ends.
     pub fn with_ticks(low: f64, high: f64, ticks: &Ticks) -> Self {
         let marks = ticks.values.iter().copied().zip(ticks.texts()).collect();
         Self { low, high, marks, grid_px: GRID_PX, ..Self::default() }
     }
 
-    /// A logarithmic axis that holds all positive ones of the values. Its marks are powers of ten,
-    /// with 2 and 5 times them where the powers are few, and where these are few, too, round
+    /// Creates a logarithmic axis that covers all positive values. Its marks are powers of ten;
+    /// if these are few, 2 and 5 times them are added; if they are still few, the marks are round
     /// numbers at equal distances.
     pub fn powers(values: &[f64]) -> Self {
         let (low, high) = log_range(values, 0.06);
@@ -75,7 +75,7 @@ impl Axis {
         Self::logarithmic(low, high, enough.unwrap_or_else(evenly))
     }
 
-    /// A logarithmic axis with a mark at each positive one of the values.
+    /// Creates a logarithmic axis with a mark at each positive value.
     pub fn powers_at(values: &[f64]) -> Self {
         let (low, high) = log_range(values, 0.03);
         let mut places: Vec<f64> = positive(values).collect();
@@ -89,9 +89,9 @@ impl Axis {
         Self { is_logarithmic: true, low, high, marks, grid_px: GRID_PX, ..Self::default() }
     }
 
-    /// An axis of categories: the first one has the value 0, the next one 1. Upright it leads
-    /// downwards, is as long as its names and notes need, and breaks names that are wider than
-    /// `max_name_px`.
+    /// Creates an axis of categories: the first one has the value 0, the next one 1. A vertical
+    /// one runs downwards, is as long as its names and notes need, and breaks names that are
+    /// wider than `max_name_px`.
     pub fn categories<'n>(names: impl IntoIterator<Item = &'n str>, max_name_px: f64) -> Self {
         let marks: Vec<_> =
             (0..).map(f64::from).zip(names.into_iter().map(str::to_owned)).collect();
@@ -101,26 +101,26 @@ impl Axis {
         Self { is_of_categories: true, low, high, marks, names, row_px, ..Self::default() }
     }
 
-    /// Texts at the other ends of the rows of an upright axis of categories, such as their
+    /// Sets texts at the other ends of the rows of a vertical axis of categories, such as their
     /// numbers; a text may have several lines.
     #[must_use]
     pub fn notes<'n>(self, notes: impl IntoIterator<Item = &'n str>) -> Self {
         Self { notes: notes.into_iter().map(NameLines::of_lines).collect(), ..self }
     }
 
-    /// The quantity along the axis, with its unit.
+    /// Sets the quantity along the axis, with its unit.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
 
-    /// Makes the grid line at 0 a strong one: it separates positive values from negative ones.
+    /// Makes the grid line at 0 a strong one, which separates positive values from negative ones.
     #[must_use]
     pub fn strong_zero(self) -> Self {
         Self { has_strong_zero: true, ..self }
     }
 
-    /// The place of a value along the axis: 0 at its low end, 1 at its high one.
+    /// Position of a value along the axis: 0 at its low end, 1 at its high one.
     pub fn fraction(&self, value: f64) -> f64 {
         let at = if self.is_logarithmic { value.log10() } else { value };
         let span = self.high - self.low;
@@ -141,13 +141,13 @@ impl Axis {
         TICK_PX + GAP_PX + self.widest_px() + 2.0 * GAP_PX + TEXT_PX
     }
 
-    /// Width of the notes at the other side of the panel, with the room before them \[px\].
+    /// Width of the notes at the other side of the panel, with the space before them \[px\].
     pub(crate) fn notes_px(&self) -> f64 {
         let gap_px = if self.is_of_categories { NOTE_GAP_PX } else { 0.0 };
         gap_px + self.notes.iter().map(NameLines::width_px).fold(0.0, f64::max)
     }
 
-    /// Length of an upright axis of categories \[px\].
+    /// Length of a vertical axis of categories \[px\].
     pub(crate) fn length_px(&self) -> Option<f64> {
         let heights = self.names.iter().chain(&self.notes).map(NameLines::height_px);
         let row_px = heights.map(|height_px| height_px + ROW_GAP_PX).fold(self.row_px, f64::max);
@@ -156,13 +156,13 @@ impl Axis {
     }
 }
 
-/// The positive ones of the values that are finite.
+/// Returns the finite positive values.
 fn positive(values: &[f64]) -> impl Iterator<Item = f64> {
     values.iter().copied().filter(|&value| value > 0.0 && value.is_finite())
 }
 
-/// The logarithms of the smallest and the largest positive value, at least a little apart, with
-/// room at both ends as a share of their distance.
+/// Returns the logarithms of the smallest and the largest positive value, at least a little
+/// apart, with a margin at both ends as a share of their distance.
 fn log_range(values: &[f64], room: f64) -> (f64, f64) {
     let ends = span(positive(values)).map(|(low, high)| (low.log10(), high.log10()));
     let (low, high) = match ends {
@@ -174,7 +174,7 @@ fn log_range(values: &[f64], room: f64) -> (f64, f64) {
     (low - room, high + room)
 }
 
-/// A positive number without an exponent, as long as that is short.
+/// Formats a positive number without an exponent, as long as that is short.
 fn plain(value: f64) -> String {
     if (1e-4..1e7).contains(&value) {
         // Twelve digits hide the rounding of powers.
@@ -202,7 +202,7 @@ mod tests {
         // The peak memory of two planners on two maps [MB].
         assert_eq!(marks(&[13.9, 16.7, 28.7, 15.2]), ["15", "20", "25"]);
         assert_eq!(marks(&[100.0, 101.0]), ["50", "100", "200"]);
-        // Two powers alone, but a long way.
+        // Only two powers, but a long range.
         assert_eq!(marks(&[1.42, 251.0]), ["2", "5", "10", "20", "50", "100", "200"]);
         assert_eq!(marks(&[1e9, 1e12]), ["1e9", "1e10", "1e11", "1e12"]);
         assert_eq!(marks(&[0.0, f64::NAN, -1.0, f64::INFINITY]), ["1", "2", "5", "10"]);
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(Axis::linear(2.0, 2.0, 4).fraction(2.0), 0.5);
     }
 
-    /// As high as the highest of their names and notes.
+    /// Rows are as high as the highest of the names and notes.
     #[test]
     fn categories_have_room_for_their_texts() {
         let axis = Axis::categories(["a", "b"], 100.0);

@@ -1,4 +1,4 @@
-//! Box plots: how values are spread, for several groups over one axis.
+//! Box plots: the distributions of several groups of values over one axis.
 
 use crate::axis::TICK_PX;
 use crate::chart::Margins;
@@ -11,35 +11,35 @@ const WIDTH_PX: f64 = 420.0;
 const HALF_BOX_PX: f64 = 8.5;
 const HALF_CAP_PX: f64 = 4.5;
 const RING_PX: f64 = 2.2;
-/// A longer name has several lines.
+/// Maximum width of a name \[px\]; longer names have several lines.
 const NAME_PX: f64 = 150.0;
 const INTERVALS: usize = 7;
-/// Light enough for the marks within it, and for a page in grey.
+/// Light enough for the marks within the box, and for grey print.
 const BOX: Rgb = Rgb(0xcf, 0xdf, 0xee);
-/// A whisker is no longer than this many times its box.
+/// Maximum length of a whisker, in lengths of its box.
 const REACH: f64 = 1.5;
 
 /// Groups of values over one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxPlot<'a> {
-    /// A title above the plot; empty for none.
+    /// Title above the plot; empty for none.
     pub title: &'a str,
     /// The quantity, with its unit.
     pub label: &'a str,
     /// The groups, top one first.
     pub groups: &'a [BoxGroup<'a>],
-    /// What is to be said below; empty for nothing.
+    /// Caption below the plot; empty for none.
     pub caption: &'a str,
 }
 
 /// A group of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxGroup<'a> {
-    /// Its name.
+    /// Name of the group.
     pub name: &'a str,
-    /// Its values; `None`: it has none.
+    /// Values of the group; `None` if it has none.
     pub values: Option<&'a Sample>,
-    /// What stands at the other end of its row, such as the number of its values.
+    /// Text at the other end of its row, such as the number of its values.
     pub note: &'a str,
 }
 
@@ -57,7 +57,7 @@ pub fn box_plot(plot: &BoxPlot<'_>) -> Svg {
     chart.panel(rows, |panel| draw_boxes(panel, plot.groups)).svg()
 }
 
-/// The axis: all values, with room at both ends; from 0 where that is not far.
+/// Returns the range of the axis: all values, with a margin at both ends; from 0 if that is near.
 fn range(groups: &[BoxGroup<'_>]) -> (f64, f64) {
     let samples = groups.iter().filter_map(|group| group.values);
     let ends = span(samples.flat_map(|sample| sample.values().iter().copied()));
@@ -94,7 +94,7 @@ fn draw_box(plot: &mut Plot<'_>, sample: &Sample, y: f64) {
     for (dx, dy) in [(3.0, 3.0), (3.0, -3.0)] {
         plot.segment([(x - dx, y - dy), (x + dx, y + dy)], INK, 1.1);
     }
-    // What falls on the same pixel is not drawn again.
+    // Values on the same pixel are drawn once.
     let mut before = f64::NAN;
     for &value in sample.values().iter().filter(|&&value| value < low || value > high) {
         let x = plot.x_px(value);
@@ -107,7 +107,7 @@ fn draw_box(plot: &mut Plot<'_>, sample: &Sample, y: f64) {
     }
 }
 
-/// The farthest values within reach of the box.
+/// Returns the farthest values within reach of the box.
 fn whiskers(sample: &Sample) -> (f64, f64) {
     let Summary { lower_quartile, upper_quartile, .. } = sample.summary();
     let reach = REACH * (upper_quartile - lower_quartile);
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!(range(&[]), (0.0, 1.0));
     }
 
-    /// The plot is no wider for it, and its row as high as it needs.
+    /// The plot does not become wider, and the row is as high as the name needs.
     #[test]
     fn long_names_have_several_lines() {
         let values = sample(&[1.0, 2.0]);

@@ -1,4 +1,4 @@
-//! What a layer draws on: the plot area of a map picture, in pixels.
+//! Canvas of the layers: the plot area of a map picture, in pixels.
 
 use crate::color::Rgb;
 use crate::legend::{ColorBar, LegendEntry};
@@ -10,12 +10,12 @@ use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
 use std::fmt::Write as _;
 
-/// Longest text of one set of cells. A set with more corners is drawn more coarsely; no map file
-/// makes the picture larger than a few of these.
+/// Maximum text length of one set of cells. A set with more corners is drawn more coarsely; no
+/// map file makes the picture larger than a few of these.
 const MAX_OUTLINE_BYTES: usize = 2_000_000;
 
-/// The part of a map's cells that is in view, in square blocks: single cells, or as many as fall on
-/// one pixel of the picture.
+/// The visible part of a map's cells, in square blocks: single cells, or as many as fall on one
+/// pixel of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     /// Lower left cell.
@@ -35,7 +35,7 @@ impl Blocks {
         (self.end.y - self.first.y + self.unit - 1) / self.unit
     }
 
-    /// The block of a cell, counted row by row; `None` out of view.
+    /// Index of the block of a cell, counted row by row; `None` out of view.
     pub(crate) fn index(&self, cell: Cell) -> Option<usize> {
         let is_in = |at: i32, first: i32, end: i32| (first..end).contains(&at);
         let is_in_view =
@@ -46,7 +46,7 @@ impl Blocks {
         })
     }
 
-    /// The cells of a block.
+    /// Returns the cells of a block.
     fn cells(&self, x: i32, y: i32) -> impl Iterator<Item = Cell> {
         let (x, y) = (self.first.x + x * self.unit, self.first.y + y * self.unit);
         let (x_end, y_end) = ((x + self.unit).min(self.end.x), (y + self.unit).min(self.end.y));
@@ -54,7 +54,7 @@ impl Blocks {
     }
 }
 
-/// The plot area while layers are drawn on it. What lies outside it is cut off.
+/// The plot area on which layers are drawn. Everything outside it is clipped.
 #[derive(Debug)]
 pub struct Canvas<'a> {
     map: &'a OccupancyGrid,
@@ -63,13 +63,13 @@ pub struct Canvas<'a> {
     pub(crate) body: SvgWriter,
     pub(crate) entries: Vec<LegendEntry>,
     pub(crate) bars: Vec<ColorBar>,
-    /// Places and radii \[px\] of things that a marker must not hide.
+    /// Positions and radii \[px\] of shapes that a marker must not hide.
     pub(crate) discs: Vec<((f64, f64), f64)>,
 }
 
 impl<'a> Canvas<'a> {
-    /// A canvas that shows at most `max_side_cells` blocks of cells in a row: more than a picture
-    /// has pixels cannot be seen.
+    /// Creates a canvas that shows at most `max_side_cells` blocks of cells in a row: more than a
+    /// picture has pixels would not be visible.
     pub(crate) fn new(map: &'a OccupancyGrid, view: View, max_side_cells: i32) -> Self {
         let (first, end) = view.visible_cells(map.frame());
         let mut unit = 1;
@@ -81,41 +81,41 @@ impl<'a> Canvas<'a> {
         Self { map, view, blocks, body: SvgWriter::new(), entries, bars, discs }
     }
 
-    /// The cells in view.
+    /// Returns the cells in view.
     pub(crate) const fn blocks(&self) -> Blocks {
         self.blocks
     }
 
-    /// The map of the picture.
+    /// Returns the map of the picture.
     pub const fn map(&self) -> &'a OccupancyGrid {
         self.map
     }
 
-    /// From metres to pixels.
+    /// Returns the transform from metres to pixels.
     pub const fn view(&self) -> &View {
         &self.view
     }
 
-    /// For elements that this type has no method for, in pixels of the plot area.
+    /// Returns the writer, for elements without a method here, in pixels of the plot area.
     pub const fn writer(&mut self) -> &mut SvgWriter {
         &mut self.body
     }
 
-    /// Lists something in the legend, once. Call it only when there was something to draw.
+    /// Adds an entry to the legend, once. Call it only if something was drawn.
     pub fn explain(&mut self, entry: LegendEntry) {
         if !self.entries.contains(&entry) {
             self.entries.push(entry);
         }
     }
 
-    /// Puts a colour bar beside the plot.
+    /// Adds a colour bar beside the plot.
     pub fn explain_colors(&mut self, bar: ColorBar) {
         self.bars.push(bar);
     }
 
-    /// Paints the cells of the map that are `inside`, and returns whether any was in view. Cells
-    /// far below the size of a pixel are painted in blocks: a block is painted when one of its
-    /// cells is, so that thin walls stay.
+    /// Paints the cells of the map that are `inside`, and returns true if any was in view. Cells
+    /// far below the size of a pixel are painted in blocks: a block is painted if one of its
+    /// cells is, so that thin walls remain visible.
     pub fn cells(&mut self, color: Rgb, inside: impl Fn(Cell) -> bool) -> bool {
         let blocks = self.blocks;
         let places = (0..blocks.rows()).flat_map(|y| (0..blocks.columns()).map(move |x| (x, y)));
@@ -123,8 +123,8 @@ impl<'a> Canvas<'a> {
         self.paint(color, |index| set[index])
     }
 
-    /// Paints those of [`Self::blocks`] that are `inside`, by their index, and returns whether
-    /// there was any. Coarser where the outlines would be too long.
+    /// Paints those of [`Self::blocks`] that are `inside`, by their index, and returns true if
+    /// there was any. The blocks are coarser if the outlines would be too long.
     pub(crate) fn paint(&mut self, color: Rgb, inside: impl Fn(usize) -> bool) -> bool {
         let blocks = self.blocks;
         let (columns, rows) = (blocks.columns(), blocks.rows());
@@ -143,7 +143,8 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// True if the picture shows unknown cells, or ground outside the map, which is unknown, too.
+    /// True if the picture shows unknown cells, or the area outside the map, which is unknown,
+    /// too.
     pub(crate) fn shows_unknown(&self) -> bool {
         let frame = self.map.frame();
         let (min, max) = self.view.corners();
@@ -169,8 +170,8 @@ impl<'a> Canvas<'a> {
         true
     }
 
-    /// Draws a line through points in the world, interrupted at points that are not finite; returns
-    /// whether there was one. A single point is drawn as a dot.
+    /// Draws a line through points in the world, interrupted at points that are not finite;
+    /// returns true if something was drawn. A single point is drawn as a dot.
     pub fn line(&mut self, points: &[Point], style: LineStyle) -> bool {
         let mut data = PathData::default();
         for part in points.split(|point| !point.is_finite()) {
@@ -183,8 +184,8 @@ impl<'a> Canvas<'a> {
         self.path(&data, style)
     }
 
-    /// Draws straight lines between the centres of cells; returns whether there was one. Dashes are
-    /// not used.
+    /// Draws straight lines between the centres of cells; returns true if there was one. Dashes
+    /// are not used.
     pub fn segments(
         &mut self,
         lines: impl IntoIterator<Item = (Cell, Cell)>,
@@ -197,7 +198,7 @@ impl<'a> Canvas<'a> {
         self.cell_lines(&data, style.color, style.width_px)
     }
 
-    /// Draws dots at the centres of cells; returns whether there was one.
+    /// Draws dots at the centres of cells; returns true if there was one.
     pub fn dots(
         &mut self,
         cells: impl IntoIterator<Item = Cell>,
@@ -206,13 +207,13 @@ impl<'a> Canvas<'a> {
     ) -> bool {
         let mut data = String::new();
         for cell in cells {
-            // A line without length has round ends.
+            // A line of length 0 has round ends.
             let _ = write!(data, "M{} {}h0", cell.x, cell.y);
         }
         self.cell_lines(&data, color, 2.0 * radius_px)
     }
 
-    /// Draws lines whose coordinates are cells and stand for the cells' centres.
+    /// Draws lines whose coordinates are cells, from centre to centre.
     fn cell_lines(&mut self, data: &str, color: Rgb, width_px: f64) -> bool {
         if data.is_empty() {
             return false;
@@ -228,7 +229,7 @@ impl<'a> Canvas<'a> {
         true
     }
 
-    /// Draws a line in pixels; returns whether there was one.
+    /// Draws a line in pixels; returns true if it was not empty.
     pub fn path(&mut self, data: &PathData, style: LineStyle) -> bool {
         if data.as_str().is_empty() {
             return false;

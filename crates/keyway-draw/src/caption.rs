@@ -1,18 +1,18 @@
-//! Text above a picture, its title, and below it: what it shows, and how it was made.
+//! Title above a picture, and caption below it.
 
 use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, SvgWriter};
 
-/// Room at the edge of the page \[px\].
+/// Margin at the edge of the page \[px\].
 pub(crate) const EDGE_PX: f64 = 8.0;
 /// Size of the title \[px\].
 const TITLE_PX: f64 = 13.5;
-/// Height of the title with the room below it \[px\].
+/// Height of the title with the space below it \[px\].
 pub(crate) const HEAD_PX: f64 = TITLE_PX + 10.0;
 const ROW_PX: f64 = 14.5;
 
-/// Draws a title over what begins at `left`, centred where it fits; returns its right edge \[px\],
-/// 0 without a title.
+/// Draws a title above the content that begins at `left`, centred if it fits; returns its right
+/// edge \[px\], 0 without a title.
 pub(crate) fn draw_title(out: &mut SvgWriter, title: &str, left: f64, width_px: f64) -> f64 {
     if title.is_empty() {
         return 0.0;
@@ -23,13 +23,13 @@ pub(crate) fn draw_title(out: &mut SvgWriter, title: &str, left: f64, width_px: 
     x + title_px
 }
 
-/// A text in lines of a width.
+/// A text, wrapped to a width.
 pub(crate) struct Caption {
     lines: Vec<String>,
 }
 
 impl Caption {
-    /// Broken at spaces; a word that is wider than a line has one of its own.
+    /// Breaks a text at spaces; a word that is wider than a line has its own line.
     pub(crate) fn new(text: &str, width_px: f64) -> Self {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -52,7 +52,7 @@ impl Caption {
         self.lines.iter().map(|line| text_width_px(line, SMALL_TEXT_PX)).fold(0.0, f64::max)
     }
 
-    /// Draws it with its upper left corner at (x, y).
+    /// Draws the text with its upper left corner at (x, y).
     pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, y: f64) {
         for (line, i) in self.lines.iter().zip(1..) {
             let base = y + f64::from(i) * ROW_PX - 4.0;

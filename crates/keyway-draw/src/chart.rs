@@ -9,12 +9,12 @@ use crate::plot::{Plot, PlotArea};
 use crate::svg::Svg;
 use crate::writer::{Anchor, SvgWriter};
 
-/// Between panels side by side \[px\].
+/// Distance between panels side by side \[px\].
 pub(crate) const COLUMN_GAP_PX: f64 = 14.0;
-/// Between the lower axis and the legend \[px\].
+/// Distance between the lower axis and the legend \[px\].
 const LEGEND_GAP_PX: f64 = 8.0;
 
-/// A chart: one or several panels over a common lower axis, with what belongs around them.
+/// A chart: one or several panels over a common lower axis, with titles, legend and caption.
 ///
 /// ```
 /// use keyway_draw::{Axis, Chart, ChartPoint, series_style};
@@ -43,29 +43,29 @@ pub struct Chart<'a> {
 
 type Draw<'a> = Box<dyn Fn(&mut Plot<'_>) + 'a>;
 
-/// Room around and between the panels \[px\].
+/// Space around and between the panels \[px\].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margins {
-    /// Between panels below each other.
+    /// Distance between panels below each other.
     pub(crate) row_gap_px: f64,
-    /// Between the lower axis and the caption, except for the legend.
+    /// Distance between the lower axis and the caption, except for the legend.
     pub(crate) caption_gap_px: f64,
-    /// Right of the panels, where the caption may reach; at least the notes of categories.
+    /// Space right of the panels that the caption may use; at least the notes of categories.
     pub(crate) beside: f64,
-    /// Right of everything.
+    /// Margin right of everything.
     pub(crate) right_px: f64,
 }
 
 impl Margins {
     pub(crate) const DEFAULT: Self =
         Self { row_gap_px: 14.0, caption_gap_px: 12.0, beside: 0.0, right_px: EDGE_PX + 8.0 };
-    /// Around rows with names and notes.
+    /// Margins for rows with names and notes.
     pub(crate) const ROWS: Self = Self { caption_gap_px: 6.0, right_px: EDGE_PX, ..Self::DEFAULT };
 }
 
 impl<'a> Chart<'a> {
-    /// A chart of panels of the given width and height \[px\] over an axis. With an upright axis of
-    /// categories the panels are as high as these need.
+    /// Creates a chart of panels of the given width and height \[px\] over an axis. With a
+    /// vertical axis of categories, the panels are as high as these need.
     pub const fn new(x_axis: Axis, width_px: f64, height_px: f64) -> Self {
         Self {
             title: String::new(),
@@ -81,35 +81,35 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// A title above the panels; empty for none.
+    /// Sets the title above the panels; empty for none.
     pub fn title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
     }
 
-    /// A text below everything, broken into lines; empty for none.
+    /// Sets the caption, which is wrapped; empty for none.
     pub fn caption(self, caption: impl Into<String>) -> Self {
         Self { caption: caption.into(), ..self }
     }
 
-    /// The legend, below the panels.
+    /// Sets the legend, below the panels.
     pub fn legend(self, entries: impl IntoIterator<Item = LegendEntry>) -> Self {
         Self { entries: entries.into_iter().collect(), ..self }
     }
 
-    /// Gives the panels names, which stand above them, and places `columns` of them side by side.
-    /// Only the first one of each row shows its upright axis, which should be the same for all.
+    /// Sets names above the panels, and arranges them in `columns` columns. Only the first panel
+    /// of each row shows its vertical axis, which should be the same for all.
     pub fn side_by_side(self, columns: usize, names: &[&str]) -> Self {
         let names = names.iter().map(|&name| name.to_owned()).collect();
         Self { columns: columns.max(1), names, ..self }
     }
 
-    /// Adds a panel. What `draw` draws lies over the grid.
+    /// Adds a panel; `draw` draws over the grid.
     pub fn panel(mut self, y_axis: Axis, draw: impl Fn(&mut Plot<'_>) + 'a) -> Self {
         self.panels.push((y_axis, Box::new(draw)));
         self
     }
 
-    /// The picture.
+    /// Draws the chart.
     pub fn svg(&self) -> Svg {
         let layout = Layout::new(self);
         let count = self.panels.len().max(1);
@@ -158,13 +158,13 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// The places of the panels.
+/// Layout of the panels.
 struct Layout<'a> {
     chart: &'a Chart<'a>,
     names: Vec<NameLines>,
-    /// Room above each panel for its name.
+    /// Height of the name above each panel.
     name_px: f64,
-    /// Room for the upright axis.
+    /// Width of the vertical axis.
     axis_px: f64,
     /// Height of each panel.
     height_px: f64,
@@ -220,7 +220,7 @@ mod tests {
         for text in ["A title", "A caption.", "an &lt;entry&gt;", "x [m]", "y [m]"] {
             assert!(svg.as_str().contains(&format!(">{text}</text>")), "{text}");
         }
-        // One lower axis, and an upright one for each panel.
+        // One lower axis, and a vertical one for each panel.
         let count = |text: &str| svg.as_str().matches(text).count();
         assert_eq!((count("x [m]"), count("y [m]")), (1, 2));
         let [width, height] = size_px(&svg);
@@ -232,7 +232,7 @@ mod tests {
     fn panels_stand_below_each_other_or_side_by_side() {
         let [width, height] = size_px(&chart(1).svg());
         assert_eq!(size_px(&chart(3).svg()), [width, height + 2.0 * 94.0]);
-        // Two in a row: a lower axis below each column, an upright one at the left of each row.
+        // Two in a row: a lower axis below each column, a vertical one at the left of each row.
         let svg = chart(3).side_by_side(2, &["a", "b", "c"]).svg();
         let count = |text: &str| svg.as_str().matches(text).count();
         assert_eq!((count("x [m]"), count("y [m]"), count(">b<")), (2, 2, 1));

@@ -15,7 +15,7 @@ pub struct Rgb(
 );
 
 impl Rgb {
-    /// The colour a `fraction` of the way to another one.
+    /// Interpolates to another colour; 1 is the other colour.
     pub(crate) fn mix(self, other: Self, fraction: f64) -> Self {
         let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * fraction).round();
         Self(mix(self.0, other.0) as u8, mix(self.1, other.1) as u8, mix(self.2, other.2) as u8)
@@ -34,28 +34,28 @@ pub(crate) const INK: Rgb = Rgb(0x22, 0x22, 0x22);
 pub(crate) const FREE: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Occupied cells: lighter than ink, so that text and markers stand out against walls.
 pub(crate) const OCCUPIED: Rgb = Rgb(0x2b, 0x2b, 0x2b);
-/// Unknown cells, and what lies outside the map.
+/// Unknown cells, and the area outside the map.
 pub(crate) const UNKNOWN: Rgb = Rgb(0xd4, 0xd4, 0xd4);
 /// Free cells that are too close to an obstacle.
 pub(crate) const BLOCKED: Rgb = Rgb(0xdc, 0xe9, 0xf5);
-/// Cells that the map shows as occupied although nothing is there.
+/// Cells that are occupied on the map but free in the world.
 pub(crate) const ABSENT: Rgb = Rgb(0xa6, 0xdb, 0xd6);
 /// Cells marked by the sensor.
 pub(crate) const SENSED: Rgb = Rgb(0xe6, 0x9f, 0x00);
-/// Obstacles that the map does not show.
+/// Obstacles that are not on the map.
 pub(crate) const OBSTACLE: Rgb = Rgb(0xc4, 0x3c, 0x00);
 /// The path as the search returns it.
 pub(crate) const PLANNED: Rgb = Rgb(0x5b, 0x6f, 0x8c);
-/// The path to follow.
+/// The path that is followed.
 pub(crate) const SMOOTHED: Rgb = Rgb(0x00, 0x72, 0xb2);
-/// A line over all colours of speed: it is none of them.
+/// A line over the colours of speed: it differs from all of them.
 pub(crate) const OVER_DRIVEN: Rgb = Rgb(0xe7, 0x29, 0x8a);
 /// Lines of a chart's grid.
 pub(crate) const GRID: Rgb = Rgb(0xe4, 0xe4, 0xe4);
 /// Limits in a chart, and other annotations.
 pub(crate) const QUIET: Rgb = Rgb(0x77, 0x77, 0x77);
 
-/// Colours for things compared with each other (Okabe and Ito's palette, strong ones first).
+/// Colours of compared series (Okabe and Ito's palette, strong ones first).
 pub const SERIES: [Rgb; 7] = [
     Rgb(0x00, 0x72, 0xb2),
     Rgb(0xd5, 0x5e, 0x00),
@@ -80,7 +80,8 @@ const VIRIDIS: [Rgb; 10] = [
     Rgb(0xfd, 0xe7, 0x25),
 ];
 
-/// The perceptually uniform colour map viridis: dark violet at 0, yellow at 1; clamped outside.
+/// Returns a colour of the perceptually uniform map viridis: dark violet at 0, yellow at 1;
+/// clamped outside.
 pub fn viridis(fraction: f64) -> Rgb {
     let last = VIRIDIS.len() - 1;
     let fraction = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };

@@ -1,4 +1,4 @@
-//! Bars with their intervals, one below the other over one axis, and what they are compared with.
+//! Bars with intervals and reference values, in rows over one axis.
 
 use crate::chart::Margins;
 use crate::color::INK;
@@ -10,19 +10,19 @@ const ROW_PX: f64 = 28.0;
 const HALF_BAR_PX: f64 = 7.0;
 const HALF_CAP_PX: f64 = 4.5;
 const HALF_MARK_PX: f64 = 5.0;
-/// From the end of the plot to the middle of a break, and between its two lines.
+/// Distance from the end of the plot to the middle of a break, and between its two lines.
 const BREAK_INSET_PX: f64 = 16.0;
 const BREAK_GAP_PX: f64 = 4.0;
-/// A longer name has several lines.
+/// Maximum width of a name \[px\]; longer names have several lines.
 const NAME_PX: f64 = 250.0;
 const INTERVALS: usize = 7;
-/// Width of grid lines: stronger ones, which lead the eye to the notes.
+/// Width of grid lines \[px\]: stronger than usual, to lead the eye to the notes.
 const GRID_PX: f64 = 0.8;
-/// What is this many times as long as all other rows leaves less than a twenty-fifth of the axis
-/// for them.
+/// Ratio to the reach of all other rows from which on a bar is broken: they would have less than
+/// a twenty-fifth of the axis.
 const DWARFING: f64 = 25.0;
 const BROKEN: &str = "What has a break goes on beyond the axis; its numbers stand beside it.";
-/// Light enough for the marks over it, and for a page in grey.
+/// Light enough for the marks over the bar, and for grey print.
 const BAR: Rgb = Rgb(0xcf, 0xdf, 0xee);
 
 /// Values with their intervals over one axis.
@@ -30,48 +30,48 @@ const BAR: Rgb = Rgb(0xcf, 0xdf, 0xee);
 pub struct IntervalChart<'a> {
     /// The quantity, with its unit.
     pub label: &'a str,
-    /// What the axis is to hold; `None`: what its rows need.
+    /// Range that the axis covers at least; `None`: that of its rows.
     pub ends: Option<(f64, f64)>,
     /// The values, top one first.
     pub rows: &'a [IntervalRow<'a>],
-    /// What is to be said below; empty for nothing.
+    /// Caption below the chart; empty for none.
     pub caption: &'a str,
 }
 
-/// A value.
+/// A row of the chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntervalRow<'a> {
-    /// Its name.
+    /// Name of the row.
     pub name: &'a str,
-    /// The value: a bar from 0. `None`: there is none.
+    /// The value, drawn as a bar from 0; `None` if there is none.
     pub value: Option<f64>,
-    /// Between what the true one lies: whiskers.
+    /// Confidence interval of the value, drawn as whiskers.
     pub interval: Option<(f64, f64)>,
-    /// What it is compared with: a diamond.
+    /// Reference value, drawn as a diamond.
     pub reference: Option<f64>,
-    /// What stands at the other end of its row, such as its numbers; may have several lines.
+    /// Text at the other end of the row, such as its numbers; may have several lines.
     pub note: &'a str,
 }
 
 impl IntervalRow<'_> {
-    /// All its numbers.
+    /// Returns all finite numbers of the row.
     fn numbers(&self) -> impl Iterator<Item = f64> {
         let (low, high) = self.interval.unzip();
         let all = [self.value, self.reference, low, high].into_iter().flatten();
         all.filter(|value| value.is_finite())
     }
 
-    /// How far it reaches from 0.
+    /// Largest distance of its numbers from 0.
     fn reach(&self) -> f64 {
         self.numbers().map(f64::abs).fold(0.0, f64::max)
     }
 }
 
-/// Draws a bar from 0 to each value with whiskers for its interval, and a diamond where it is
-/// compared with something. Numbers that are not finite are left out.
+/// Draws a bar from 0 to each value, with whiskers for its interval and a diamond for its
+/// reference value. Numbers that are not finite are left out.
 ///
-/// A bar that would leave no room for the others is broken: the axis ends where most of the rows
-/// end, and a break says that the bar, or its whisker, goes on. Its numbers belong in its note.
+/// A bar that would leave no space for the others is broken: the axis ends with most of the rows,
+/// and a break shows that the bar, or its whisker, continues. Its numbers belong in its note.
 pub fn interval_chart(chart: &IntervalChart<'_>) -> Svg {
     let ends = ends(chart);
     let mut axis = Axis::linear(ends.0, ends.1, INTERVALS).label(chart.label).strong_zero();
@@ -87,7 +87,8 @@ pub fn interval_chart(chart: &IntervalChart<'_>) -> Svg {
     drawn.panel(rows, |plot| draw_rows(plot, chart.rows, ends)).svg()
 }
 
-/// The axis: 0 and all that is shown, as far as a row may reach, with room at both ends.
+/// Returns the range of the axis: 0 and all shown values, up to the maximum reach of a row, with
+/// a margin at both ends.
 fn ends(chart: &IntervalChart<'_>) -> (f64, f64) {
     let longest = longest(chart.rows);
     let own = chart.rows.iter().flat_map(IntervalRow::numbers);
@@ -101,8 +102,8 @@ fn ends(chart: &IntervalChart<'_>) -> (f64, f64) {
     (if low < 0.0 { low - room } else { low }, if high > 0.0 { high + room } else { high })
 }
 
-/// How far a row may reach: as far as the longest of those that others dwarf, which are at most
-/// half of all.
+/// Returns the maximum reach of a row: that of the longest of the rows that others dwarf. The
+/// dwarfing rows are at most half of all.
 fn longest(rows: &[IntervalRow<'_>]) -> f64 {
     let mut reaches: Vec<f64> = rows.iter().map(IntervalRow::reach).collect();
     reaches.sort_by(|a, b| b.total_cmp(a));
@@ -145,7 +146,7 @@ fn draw_row(plot: &mut Plot<'_>, row: &IntervalRow<'_>, at: f64, ends: (f64, f64
     }
 }
 
-/// Two slanted lines with nothing between them.
+/// Draws two slanted lines with a gap between them.
 fn draw_break(plot: &mut Plot<'_>, (x, y): (f64, f64)) {
     let (half, slant, gap) = (HALF_BAR_PX + 2.0, 3.0, 0.5 * BREAK_GAP_PX);
     let [left, right] =
@@ -227,12 +228,12 @@ mod tests {
         let clipped = IntervalRow { interval: Some((53_000.0, 99_000.0)), ..bar(72_000.0) };
         let svg = draw(&[bar(14.0), bar(-15.0), clipped, bar(16.0)]);
         let px = bars_px(&svg);
-        // The axis ends at 16, so the others keep their lengths to each other; the long one fills
-        // it up to the end.
+        // The axis ends at 16, so the others keep their relative lengths; the long one extends to
+        // the end.
         assert!(px[0] > 100.0 && px[2] > px[3] && px[3] > px[0], "{px:?}");
         assert!((px[1] / px[0] - 15.0 / 14.0).abs() < 1e-2, "{px:?}");
         assert!(svg.contains("beyond the axis") && svg.matches("<path").count() == 1);
-        // To the other side, and a whisker alone.
+        // To the other side, and only a whisker.
         let far = IntervalRow { interval: Some((-2e4, 5.0)), ..bar(1.0) };
         let svg = draw(&[bar(14.0), bar(15.0), far, bar(9.0)]);
         assert!(svg.contains("beyond the axis") && svg.matches("<path").count() == 1);
@@ -242,7 +243,7 @@ mod tests {
     #[test]
     fn nothing_is_broken_without_need() {
         for values in [
-            // Legible; most are long, and one is short; the others are 0; one alone; none.
+            // Legible; most are long, and one is short; the others are 0; a single one; none.
             &[14.0, -15.0, 300.0, 16.0][..],
             &[70.0, 30.0, 0.8],
             &[70.0, 0.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! What the shapes and colours of a picture mean, beside the picture.
+//! The legend beside a picture, which explains its shapes and colours.
 
 use crate::axes::{Scale, border};
 use crate::axis::Axis;
@@ -11,13 +11,13 @@ use crate::writer::{Anchor, PathData, SvgWriter};
 /// An item of the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegendEntry {
-    /// What it is.
+    /// Text of the item.
     pub label: String,
-    /// How it looks.
+    /// Mark of the item.
     pub mark: LegendMark,
 }
 
-/// A small example of something drawn.
+/// A small sample of a drawn element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LegendMark {
@@ -29,7 +29,7 @@ pub enum LegendMark {
     Line(LineStyle),
     /// Thin lines in a scale of colours.
     ShadedLine([Rgb; 8]),
-    /// A line coloured by a quantity; the colour bar says which.
+    /// A line coloured by a quantity; the colour bar names it.
     ColoredLine,
     /// A small ring filled with white.
     Ring(LineStyle),
@@ -43,7 +43,7 @@ pub enum LegendMark {
     Box(LineStyle),
     /// A hatched disc.
     HatchedDisc(Rgb),
-    /// A time on a light ground.
+    /// A time on a light background.
     Time(Rgb),
     /// A letter in a disc, dark on white or white on dark.
     Letter {
@@ -55,7 +55,7 @@ pub enum LegendMark {
 }
 
 impl LegendEntry {
-    /// An item of the legend.
+    /// Creates an item of the legend.
     pub fn new(label: impl Into<String>, mark: LegendMark) -> Self {
         Self { label: label.into(), mark }
     }
@@ -77,7 +77,7 @@ pub(crate) struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// As few rows as fit `width_px`; one column when nothing fits.
+    /// Creates a legend with as few rows as fit `width_px`; with one column if nothing fits.
     pub(crate) fn new(entries: &'a [LegendEntry], width_px: f64) -> Self {
         for rows in 1..entries.len() {
             let legend = Self::with_rows(entries, rows);
@@ -89,7 +89,7 @@ impl<'a> Legend<'a> {
     }
 
     fn with_rows(entries: &'a [LegendEntry], rows: usize) -> Self {
-        // Down the columns: related entries, which follow each other, stay together.
+        // Column by column: related entries, which are consecutive, stay together.
         let widest =
             |column: &[LegendEntry]| column.iter().map(LegendEntry::width_px).fold(0.0, f64::max);
         let column_widths = entries.chunks(rows.max(1)).map(widest).collect();
@@ -105,7 +105,7 @@ impl<'a> Legend<'a> {
         self.rows as f64 * ROW_PX
     }
 
-    /// Draws it with its upper left corner at (x, y).
+    /// Draws the legend with its upper left corner at (x, y).
     pub(crate) fn draw(&self, out: &mut SvgWriter, mut x: f64, y: f64) {
         for (column, width) in self.entries.chunks(self.rows.max(1)).zip(&self.column_widths) {
             for (row, entry) in column.iter().enumerate() {
@@ -171,10 +171,10 @@ fn draw_mark(out: &mut SvgWriter, mark: LegendMark, x: f64, y: f64) {
     }
 }
 
-/// Colours side by side in a rectangle with its upper left corner at (x, y).
+/// Draws colours side by side in a rectangle with its upper left corner at (x, y).
 fn strips(out: &mut SvgWriter, (x, y): (f64, f64), (width, height): (f64, f64), colors: &[Rgb]) {
     for (i, &color) in colors.iter().enumerate() {
-        // Each reaches the right end, so that no gap shows between two.
+        // Each extends to the right end, so that no gap shows between two.
         let left = width * i as f64 / colors.len() as f64;
         out.tag("rect").at(x + left, y).size(width - left, height).fill(color).leaf();
     }
@@ -192,7 +192,7 @@ pub struct ColorBar {
 }
 
 const BAR_PX: f64 = 11.0;
-/// Strips of a colour bar: too many to be seen singly.
+/// Number of strips of a colour bar: too many to be seen individually.
 const STRIPS: u32 = 64;
 
 impl ColorBar {
@@ -205,10 +205,10 @@ impl ColorBar {
         BAR_PX + self.axis(height_px).side_px()
     }
 
-    /// Draws it with its upper left corner at (x, y).
+    /// Draws the colour bar with its upper left corner at (x, y).
     pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, y: f64, height_px: f64) {
         for i in 0..STRIPS {
-            // From the top; each strip reaches the bottom, so that no gap shows between two.
+            // From the top; each strip extends to the bottom, so that no gap shows between two.
             let top = height_px * f64::from(i) / f64::from(STRIPS);
             let color = viridis(1.0 - (f64::from(i) + 0.5) / f64::from(STRIPS));
             out.tag("rect").at(x, y + top).size(BAR_PX, height_px - top).fill(color).leaf();

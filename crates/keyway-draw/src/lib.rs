@@ -1,18 +1,18 @@
 //! Pictures of maps, searches, plans and runs, as SVG, PNG, GIF and APNG.
 //!
-//! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such pictures
-//! side by side; [`speed_curve`] draws speed and turn rate over time, [`log_chart`] quantities that
-//! grow by powers, [`box_plot`] how values are spread, [`interval_chart`] values with their
-//! intervals, [`point_panels`] points and rates with their intervals. All charts are made of a
-//! [`Chart`], whose panels are drawn on through a [`Plot`]; a chart of your own is, too (example
-//! `own_chart`). Each gives an [`Svg`], whose text the caller writes where it belongs.
+//! [`MapPicture`] draws a map with layers from [`layers`] over it, [`MapPanels`] many such
+//! pictures side by side; [`speed_curve`] draws speed and turn rate over time, [`log_chart`]
+//! quantities on logarithmic axes, [`box_plot`] distributions, [`interval_chart`] values with
+//! their intervals, [`point_panels`] points and rates with their intervals. All charts are made
+//! of a [`Chart`], whose panels are drawn on through a [`Plot`]; so is a custom chart (example
+//! `own_chart`). Each returns an [`Svg`], whose text the caller writes to a file or a page.
 //!
-//! With the feature `raster`, which is on by default, an [`Svg`] gives PNG bytes as well
-//! (`Svg::to_png`), and an `Animation` plays pictures as GIF or APNG. Without it the crate needs no
-//! renderer, no font and no image format.
+//! With the feature `raster`, which is on by default, an [`Svg`] can also be rendered to PNG
+//! (`Svg::to_png`), and an `Animation` plays pictures as GIF or APNG. Without it, the crate needs
+//! no renderer, no font and no image format.
 //!
-//! The same input gives the same bytes. Nothing is read from the machine: the font of all
-//! raster pictures (`DejaVu Sans`, licence in `fonts/`) is part of the library.
+//! The same input gives the same bytes. Nothing is read from the machine: the font of all raster
+//! pictures (`DejaVu Sans`, licence in `fonts/`) is part of the library.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};

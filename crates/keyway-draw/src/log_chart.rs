@@ -1,5 +1,5 @@
-//! Quantities against one another on logarithmic axes, in which a power is a straight line: charts
-//! one above the other over one axis.
+//! Quantities on logarithmic axes, on which a power is a straight line: charts one above the
+//! other over one axis.
 
 use crate::caption::EDGE_PX;
 use crate::chart::Margins;
@@ -25,21 +25,21 @@ pub struct LogChart<'a> {
 pub struct LogPanel<'a> {
     /// The quantity, with its unit.
     pub label: &'a str,
-    /// Its lines; lines of the same place in all panels look the same.
+    /// Its lines; lines of the same index in all panels have the same style.
     pub lines: &'a [LogLine<'a>],
 }
 
 /// A line of a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogLine<'a> {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: &'a str,
-    /// Its points; those with a number that is not positive and finite are left out.
+    /// Points of the line; those with a number that is not positive and finite are left out.
     pub points: &'a [(f64, f64)],
 }
 
-/// Draws charts with logarithmic axes. Ticks are at every x that a line has, and at powers of ten;
-/// where these are few, also between them.
+/// Draws charts with logarithmic axes. Ticks are at every x of the lines, and at powers of ten;
+/// if these are few, also between them.
 pub fn log_chart(chart: &LogChart<'_>) -> Svg {
     let values = |lines: &[LogLine<'_>], value: fn(ChartPoint) -> f64| -> Vec<f64> {
         lines.iter().flat_map(drawable).map(value).collect()
@@ -63,7 +63,7 @@ fn drawable<'a>(line: &LogLine<'a>) -> impl Iterator<Item = ChartPoint> + use<'a
     points.map(|&(x, y)| ChartPoint::new(x, y))
 }
 
-/// Each name once, in the style of its first line.
+/// Returns each name once, in the style of its first line.
 fn entries(panels: &[LogPanel<'_>]) -> Vec<LegendEntry> {
     let mut entries: Vec<LegendEntry> = Vec::new();
     for (i, line) in panels.iter().flat_map(|panel| panel.lines.iter().enumerate()) {

@@ -1,4 +1,4 @@
-//! One map many times, each time with something else on it: small multiples.
+//! Small multiples: one map in many panels with different layers.
 
 use crate::axes::{BOTTOM_AXIS_PX, Scale, border};
 use crate::axis::Axis;
@@ -15,27 +15,26 @@ use crate::writer::{Anchor, SvgWriter};
 
 /// Longer side of a panel's plot area \[px\].
 const PANEL_PX: f64 = 250.0;
-/// Panels that are higher than wide are larger, as long as they are not slimmer than this.
+/// Maximum ratio of height to width up to which tall panels are enlarged.
 const MAX_SLIMNESS: f64 = 3.0;
-/// Panels stand side by side as long as they are not wider together than this \[px\]; many of them
-/// than that.
+/// Maximum width of a row of panels \[px\]; the larger one applies to many panels.
 const ROW_PX: f64 = 840.0;
 const LONG_ROW_PX: f64 = 1120.0;
 const MANY_PANELS: usize = 10;
-/// Between panels \[px\].
+/// Distance between panels \[px\].
 const GAP_PX: f64 = 18.0;
-/// Between a panel and its title \[px\].
+/// Distance between a panel and its title \[px\].
 const TITLE_GAP_PX: f64 = 6.0;
-/// A narrow panel's legend may be wider than the panel \[px\].
+/// Minimum width of a legend, which may be wider than a narrow panel \[px\].
 const MIN_LEGEND_PX: f64 = 120.0;
-/// Cells along the longer side of a panel: more than its PNG has pixels cannot be seen.
+/// Maximum number of cells along the longer side of a panel: more than its PNG has pixels would
+/// not be visible.
 const MAX_SIDE_CELLS: i32 = 1024;
 
-/// Panels with the same map, side by side and below each other, so that many lines can be told
-/// apart.
+/// Panels with the same map, in rows and columns, so that many lines can be distinguished.
 ///
-/// Each panel has a title and a legend of its own; what all panels show is explained once, below
-/// them. Colour bars have no place here and are left out.
+/// Each panel has its own title and legend; layers of all panels are explained once, below them.
+/// There is no space for colour bars, which are left out.
 pub struct MapPanels<'a> {
     common: MapPicture<'a>,
     panels: Vec<Panel<'a>>,
@@ -48,25 +47,25 @@ struct Panel<'a> {
 }
 
 impl<'a> MapPanels<'a> {
-    /// What all panels show, and the title of the whole.
+    /// Creates panels from the layers of all panels, and the title of the whole.
     pub const fn new(common: MapPicture<'a>) -> Self {
         Self { common, panels: Vec::new(), caption: String::new() }
     }
 
-    /// What is to be said below.
+    /// Sets the caption below the panels.
     #[must_use]
     pub fn caption(self, text: impl Into<String>) -> Self {
         Self { caption: text.into(), ..self }
     }
 
-    /// Adds a panel with what it alone shows.
+    /// Adds a panel with its own layers.
     #[must_use]
     pub fn panel(mut self, title: impl Into<String>, layers: Vec<Box<dyn Layer + 'a>>) -> Self {
         self.panels.push(Panel { title: title.into(), layers });
         self
     }
 
-    /// The picture.
+    /// Draws the picture.
     pub fn svg(&self) -> Svg {
         let view = self.view();
         let mut ground = Canvas::new(self.common.map, view, MAX_SIDE_CELLS);
@@ -94,7 +93,7 @@ impl<'a> MapPanels<'a> {
         Svg::page(right + EDGE_PX + GAP_PX, height, out)
     }
 
-    /// One for all panels: what one of them shows is in view.
+    /// Returns one view for all panels, which contains the layers of each.
     fn view(&self) -> View {
         let mut extent = Extent::default();
         let own = self.panels.iter().flat_map(|panel| &panel.layers);
@@ -103,12 +102,12 @@ impl<'a> MapPanels<'a> {
             View::new(self.common.region.extent(self.common.map, extent, side_px), side_px)
         };
         let view = of_side(PANEL_PX);
-        // A narrow panel takes its width for its legend anyway.
+        // A narrow panel is as wide as its legend anyway.
         let slimness = (view.height_px() / view.width_px()).clamp(1.0, MAX_SLIMNESS);
         of_side(PANEL_PX * slimness.sqrt())
     }
 
-    /// All that is drawn over the ground of a panel.
+    /// Draws all layers over the base map of a panel.
     fn drawn<'b>(&'b self, panel: &'b Panel<'a>, view: View) -> Drawn<'b> {
         let mut canvas = Canvas::new(self.common.map, view, MAX_SIDE_CELLS);
         let common = self.common.layers.iter().map(|layer| (false, layer));
@@ -128,8 +127,8 @@ impl<'a> MapPanels<'a> {
     }
 }
 
-/// Writes what all panels stand on, to be used by its name. The name comes from the content:
-/// several pictures can then stand in one page.
+/// Writes the common base map, which is used by its name. The name is derived from the content,
+/// so several pictures can be in one page.
 fn define_ground(out: &mut SvgWriter, ground: SvgWriter) -> String {
     let text = ground.finish();
     let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -142,14 +141,14 @@ fn define_ground(out: &mut SvgWriter, ground: SvgWriter) -> String {
     name
 }
 
-/// A panel without its ground.
+/// A panel without its base map.
 #[derive(Default)]
 struct Drawn<'a> {
     title: &'a str,
     body: SvgWriter,
-    /// What the panel alone shows.
+    /// Legend of the panel's own layers.
     own: Vec<LegendEntry>,
-    /// What all panels show.
+    /// Legend of the layers of all panels.
     common: Vec<LegendEntry>,
 }
 
@@ -158,18 +157,18 @@ impl Drawn<'_> {
         Legend::new(&self.own, view.width_px().max(MIN_LEGEND_PX))
     }
 
-    /// No wider than the panel, so that neighbours and axes have their room.
+    /// Returns the title, no wider than the panel, so that it does not reach neighbours and axes.
     fn title(&self, view: &View) -> NameLines {
         NameLines::new(self.title, view.width_px().max(MIN_LEGEND_PX))
     }
 }
 
-/// Where the panels stand.
+/// Layout of the panels.
 struct Grid {
     view: View,
     count: usize,
     columns: usize,
-    /// Width of a panel with its legend, and from there to the next one \[px\].
+    /// Width of a panel with its legend, and the gap to the next one \[px\].
     cell_px: f64,
     gap_px: f64,
     x_axis: Axis,
@@ -178,7 +177,7 @@ struct Grid {
     left: f64,
     /// Upper edges of the rows, and the lower edge of the last one \[px\].
     tops: Vec<f64>,
-    /// Room for the titles of each row \[px\].
+    /// Height of the titles of each row \[px\].
     heads_px: Vec<f64>,
 }
 
@@ -190,11 +189,11 @@ impl Grid {
         let cell_px = panels.iter().map(width_px).fold(view.width_px(), f64::max);
         let count = panels.len();
         let row_px = if count < MANY_PANELS { ROW_PX } else { LONG_ROW_PX };
-        // The last number below a panel and the first one below the next stand side by side.
+        // The last number below a panel and the first one below the next are side by side.
         let gap_px = GAP_PX.max(view.width_px() + x_axis.widest_px() + 6.0 - cell_px);
         let fitting = ((row_px + gap_px) / (cell_px + gap_px)) as usize;
         let rows = count.div_ceil(fitting.clamp(1, count.max(1)));
-        // As many in every row as can be.
+        // Rows are filled as evenly as possible.
         let columns = count.div_ceil(rows.max(1)).max(1);
         let head = EDGE_PX + if title.is_empty() { 2.0 } else { HEAD_PX };
         let left = EDGE_PX + y_axis.side_px();
@@ -244,7 +243,7 @@ impl Grid {
         panel.title(&self.view).draw(out, left + 0.5 * width, top - TITLE_GAP_PX, Anchor::Middle);
         let legend_y = bottom + 4.0 + if self.is_lowest(row) { BOTTOM_AXIS_PX } else { 0.0 };
         panel.legend(&self.view).draw(out, left, legend_y);
-        // A nested `svg` cuts off what lies outside; unlike a clip path it needs no name.
+        // A nested `svg` clips its content; unlike a clip path it needs no name.
         out.tag("svg").at(left, top).size(width, height).open();
         out.tag("rect").size(width, height).fill(UNKNOWN).leaf();
         out.tag("use").attr("href", &format!("#{ground}")).leaf();

@@ -1,4 +1,4 @@
-//! A map, what is laid over it, axes and legend: one picture.
+//! A picture of a map with its layers, axes and legend.
 
 use crate::axes::{BOTTOM_AXIS_PX, Scale, border};
 use crate::axis::Axis;
@@ -15,23 +15,24 @@ use crate::view::{Extent, Region, View};
 use crate::writer::SvgWriter;
 use keyway::map::OccupancyGrid;
 
-/// Longer side of the plot area \[px\] unless another is asked for: with it, the picture's text is
-/// readable when the picture is printed as wide as a column.
+/// Default length of the plot area's longer side \[px\]: the text is readable if the picture is
+/// printed as wide as a column.
 const DEFAULT_SIDE_PX: f64 = 520.0;
-/// A plot this many times taller than wide has its legend at its side.
+/// Ratio of height to width from which on the legend is beside the plot.
 const TALL: f64 = 1.25;
-/// Between the parts of the page \[px\].
+/// Distance between the parts of the page \[px\].
 const GAP_PX: f64 = 14.0;
-/// Cells along the longer side of a picture: more than its PNG has pixels cannot be seen.
+/// Maximum number of cells along the longer side of a picture: more than its PNG has pixels would
+/// not be visible.
 const MAX_SIDE_CELLS: i32 = 4096;
 /// Longest colour bar \[px\].
 const MAX_BAR_PX: f64 = 360.0;
-/// Distance wanted between two ticks \[px\].
+/// Target distance between two ticks \[px\].
 const TICK_DISTANCE_PX: f64 = 48.0;
 
-/// A picture of a map in world coordinates: free cells white, occupied ones nearly black, unknown
-/// ones and everything outside the map grey. Layers are laid over it in the order of their
-/// [`Depth`](crate::layers::Depth).
+/// A picture of a map in world coordinates: free cells are white, occupied ones nearly black,
+/// unknown ones and everything outside the map grey. Layers are drawn over it in the order of
+/// their [`Depth`](crate::layers::Depth).
 pub struct MapPicture<'a> {
     pub(crate) map: &'a OccupancyGrid,
     pub(crate) layers: Vec<Box<dyn Layer + 'a>>,
@@ -43,7 +44,7 @@ pub struct MapPicture<'a> {
 }
 
 impl<'a> MapPicture<'a> {
-    /// The map alone.
+    /// Creates a picture of the map alone.
     pub fn new(map: &'a OccupancyGrid) -> Self {
         Self {
             map,
@@ -56,70 +57,71 @@ impl<'a> MapPicture<'a> {
         }
     }
 
-    /// Lays something over the map.
+    /// Adds a layer over the map.
     #[must_use]
     pub fn with(mut self, layer: impl Layer + 'a) -> Self {
         self.layers.push(Box::new(layer));
         self
     }
 
-    /// Lays something over the map whose type is not known.
+    /// Adds a boxed layer over the map.
     #[must_use]
     pub fn with_boxed(mut self, layer: Box<dyn Layer + 'a>) -> Self {
         self.layers.push(layer);
         self
     }
 
-    /// Which part of the world is shown.
+    /// Sets the part of the world that is shown.
     #[must_use]
     pub fn region(self, region: Region) -> Self {
         Self { region, ..self }
     }
 
-    /// A title above the picture.
+    /// Sets the title above the picture.
     #[must_use]
     pub fn title(self, title: impl Into<String>) -> Self {
         Self { title: title.into(), ..self }
     }
 
-    /// A table below the picture.
+    /// Sets the table below the picture.
     #[must_use]
     pub fn table(self, table: TextTable) -> Self {
         Self { table, ..self }
     }
 
-    /// Length of the plot area's longer side \[px\], 100 to 4000. Text does not grow with it.
+    /// Sets the length of the plot area's longer side \[px\], 100 to 4000. Text does not grow
+    /// with it.
     #[must_use]
     pub fn side_px(self, side_px: f64) -> Self {
         let side_px = if side_px.is_nan() { DEFAULT_SIDE_PX } else { side_px };
         Self { side_px: side_px.clamp(100.0, 4000.0), ..self }
     }
 
-    /// Shows cells in blocks, at most this many along the longer side.
+    /// Draws cells in blocks, at most this many along the longer side.
     #[cfg(feature = "raster")]
     pub(crate) fn max_side_cells(self, max_side_cells: i32) -> Self {
         Self { max_side_cells, ..self }
     }
 
-    /// The picture.
+    /// Draws the picture.
     pub fn svg(&self) -> Svg {
         Page::new(&self.title, self.canvas(self.view(), Depth::Ground)).svg(&self.table)
     }
 
-    /// The picture in the layout of another one, so that both have the same size and the same
-    /// legend: frames of an animation.
+    /// Draws the picture in the layout of another one, so that both have the same size and the
+    /// same legend, as frames of an animation.
     pub fn svg_in(&self, layout: &Layout) -> Svg {
         self.page_in(self.canvas(layout.view, Depth::Ground), layout)
     }
 
-    /// The page of a canvas with the legend of a layout.
+    /// Draws the page of a canvas with the legend of a layout.
     fn page_in(&self, mut canvas: Canvas<'_>, layout: &Layout) -> Svg {
         canvas.entries.clone_from(&layout.entries);
         canvas.bars.clone_from(&layout.bars);
         Page::new(&self.title, canvas).svg(&self.table)
     }
 
-    /// The page with the ground alone (the map and its tints), its cells shown in blocks, at most
+    /// Draws the page with the base only (the map and its tints), its cells in blocks, at most
     /// this many along the longer side.
     #[cfg(feature = "raster")]
     pub(crate) fn ground_in(&self, layout: &Layout, max_side_cells: i32) -> Svg {
@@ -130,20 +132,20 @@ impl<'a> MapPicture<'a> {
         self.page_in(canvas, layout)
     }
 
-    /// Only what stands on the ground, without a page: to be drawn over [`Self::ground_in`] of the
-    /// same layout, which is then drawn once for many pictures.
+    /// Draws only the layers above the base, without a page, to be drawn over [`Self::ground_in`]
+    /// of the same layout, which is then drawn once for many pictures.
     #[cfg(feature = "raster")]
     pub(crate) fn over_ground_in(&self, layout: &Layout) -> Svg {
         Page::new(&self.title, self.canvas(layout.view, Depth::Search)).over_ground()
     }
 
-    /// How the picture is laid out.
+    /// Returns the layout of the picture.
     pub fn layout(&self) -> Layout {
         let canvas = self.canvas(self.view(), Depth::Ground);
         Layout { view: *canvas.view(), entries: canvas.entries, bars: canvas.bars }
     }
 
-    /// The same layout with what the legends of further pictures explain, each once.
+    /// Returns the same layout with the legend entries of further pictures, each once.
     #[cfg(feature = "raster")]
     pub(crate) fn layout_with<'b>(&self, others: impl Iterator<Item = MapPicture<'b>>) -> Layout {
         let mut layout = self.layout();
@@ -163,7 +165,7 @@ impl<'a> MapPicture<'a> {
         View::new(self.region.extent(self.map, extent, self.side_px), self.side_px)
     }
 
-    /// The map with all layers, from a depth on.
+    /// Draws the map with all layers, from a depth on.
     fn canvas(&self, view: View, from: Depth) -> Canvas<'a> {
         let mut canvas = Canvas::new(self.map, view, self.max_side_cells);
         if from == Depth::Ground {
@@ -171,7 +173,7 @@ impl<'a> MapPicture<'a> {
         }
         let layers = self.layers.iter().map(AsRef::as_ref);
         let mut layers: Vec<&dyn Layer> = layers.filter(|layer| layer.depth() >= from).collect();
-        // Stable: what was added first stays behind.
+        // The sort is stable: layers that were added first stay behind.
         layers.sort_by_key(|layer| layer.depth());
         for layer in layers {
             layer.draw(&mut canvas);
@@ -180,7 +182,7 @@ impl<'a> MapPicture<'a> {
     }
 }
 
-/// Which part of the world a picture shows, and what its legend says.
+/// View and legend of a picture.
 #[derive(Clone, Debug)]
 pub struct Layout {
     view: View,
@@ -188,7 +190,7 @@ pub struct Layout {
     bars: Vec<ColorBar>,
 }
 
-/// Paints free and occupied cells; unknown ones are the ground.
+/// Paints free and occupied cells; the background shows unknown ones.
 pub(crate) fn draw_map(canvas: &mut Canvas<'_>) {
     let map = canvas.map();
     let (occupied, unknown) = (map.occupied(), map.unknown());
@@ -203,7 +205,7 @@ pub(crate) fn draw_map(canvas: &mut Canvas<'_>) {
     }
 }
 
-/// The parts of the page and where they stand.
+/// The parts of the page and their positions.
 struct Page<'a> {
     title: &'a str,
     canvas: Canvas<'a>,
@@ -236,7 +238,7 @@ impl<'a> Page<'a> {
             let page_width = right + GAP_PX + legend.width_px();
             (page_width, bottom.max(self.top + legend.height_px()))
         } else {
-            // As wide as the picture is anyway, but no narrower than looks reasonable.
+            // As wide as the picture is anyway, but with a minimum width.
             let legend = Legend::new(&entries, (right - self.left).max(300.0));
             legend.draw(&mut out, self.left, bottom + 8.0);
             let page_width = right.max(self.left + legend.width_px());
@@ -250,7 +252,7 @@ impl<'a> Page<'a> {
         Svg::page(page_width + EDGE_PX, page_height + EDGE_PX, out)
     }
 
-    /// The plot alone, on nothing.
+    /// Draws the plot alone, without a background.
     #[cfg(feature = "raster")]
     fn over_ground(mut self) -> Svg {
         let view = *self.canvas.view();
@@ -263,7 +265,7 @@ impl<'a> Page<'a> {
     fn draw_plot(&mut self, out: &mut SvgWriter) {
         let view = *self.canvas.view();
         let (width, height) = (view.width_px(), view.height_px());
-        // A nested `svg` cuts off what lies outside; unlike a clip path it needs no name.
+        // A nested `svg` clips its content; unlike a clip path it needs no name.
         out.tag("svg").at(self.left, self.top).size(width, height).open();
         out.tag("rect").size(width, height).fill(UNKNOWN).leaf();
         out.append(std::mem::take(&mut self.canvas.body));
@@ -275,7 +277,7 @@ impl<'a> Page<'a> {
         y_scale.draw_left(out, self.left, self.y_axis.side_px());
     }
 
-    /// Draws the colour bars; returns the right edge of all that is drawn.
+    /// Draws the colour bars; returns the right edge of everything drawn.
     fn draw_bars(&self, out: &mut SvgWriter) -> f64 {
         let view = self.canvas.view();
         let mut right = self.left + view.width_px();
@@ -285,15 +287,15 @@ impl<'a> Page<'a> {
             bar.draw(out, x, self.top, height);
             right = x + bar.width_px(height);
         }
-        // The last number below the plot may reach beyond it.
+        // The last number below the plot may extend beyond it.
         let last = self.x_axis.marks.last();
         let last = last.map_or(0.0, |(_, text)| text_width_px(text, SMALL_TEXT_PX));
         right.max(self.left + view.width_px() + 0.5 * last)
     }
 }
 
-/// The axes x and y, whose ticks have the same step, coarse enough for their numbers to stand side
-/// by side.
+/// Returns the axes x and y, whose ticks have the same step, coarse enough for their numbers to
+/// be side by side.
 pub(crate) fn map_axes(view: &View) -> (Axis, Axis) {
     let (min, max) = view.corners();
     let side_px = view.width_px().max(view.height_px());

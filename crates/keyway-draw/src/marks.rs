@@ -1,16 +1,16 @@
-//! Shapes that the picture and its legend share.
+//! Shapes that pictures and their legends share.
 
 use crate::color::{INK, Rgb};
 use crate::text::text_width_px;
 use crate::ticks::span;
 use crate::writer::{Anchor, PathData, SvgWriter};
 
-/// Distance between the lines of a hatching \[px\].
+/// Distance between the lines of the hatching \[px\].
 const HATCH_PX: f64 = 5.0;
 
-/// A disc with a translucent ground and lines at 45 degrees; one that is too small for such lines
-/// is filled, so that it is seen among other marks. The lines are computed rather than a pattern:
-/// several pictures can then stand in one page without clashing names.
+/// Draws a disc with a translucent fill and lines at 45 degrees; one that is too small for such
+/// lines is filled, so that it is visible among other marks. The lines are computed instead of a
+/// pattern, so that several pictures can be in one page without name clashes.
 pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64, color: Rgb) {
     let opacity = if radius < 0.5 * HATCH_PX { "1" } else { "0.18" };
     let disc = out.tag("circle").round(x, y, radius).fill(color).attr("fill-opacity", opacity);
@@ -29,7 +29,7 @@ pub(crate) fn hatched_disc(out: &mut SvgWriter, (x, y): (f64, f64), radius: f64,
     path.attr("d", lines.as_str()).leaf();
 }
 
-/// The same for a polygon.
+/// Draws the same for a polygon.
 pub(crate) fn hatched_polygon(out: &mut SvgWriter, vertices: &[(f64, f64)], color: Rgb) {
     let mut border = PathData::line(vertices.iter().copied());
     border.close();
@@ -54,7 +54,8 @@ pub(crate) fn hatched_polygon(out: &mut SvgWriter, vertices: &[(f64, f64)], colo
     path.attr("d", lines.as_str()).leaf();
 }
 
-/// The x at which the line x + y = `line` crosses the border of a polygon: an even number of them.
+/// Returns the x coordinates at which the line x + y = `line` crosses the border of a polygon: an
+/// even number of them.
 fn crossings(vertices: &[(f64, f64)], line: f64) -> Vec<f64> {
     let next = vertices.iter().cycle().skip(1);
     let edges = vertices.iter().zip(next);
@@ -66,7 +67,7 @@ fn crossings(vertices: &[(f64, f64)], line: f64) -> Vec<f64> {
     edges.filter_map(crossing).collect()
 }
 
-/// Radius of a small ring \[px\]: it shows on both sides of a driven line.
+/// Radius of a small ring \[px\], visible on both sides of a driven line.
 pub(crate) const KEY_RING_PX: f64 = 4.0;
 
 /// Half the height of a mark with a time \[px\].
@@ -78,7 +79,7 @@ pub(crate) fn time_mark_half_px(text: &str) -> f64 {
     (0.5 * text_width_px(text, TIME_TEXT_PX) + 2.5).max(TIME_MARK_PX)
 }
 
-/// A time, or another short text, on a light ground with round ends.
+/// Draws a time, or another short text, on a light background with round ends.
 pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, color: Rgb) {
     let half = time_mark_half_px(text);
     let ground =
@@ -92,13 +93,12 @@ pub(crate) fn time_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, col
 /// Radius of a disc with a letter \[px\].
 pub(crate) const LETTER_MARK_PX: f64 = 7.0;
 
-/// A letter or a number in a disc, dark on white or white on dark, set off from its ground by a
-/// light rim.
+/// Draws a letter or a number in a disc, dark on white or white on dark, with a light rim.
 pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, dark: bool) {
     let (ground, ink) = if dark { (INK, "#fff") } else { (Rgb(0xff, 0xff, 0xff), "#222222") };
     out.tag("circle").round(x, y, LETTER_MARK_PX + 1.2).attr("fill", "#fff").leaf();
     out.tag("circle").round(x, y, LETTER_MARK_PX - 0.6).fill(ground).stroke(INK, 1.2).leaf();
-    // Two digits have room, too.
+    // Small enough for two digits.
     let size = if text.len() > 1 { 8.0 } else { 10.0 };
     out.tag("text")
         .at(x, y + 0.365 * size)
@@ -112,7 +112,7 @@ pub(crate) fn letter_mark(out: &mut SvgWriter, (x, y): (f64, f64), text: &str, d
 mod tests {
     use super::*;
 
-    /// True if a point is inside, by how often a line from it to the right meets the border.
+    /// True if a point is inside, by the number of crossings of a line from it to the right.
     fn holds(vertices: &[(f64, f64)], (x, y): (f64, f64)) -> bool {
         let next = vertices.iter().cycle().skip(1);
         let meets = |((ax, ay), (bx, by)): (&(f64, f64), &(f64, f64))| {

@@ -1,21 +1,21 @@
-//! A name beside or above what it belongs to, in as many lines as it needs.
+//! A name beside or above an element, in as many lines as it needs.
 
 use crate::text::{SMALL_TEXT_PX, text_width_px};
 use crate::writer::{Anchor, SvgWriter};
 
-/// A name in lines of a width. Nothing of it is left out: names that differ look different.
+/// A name, wrapped to a width. Nothing is left out, so different names look different.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NameLines {
     lines: Vec<String>,
 }
 
 impl NameLines {
-    /// From line to line.
+    /// Distance between lines \[px\].
     pub(crate) const LINE_PX: f64 = 12.5;
 
-    /// Broken at spaces; within a word only if it is wider than a line: behind the characters that
-    /// join its parts, or anywhere in a part that is wider than a line. There are as few lines as
-    /// can be, and they are about equally long.
+    /// Breaks a name at spaces; within a word only if it is wider than a line: after the
+    /// characters that join its parts, or anywhere in a part that is wider than a line. The
+    /// number of lines is minimal, and they are about equally long.
     pub(crate) fn new(name: &str, width_px: f64) -> Self {
         let filled = Self::filled(name, width_px);
         if filled.lines.len() < 2 {
@@ -23,7 +23,7 @@ impl NameLines {
         }
         let words = words(name);
         let widths_px = words.iter().map(|word| text_width_px(word.trim_end(), SMALL_TEXT_PX));
-        // The narrowest lines that are no more and break no further word.
+        // The smallest width with the same number of lines that breaks no further word.
         let (mut low, mut high) = (widths_px.fold(0.0, f64::max).min(width_px), width_px);
         while high - low > 1.0 {
             let middle = 0.5 * (low + high);
@@ -33,12 +33,12 @@ impl NameLines {
         Self::filled(name, high)
     }
 
-    /// The lines of a text as they are.
+    /// Takes the lines of a text as they are.
     pub(crate) fn of_lines(text: &str) -> Self {
         Self { lines: text.lines().map(str::to_owned).collect() }
     }
 
-    /// Each line as long as it can be.
+    /// Fills each line as far as possible.
     fn filled(name: &str, width_px: f64) -> Self {
         let fits = |text: &str| text_width_px(text.trim_end(), SMALL_TEXT_PX) <= width_px;
         let mut lines = vec![String::new()];
@@ -64,9 +64,9 @@ impl NameLines {
         self.lines.iter().map(width_px).fold(0.0, f64::max)
     }
 
-    /// Draws it with its lowest line on a base line.
+    /// Draws the name with its lowest line on a base line.
     pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, base: f64, anchor: Anchor) {
-        // The first line comes first in the file, too: so it is read aloud.
+        // The first line comes first in the file, too, so that screen readers read it first.
         for (line, above) in self.lines.iter().zip((0..self.lines.len()).rev()) {
             let y = base - above as f64 * Self::LINE_PX;
             out.label(x, y, SMALL_TEXT_PX, anchor, line.trim_end());
@@ -74,8 +74,8 @@ impl NameLines {
     }
 }
 
-/// Between these a line may end: at spaces, but not before a sign, such as a percent sign, nor
-/// around one of equality.
+/// Splits a name into the parts between which a line may end: at spaces, but not before a sign,
+/// such as a percent sign, nor around an equals sign.
 fn words(name: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for word in name.split_inclusive(' ') {
@@ -88,7 +88,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// The parts of a word between which it may be broken.
+/// Splits a word into the parts between which it may be broken.
 fn pieces(word: &str, fits: &dyn Fn(&str) -> bool) -> Vec<String> {
     if fits(word) {
         return vec![word.to_owned()];
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(NameLines::new("", 50.0).lines, [""]);
     }
 
-    /// No word stands alone below a full line.
+    /// No single word is below a full line.
     #[test]
     fn lines_are_about_equally_long() {
         let name = "search time of bidirectional-astar, lower than astar";

@@ -1,12 +1,13 @@
-//! Sets of cells as the outlines of their regions: one SVG path, without seams between cells.
+//! Outlines of the regions of a set of cells: one SVG path, without seams between cells.
 
 use std::fmt::Write as _;
 
 /// A direction along the grid lines, counter-clockwise: +x, +y, -x, -y.
 const STEPS: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// SVG path data for the cells (x, y) with 0 <= x < `width`, 0 <= y < `height` that are `inside`;
-/// cell (x, y) is the unit square from (x, y) to (x + 1, y + 1). Empty when there are none.
+/// Returns SVG path data for the cells (x, y) with 0 <= x < `width`, 0 <= y < `height` that are
+/// `inside`; cell (x, y) is the unit square from (x, y) to (x + 1, y + 1). Empty if there are
+/// none.
 ///
 /// Outer borders run counter-clockwise and holes clockwise, so that both fill rules paint exactly
 /// the cells. Returns `None` as soon as the text exceeds `max_bytes`.
@@ -19,11 +20,11 @@ pub(crate) fn outline(
     let at = |x: i32, y: i32| x >= 0 && y >= 0 && x < width && y < height && inside(x, y);
     let mut walk = Walk { at, width, seen: vec![false; width as usize * height as usize] };
     let mut path = String::new();
-    // Where the pen is: the beginning of the loop drawn last.
+    // Position of the pen: the beginning of the loop drawn last.
     let mut pen = (0, 0);
     for y in 0..height {
         for x in 0..width {
-            // Every loop has a lower edge, and the first one met is its lower left corner.
+            // Every loop has a lower edge, and the first one found is at its lower left corner.
             if (walk.at)(x, y) && !(walk.at)(x, y - 1) && !walk.seen[walk.index(x, y)] {
                 let _ = write!(path, "m{} {}", x - pen.0, y - pen.1);
                 walk.around((x, y), &mut path);
@@ -75,8 +76,8 @@ impl<F: Fn(i32, i32) -> bool> Walk<F> {
         }
     }
 
-    /// The direction in which the border goes on from the grid point (x, y). Cells that touch only
-    /// at a corner are separate.
+    /// Returns the direction in which the border continues from the grid point (x, y). Cells that
+    /// touch only at a corner are separate.
     fn turn(&self, x: i32, y: i32, direction: usize) -> usize {
         // The cells ahead on the left and on the right, by direction.
         let (left, right) = [
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Corners of the loops in path data.
+    /// Returns the corners of the loops in path data.
     fn loops(path: &str) -> Vec<Vec<(i32, i32)>> {
         let mut pen = (0, 0);
         let mut all = Vec::new();
@@ -117,20 +118,20 @@ mod tests {
                     points.push(pen);
                 }
             }
-            // The next `m` is relative to where this loop began.
+            // The next `m` is relative to the beginning of this loop.
             pen = points[0];
             all.push(points);
         }
         all
     }
 
-    /// How often the loops go around the centre of a cell, counter-clockwise.
+    /// Winding number of the loops around the centre of a cell, counter-clockwise.
     fn winding(loops: &[Vec<(i32, i32)>], x: i32, y: i32) -> i32 {
         let mut count = 0;
         for points in loops {
             for (i, &(ax, ay)) in points.iter().enumerate() {
                 let (bx, by) = points[(i + 1) % points.len()];
-                // Vertical edges right of the centre that pass its height.
+                // Counts vertical edges right of the centre that cross its height.
                 if ax == bx && ax > x && ay.min(by) <= y && ay.max(by) > y {
                     count += (by - ay).signum();
                 }

@@ -1,4 +1,4 @@
-//! The panel of a chart, to be drawn on.
+//! The panel of a chart, as a drawing area.
 
 use crate::axes::Scale;
 use crate::color::{GRID, INK, QUIET, Rgb};
@@ -12,43 +12,43 @@ const BAR_LINE_PX: f64 = 0.8;
 /// A point of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChartPoint {
-    /// Its place along the lower axis.
+    /// Position along the lower axis.
     pub x: f64,
-    /// Its height.
+    /// Height.
     pub y: f64,
-    /// Between what its true height lies.
+    /// Interval of its true height.
     pub y_interval: Option<(f64, f64)>,
 }
 
 impl ChartPoint {
-    /// A point without an interval.
+    /// Creates a point without an interval.
     pub const fn new(x: f64, y: f64) -> Self {
         Self { x, y, y_interval: None }
     }
 
-    /// The point with the interval in which its true height lies.
+    /// Returns the point with the interval of its true height.
     #[must_use]
     pub const fn with_interval(self, low: f64, high: f64) -> Self {
         Self { y_interval: Some((low, high)), ..self }
     }
 }
 
-/// The place of a panel on the page.
+/// Position of a panel on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PlotArea {
-    /// Its left edge \[px\].
+    /// Left edge \[px\].
     pub left_px: f64,
-    /// Its upper edge \[px\].
+    /// Upper edge \[px\].
     pub top_px: f64,
-    /// Its right edge \[px\].
+    /// Right edge \[px\].
     pub right_px: f64,
-    /// Its lower edge \[px\].
+    /// Lower edge \[px\].
     pub bottom_px: f64,
 }
 
-/// A panel of a [`Chart`](crate::Chart) that is being drawn on, in the values of its axes. What is
-/// drawn later covers what is there.
+/// A panel of a [`Chart`](crate::Chart) during drawing, in the values of its axes. Later elements
+/// cover earlier ones.
 pub struct Plot<'a> {
     pub(crate) out: &'a mut SvgWriter,
     pub(crate) x_scale: Scale<'a>,
@@ -68,13 +68,13 @@ impl Plot<'_> {
         }
     }
 
-    /// Across the panel at a value of the lower axis.
+    /// Returns a line across the panel at a value of the lower axis.
     fn upright(&self, value: f64) -> [(f64, f64); 2] {
         let x = self.x_px(value);
         [(x, self.area.top_px), (x, self.area.bottom_px)]
     }
 
-    /// Across the panel at a value of the upright axis.
+    /// Returns a line across the panel at a value of the vertical axis.
     fn level(&self, value: f64) -> [(f64, f64); 2] {
         let y = self.y_px(value);
         [(self.area.left_px, y), (self.area.right_px, y)]
@@ -84,22 +84,22 @@ impl Plot<'_> {
         self.out.tag("line").between(from, to).stroke(color, width_px).leaf();
     }
 
-    /// The place of the panel on the page \[px\].
+    /// Returns the position of the panel on the page \[px\].
     pub const fn area(&self) -> PlotArea {
         self.area
     }
 
-    /// The place of a value along the lower axis \[px\].
+    /// Returns the position of a value along the lower axis \[px\].
     pub fn x_px(&self, value: f64) -> f64 {
         self.x_scale.px(value)
     }
 
-    /// The place of a value along the upright axis \[px\].
+    /// Returns the position of a value along the vertical axis \[px\].
     pub fn y_px(&self, value: f64) -> f64 {
         self.y_scale.px(value)
     }
 
-    /// Receives anything else, in pixels of the page.
+    /// Returns the writer for any other elements, in pixels of the page.
     pub const fn writer(&mut self) -> &mut SvgWriter {
         self.out
     }
@@ -108,7 +108,7 @@ impl Plot<'_> {
         (self.x_px(point.x), self.y_px(point.y))
     }
 
-    /// A line from point to point. Points that have no place on the axes are gaps.
+    /// Draws a line from point to point. Points without a position on the axes are gaps.
     pub fn line(&mut self, points: impl IntoIterator<Item = ChartPoint>, style: LineStyle) {
         let (mut path, mut is_open) = (PathData::default(), false);
         for (x, y) in points.into_iter().map(|point| self.px(&point)) {
@@ -122,7 +122,7 @@ impl Plot<'_> {
         tag.attr("stroke-linejoin", "round").attr("d", path.as_str()).leaf();
     }
 
-    /// A dot of the given radius \[px\].
+    /// Draws a dot of the given radius \[px\].
     pub fn dot(&mut self, point: ChartPoint, color: Rgb, radius_px: f64) {
         let (x, y) = self.px(&point);
         if !(x + y).is_finite() {
@@ -131,9 +131,9 @@ impl Plot<'_> {
         self.out.tag("circle").round(x, y, radius_px).fill(color).leaf();
     }
 
-    /// A cloud of dots `width_px` wide. Of those that fall into the same square with sides of
-    /// `square_px` only one is drawn: of many thousand points a picture is no larger, and looks the
-    /// same.
+    /// Draws a cloud of dots `width_px` wide. Of those in the same square with sides of
+    /// `square_px`, only one is drawn, so that many thousand points make the picture no larger,
+    /// and it looks the same.
     pub fn dots(
         &mut self,
         points: impl IntoIterator<Item = ChartPoint>,
@@ -141,7 +141,7 @@ impl Plot<'_> {
         width_px: f64,
         square_px: f64,
     ) {
-        // Lines of no length with round ends, in one path.
+        // Lines of length 0 with round ends, in one path.
         let (mut drawn, mut path) = (HashSet::new(), PathData::default());
         for (x, y) in points.into_iter().map(|point| self.px(&point)) {
             let square = [x, y].map(|px| (px / square_px).round() as i64);
@@ -153,8 +153,8 @@ impl Plot<'_> {
         tag.attr("stroke-linecap", "round").attr("d", path.as_str()).leaf();
     }
 
-    /// A bar with two opposite corners. What lies beyond the axes is cut off; a bar with a number
-    /// that is not finite is left out.
+    /// Draws a bar with two opposite corners. Parts beyond the axes are clipped; a bar with a
+    /// number that is not finite is left out.
     pub fn bar(&mut self, corner: ChartPoint, opposite: ChartPoint, fill: Rgb) {
         if !(corner.x + corner.y + opposite.x + opposite.y).is_finite() {
             return;
@@ -166,8 +166,8 @@ impl Plot<'_> {
         tag.fill(fill).stroke(INK, BAR_LINE_PX).leaf();
     }
 
-    /// The area between the ends of the intervals of points. Points without an interval, or with a
-    /// number that is not finite, are left out.
+    /// Draws the area between the ends of the intervals of points. Points without an interval, or
+    /// with a number that is not finite, are left out.
     pub fn band(&mut self, points: impl IntoIterator<Item = ChartPoint>, fill: Rgb) {
         let (mut lower, mut upper) = (Vec::new(), Vec::new());
         let all = points.into_iter().filter_map(|point| Some((point.x, point.y_interval?)));
@@ -180,12 +180,12 @@ impl Plot<'_> {
         self.out.tag("path").fill(fill).attr("d", path.as_str()).leaf();
     }
 
-    /// An upright line at a value of the lower axis, such as a limit.
+    /// Draws a vertical line at a value of the lower axis, such as a limit.
     pub fn rule_x(&mut self, value: f64, style: LineStyle) {
         self.rule(self.upright(value), style);
     }
 
-    /// A level line at a value of the upright axis, such as a limit.
+    /// Draws a horizontal line at a value of the vertical axis, such as a limit.
     pub fn rule_y(&mut self, value: f64, style: LineStyle) {
         self.rule(self.level(value), style);
     }
@@ -197,9 +197,9 @@ impl Plot<'_> {
         self.out.tag("line").between(from, to).line_style(style).leaf();
     }
 
-    /// An interval at a value of the lower axis, or at a category of the upright one. Its caps
-    /// reach `half_cap_px` to both sides. What lies beyond the axis is cut off, and has no cap. An
-    /// interval with an end that is not finite is left out. Dashes are not used.
+    /// Draws an interval at a value of the lower axis, or at a category of the vertical one. Its
+    /// caps extend by `half_cap_px` to both sides. Parts beyond the axis are clipped, and have no
+    /// cap. An interval with an end that is not finite is left out. Dashes are not used.
     pub fn interval(&mut self, at: f64, low: f64, high: f64, style: LineStyle, half_cap_px: f64) {
         if !(low + high).is_finite() {
             return;
@@ -229,7 +229,7 @@ mod tests {
 
     const STYLE: LineStyle = LineStyle::solid(INK, 2.0);
 
-    /// The drawing on a panel of 100 px x 100 px over an axis from 0 to 10.
+    /// Returns the drawing on a panel of 100 px x 100 px over an axis from 0 to 10.
     fn drawn(y_axis: Axis, draw: impl Fn(&mut Plot<'_>)) -> String {
         let chart = Chart::new(Axis::linear(0.0, 10.0, 5), 100.0, 100.0).panel(y_axis, |plot| {
             plot.writer().tag("mark").leaf();
@@ -243,7 +243,7 @@ mod tests {
         Axis::linear(0.0, 10.0, 5)
     }
 
-    /// The numbers of an attribute, in the order in which they are drawn.
+    /// Returns the numbers of an attribute, in drawing order.
     fn numbers(svg: &str, name: &str) -> Vec<f64> {
         let before = format!(" {name}=\"");
         let values = svg.split(&before).skip(1);
@@ -273,7 +273,7 @@ mod tests {
         let points = [1.0, 2.0, f64::NAN, 3.0, 4.0].map(|y| ChartPoint::new(y, y));
         let svg = drawn(upright(), |plot| plot.line(points, STYLE));
         assert_eq!((svg.matches('M').count(), svg.matches('L').count()), (2, 2));
-        // The logarithm of 0 is none.
+        // The logarithm of 0 is not finite.
         let points = [1.0, 0.0, 100.0].map(|y| ChartPoint::new(1.0, y));
         let svg = drawn(Axis::powers(&[1.0, 100.0]), |plot| plot.line(points, STYLE));
         assert_eq!((svg.matches('M').count(), svg.matches('L').count()), (2, 0));
@@ -310,7 +310,7 @@ mod tests {
             plot.interval(5.0, 2.0, f64::INFINITY, STYLE, 3.0);
         });
         assert_eq!(lengths(&svg), [80.0, 6.0]);
-        // Level, along the lower axis.
+        // Horizontal, along the lower axis.
         let rows = Axis::categories(["a", "b"], 50.0);
         let svg = drawn(rows, |plot| plot.interval(1.0, 0.0, 9.0, STYLE, 3.0));
         assert_eq!(lengths(&svg), [90.0, 6.0, 6.0]);

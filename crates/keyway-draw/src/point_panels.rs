@@ -1,6 +1,6 @@
-//! Points of several series, each in a panel of its own with all others pale behind it: a scatter
-//! plot, or rates with their intervals. However many series there are, each is seen, without
-//! colours and symbols to be looked up.
+//! Points of several series, each in a separate panel with all others pale behind it: a scatter
+//! plot, or rates with their intervals. Each series is visible, regardless of their number,
+//! without a key of colours and symbols.
 
 use crate::caption::EDGE_PX;
 use crate::chart::{COLUMN_GAP_PX, Margins};
@@ -22,27 +22,27 @@ pub struct PointPanels<'a> {
     pub x_label: &'a str,
     /// The quantity along the other axis, with its unit.
     pub y_label: &'a str,
-    /// The ends of the upright axis; `None`: those of the points.
+    /// Range of the vertical axis; `None`: that of the points.
     pub y_ends: Option<(f64, f64)>,
-    /// True if a line leads from point to point of a series.
+    /// True if lines join the points of a series.
     pub are_joined: bool,
-    /// The series, line by line.
+    /// The series, in the order of the panels.
     pub series: &'a [PointSeries<'a>],
-    /// What is to be said below; empty for nothing.
+    /// Caption below the chart; empty for none.
     pub caption: &'a str,
 }
 
 /// A series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointSeries<'a> {
-    /// Its name, above its panel.
+    /// Name, above its panel.
     pub name: &'a str,
-    /// Its points; those with a number that is not finite are left out.
+    /// Points; those with a number that is not finite are left out.
     pub points: &'a [ChartPoint],
 }
 
-/// Draws each series in a panel, with bars for what is known of its heights, and all others behind
-/// it.
+/// Draws each series in a panel, with bars for the intervals of its heights, and all others
+/// behind it.
 pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
     let all = || chart.series.iter().flat_map(points_of);
     let heights = all().flat_map(|point| {
@@ -69,8 +69,8 @@ pub fn point_panels(chart: &PointPanels<'_>) -> Svg {
     drawn.svg()
 }
 
-/// Width and height of a panel \[px\], and how many stand side by side: two or three, where there
-/// are as many.
+/// Returns the width and height of a panel \[px\], and the number of columns: at most three, and
+/// two for four panels.
 fn panel_px(panels: usize) -> (f64, f64, usize) {
     let columns = if panels == 4 { 2 } else { panels.clamp(1, 3) };
     let gaps_px = COLUMN_GAP_PX * (columns - 1) as f64;
@@ -82,7 +82,7 @@ fn points_of<'a>(series: &PointSeries<'a>) -> impl Iterator<Item = ChartPoint> +
     series.points.iter().copied().filter(|point| point.x.is_finite() && point.y.is_finite())
 }
 
-/// The smallest and the largest value, at least a little apart; from 0 where that is not far.
+/// Returns the smallest and the largest value, at least a little apart; from 0 if that is near.
 fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     match span(values) {
         None => (0.0, 1.0),
@@ -92,13 +92,13 @@ fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
-/// Points at the ends are not cut off.
+/// Returns an axis with margins, so that points at the ends are not clipped.
 fn with_room((low, high): (f64, f64), max_intervals: usize) -> Axis {
     let room = 0.04 * (high - low);
     Axis::with_ticks(low - room, high + room, &Ticks::new(low, high, max_intervals))
 }
 
-/// Series as the ground of another one: their lines, or their points.
+/// Draws series behind another one: their lines, or their points.
 fn draw_behind(plot: &mut Plot<'_>, others: &[PointSeries<'_>], are_joined: bool) {
     if are_joined {
         for series in others {
@@ -136,7 +136,7 @@ mod tests {
         ChartPoint { x, y: 50.0, y_interval: Some((40.0, 60.0)) }
     }
 
-    /// Dots of the strong colour: those of the panels' own series.
+    /// Counts the dots of the strong colour: those of the panels' own series.
     fn own_dots(svg: &str) -> usize {
         let mine = |line: &&str| line.contains("linecap") && line.contains(&OWN.to_string());
         svg.lines().filter(mine).map(|line| line.matches('M').count()).sum()
@@ -148,7 +148,7 @@ mod tests {
         let names = ["one & only", "b", "c", "d", "e"];
         let series = names.map(|name| PointSeries { name, points: &points });
         let svg = chart(&series, true);
-        // The second of the two equal points is not seen, nor is the one that is none.
+        // The second of the two equal points is not visible, nor is the invalid one.
         assert_eq!(own_dots(&svg), 5 * 2);
         // Rows of three and two: the axes at the left of each row, and below each column.
         assert_eq!(

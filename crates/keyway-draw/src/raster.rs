@@ -1,11 +1,11 @@
-//! From a finished picture to its pixels.
+//! Rendering of a picture to pixels.
 
 use crate::svg::Svg;
 use resvg::{tiny_skia, usvg};
 use std::sync::{Arc, LazyLock};
 use thiserror::Error;
 
-/// Longest side of a PNG \[px\]; a larger request is scaled down to it.
+/// Maximum side of a PNG \[px\]; a larger request is scaled down to it.
 pub const MAX_PNG_SIDE_PX: u32 = 4096;
 
 /// The font of all PNGs, so that they look the same on a machine without fonts.
@@ -16,7 +16,7 @@ static FONTS: LazyLock<Arc<usvg::fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
-/// Why a picture could not be turned into pixels.
+/// Reason why a picture cannot be rendered.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DrawError {
@@ -29,9 +29,9 @@ pub enum DrawError {
     /// A side would have no pixel, or there is not enough memory for the pixels.
     #[error("cannot make a picture of {width} x {height} pixels")]
     Size {
-        /// Asked-for width \[px\].
+        /// Requested width \[px\].
         width: u32,
-        /// Asked-for height \[px\].
+        /// Requested height \[px\].
         height: u32,
     },
     /// The pixels could not be written as PNG.
@@ -40,7 +40,7 @@ pub enum DrawError {
     /// The frames could not be written as GIF.
     #[error("cannot write GIF: {0}")]
     Gif(String),
-    /// A frame does not have the size of the picture that the animation was made for.
+    /// A frame does not have the size of the animation.
     #[error("frames of an animation must have one size; got {width} x {height} pixels")]
     Frame {
         /// Width of the frame \[px\].
@@ -51,8 +51,9 @@ pub enum DrawError {
 }
 
 impl Svg {
-    /// The bytes of a PNG file with `scale` pixels per unit of the picture (1 for a screen, 3 for
-    /// print at the picture's own size), less when a side would exceed [`MAX_PNG_SIDE_PX`].
+    /// Returns the bytes of a PNG file with `scale` pixels per unit of the picture (1 for a
+    /// screen, 3 for print at the picture's own size), fewer if a side would exceed
+    /// [`MAX_PNG_SIDE_PX`].
     ///
     /// ```
     /// use keyway::map::OccupancyGrid;
@@ -65,13 +66,14 @@ impl Svg {
     /// ```
     ///
     /// # Errors
-    /// When the scale is not positive, or the text was not made by this crate and is not SVG.
+    /// Returns [`DrawError`] if the scale is not positive, or the text is from elsewhere and not
+    /// SVG.
     pub fn to_png(&self, scale: f64) -> Result<Vec<u8>, DrawError> {
         let pixels = self.to_pixels(scale)?;
         pixels.encode_png().map_err(|error| DrawError::Png(error.to_string()))
     }
 
-    /// The pixels of the picture; they are opaque.
+    /// Renders the pixels of the picture; they are opaque.
     pub(crate) fn to_pixels(&self, scale: f64) -> Result<tiny_skia::Pixmap, DrawError> {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(DrawError::Scale(scale));
@@ -89,7 +91,7 @@ impl Svg {
         Ok(pixels)
     }
 
-    /// Draws the picture over pixels that were made at the same scale.
+    /// Draws the picture over pixels that were rendered at the same scale.
     pub(crate) fn draw_over(
         &self,
         pixels: &mut tiny_skia::Pixmap,
@@ -106,7 +108,7 @@ impl Svg {
         Ok(f64::from(size.width().max(size.height())))
     }
 
-    /// The parsed picture, with all text as outlines.
+    /// Parses the picture, with all text as outlines.
     pub(crate) fn tree(&self) -> Result<usvg::Tree, DrawError> {
         let options = usvg::Options {
             fontdb: Arc::clone(&FONTS),
@@ -123,7 +125,7 @@ mod tests {
     use super::*;
     use crate::writer::{Anchor, SvgWriter};
 
-    /// Width and height as a PNG file's header gives them.
+    /// Width and height in the header of a PNG file.
     fn png_size(png: &[u8]) -> (u32, u32) {
         let word = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
         (word(16), word(20))

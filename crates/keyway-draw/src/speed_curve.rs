@@ -9,34 +9,34 @@ use keyway_sim::sim::TrajectoryPoint;
 /// A run in a chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedSeries<'a> {
-    /// Its name in the legend.
+    /// Name in the legend.
     pub name: &'a str,
-    /// Its states in the order of time.
+    /// States in the order of time.
     pub points: &'a [TrajectoryPoint],
 }
 
-/// What a [`speed_curve`] shows besides the runs; nothing by default.
+/// Options of a [`speed_curve`]; nothing besides the runs by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SpeedCurveOptions {
-    /// A title above the charts.
+    /// Title above the charts.
     pub title: Option<String>,
     /// Limit of the speed \[m/s\], drawn as a line.
     pub v_max_mps: Option<f64>,
     /// Limit of the turn rate to both sides \[rad/s\], drawn as two lines.
     pub omega_max_radps: Option<f64>,
-    /// What is to be said below; empty for nothing.
+    /// Caption below the charts; empty for none.
     pub caption: String,
 }
 
-/// The value that one of the two charts shows of a state.
+/// The quantity of a state that one of the two charts shows.
 struct Quantity {
     label: &'static str,
     value: fn(&TrajectoryPoint) -> f64,
     limits: Vec<f64>,
 }
 
-/// Speed v and turn rate omega against time, one above the other. Between two states they change
-/// linearly. States that are not finite are gaps.
+/// Draws speed v and turn rate omega against time, one above the other, interpolated linearly
+/// between states. States that are not finite are gaps.
 pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> Svg {
     let omega_max = options.omega_max_radps.map(f64::abs);
     let [v_limits, omega_limits] =
@@ -58,7 +58,7 @@ pub fn speed_curve(series: &[SpeedSeries<'_>], options: &SpeedCurveOptions) -> S
     chart.svg()
 }
 
-/// One run explains itself; several need names.
+/// Returns the legend: a single run needs no name, several do.
 fn entries(series: &[SpeedSeries<'_>], has_limits: bool) -> Vec<LegendEntry> {
     let named =
         series.iter().enumerate().filter(|(_, run)| series.len() > 1 && !run.name.is_empty());
@@ -75,7 +75,7 @@ fn drawable<'a>(series: &[SpeedSeries<'a>]) -> impl Iterator<Item = &'a Trajecto
     series.iter().flat_map(|run| run.points).filter(|point| is_drawable(point))
 }
 
-/// The smallest range that holds all values.
+/// Returns the smallest range that contains all values.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = span(values).unwrap_or((0.0, 1.0));
     (low, if high > low { high } else { low + 1.0 })
@@ -86,7 +86,7 @@ impl Quantity {
         let limits = self.limits.iter().copied().chain([0.0]);
         let (low, high) = range(drawable(series).map(self.value).chain(limits));
         let step = Ticks::new(low, high, 6).step;
-        // Room beyond the curves, except at zero speed, which is an end in itself.
+        // Margin beyond the curves, except at zero speed, which is a natural end.
         let room = 0.06 * (high - low);
         let low = if low < 0.0 { low - room } else { low };
         let high = if high > 0.0 { high + room } else { high };

@@ -2,19 +2,20 @@
 
 use crate::writer::{FONT_FAMILY, SvgWriter, number};
 
-/// A picture as SVG text. Its size is in CSS pixels (96 per inch); nothing outside it is needed.
+/// A picture as SVG text. Its size is in CSS pixels (96 per inch); it is self-contained.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Svg(String);
 
 impl Svg {
-    /// A page of the given size \[px\] with a white ground, filled by `body`.
+    /// Creates a page of the given size \[px\] with a white background, filled by `body`.
     pub(crate) fn page(width_px: f64, height_px: f64, body: SvgWriter) -> Self {
         let mut page = open_page(width_px, height_px);
         page.tag("rect").attr("width", "100%").attr("height", "100%").attr("fill", "#fff").leaf();
         Self::filled(page, body)
     }
 
-    /// A page of the given size \[px\] without a ground, to be drawn over another one.
+    /// Creates a page of the given size \[px\] without a background, to be drawn over another
+    /// one.
     #[cfg(feature = "raster")]
     pub(crate) fn sheet(width_px: f64, height_px: f64, body: SvgWriter) -> Self {
         Self::filled(open_page(width_px, height_px), body)
@@ -27,17 +28,17 @@ impl Svg {
         Self(page.finish())
     }
 
-    /// SVG text from elsewhere; it is parsed only where it is turned into pixels.
+    /// Wraps SVG text from elsewhere; it is parsed only for rendering.
     pub const fn from_text(text: String) -> Self {
         Self(text)
     }
 
-    /// The text of an `.svg` file.
+    /// Returns the text of an `.svg` file.
     pub fn as_str(&self) -> &str {
         &self.0
     }
 
-    /// The text of an `.svg` file.
+    /// Returns the text of an `.svg` file.
     pub fn into_string(self) -> String {
         self.0
     }

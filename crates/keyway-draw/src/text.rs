@@ -1,5 +1,5 @@
-//! How wide a text is, so that nothing overlaps it. No font is read: the widths are those of the
-//! bundled one, which is wider than its fallbacks.
+//! Text widths, to prevent overlaps. No font is read: the widths are those of the bundled one,
+//! which is wider than its fallbacks.
 
 /// Size of tick labels, names and legends \[px\].
 pub(crate) const SMALL_TEXT_PX: f64 = 11.0;
@@ -42,7 +42,7 @@ mod tests {
             let Node::Text(drawn) = &group.children()[0] else { panic!("no text") };
             let width = f64::from(drawn.bounding_box().width());
             let expected = text_width_px(text, 20.0);
-            // Kerning and the empty room beside the outer letters.
+            // Kerning and the side bearings of the outer letters.
             assert!((width - expected).abs() < 6.0, "{text}: {width} drawn, {expected} computed");
         }
     }

@@ -1,4 +1,4 @@
-//! The text of whole pictures has room.
+//! Tests that the text of whole pictures has enough space.
 
 use crate::layers::{GoalMark, Layer, PathLine, StartMark};
 use crate::svg::Svg;
@@ -13,10 +13,10 @@ use keyway_sim::metrics::statistics;
 use keyway_sim::sim::TrajectoryPoint;
 use resvg::usvg::{Group, Node, Rect, TextChunk};
 
-/// The page's edge stays free \[px\].
+/// Margin at the page's edge that must stay free \[px\].
 const EDGE_PX: f32 = 4.0;
 
-/// Fails when a text leaves the page or overlaps another one, drawn with the bundled font.
+/// Fails if a text leaves the page or overlaps another one, drawn with the bundled font.
 fn expect_room_for_all_text(picture: &Svg) {
     let Ok(tree) = picture.tree() else { panic!("no SVG") };
     let (width, height) = (tree.size().width(), tree.size().height());
@@ -38,7 +38,7 @@ fn expect_room_for_all_text(picture: &Svg) {
     }
 }
 
-/// Every text, and where its letters are \[px\].
+/// Returns every text, with the bounding box of its letters \[px\].
 fn texts_of(group: &Group) -> Vec<(String, Rect)> {
     let of_node = |node: &Node| match node {
         Node::Group(group) => texts_of(group),

@@ -7,15 +7,15 @@ use crate::writer::{Anchor, SvgWriter};
 const ROW_PX: f64 = 17.0;
 const COLUMN_GAP_PX: f64 = 20.0;
 
-/// Text in rows and columns: the first column begins at the left, the others end at the right. A
-/// row with a single cell is a line of text, as long as it needs.
+/// Text in rows and columns: the first column is aligned to the left, the others to the right. A
+/// row with a single cell is a line of text of any length.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextTable {
     rows: Vec<Vec<String>>,
 }
 
 impl TextTable {
-    /// A table without rows.
+    /// Creates a table without rows.
     pub const fn new() -> Self {
         Self { rows: Vec::new() }
     }
@@ -37,7 +37,7 @@ impl TextTable {
         lines.fold(self.column_ends().last().copied().unwrap_or(0.0), f64::max)
     }
 
-    /// The right edge of each column.
+    /// Returns the right edge of each column.
     fn column_ends(&self) -> Vec<f64> {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let mut end = 0.0;
@@ -51,7 +51,7 @@ impl TextTable {
         ends.collect()
     }
 
-    /// Draws it with its upper left corner at (x, y).
+    /// Draws the table with its upper left corner at (x, y).
     pub(crate) fn draw(&self, out: &mut SvgWriter, x: f64, y: f64) {
         let ends = self.column_ends();
         for (i, row) in self.rows.iter().enumerate() {

@@ -5,13 +5,13 @@
 pub struct Ticks {
     /// Distance between two ticks.
     pub step: f64,
-    /// Decimals that write every tick exactly.
+    /// Number of decimals that writes every tick exactly.
     pub decimals: usize,
-    /// The ticks within the range, rising.
+    /// The ticks within the range, ascending.
     pub values: Vec<f64>,
 }
 
-/// The smallest and the largest finite value.
+/// Returns the smallest and the largest finite value.
 pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let ends = values.into_iter().filter(|value| value.is_finite()).map(|value| (value, value));
     ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)))
@@ -19,12 +19,13 @@ pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> 
 
 /// Distances allowed between ticks, before the power of ten.
 const MANTISSAS: [f64; 5] = [1.0, 2.0, 2.5, 5.0, 10.0];
-/// More ticks than this are a mistake.
+/// Maximum number of ticks; more are a mistake.
 const MAX_TICKS: f64 = 1000.0;
-/// Decimals beyond which a number is no longer an axis label.
+/// Maximum number of decimals of an axis label.
 const MAX_DECIMALS: usize = 12;
 
-/// The fewest decimals that write a step, which has at most two significant digits.
+/// Returns the smallest number of decimals that writes a step, which has at most two significant
+/// digits.
 fn decimals_of(step: f64) -> usize {
     let is_exact = |&decimals: &usize| {
         let scaled = step * 10f64.powi(decimals as i32);
@@ -34,8 +35,8 @@ fn decimals_of(step: f64) -> usize {
 }
 
 impl Ticks {
-    /// The finest ticks in `low..=high` that make at most `max_intervals` intervals over the range.
-    /// A range of no length (or one that is not a range) gets one tick at most.
+    /// Creates the finest ticks in `low..=high` that make at most `max_intervals` intervals over
+    /// the range. A range of length 0, or an invalid one, has at most one tick.
     pub fn new(low: f64, high: f64, max_intervals: usize) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
@@ -49,8 +50,8 @@ impl Ticks {
         Self::with_step(low, high, mantissa * power)
     }
 
-    /// The multiples of a given step in `low..=high`; the first number alone when the step vanishes
-    /// beside the size of the numbers.
+    /// Creates the multiples of a given step in `low..=high`; only the first number if the step
+    /// is negligible compared with the numbers.
     pub fn with_step(low: f64, high: f64, step: f64) -> Self {
         let decimals = decimals_of(step);
         // Rounding must not lose a tick that lies exactly on an end.
@@ -64,24 +65,24 @@ impl Ticks {
         Self { step, decimals, values }
     }
 
-    /// A tick as text, with a true minus sign.
+    /// Formats a tick, with a true minus sign.
     pub fn text(&self, value: f64) -> String {
         let text = format!("{value:.*}", self.decimals);
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
         if is_zero { text.replace('-', "") } else { text.replace('-', "\u{2212}") }
     }
 
-    /// The texts of all ticks.
+    /// Formats all ticks.
     pub fn texts(&self) -> Vec<String> {
         self.values.iter().map(|&value| self.text(value)).collect()
     }
 
-    /// The smallest multiple of the step that is not below `value`.
+    /// Rounds up to a multiple of the step.
     pub fn round_up(&self, value: f64) -> f64 {
         (value / self.step - 1e-9).ceil() * self.step
     }
 
-    /// The largest multiple of the step that is not above `value`.
+    /// Rounds down to a multiple of the step.
     pub fn round_down(&self, value: f64) -> f64 {
         (value / self.step + 1e-9).floor() * self.step
     }

@@ -1,38 +1,38 @@
-//! Which part of the world a picture shows, and where it lies on the page.
+//! The part of the world that a picture shows, and its transform to the page.
 
 use keyway::geometry::Point;
 use keyway::map::{Cell, GridFrame, OccupancyGrid};
 
-/// A side of a picture is at least this share of the other one; a corridor gets room beside it.
+/// Minimum ratio of the sides of a picture; a corridor has space beside it.
 const MIN_SIDE_RATIO: f64 = 0.2;
-/// Room around what a layer shows \[px\]: start, goal and robot stand at the ends of paths.
+/// Margin around layers \[px\]: start, goal and robot are at the ends of paths.
 const MARKER_PX: f64 = 11.0;
 
 /// The part of the world that a picture of a map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Region {
-    /// The cells that are not unknown, and all that the layers show, with a small margin. Maps from
-    /// mapping runs are often mostly unknown.
+    /// The cells that are not unknown, and all layers, with a small margin. Maps from mapping
+    /// runs are often mostly unknown.
     #[default]
     Known,
-    /// The whole map, and all that the layers show.
+    /// The whole map, and all layers.
     Whole,
-    /// The rectangle between two points \[m\]; what lies outside is cut off.
+    /// The rectangle between two points \[m\]; everything outside is clipped.
     Window(Point, Point),
 }
 
-/// A rectangle in the world that grows.
+/// A rectangle in the world that grows with its content.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
     corners: Corners,
-    /// Of what is drawn with a size in pixels.
+    /// Corners of the elements with a size in pixels.
     marks: Corners,
 }
 
-/// Lower left and upper right; nothing without a point.
+/// Lower left and upper right corner; `None` without a point.
 type Corners = Option<(Point, Point)>;
 
-/// The smallest rectangle that also holds a point; one that is not finite is ignored.
+/// Returns the smallest rectangle that also contains a point; one that is not finite is ignored.
 fn joined(corners: Corners, point: Point) -> Corners {
     if !point.is_finite() {
         return corners;
@@ -45,15 +45,13 @@ fn joined(corners: Corners, point: Point) -> Corners {
 }
 
 impl Extent {
-    /// Makes the rectangle hold a point, with room for a marker there; one that is not finite is
-    /// ignored.
+    /// Includes a point, with space for a marker there; one that is not finite is ignored.
     pub fn include(&mut self, point: Point) {
         self.corners = joined(self.corners, point);
         self.marks = joined(self.marks, point);
     }
 
-    /// Makes the rectangle hold a disc, which has its size in the world; one that is not finite is
-    /// ignored.
+    /// Includes a disc, which has its size in the world; one that is not finite is ignored.
     pub fn include_disc(&mut self, centre: Point, radius_m: f64) {
         let radius = Point::new(radius_m, radius_m);
         for corner in [centre + radius, centre - radius] {
@@ -61,7 +59,7 @@ impl Extent {
         }
     }
 
-    /// Lower left and upper right corner; `None` as long as nothing is in it.
+    /// Returns the lower left and upper right corner; `None` if it is empty.
     pub const fn corners(&self) -> Option<(Point, Point)> {
         self.corners
     }
@@ -87,20 +85,20 @@ impl Extent {
         Self { corners, ..self }
     }
 
-    /// The rectangle with a margin on all sides.
+    /// Returns the rectangle with a margin on all sides.
     fn grown(self, margin_m: f64) -> Self {
         Self { corners: grown(self.corners, margin_m), ..self }
     }
 }
 
-/// A rectangle with a margin on all sides.
+/// Returns a rectangle with a margin on all sides.
 fn grown(corners: Corners, margin_m: f64) -> Corners {
     let margin = Point::new(margin_m, margin_m);
     corners.map(|(min, max)| (min - margin, max + margin))
 }
 
 impl Region {
-    /// The rectangle to show in a picture of `side_px`, given what the layers draw.
+    /// Returns the rectangle to show in a picture of `side_px`, given the extent of the layers.
     pub(crate) fn extent(self, map: &OccupancyGrid, layers: Extent, side_px: f64) -> Extent {
         let whole = map_extent(map.frame());
         let mut shown = match self {
@@ -120,7 +118,7 @@ impl Region {
         let marker_m = MARKER_PX * shown.longer_side() / side_px;
         let marks = grown(layers.marks, marker_m);
         shown.include_corners(marks);
-        // A margin shows that nothing was cut off; beyond the map there is nothing to show.
+        // A margin shows that nothing was clipped; beyond the map there is nothing to show.
         let mut room = whole;
         room.include_corners(layers.corners);
         room.include_corners(marks);
@@ -138,7 +136,7 @@ fn map_extent(frame: &GridFrame) -> Extent {
     extent
 }
 
-/// The smallest rectangle around all cells that are not unknown.
+/// Returns the smallest rectangle around all cells that are not unknown.
 fn known_extent(map: &OccupancyGrid) -> Extent {
     let frame = map.frame();
     let mut extent = Extent::default();
@@ -154,7 +152,8 @@ fn known_extent(map: &OccupancyGrid) -> Extent {
     extent
 }
 
-/// From the world (metres, y up) to the plot area (pixels, y down, (0, 0) the upper left corner).
+/// Transform from the world (metres, y up) to the plot area (pixels, y down, (0, 0) the upper
+/// left corner).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     min: Point,
@@ -163,8 +162,8 @@ pub struct View {
 }
 
 impl View {
-    /// Shows a rectangle of the world so that its longer side is `side_px` long. A rectangle
-    /// without area is widened.
+    /// Creates a view of a rectangle of the world whose longer side is `side_px` long. A
+    /// rectangle without area is widened.
     pub(crate) fn new(extent: Extent, side_px: f64) -> Self {
         let (min, max) = extent.corners.unwrap_or((Point::new(0.0, 0.0), Point::new(1.0, 1.0)));
         let (width, height) = (max.x - min.x, max.y - min.y);
@@ -175,7 +174,7 @@ impl View {
         Self { min: min - room, max: max + room, px_per_m: side_px / long }
     }
 
-    /// Lower left and upper right corner of the shown rectangle \[m\].
+    /// Returns the lower left and upper right corner of the shown rectangle \[m\].
     pub const fn corners(&self) -> (Point, Point) {
         (self.min, self.max)
     }
@@ -195,13 +194,13 @@ impl View {
         (self.max.y - self.min.y) * self.px_per_m
     }
 
-    /// The pixel of a point in the world.
+    /// Returns the pixel of a point in the world.
     pub fn px_from_world(&self, world: Point) -> (f64, f64) {
         ((world.x - self.min.x) * self.px_per_m, (self.max.y - world.y) * self.px_per_m)
     }
 
-    /// The affine map from grid coordinates to pixels, as SVG's matrix (a, b, c, d, e, f), for
-    /// squares of `unit` cells beginning at `first`.
+    /// Returns the affine transform from grid coordinates to pixels, as SVG's matrix (a, b, c, d,
+    /// e, f), for squares of `unit` cells beginning at `first`.
     pub(crate) fn px_from_grid(&self, frame: &GridFrame, first: Cell, unit: i32) -> [f64; 6] {
         let grid = Point::new(f64::from(first.x), f64::from(first.y));
         // Full sides, so that the far end of a large map is as exact as its origin.
@@ -221,8 +220,8 @@ impl View {
         ]
     }
 
-    /// The cells that may be visible: first, and last plus one, in both directions. Empty when the
-    /// map is out of view.
+    /// Returns the cells that may be visible: first, and last plus one, in both directions. Empty
+    /// if the map is out of view.
     pub(crate) fn visible_cells(&self, frame: &GridFrame) -> (Cell, Cell) {
         let (min, max) = (self.min, self.max);
         let mut grid = Extent::default();

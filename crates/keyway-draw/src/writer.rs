@@ -1,13 +1,15 @@
-//! Writes SVG: tags, attributes, escaped text and short numbers, the same bytes for the same calls.
+//! Writer of SVG: tags, attributes, escaped text and short numbers. The same calls give the same
+//! bytes.
 
 use crate::color::Rgb;
 use crate::line_style::LineStyle;
 use std::fmt::Write as _;
 
-/// Fonts of all pictures: the bundled one for PNG, its nearest relatives in a browser without it.
+/// Fonts of all pictures: the bundled one for PNG, and its nearest relatives for browsers without
+/// it.
 pub(crate) const FONT_FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
-/// Receives the elements of a picture in drawing order.
+/// Writer of the elements of a picture in drawing order.
 ///
 /// Every [`Tag`] ends in [`Tag::leaf`], [`Tag::text`] or [`Tag::open`]; the last of these needs a
 /// [`Self::close`].
@@ -17,19 +19,19 @@ pub struct SvgWriter {
     open: Vec<&'static str>,
 }
 
-/// Where a text stands relative to its position.
+/// Alignment of a text relative to its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// The text begins at the position.
     Start,
-    /// It is centred there.
+    /// The text is centred at the position.
     Middle,
-    /// It ends there.
+    /// The text ends at the position.
     End,
 }
 
 impl SvgWriter {
-    /// An empty piece of SVG.
+    /// Creates an empty piece of SVG.
     pub const fn new() -> Self {
         Self { out: String::new(), open: Vec::new() }
     }
@@ -48,22 +50,22 @@ impl SvgWriter {
         }
     }
 
-    /// Text of the given size \[px\] in the default colour, its base line at `y`.
+    /// Writes text of the given size \[px\] in the default colour, with its base line at `y`.
     pub fn label(&mut self, x: f64, y: f64, size_px: f64, anchor: Anchor, content: &str) {
         self.tag("text").at(x, y).num("font-size", size_px).anchor(anchor).text(content);
     }
 
-    /// Adds all that another writer has written.
+    /// Adds the content of another writer.
     pub fn append(&mut self, other: Self) {
         self.raw(&other.finish());
     }
 
-    /// Adds what a writer has finished.
+    /// Adds the text of a finished writer.
     pub(crate) fn raw(&mut self, finished: &str) {
         self.out.push_str(finished);
     }
 
-    /// All that was written, with every element closed.
+    /// Returns the text, with every element closed.
     #[must_use]
     pub fn finish(mut self) -> String {
         while !self.open.is_empty() {
@@ -82,54 +84,54 @@ pub struct Tag<'w> {
 }
 
 impl Tag<'_> {
-    /// An attribute with a text value, which is escaped.
+    /// Writes an attribute with a text value, which is escaped.
     pub fn attr(self, name: &str, value: &str) -> Self {
         let _ = write!(self.writer.out, " {name}=\"{}\"", escape(value));
         self
     }
 
-    /// An attribute with a number, written with at most three decimals; 0 when it is not finite.
+    /// Writes an attribute with a number, with at most three decimals; 0 if it is not finite.
     pub fn num(self, name: &str, value: f64) -> Self {
         let _ = write!(self.writer.out, " {name}=\"{}\"", number(value));
         self
     }
 
-    /// The attributes `x` and `y`.
+    /// Writes the attributes `x` and `y`.
     pub fn at(self, x: f64, y: f64) -> Self {
         self.num("x", x).num("y", y)
     }
 
-    /// The attributes `cx`, `cy` and `r`.
+    /// Writes the attributes `cx`, `cy` and `r`.
     pub fn round(self, cx: f64, cy: f64, r: f64) -> Self {
         self.num("cx", cx).num("cy", cy).num("r", r)
     }
 
-    /// The attributes `x1`, `y1`, `x2`, `y2`.
+    /// Writes the attributes `x1`, `y1`, `x2`, `y2`.
     pub fn between(self, from: (f64, f64), to: (f64, f64)) -> Self {
         self.num("x1", from.0).num("y1", from.1).num("x2", to.0).num("y2", to.1)
     }
 
-    /// The attributes `width` and `height`.
+    /// Writes the attributes `width` and `height`.
     pub fn size(self, width: f64, height: f64) -> Self {
         self.num("width", width).num("height", height)
     }
 
-    /// Fill colour; no outline.
+    /// Sets the fill colour; no outline.
     pub fn fill(self, color: Rgb) -> Self {
         self.attr("fill", &color.to_string())
     }
 
-    /// Outline of the given width \[px\]; leaves the fill as it is.
+    /// Sets an outline of the given width \[px\]; leaves the fill as it is.
     pub fn stroke(self, color: Rgb, width_px: f64) -> Self {
         self.attr("stroke", &color.to_string()).num("stroke-width", width_px)
     }
 
-    /// Outline in the colour, width and dashes of a line.
+    /// Sets an outline in the colour, width and dashes of a line.
     pub(crate) fn line_style(self, style: LineStyle) -> Self {
         self.stroke(style.color, style.width_px).attr("stroke-dasharray", style.dashes)
     }
 
-    /// Where a text stands relative to its position.
+    /// Sets the alignment of a text relative to its position.
     pub fn anchor(self, anchor: Anchor) -> Self {
         match anchor {
             Anchor::Start => self,
@@ -138,7 +140,7 @@ impl Tag<'_> {
         }
     }
 
-    /// Places what is drawn by a matrix, whose entries are those of SVG.
+    /// Sets a transform by a matrix with the entries of SVG.
     pub(crate) fn matrix(self, entries: [f64; 6]) -> Self {
         self.attr("transform", &format!("matrix({})", entries.map(matrix_entry).join(" ")))
     }
@@ -148,20 +150,20 @@ impl Tag<'_> {
         self.writer.out.push_str("/>\n");
     }
 
-    /// Ends the start tag; what follows is inside the element until [`SvgWriter::close`].
+    /// Ends the start tag; the following elements are inside this one until [`SvgWriter::close`].
     pub fn open(self) {
         self.writer.out.push_str(">\n");
         self.writer.open.push(self.name);
     }
 
-    /// Ends an element that holds the given text, which is escaped.
+    /// Ends an element with the given text, which is escaped.
     pub fn text(self, content: &str) {
         let _ = writeln!(self.writer.out, ">{}</{}>", escape(content), self.name);
     }
 }
 
-/// A number with at most three decimals, without trailing zeros and without a negative zero. What
-/// is not finite has no place in SVG and becomes 0.
+/// Formats a number with at most three decimals, without trailing zeros and without a negative
+/// zero. Values that are not finite are invalid in SVG and become 0.
 pub(crate) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "0".to_owned();
@@ -169,7 +171,7 @@ pub(crate) fn number(value: f64) -> String {
     trimmed(format!("{value:.3}"))
 }
 
-/// A matrix entry. Three decimals would shift the far end of a large map by whole pixels.
+/// Formats a matrix entry. Three decimals would shift the far end of a large map by whole pixels.
 pub(crate) fn matrix_entry(value: f64) -> String {
     trimmed(format!("{value:.9}"))
 }
@@ -181,8 +183,8 @@ fn trimmed(mut digits: String) -> String {
     if digits == "-0" { "0".to_owned() } else { digits }
 }
 
-/// The text with the characters that mean something in XML replaced; characters that XML forbids
-/// are left out.
+/// Returns the text with the special characters of XML replaced; characters that XML forbids are
+/// left out.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -205,7 +207,7 @@ pub(crate) fn escape(text: &str) -> String {
 pub struct PathData(String);
 
 impl PathData {
-    /// An open line through the points.
+    /// Creates an open line through the points.
     pub fn line(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut data = Self::default();
         data.append(points);
@@ -224,17 +226,17 @@ impl PathData {
         let _ = write!(self.0, "M{} {}", number(x), number(y));
     }
 
-    /// A straight segment.
+    /// Adds a straight segment.
     pub fn line_to(&mut self, (x, y): (f64, f64)) {
         let _ = write!(self.0, "L{} {}", number(x), number(y));
     }
 
-    /// Leads back to where the line began.
+    /// Closes the line to its beginning.
     pub fn close(&mut self) {
         self.0.push('Z');
     }
 
-    /// The value of the attribute `d`.
+    /// Returns the value of the attribute `d`.
     pub fn as_str(&self) -> &str {
         &self.0
     }

@@ -1,5 +1,5 @@
-//! Whole pictures: they are SVG, they can be drawn (with the feature `raster`), and they say what
-//! they show.
+//! Tests of whole pictures: they are SVG, they can be rendered (with the feature `raster`), and
+//! their legends match their content.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
@@ -16,8 +16,7 @@ use keyway_draw::{
 };
 use keyway_sim::sim::{MovingObstacle, TrajectoryPoint, WayPoints};
 
-/// Width and height of the page, as its text gives them; where pixels can be made, they have this
-/// size.
+/// Width and height of the page in its text; if pixels can be rendered, they have this size.
 fn page_px(picture: &Svg) -> (u32, u32) {
     let numbers = picture.as_str().split('"').filter_map(|text| text.parse().ok());
     let size: Vec<u32> = numbers.take(2).collect();
@@ -26,7 +25,7 @@ fn page_px(picture: &Svg) -> (u32, u32) {
     (size[0], size[1])
 }
 
-/// Width and height as a PNG file's header gives them.
+/// Width and height in the header of a PNG file.
 #[cfg(feature = "raster")]
 fn png_px(picture: &Svg, scale: f64) -> (u32, u32) {
     let png = picture.to_png(scale).unwrap();
@@ -56,7 +55,7 @@ fn disc(radius_m: f64) -> Footprint {
     Footprint::circle(radius_m).unwrap()
 }
 
-/// One that crosses the robot's way for ever to and fro, and one that crosses it once.
+/// One that crosses the robot's path back and forth forever, and one that crosses it once.
 fn movers() -> Vec<MovingObstacle> {
     let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
     let across = keyway_sim::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
@@ -137,12 +136,12 @@ fn the_legend_lists_what_is_drawn_and_nothing_else() {
 fn movers_and_the_robot_have_marks_at_the_same_times() {
     let run = run();
     let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &run)).svg();
-    // 9.9 s in steps of 2 s; the one to and fro is at one place after 2, 6 and 10 s, and after 4
-    // and 8 s.
+    // 9.9 s in steps of 2 s; the one that moves back and forth is at one position after 2, 6 and
+    // 10 s, and at another one after 4 and 8 s.
     let marks = |text: &str| picture.as_str().matches(&format!(">{text}</text>")).count();
     assert_eq!(["2, 6", "4, 8"].map(marks), [1, 1]);
     assert_eq!(["2", "4", "6", "8", "10"].map(marks), [2, 2, 2, 2, 0]);
-    // Standing still is one mark.
+    // A stationary robot has a single mark.
     let resting: Vec<TrajectoryPoint> =
         run.iter().map(|point| TrajectoryPoint { pose: run[0].pose, ..*point }).collect();
     let picture = MapPicture::new(&map(0.0)).with(Movers::new(&movers(), &resting)).svg();
@@ -216,7 +215,7 @@ fn degenerate_maps_and_layers_can_be_drawn() {
     }
 }
 
-/// Where a text stands, the first one of its kind.
+/// Position of the first text with this content.
 fn place(picture: &Svg, text: &str) -> (f64, f64) {
     let before = picture.as_str().split(&format!(">{text}</text>")).next().unwrap();
     let (_, tag) = before.rsplit_once("<text").unwrap();
@@ -243,7 +242,7 @@ fn a_marker_does_not_hide_an_obstacle() {
     assert!((beside_x - x).hypot(beside_y - y) > 8.2 + 3.1, "{beside_x} {beside_y}");
 }
 
-/// The key points of a curve stand so close that their rings cover each other, and its line is as
+/// The key points of a curve are so close that their rings cover each other, and its line is as
 /// wide as the obstacle.
 #[test]
 fn a_route_does_not_hide_an_obstacle() {
@@ -273,7 +272,7 @@ fn other_goals_are_told_apart() {
     assert_eq!((count(">G</text>"), count(">goal<"), count(">other goal<")), (5, 1, 1));
 }
 
-/// Where both run together, too.
+/// Both are visible even where they overlap.
 #[test]
 fn a_smoothed_path_is_seen_over_what_was_driven() {
     let (map, run) = (map(0.0), run());
@@ -311,10 +310,10 @@ fn panels_have_one_map_and_legends_of_their_own() {
     for i in 0..5 {
         assert_eq!((count(&format!(">panel {i}<")), count(&format!(">path {i}<"))), (1, 1));
     }
-    // In every panel, and once in the common legend.
+    // Once in every panel, and once in the common legend.
     assert_eq!((count(">S</text>"), count(">start<"), count("<use")), (6, 1, 5));
     assert_eq!((count("#2b2b2b"), count(">occupied<"), count(">All<")), (2, 1, 1));
-    // Three in a row: two rows have a y axis, and the panels of the last one an x axis.
+    // Three in a row: two rows have a y axis, and the panels of the last one have an x axis.
     assert_eq!((count(">y [m]<"), count(">x [m]<")), (2, 2));
     let (first, second, fourth) =
         (place(&picture, "panel 0"), place(&picture, "panel 1"), place(&picture, "panel 3"));
@@ -384,7 +383,7 @@ fn a_speed_curve_has_gaps_where_there_is_no_state() {
     assert_eq!((lines(&whole), lines(&with_gap)), (vec![1, 1], vec![2, 2]));
 }
 
-/// Two admissible candidates, and two that a rule refused, one of them at a contact.
+/// Two admissible candidates, and two that a rule refused, one of them because of a contact.
 fn explanation() -> Explanation {
     let poses = |y: f64| (1..=10).map(|i| Pose::new(1.0 + 0.1 * f64::from(i), y, 0.0)).collect();
     let share = |raw| Share { term: "speed".into(), raw, weighted: 0.1 * raw };
@@ -422,7 +421,7 @@ fn a_fan_shows_every_candidate_by_its_fate() {
     {
         assert!(text.contains(entry), "{entry}");
     }
-    // The colours are those of the scores that there are, whatever their sign.
+    // The colours span the actual scores, whatever their sign.
     let mut bad = explanation.clone();
     for candidate in &mut bad.candidates {
         if let Fate::Admissible { score, .. } = &mut candidate.fate {
@@ -432,7 +431,7 @@ fn a_fan_shows_every_candidate_by_its_fate() {
     let bad = MapPicture::new(&map).with(Fan::new(from, &bad)).svg();
     // From -23 to -22.
     assert!(bad.as_str().contains("22.0<") && !bad.as_str().contains(">0<"));
-    // A dot where something is touched, and nowhere else.
+    // A dot at each contact, and nowhere else.
     assert_eq!(text.matches("r=\"1.3\"").count(), 1);
     page_px(&svg);
     let pale = MapPicture::new(&map).with(Fan::new(from, &explanation).pale()).svg();

@@ -1,11 +1,11 @@
-//! Scenes whose robot changes its mind, and whose map loses and gains a door.
+//! Scenes with changing goals, and with a door that closes and opens on the map.
 //!
 //! `cargo run --release -p keyway-lab --example changing_goals -- FOLDER [doors]`
-//! drives the scenes of a folder. In each the robot gets another goal every 3 s, five times: places
-//! that can be reached, drawn from the scene's number, and at last the goal of the scene. From the
-//! last change on it should take no more than 1.1 times as long as a run that begins there. With
-//! `doors` the goal stays; after 3 s the map says that the middle of the way ahead is closed, and
-//! after 9 s that it is open again.
+//! drives the scenes of a folder. In each, the robot gets another goal every 3 s, five times:
+//! reachable positions, drawn from the scene's number, and at last the goal of the scene. From
+//! the last change on, it should take no more than 1.1 times as long as a run that begins there.
+//! With `doors` the goal stays the same; after 3 s the map is updated to block the middle of the
+//! route ahead, and after 9 s to open it again.
 
 use keyway::geometry::{Point, Pose};
 use keyway::map::{Cell, CellState, CellWindow, Edit};
@@ -21,7 +21,7 @@ mod scene;
 const EVERY_S: f64 = 3.0;
 const CHANGES: u32 = 5;
 
-/// Outcome of a run, its time, and that of the run that it is compared with \[s\].
+/// Outcome of a run, its time, and that of the reference run \[s\].
 struct Measured {
     outcome: Outcome,
     took_s: f64,
@@ -49,14 +49,14 @@ impl Drive {
         self.world.told()
     }
 
-    /// One cycle; how the run ended, once it has.
+    /// Runs one cycle, and returns the outcome once the run has ended.
     fn cycle(&mut self) -> Result<Option<Outcome>, Box<dyn Error>> {
         let RobotState { stamp_s, pose, velocity } = self.world.told();
         let scans = self.world.scans();
         let observation = keyway::sense::Observation::new(stamp_s, pose, velocity, &scans);
         self.navigator.observe(&observation);
         let action = match self.navigator.step() {
-            // It stands at a goal that is not the last one.
+            // The robot has stopped at a goal that is not the last one.
             Step::Arrived if self.changes < CHANGES => Action::Stop,
             Step::Arrived => Action::Arrived,
             step => Action::Drive(step.command()),
@@ -87,7 +87,7 @@ impl Drive {
         }
     }
 
-    /// A place that can be reached, drawn by a number.
+    /// Returns a reachable position, drawn by a number.
     fn any_place(&mut self, number: u64) -> Option<Point> {
         let frame = *self.navigator.map().frame();
         let share = |n: u64| (n >> 11) as f64 / (1u64 << 53) as f64;
@@ -107,8 +107,8 @@ impl Drive {
     }
 }
 
-/// Time from the last change on, and that of a run from there \[s\]; `None` where the run ended
-/// before it.
+/// Measures the time from the last change on, and that of a run from there \[s\]; `None` if the
+/// run ended before it.
 fn changing(episode: &Episode, number: u64) -> Result<Option<Measured>, Box<dyn Error>> {
     let mut drive = Drive::new(episode)?;
     let last: Goal = episode.robots[0].goal;
@@ -122,7 +122,7 @@ fn changing(episode: &Episode, number: u64) -> Result<Option<Measured>, Box<dyn 
         if change == CHANGES {
             drive.navigator.set_goal(last)?;
         } else if let Some(place) = drive.any_place(number * 100 + u64::from(change)) {
-            // A robot that waits for room keeps its goal.
+            // A robot that waits for clearance keeps its goal.
             drop(drive.navigator.set_goal(place));
         }
     }
@@ -137,7 +137,7 @@ fn changing(episode: &Episode, number: u64) -> Result<Option<Measured>, Box<dyn 
     Ok(Some(Measured { outcome, took_s, fresh_s }))
 }
 
-/// Time of a run whose map loses and gains a door \[s\], and that of one without.
+/// Measures a run whose map loses and gains a door \[s\], and one without.
 fn doors(episode: &Episode) -> Result<Option<Measured>, Box<dyn Error>> {
     let report = run_episode(episode).map(keyway_sim::episode::EpisodeReport::first)?;
     let fresh_s = report.run.map(|run| run.time_s);

@@ -1,8 +1,8 @@
-//! Times of the control cycles of scenes.
+//! CPU times of the control cycles of scenes.
 //!
 //! `cargo run --release -p keyway-lab --example cycle_times -- FOLDER` drives the scenes of a
-//! folder, one after the other, and prints how long a cycle takes the first robot: looking
-//! (`Navigator::observe`) and deciding (`Navigator::step`) in processor time of its thread. The
+//! folder, one after the other, and prints the time per cycle of the first robot: sensing
+//! (`Navigator::observe`) and deciding (`Navigator::step`), in CPU time of its thread. The
 //! simulation is not counted.
 
 use cpu_time::ThreadTime;
@@ -17,7 +17,7 @@ use std::error::Error;
 #[path = "support/scene.rs"]
 mod scene;
 
-/// Processor time of each cycle of a run \[ms\].
+/// Measures the CPU time of each cycle of a run \[ms\].
 fn cycles(episode: &Episode) -> Result<Vec<f64>, Box<dyn Error>> {
     let robot = &episode.robots[0];
     let mut world: Stepper = episode.stepper()?;

@@ -1,4 +1,4 @@
-//! What the dynamic weight of [ZhuYin2024] does on empty maps: a table of nodes expanded and of
+//! Effect of the dynamic weight of [ZhuYin2024] on empty maps: a table of nodes expanded and of
 //! lengths, for `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example dynamic_weight`
@@ -11,7 +11,7 @@ use std::error::Error;
 
 /// Cells of 1 m along each side of the maps.
 const SIDES: [i32; 3] = [42, 200, 1024];
-/// How many cells before the corner the last query ends.
+/// Distance of the last goal from the corner \[cells\].
 const MOST_SHORT: i32 = 10;
 
 /// Nodes expanded and length \[m\] of one path.
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("|---|---|--:|--:|--:|--:|");
     for side in SIDES {
         let far = side - 1;
-        // From corner to corner first, then to cells short of it along both borders.
+        // The first goal is the opposite corner; the others are short of it along both borders.
         let short =
             (1..=MOST_SHORT).flat_map(|k| [Cell::new(far - k, far), Cell::new(far, far - k)]);
         let goals: Vec<Cell> = std::iter::once(Cell::new(far, far)).chain(short).collect();

@@ -1,6 +1,6 @@
-//! Key points of [You2021] chosen from jump points, as in the paper, and from all cells: how often
-//! the paths differ, and how often they keep D; a table of measurements on seeded random maps, for
-//! `docs/lab/findings.md`.
+//! Key points of [You2021] chosen from jump points, as in the paper, and from all cells: the
+//! share of paths that differ, and of those that keep D. Prints a table of measurements on seeded
+//! random maps, for `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example key_point_candidates`
 
@@ -23,10 +23,10 @@ use std::error::Error;
 
 /// Solvable queries of each kind of map.
 const QUERIES: u64 = 4000;
-/// Queries with random ends on each map.
+/// Queries with random starts and goals on each map.
 const QUERIES_PER_MAP: u64 = 8;
-/// Cells along each side of a map, the share of obstacles in percent, and where paths begin and
-/// end.
+/// Cells along each side of a map, the share of obstacles in percent, and the kind of starts and
+/// goals.
 const MAPS: [(i32, i32, Ends); 9] = [
     (20, 5, Ends::Corners),
     (20, 10, Ends::Corners),
@@ -39,12 +39,12 @@ const MAPS: [(i32, i32, Ends); 9] = [
     (40, 20, Ends::Random),
 ];
 
-/// Where paths begin and end.
+/// Kind of starts and goals.
 #[derive(Clone, Copy)]
 enum Ends {
-    /// In two opposite corners of the map; one query on each map.
+    /// Two opposite corners of the map; one query on each map.
     Corners,
-    /// In any two cells.
+    /// Any two cells.
     Random,
 }
 
@@ -78,13 +78,13 @@ impl Random {
     }
 }
 
-/// What one reading made of all paths of a kind.
+/// Results of one variant on all paths of a kind.
 #[derive(Default)]
 struct Tally {
     keeps_safe_distance: u64,
-    /// Of each path: length / planned length - 1, in per cent.
+    /// Length / planned length - 1 of each path, in per cent.
     change: Vec<f64>,
-    /// Of each path.
+    /// Number of segments of each path.
     segments: Vec<f64>,
 }
 
@@ -100,8 +100,8 @@ fn smoother(candidates: KeyPointCandidates) -> Result<KeyPointSmoothing, ConfigE
     KeyPointSmoothing::new(KeyPointSmoothingConfig { candidates, ..KeyPointSmoothingConfig::PAPER })
 }
 
-/// Smooths the same paths with both readings, jump points first; how many paths differ, and of how
-/// many.
+/// Smooths the same paths with both variants, jump points first. Also returns the number of paths
+/// that differ, and the number of all paths.
 fn measure(
     (side, percent, ends): (i32, i32, Ends),
     seed: u64,

@@ -1,5 +1,5 @@
-//! What the literal reading of \[You2021\]'s meeting rule costs, and what its moving targets gain:
-//! two tables of measurements on seeded random maps, for `docs/lab/findings.md`.
+//! Cost of the literal reading of \[You2021\]'s meeting rule, and gain of its moving targets: two
+//! tables of measurements on seeded random maps, for `docs/lab/findings.md`.
 //!
 //! `cargo run --release -p keyway-lab --example literal_meeting`
 
@@ -38,7 +38,7 @@ const MAPS: [(Kind, i32); 11] = [
     (Kind::Rooms, 40),
 ];
 
-/// How a map is made.
+/// Kind of a random map.
 #[derive(Clone, Copy)]
 enum Kind {
     /// Each cell is an obstacle with this probability, in percent.
@@ -94,7 +94,7 @@ impl Kind {
     }
 }
 
-/// What one planner did on all queries of a kind; a value for each that it answered.
+/// Results of one planner on all queries of a kind; one value for each query that it answered.
 #[derive(Default)]
 struct Tally {
     missed: u64,
@@ -144,7 +144,7 @@ fn planners() -> Result<[Box<dyn GlobalPlanner>; 3], PlanError> {
     ])
 }
 
-/// Asks all planners the same solvable queries, whose start and goal differ.
+/// Gives all planners the same solvable queries, with different starts and goals.
 fn measure(kind: Kind, side: i32, seed: u64) -> Result<[Tally; 3], Box<dyn Error>> {
     let (mut random, planners) = (Random(seed), planners()?);
     let (mut workspace, mut plan, mut shortest) =

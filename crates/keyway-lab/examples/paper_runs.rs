@@ -1,9 +1,9 @@
-//! Every driving scene of the papers with every stack: how each run ends, how long it takes, how
-//! long the way is, and how near the robot comes to anything.
+//! Every driving scene of the papers with every stack: the outcome of each run, its time, the
+//! driven distance, and the least clearance.
 //!
 //! `cargo run --release -p keyway-lab --example paper_runs -- scenes runs.json`
-//! prints the tables of docs/lab/findings.md,
-//! and writes what is measured of each run into the file, which may be left out.
+//! prints the tables of docs/lab/findings.md, and writes the measurements of each run to the file,
+//! which may be omitted.
 
 use keyway::files::find_robot;
 use keyway::map::formats::read_map;
@@ -25,9 +25,9 @@ struct Row {
     scene: String,
     stack: &'static str,
     as_published: bool,
-    /// `None` where the run was refused.
+    /// Outcome; `None` if the run was refused.
     outcome: Option<EpisodeOutcome>,
-    /// Why the goal was not reached.
+    /// Reason why the goal was not reached.
     reason: Option<String>,
     run: Option<RunPart>,
 }
@@ -82,7 +82,7 @@ fn read_scenes(folder: &Path) -> Result<Vec<Scene>, Box<dyn Error>> {
     paths.into_iter().map(Scene::read).collect()
 }
 
-/// How a run went, as a cell of a table.
+/// Result of a run, as a cell of a table.
 fn cell(row: &Row) -> String {
     let Some(outcome) = row.outcome else { return "refused".to_owned() };
     let Some(run) = &row.run else { return "no path".to_owned() };
@@ -96,7 +96,7 @@ fn cell(row: &Row) -> String {
     }
 }
 
-/// True if the robot drove into something: what moves may also run into one that stands.
+/// True if the moving robot hit something: a moving obstacle may also hit a stationary robot.
 fn touched_something(row: &Row) -> bool {
     let contact = row.run.as_ref().and_then(|run| run.contact.as_ref());
     contact.is_some_and(|contact| !contact.robot_stood)

@@ -1,13 +1,14 @@
-//! Tells which scenes can be driven: a slow search over place and heading with the exact footprint,
-//! every 4 cm and 6 degrees at first, and where that finds nothing every 2 cm and 4 degrees, every
-//! centimetre and 2 degrees, and every 5 mm and 2 degrees. It shares no code with the library but the scene's file, its
-//! map and its robot, which has to be a disc or a rectangle.
+//! Tests which scenes can be driven, by a slow search over position and heading with the exact
+//! footprint: every 4 cm and 6 degrees at first, and if that finds nothing, every 2 cm and 4
+//! degrees, every centimetre and 2 degrees, and every 5 mm and 2 degrees. It shares no code with
+//! the library except the readers of the scene file, its map and its robot, which must be a disc
+//! or a rectangle.
 //!
 //! `cargo run --release -p keyway-lab --example possible_poses -- ROOM_M SCENE.toml...`
 //!
-//! One line for each scene: `possible`, with the time without accelerations of the way that was
-//! found (it need not be the fastest one), `impossible`, or `unknown` where too much would have to
-//! be looked at. The robot keeps `ROOM_M` to everything.
+//! It prints one line for each scene: `possible`, with the time of the path that was found,
+//! without accelerations (it need not be the fastest one), `impossible`, or `unknown` if the
+//! search would be too large. The robot keeps a clearance of `ROOM_M` from everything.
 
 use keyway::files::robot_in_place;
 use keyway::geometry::{Point, Pose};
@@ -19,18 +20,18 @@ use std::collections::BinaryHeap;
 use std::error::Error;
 use std::f64::consts::TAU;
 
-/// Sides of the squares in which places count as one \[m\], and headings.
+/// Sides of the squares in which positions count as equal \[m\], and number of headings.
 const LEVELS: [(f64, i32); 4] = [(0.04, 60), (0.02, 90), (0.01, 180), (0.005, 180)];
-/// Drives are looked at every so often \[m\].
+/// Distance between two collision checks along a motion \[m\].
 const LOOK_M: f64 = 0.01;
 const MOST_NODES: usize = 10_000_000;
 const GOAL_TOLERANCE_M: f64 = 0.1;
 const GOAL_TOLERANCE_RAD: f64 = 0.1;
-/// The way that is left counts so many times as much as the one that was driven.
+/// Weight of the cost to go relative to the driven cost.
 const GREED: f64 = 1.5;
 
-/// The ground that it covers, in its own frame: x from `rear` to `ahead`, y up to `half` to both
-/// sides; grown by `round`, which is all of a disc.
+/// The footprint in its own frame: x from `rear` to `ahead`, y up to `half` to both sides,
+/// inflated by `round`, which is the whole radius of a disc.
 struct Body {
     rear: f64,
     ahead: f64,
@@ -63,13 +64,13 @@ impl Body {
         self.ahead.min(-self.rear).min(self.half) + self.round
     }
 
-    /// Distance to a square of this side, whose middle is at `x`, `y` in its frame and which is
-    /// turned by an angle of which these are the sine and cosine; 0 where they overlap.
+    /// Distance to a square of this side with its centre at `x`, `y` in the frame of the
+    /// footprint, rotated by the angle with this sine and cosine; 0 if they overlap.
     fn distance(&self, [x, y]: [f64; 2], [sin, cos]: [f64; 2], side: f64) -> f64 {
         let h = 0.5 * side;
         let corners = [[h, h], [-h, h], [-h, -h], [h, -h]]
             .map(|[u, v]| [x + u * cos - v * sin, y + u * sin + v * cos]);
-        // To the box from the corners of the square, and to the square from those of the box.
+        // From the corners of the square to the box, and from those of the box to the square.
         let outside = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
         let to_box = |[u, v]: [f64; 2]| {
             outside(u, self.rear, self.ahead).hypot(outside(v, -self.half, self.half))
@@ -111,7 +112,7 @@ struct World<'a> {
     low: Point,
     cell_m: f64,
     size: [i32; 2],
-    /// Distance from the middle of each cell to that of the nearest occupied one, in cells.
+    /// Distance from the centre of each cell to that of the nearest occupied one, in cells.
     far: Vec<f64>,
 }
 
@@ -135,7 +136,7 @@ impl<'a> World<'a> {
             .collect();
         let mut far = vec![f64::from(reach); (size[0] * size[1]) as usize];
         for (x, y) in occupied {
-            // Those inside of walls are nearest to nothing that is free.
+            // Cells inside walls are nearest to no free cell.
             let inside = |dx: i32, dy: i32| world.is_occupied(x + dx, y + dy);
             if inside(1, 0) && inside(-1, 0) && inside(0, 1) && inside(0, -1) {
                 far[(y * size[0] + x) as usize] = 0.0;
@@ -153,7 +154,7 @@ impl<'a> World<'a> {
         world
     }
 
-    /// Outside, too.
+    /// True also for cells outside the map.
     fn is_occupied(&self, x: i32, y: i32) -> bool {
         let is_inside = (0..self.size[0]).contains(&x) && (0..self.size[1]).contains(&y);
         !is_inside || self.grid.occupied().get(Cell::new(x, y))
@@ -179,7 +180,7 @@ impl<'a> World<'a> {
             return true;
         }
         let (sin, cos) = theta.sin_cos();
-        // No cell whose middle is farther away reaches the robot.
+        // No cell whose centre is farther away reaches the robot.
         let near_sq = (radius + 0.71 * self.cell_m).powi(2);
         for v in row - reach..=row + reach {
             for u in column - reach..=column + reach {
@@ -200,7 +201,7 @@ impl<'a> World<'a> {
         true
     }
 
-    /// The way that is left from every cell for the inscribed disc \[m\].
+    /// Cost to go from every cell for the inscribed disc \[m\].
     fn left_m(&self, goal: Point) -> Vec<f64> {
         let mut left = vec![f64::INFINITY; self.far.len()];
         let [x, y] = self.cell(goal.x, goal.y);
@@ -236,7 +237,7 @@ enum Found {
 struct Node {
     x: f64,
     y: f64,
-    /// From that of the start on.
+    /// Heading index, counted from that of the start.
     heading: i32,
     time_s: f64,
 }
@@ -298,7 +299,7 @@ fn search(
         let mut add = |x: f64, y: f64, heading: i32, took_s: f64| {
             let theta = start.theta + step_rad * f64::from(heading);
             let is_free = world.is_free(x, y, theta);
-            // Half-way, and every so often.
+            // Checks the middle of the motion, and intermediate points.
             let looks = ((x - from.0).hypot(y - from.1) / LOOK_M).ceil().max(2.0);
             let is_free = is_free
                 && (1..looks as u32).all(|look| {
@@ -324,7 +325,7 @@ fn search(
     Found::Impossible
 }
 
-/// To less than half a turn to either side.
+/// Wraps an angle to less than half a turn to either side.
 fn wrapped(angle_rad: f64) -> f64 {
     (angle_rad + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU
 }

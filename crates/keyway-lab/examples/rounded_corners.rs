@@ -1,4 +1,4 @@
-//! What the curvature-continuous smoother makes of corners: a table for `docs/smoothers.md`, of
+//! Effect of the curvature-continuous smoother on corners: a table for `docs/smoothers.md`, of
 //! paths of `jps` between random free cells of the given maps.
 //!
 //! `cargo run --release -p keyway-lab --example rounded_corners -- PATHS_PER_MAP MAP...`
@@ -18,18 +18,18 @@ use std::path::Path;
 const CLEARANCES_M: [f64; 2] = [0.0, 0.3];
 const RADII_M: [f64; 4] = [0.0, 0.2, 0.5, 1.0];
 
-/// What is counted of all paths with one clearance and radius.
+/// Counts over all paths with one clearance and radius.
 #[derive(Default)]
 struct Tally {
     corners: usize,
     sharp: usize,
     sharp_for_radius: usize,
-    /// Length over that of `taut`, less 1, path by path; of the line of sight, too.
+    /// Excess length over that of `taut`, as a share, of each path; likewise of line of sight.
     excess: Vec<f64>,
     sight_excess: Vec<f64>,
     /// The largest curvature of each path that has a curve \[1/m\].
     peaks: Vec<f64>,
-    /// What the path certainly keeps, where that is less than was asked for \[m\].
+    /// Guaranteed clearance, if that is less than the requested one \[m\].
     least_m: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// NaN without values.
+/// Quantile; NaN without values.
 fn quantile(values: &[f64], share: f64) -> f64 {
     Sample::new(values.to_vec()).map_or(f64::NAN, |sample| sample.quantile(share))
 }

@@ -1,6 +1,6 @@
-//! How long each smoother takes: a table for `docs/lab/performance.md`, of paths of `jps` between
-//! random free cells of the given maps; microseconds of wall clock, for each path the fastest of
-//! several rounds.
+//! Run times of the smoothers: a table for `docs/lab/performance.md`, of paths of `jps` between
+//! random free cells of the given maps. Times are wall-clock microseconds; for each path, the
+//! fastest of several rounds counts.
 //!
 //! `cargo run --release -p keyway-lab --example smoothing_times -- PATHS_PER_MAP ROUNDS MAP...`
 
@@ -27,7 +27,7 @@ fn smoothers() -> Vec<(String, SmootherConfig)> {
     all
 }
 
-/// Paths on one map; as many as there are, where free cells are rarely connected.
+/// Paths on one map; fewer than requested if free cells are rarely connected.
 fn lines(map: &SearchMap, paths: usize) -> Result<Vec<PlannedLine>, Box<dyn Error>> {
     let planner = PlannerConfig::by_name("jps").ok_or("no jps")?.build(map)?;
     let free: Vec<Cell> = map.frame().cells().filter(|&cell| map.is_free(cell)).collect();
@@ -42,7 +42,7 @@ fn lines(map: &SearchMap, paths: usize) -> Result<Vec<PlannedLine>, Box<dyn Erro
     Ok((1..20 * paths).filter_map(line).take(paths).collect())
 }
 
-/// For each smoother the time of each path on one map \[us\].
+/// Measures, for each smoother, the time of each path on one map \[us\].
 fn measure(map: &SearchMap, paths: usize, rounds: usize) -> Result<Vec<Vec<f64>>, Box<dyn Error>> {
     let lines = lines(map, paths)?;
     let smoothers: Vec<_> =
@@ -62,7 +62,7 @@ fn measure(map: &SearchMap, paths: usize, rounds: usize) -> Result<Vec<Vec<f64>>
     Ok(times_us)
 }
 
-/// Mean, 95 % and worst.
+/// Mean, 95 % quantile and worst value.
 fn text(times_us: &[f64]) -> String {
     let Ok(sample) = Sample::new(times_us.to_vec()) else { return "none".to_owned() };
     let [most, worst] = [0.95, 1.0].map(|share| sample.quantile(share));

@@ -3,18 +3,18 @@
 //! | module | content |
 //! |---|---|
 //! | [`compare`] | planners and smoothers on the same queries |
-//! | [`bench`](mod@bench) | planners on the queries of MovingAI scenario files, and on growing maps |
+//! | [`bench`](mod@bench) | planners on MovingAI scenario files, and on growing maps |
 //! | [`batch`] | many runs, in parts and on several threads, and summaries by stack |
-//! | [`replay`] | recorded runs, made again |
-//! | `recording` | flight recorder: what a navigator observed and decided, decided again |
-//! | [`claims`] | claims of papers, measured again |
+//! | [`replay`] | replay of recorded runs |
+//! | `recording` | flight recorder: observations and decisions of a navigator, and their replay |
+//! | [`claims`] | claims of papers, and experiments that measure them |
 //! | [`reproduce`] | all claims with their verdicts: measurements, tables and a page |
 //! | [`scenes`] | scenes of benchmarks, of tables of starts and goals, and of the papers' maps |
-//! | [`catalogue`] | everything that has a name, with its parameters and its uses in the papers |
+//! | [`catalogue`] | all named parts, with their parameters and their uses in the papers |
 //! | [`results`] | folders of results, and journals |
 //! | [`table`], [`run_tables`] | rows as text, LaTeX and CSV; routes and runs as tables |
-//! | [`significance`], [`measure`] | differences that are more than chance; times of work |
-//! | [`progress`] | how far work is; threads are [`keyway_sim::parallel`]'s |
+//! | [`significance`], [`measure`] | significance of differences; times of work |
+//! | [`progress`] | progress of work; threads are [`keyway_sim::parallel`]'s |
 
 pub mod batch;
 pub mod bench;

@@ -6,12 +6,12 @@ use keyway::route::{Stage, StageObserver};
 use keyway_sim::metrics::statistics::Sample;
 use std::time::{Duration, Instant};
 
-/// Wall clock and CPU time of a piece of work.
+/// Wall-clock and CPU time of a piece of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Times {
-    /// Wall clock.
+    /// Wall-clock time.
     pub wall: Duration,
-    /// CPU time of the thread; `None` where the platform does not report it.
+    /// CPU time of the thread; `None` if the platform does not report it.
     pub cpu: Option<Duration>,
 }
 
@@ -22,7 +22,7 @@ impl Times {
         self.cpu = self.cpu.zip(other.cpu).map(|(a, b)| a.min(b));
     }
 
-    /// Wall clock \[us\].
+    /// Wall-clock time \[us\].
     pub fn wall_us(&self) -> f64 {
         micros(self.wall)
     }
@@ -74,7 +74,7 @@ pub fn timed<R>(work: impl FnOnce() -> R) -> (R, Times) {
     (result, begin.elapsed())
 }
 
-/// [`timed`] where times are wanted; otherwise no clock is read.
+/// Like [`timed`] if `has_times`; otherwise no clock is read.
 pub fn timed_if<R>(has_times: bool, work: impl FnOnce() -> R) -> (R, Option<Times>) {
     if !has_times {
         return (work(), None);
@@ -89,13 +89,13 @@ pub fn wall_clock() -> impl Fn() -> f64 {
     move || begin.elapsed().as_secs_f64()
 }
 
-/// Times of the stages of the last route that ended in this thread.
+/// Times of the stages of the last route that was completed in this thread.
 pub struct StageTimer {
     has_times: bool,
     begin: Option<Begin>,
-    /// `None` before the first search has ended, and without times.
+    /// Search time; `None` before the first search has ended, and without times.
     pub search: Option<Times>,
-    /// `None` before the first smoothing has ended, and without times.
+    /// Smoothing time; `None` before the first smoothing has ended, and without times.
     pub smoothing: Option<Times>,
 }
 

@@ -11,7 +11,7 @@ pub trait Progress: Sync {
     /// Reports one more answer; `Break` stops the work as soon as possible.
     fn answered(&self) -> ControlFlow<()>;
 
-    /// Reports a likely mistake in what the work was given; the work goes on.
+    /// Reports a likely mistake in the input of the work; the work continues.
     fn warned(&self, _warning: &dyn Display) {}
 }
 

@@ -12,8 +12,8 @@ pub struct Differences {
 }
 
 impl Differences {
-    /// Compares the tasks on which both methods gave a value. Equal values, and equal differences,
-    /// differ by rounding: values closer than `same` count as equal.
+    /// Compares the tasks on which both methods have a value. Values closer than `same` count as
+    /// equal, since equal values, and equal differences, may differ by rounding.
     pub fn of(differences: impl Iterator<Item = f64>, same: f64) -> Self {
         let per_unit = 1.0 / same;
         let rounded: Vec<f64> =
@@ -31,7 +31,7 @@ impl Differences {
     }
 }
 
-/// Holm's correction of the p-values that are present.
+/// Returns Holm's correction of the p-values that are present.
 pub fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> {
     let p_values: Vec<Option<f64>> = p_values.collect();
     let there: Vec<f64> = p_values.iter().copied().flatten().collect();
@@ -40,7 +40,7 @@ pub fn holm_of(p_values: impl Iterator<Item = Option<f64>>) -> Vec<Option<f64>> 
     p_values.into_iter().map(|p| p.and_then(|_| corrected.next())).collect()
 }
 
-/// Formats a p-value for people.
+/// Formats a p-value for display.
 pub fn p_value(p: Option<f64>) -> String {
     if p.is_some_and(|p| p < 0.001) { "< 0.001".to_owned() } else { number(p, 3) }
 }

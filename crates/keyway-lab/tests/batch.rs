@@ -1,4 +1,4 @@
-//! Batches that are stopped, made in parts, and replayed.
+//! Batches that are stopped, executed in parts, and replayed.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway_lab::batch::{BatchError, BatchRequest, BatchWarning, Keep, MergeRequest, Shard};
@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tempfile::TempDir;
 
-/// A short way across a generated room, with noise that depends on the seed.
+/// A short route across a generated room, with noise that depends on the seed.
 const NOISY: &str = "version = 2\nseed = 3\nstart = [1, 1]\ngoal = [3, 1]\n[world]\nwidth_m = 4\n\
                      height_m = 2\nresolution_m = 0.1\n[disturbances.sensor]\nrange_m = 0.01\n";
 
@@ -30,7 +30,7 @@ fn runs(folder: &Path) -> String {
     fs::read_to_string(folder.join("runs.jsonl")).unwrap()
 }
 
-/// Stops the work after some answers, and keeps what was said.
+/// Stops the work after some answers, and stores the warnings.
 struct Stop {
     after: usize,
     expected: Mutex<usize>,
@@ -66,7 +66,7 @@ fn a_batch_that_was_stopped_goes_on_and_parts_make_the_whole() {
     assert_eq!(request.drive(&(), &()).unwrap().runs, 5);
     let whole = runs(&request.out);
     assert_eq!(whole.lines().count(), 5);
-    // Nothing is missing.
+    // No run is missing.
     let again = Stop::after(1);
     request.drive(&(), &again).unwrap();
     assert_eq!(*again.expected.lock().unwrap(), 0);

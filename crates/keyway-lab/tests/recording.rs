@@ -1,4 +1,4 @@
-//! The flight recorder, in the hands of a shell.
+//! Tests of the flight recorder as a caller uses it.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Point, Pose, Velocity};
@@ -10,7 +10,7 @@ use keyway_lab::recording::{FlightRecorder, RecordingError, decide_again};
 use std::fs::File;
 use std::path::Path;
 
-/// A robot that drives in an empty hall as it is told, and sees a box with its camera alone; its
+/// A robot that drives in an empty hall by commands and sees a box with its camera only; its
 /// clock begins before 0.
 struct Drive {
     robot: Robot,
@@ -108,7 +108,7 @@ fn a_life_with_changes_is_decided_again() {
     assert_eq!(clouds as u64, decided);
 }
 
-/// A change of which the recorder was not told is noticed.
+/// A change that was not reported to the recorder is detected.
 #[test]
 fn an_untold_change_is_a_difference() {
     let folder = tempfile::tempdir().unwrap();
@@ -130,7 +130,7 @@ fn an_untold_change_is_a_difference() {
     }
 }
 
-/// The power fails: nobody finishes the file.
+/// A power failure: the file is not finished.
 #[test]
 fn what_is_more_than_a_second_old_is_in_the_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
-//! An evaluation term of your own (Nav2 calls it a critic) for a dynamic window, in a simulated
-//! run: how far a candidate leads away from the route. The robot starts facing aside, and comes
-//! back to its route sooner with the term than without.
+//! A custom evaluation term (a critic in Nav2) for a dynamic window, in a simulated run: the
+//! distance of a candidate from the route. The robot starts facing sideways, and returns to its
+//! route sooner with the term than without.
 //!
 //! `cargo run --example own_evaluation_term`
 
@@ -17,7 +17,7 @@ use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// A dynamic window that likes to stay near its route.
+/// A dynamic window that prefers to stay near its route.
 #[derive(Debug)]
 struct NearRoute {
     window: DynamicWindow,
@@ -36,7 +36,7 @@ impl NearRoute {
         Ok(Self { window, weighing })
     }
 
-    /// The values of all terms, in the order of the weighing.
+    /// Values of all terms, in the order of the weighing.
     fn terms(scene: &Scene<'_>, velocity: Velocity, rollout: &Rollout) -> [TermValue; 4] {
         [
             TermValue::of(rollout.heading),
@@ -46,7 +46,7 @@ impl NearRoute {
         ]
     }
 
-    /// The term: the distance from the route to where a candidate leads \[m\].
+    /// The term: distance from the route to the end of a candidate \[m\].
     fn off_route_m(scene: &Scene<'_>, rollout: &Rollout) -> f64 {
         let at = rollout.judged.point();
         let distances = scene.path.segments().map(|segment| segment.distance_sq_to_point(at));
@@ -71,7 +71,7 @@ impl LocalPlanner for NearRoute {
     }
 }
 
-/// A hall of 8 m x 4 m, along its middle.
+/// Runs through a hall of 8 m x 4 m, along its middle.
 fn run(route_weight: f64) -> Result<RobotReport, Box<dyn Error>> {
     let frame = GridFrame::new(160, 80, 0.05, Pose::default())?;
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
@@ -86,7 +86,7 @@ fn run(route_weight: f64) -> Result<RobotReport, Box<dyn Error>> {
     Ok(watch_episode(&episode, options, &mut [(); 0])?.first())
 }
 
-/// The mean distance from the middle of the hall over all cycles \[m\].
+/// Mean distance from the middle of the hall over all cycles \[m\].
 fn mean_off_route_m(report: &RobotReport) -> f64 {
     let rows = report.trajectory.as_deref().unwrap_or_default();
     // A row is [t, x, y, theta, v, omega].

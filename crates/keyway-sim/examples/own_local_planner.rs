@@ -1,5 +1,5 @@
-//! A local planner of your own in a whole simulated run: it turns towards the guide point, drives,
-//! and looks at nothing else. The stop rule stands behind it, so it touches nothing all the same.
+//! A custom local planner in a whole simulated run: it turns towards the guide point, drives, and
+//! ignores everything else. The stop rule checks its commands, so there is no contact.
 //!
 //! `cargo run --example own_local_planner`
 
@@ -14,7 +14,7 @@ use keyway_sim::episode::{
 use std::error::Error;
 use std::sync::Arc;
 
-/// Turns towards the guide point, and drives the faster the better it faces it.
+/// Turns towards the guide point, and drives faster the better it faces it.
 #[derive(Debug)]
 struct Bee {
     robot: Robot,
@@ -34,13 +34,13 @@ impl LocalPlanner for Bee {
             limits.v_max_mps * bearing_rad.cos().max(0.0),
             (2.0 * bearing_rad).clamp(-fastest, fastest),
         );
-        // What the robot cannot reach within a cycle it need not be told.
+        // The command is limited to velocities within reach of one cycle.
         let command = limits.reached(scene.velocity, wanted, self.robot.cycle_s);
         Ok(Decision { command, evaluation: Evaluation::default() })
     }
 }
 
-/// A hall of 8 m x 4 m with a disc in the middle of the way that is on no map.
+/// Runs through a hall of 8 m x 4 m with an unmapped disc in the middle of the path.
 fn run(has_stop_rule: bool) -> Result<RobotReport, Box<dyn Error>> {
     let frame = GridFrame::new(160, 80, 0.05, keyway::geometry::Pose::default())?;
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
@@ -48,7 +48,7 @@ fn run(has_stop_rule: bool) -> Result<RobotReport, Box<dyn Error>> {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let mut episode = Episode::new(map, robot.clone(), start, goal);
     episode.obstacles = vec![Disc::new(Point::new(4.0, 2.1), 0.3)];
-    // It plans no way around what it sees: only the stop rule is left.
+    // The stack does not replan around sensed obstacles: only the stop rule is left.
     let EpisodeRobot { stack, stack_name, .. } = &mut episode.robots[0];
     "bee".clone_into(stack_name);
     stack.controller.watch_route = false;

@@ -1,12 +1,12 @@
-//! A world in time for robots of [`keyway`]: lidars, late motors, obstacles that move, several
-//! robots at once; and what is measured of a run.
+//! Simulation of robots of [`keyway`] in a world in time: lidars, delayed motors, moving
+//! obstacles, several robots at once; and the metrics of a run.
 //!
 //! | stage | module | from -> to |
 //! |---|---|---|
 //! | worlds | [`worlds`] | a seed -> a map |
 //! | simulate | [`sim`] | controllers, robots and a world -> runs |
-//! | measure | [`metrics`] | a path or a run -> figures |
-//! | report | [`report`] | a route or a run -> what JSON reports say of it |
+//! | measure | [`metrics`] | a path or a run -> metrics |
+//! | report | [`report`] | a route or a run -> the content of a JSON report |
 //! | all of it | [`episode`] | a world, a robot and a stack -> a run and its report |
 //! | files | `scene_files` | a text -> an episode |
 //! | threads | [`parallel`] | items -> results, in their order |

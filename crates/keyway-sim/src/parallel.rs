@@ -1,28 +1,28 @@
-//! Work spread over threads, for simulations, experiments and pictures.
+//! Parallel work on several threads, for simulations, experiments and pictures.
 //!
-//! Results never depend on the number of threads: items do not see each other, and results come in
+//! Results never depend on the number of threads: items do not share state, and results come in
 //! the order of the items.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::Builder;
 
-/// Number of threads that this computer runs at the same time.
+/// Number of threads that this computer runs concurrently.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Works on every item, on at most this many threads. A free thread takes the next item, in their
-/// order. Where fewer threads can be had, fewer do the same.
+/// Processes every item, on at most this many threads. An idle thread takes the next item, in
+/// order. If fewer threads are available, they process all items.
 ///
 /// # Panics
-/// When the work does.
+/// Panics if the work panics.
 pub fn for_each<T: Send>(
     items: impl IntoIterator<Item = T, IntoIter: Send>,
     jobs: usize,
     work: impl Fn(T) + Sync,
 ) {
     let items = Mutex::new(items.into_iter());
-    // A poisoned lock still holds the items that nobody has taken.
+    // A poisoned lock still holds the remaining items.
     let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
     let all = || {
         while let Some(item) = next() {
@@ -43,7 +43,7 @@ pub fn for_each<T: Send>(
 /// items.
 ///
 /// # Panics
-/// When the work does.
+/// Panics if the work panics.
 pub fn in_parallel<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,
@@ -52,7 +52,7 @@ pub fn in_parallel<T: Sync, R: Send>(
     let mut results: Vec<Option<R>> = items.iter().map(|_| None).collect();
     let places = items.iter().zip(&mut results);
     for_each(places, jobs.min(items.len()), |(item, result)| *result = Some(work(item)));
-    // Each item has been worked on: otherwise the work has panicked, and so has the scope.
+    // All items are processed: otherwise the work has panicked, and so has the scope.
     results.into_iter().flatten().collect()
 }
 

@@ -1,8 +1,8 @@
-//! Plans, runs and statistics, bit by bit, on every machine: their digests are those of
+//! Plans, runs and statistics are bitwise the same on every machine: their digests are those of
 //! `testdata/digests.toml`.
 //!
-//! Whoever changes a figure on purpose writes them again with `KEYWAY_WRITE_DIGESTS=1`, and says in
-//! the changelog what has changed and why.
+//! To change a value on purpose, write the digests again with `KEYWAY_WRITE_DIGESTS=1`, and
+//! explain the change in the changelog.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Point;
@@ -20,7 +20,7 @@ use keyway_sim::worlds::{Clutter, Corridors, GeneratedMap, Maze, Pattern, Rooms}
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Digests by the names of what they are of.
+/// Digests by name.
 type Digests = BTreeMap<String, String>;
 
 /// FNV-1a with 64 bits.
@@ -69,7 +69,7 @@ fn maps() -> [(&'static str, OccupancyGrid); 4] {
     ]
 }
 
-/// The route that a planner and a smoother give, and what the search took.
+/// Digest of the route of a planner and a smoother, and of the search statistics.
 fn route_digest(
     grid: &OccupancyGrid,
     planner: &PlannerConfig,
@@ -129,7 +129,7 @@ fn run_digest(reports: &[RobotReport]) -> String {
     digest.text()
 }
 
-/// An episode among things that no map shows, with a robot that is not ideal.
+/// An episode among unmapped obstacles, with a disturbed robot.
 fn episode(known: &OccupancyGrid, robot: &Robot, stack: &str, moving: u32) -> RobotReport {
     let [start, goal] = ENDS.map(Point::from);
     let mut episode = Episode::new(known.clone(), robot.clone(), start, goal);
@@ -168,7 +168,7 @@ fn runs() -> Digests {
     digests
 }
 
-/// Four robots of two kinds that cross.
+/// Four robots of two kinds with crossing routes.
 fn team() -> String {
     let known = map(0, Pattern::None);
     // All robots of a team have the same cycle.

@@ -1,4 +1,4 @@
-//! Whole runs, and what is reported of them.
+//! Whole runs and their reports.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Disc, Point, Pose};
@@ -32,7 +32,7 @@ fn episode(rows: [&str; 3]) -> Episode {
 
 const OPEN: [&str; 3] = ["......"; 3];
 
-/// Counts what it is shown.
+/// Counts the calls of an observer.
 #[derive(Default)]
 struct Counts {
     started: u64,
@@ -86,7 +86,7 @@ fn an_observer_sees_every_cycle_and_its_clock_gives_the_times() {
         watch_episode(&episode(OPEN), options, std::slice::from_mut(&mut counts)).unwrap().first()
     };
     let run = report.run.as_ref().unwrap();
-    // The last decision is that the robot has arrived, after which no cycle is driven.
+    // The last decision is arrival, after which no cycle is driven.
     assert_eq!((counts.started, counts.decided, counts.ended), (1, run.cycles + 1, 1));
     assert!((run.mean_cycle_us.unwrap() - 1000.0).abs() < 1e-6);
     assert!((report.plan.time_s.unwrap() - 1e-3).abs() < 1e-9);
@@ -108,7 +108,7 @@ fn what_is_not_on_the_map_is_real() {
         |report: &keyway_sim::episode::RobotReport| report.run.as_ref().unwrap().length_m;
     assert!(length_m(&around) > length_m(&free) + 0.01);
     assert_eq!(around.inputs.obstacles, [[3.0, 1.4, 0.3]]);
-    // An obstacle over the start is touched at once.
+    // An obstacle over the start causes immediate contact.
     blocked.obstacles[0].centre = blocked.robots[0].start.position;
     let touched = run_episode(&blocked).unwrap().first();
     assert_eq!(touched.outcome, EpisodeOutcome::Collided);
@@ -127,7 +127,7 @@ fn unknown_cells_are_real_where_they_are_planned_around() {
     assert_eq!(outcomes, (EpisodeOutcome::Reached, EpisodeOutcome::Reached));
     let (around, through) = (around.run.unwrap(), through.run.unwrap());
     assert!(around.length_m > through.length_m + 0.2);
-    // Nothing but the unknown cells could be near.
+    // Only the unknown cells are near.
     assert!(around.min_clearance_m.is_some() && through.min_clearance_m.is_none());
 }
 
@@ -147,7 +147,7 @@ fn no_route_is_a_report() {
     assert!(report.run.is_none() && report.trajectory.is_none());
 }
 
-/// A delay of 0.1 s, noise of 5 %, and a sensor and a localisation that are not exact.
+/// A delay of 0.1 s, noise of 5 %, and sensor and localisation errors.
 fn disturbed(seed: u64) -> Disturbances {
     let mut disturbances = Disturbances { seed, ..Disturbances::default() };
     let sensor = &mut disturbances.sensor;
@@ -165,7 +165,7 @@ fn disturbed(seed: u64) -> Disturbances {
     disturbances
 }
 
-/// What of the poses that the controller was told was not true.
+/// Errors of the poses that were reported to the controller.
 #[derive(Default)]
 struct Errors {
     told: Vec<Pose>,
@@ -198,12 +198,12 @@ fn a_disturbed_robot_gets_through_a_hall() {
     assert!(run.time_s > ideal.run.unwrap().time_s, "it begins later");
     assert!(errors.largest_m > 0.02 && errors.largest_m < 0.09, "{}", errors.largest_m);
     assert!(errors.lost_scans > 0 && errors.lost_scans < errors.told.len() / 5);
-    // The trajectory is the truth: it begins where the robot stands, and so does the delay.
+    // The trajectory is the true one: it begins at the true start, with the delay.
     let rows = report.trajectory.as_ref().unwrap();
     assert_eq!(rows[0][..3], [0.0, 0.6, 1.5]);
     assert_eq!((rows[1][4], rows[1][1]), (0.0, 0.6));
     assert!(rows[2][4] > 0.0);
-    // Its inputs reproduce it.
+    // The inputs in the report reproduce it.
     assert_eq!(report.inputs.disturbances.as_ref(), Some(&noisy.robots[0].disturbances));
     let text = serde_json::to_string(&report.inputs.disturbances).unwrap();
     let disturbances: Disturbances = serde_json::from_str(&text).unwrap();
@@ -213,7 +213,7 @@ fn a_disturbed_robot_gets_through_a_hall() {
     assert_ne!(run_episode(&other).unwrap().first().trajectory, report.trajectory);
 }
 
-/// The beams that see something are drawn from the seed.
+/// The beams that detect an elusive obstacle are drawn from the seed.
 #[test]
 fn a_report_has_the_seed_by_which_things_are_seen() {
     let seed = |seen| {
@@ -226,7 +226,7 @@ fn a_report_has_the_seed_by_which_things_are_seen() {
     assert_eq!([0.0, 0.5, 1.0].map(seed), [None, Some(7), None]);
 }
 
-/// The map alone is not enough: something that is not on it may stand there.
+/// A map alone is not enough, because an unmapped obstacle may be there.
 #[test]
 fn a_robot_without_any_scan_stands() {
     let mut blind = episode(["......", "..##..", "......"]);
@@ -234,7 +234,7 @@ fn a_robot_without_any_scan_stands() {
     let report = run_episode(&blind).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", report.reason);
     assert_eq!(report.run.unwrap().length_m, 0.0);
-    // A stack that does not ask drives by its map, and runs into what nobody sees.
+    // A stack without this check drives by its map, and collides with unsensed obstacles.
     blind.robots[0].stack = Stack::key_point_fusion(&blind.robots[0].robot);
     blind.robots[0].stack.controller.stop_when_blind = false;
     assert_eq!(run_episode(&blind).unwrap().first().outcome, EpisodeOutcome::Reached);
@@ -258,8 +258,8 @@ fn rules_end_a_run() {
     assert_eq!(report.inputs.stuck_window_s, Some(0.1));
 }
 
-/// Somebody stands in a lane until 30 s and then walks on: too long for the usual 20 s, not for 40
-/// s.
+/// A pedestrian stands in a lane until 30 s and then walks on: too long for the default window of
+/// 20 s, but not for 40 s.
 #[test]
 fn who_may_wait_longer_is_not_stuck() {
     let mut lane = episode(["######", "......", "######"]);
@@ -279,7 +279,7 @@ fn who_may_wait_longer_is_not_stuck() {
 #[test]
 fn a_slow_robot_is_not_stuck() {
     let mut slow = episode(OPEN);
-    // 4 cm in 10 s: less than what is progress for others.
+    // 4 cm in 10 s: less than the progress that other robots need.
     slow.robots[0].robot.limits.v_max_mps = 0.004;
     (slow.robots[0].start.position, slow.robots[0].goal) =
         (Point::new(2.5, 1.5), Point::new(3.2, 1.5).into());

@@ -1,4 +1,4 @@
-//! Robots with limits of jerk in whole runs.
+//! Whole runs of robots with jerk limits.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 mod hall;
@@ -13,7 +13,7 @@ use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 use keyway_sim::sim::Disturbances;
 use std::f64::consts::FRAC_PI_2;
 
-/// A robot among posts that no map has.
+/// Drives a robot among unmapped posts.
 fn driven(robot: &Robot, disturbances: &Disturbances) -> RobotReport {
     let (start, goal) = (Point::new(1.5, 1.5), Point::new(10.5, 6.5));
     let mut episode = Episode::new(hall(), robot.clone(), start, goal);
@@ -23,7 +23,7 @@ fn driven(robot: &Robot, disturbances: &Disturbances) -> RobotReport {
     run_episode(&episode).unwrap().first()
 }
 
-/// A robot with limits of jerk \[m/s³, rad/s³\].
+/// A robot with jerk limits \[m/s³, rad/s³\].
 fn limited(robot: Robot, jerk_mps3: f64, angular_jerk_radps3: f64) -> Robot {
     let mut robot = robot;
     robot.limits.jerk_mps3 = Some(jerk_mps3);
@@ -40,7 +40,7 @@ fn robots() -> [Robot; 3] {
     ]
 }
 
-/// It reaches its goal, touches nothing, and keeps its limits of jerk.
+/// Checks that the robot reaches its goal without contact, and keeps its jerk limits.
 fn check(robot: &Robot, report: &RobotReport) {
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     check_jerk(robot, report);
@@ -59,7 +59,7 @@ fn runs_keep_the_limits() {
     for robot in robots() {
         let report = driven(&robot, &Disturbances::default());
         check(&robot, &report);
-        // It costs less than the time by which it stops later, thrice.
+        // The limits cost less than three stops, each later by the smoothing lag.
         let mut free = robot.clone();
         (free.limits.jerk_mps3, free.limits.angular_jerk_radps3) = (None, None);
         let time_s = |report: &RobotReport| report.run.as_ref().unwrap().time_s;
@@ -71,7 +71,7 @@ fn runs_keep_the_limits() {
     }
 }
 
-/// With noise of sensors, motors and odometry, and with delays, told or not.
+/// With noise of sensors, motors and odometry, and with known and unknown delays.
 #[test]
 fn runs_with_errors_keep_the_limits() {
     for (index, robot) in robots().into_iter().enumerate() {
@@ -90,7 +90,7 @@ fn runs_with_errors_keep_the_limits() {
     }
 }
 
-/// With wheels that lag, and motors that do nothing small.
+/// With lagging wheels, and motors with a dead band.
 #[test]
 fn runs_with_weak_motors_keep_the_limits() {
     type Spoil = fn(&mut Disturbances);
@@ -107,7 +107,7 @@ fn runs_with_weak_motors_keep_the_limits() {
     }
 }
 
-/// So do all stacks, some of which do not get through the hall.
+/// All stacks keep the limits; some of them do not get through the hall.
 #[test]
 fn runs_of_other_stacks_keep_the_limits() {
     let robot = limited(Robot::small(), 2.0, 12.0);
@@ -122,8 +122,7 @@ fn runs_of_other_stacks_keep_the_limits() {
     }
 }
 
-/// Where a change of the acceleration has a cost, turn rates change more gradually, and a run takes
-/// no longer.
+/// With a cost of jerk, turn rates change more gradually, and a run takes no longer.
 #[test]
 fn the_cost_of_jerk_makes_turns_smoother() {
     let robot = Robot::jackal();
@@ -145,8 +144,8 @@ fn the_cost_of_jerk_makes_turns_smoother() {
     assert!(time_s < 1.02 * rough_time_s, "{time_s} {rough_time_s}");
 }
 
-/// The mean of a small turn is smaller than what moves the motors: a robot that faces as it should,
-/// within the tolerance, has arrived.
+/// The average of a small turn is below the dead band of the motors: a robot that has its heading
+/// within the tolerance has arrived.
 #[test]
 fn a_turn_that_moves_no_motor_ends() {
     let robot = limited(Robot::husky(), 1.01, 2.02);

@@ -1,4 +1,4 @@
-//! Robots whose commands act late, whether they know it or not.
+//! Robots with known and unknown actuation delays.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 mod hall;
@@ -19,8 +19,8 @@ fn driven(episode: &Episode) -> RobotReport {
     run_episode(episode).unwrap().first()
 }
 
-/// In a world that is all known, nothing depends on when it is seen: but for a stack that stops
-/// within what it sees, and a robot that comes far before it acts.
+/// In a fully known world, nothing depends on the time of sensing, except for a stack that stops
+/// within its sensing range and a robot that drives far before its commands act.
 #[test]
 fn the_same_run_later() {
     let (own, other) = (Stack::DEFAULT, "key-point-fusion");
@@ -42,7 +42,7 @@ fn the_same_run_later() {
         let [prompt, late] = [prompt, late].map(|report| report.trajectory.unwrap());
         assert!(prompt.len() > 100, "{}", prompt.len());
         assert_eq!(late.len(), prompt.len() + cycles, "{name}");
-        // It stands until the first command acts.
+        // The robot is stationary until the first command acts.
         let (waits, drives) = late.split_at(cycles);
         assert!(waits.iter().all(|row| row[1..] == late[0][1..]));
         for (late, prompt) in drives.iter().zip(&prompt) {
@@ -53,10 +53,10 @@ fn the_same_run_later() {
     }
 }
 
-/// A delay that is no whole number of cycles, and obstacles that are seen on the way; and the same
-/// delay, of which nobody has told the robot. Those behind a corner are more than 1.95 m from it:
-/// 0.8 m on which `jackal` at 2 m/s does not act yet, 0.7 m to stop, and 0.45 m of the robot and
-/// the obstacle.
+/// A delay that is not a whole number of cycles, with obstacles sensed along the route; and the
+/// same delay, unknown to the robot. Obstacles behind a corner are more than 1.95 m from it:
+/// 0.8 m that `jackal` drives at 2 m/s before its command acts, 0.7 m to stop, and 0.45 m for the
+/// robot and the obstacle.
 #[test]
 fn what_is_seen_on_the_way_is_not_touched() {
     let outcome = |known_s: f64, unknown_s: f64, name: &str| {
@@ -78,7 +78,7 @@ fn what_is_seen_on_the_way_is_not_touched() {
     }
 }
 
-/// What is known and what is not add up.
+/// Known and unknown delays add up.
 #[test]
 fn a_part_of_the_delay_may_be_known() {
     let run = |known_s: f64, unknown_s: f64| {
@@ -96,7 +96,7 @@ fn a_part_of_the_delay_may_be_known() {
     }
 }
 
-/// A report names what was learned, so that somebody can write it into the robot's file.
+/// A report contains the learned delay, so that a user can write it into the robot's file.
 #[test]
 fn what_was_learned_is_reported() {
     let noticed = |known_s: f64, unknown_s: f64| {
@@ -111,10 +111,10 @@ fn what_was_learned_is_reported() {
     assert!(said[0].contains("0.25 s later, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
 }
 
-/// A word that is said of a robot, and how that becomes true.
+/// A description of a fault, and a function that causes it.
 type Spoil<'a> = (&'a str, &'a dyn Fn(&mut Disturbances));
 
-/// In the same hall, with motors, odometry and scans that are not as they should be.
+/// In the same hall, with faulty motors, odometry and scans.
 #[test]
 fn what_is_wrong_with_a_robot_costs_it_little() {
     let run = |spoil: &dyn Fn(&mut Disturbances)| {

@@ -1,4 +1,4 @@
-//! Robots beside what moves, in whole runs: they pass or wait, and go on.
+//! Whole runs of robots among moving obstacles: they pass or wait, and continue.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Disc, Point, Pose};
@@ -10,7 +10,7 @@ use keyway_sim::episode::{
 };
 use keyway_sim::sim::{KeyFrame, KeyFrames, Motion, MovingObstacle, WayPoints};
 
-/// From (1, 3) to (9, 3) across a hall of 10 m x 6 m.
+/// An episode from (1, 3) to (9, 3) across a hall of 10 m x 6 m.
 fn across(movers: Vec<MovingObstacle>) -> Episode {
     let frame = GridFrame::new(200, 120, 0.05, Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |cell| {
@@ -23,7 +23,7 @@ fn across(movers: Vec<MovingObstacle>) -> Episode {
     Episode { movers, ..episode }.with_each_robot(|robot| robot.start = start)
 }
 
-/// Puts the stop rule behind a robot's stack.
+/// Adds the stop rule to a robot's stack.
 fn guard(robot: &mut EpisodeRobot) {
     robot.stack = robot.stack.clone().with_stop_rule(&robot.robot);
 }
@@ -32,14 +32,14 @@ fn walker(at: [f64; 2], velocity_mps: [f64; 2]) -> MovingObstacle {
     MovingObstacle::straight(at.into(), 0.25, velocity_mps.into()).unwrap()
 }
 
-/// Compares what the robot believes to move with what does.
+/// Compares the moving obstacles that the robot estimates with the true ones.
 struct Believed<'a> {
     movers: &'a [MovingObstacle],
-    /// Cycles in which something was known to move.
+    /// Cycles with an estimated moving obstacle.
     cycles: u32,
-    /// Cells that counted as standing when all walkers were in the hall for the last time.
+    /// Cells marked as static obstacles when all walkers were last in the hall.
     sensed: u64,
-    /// Cycles in which something that moves held the robot up.
+    /// Cycles in which the robot waited for a moving obstacle.
     waited: u32,
 }
 
@@ -52,7 +52,7 @@ impl EpisodeObserver for Believed<'_> {
             let off_m = self.movers.iter().map(off_m).fold(f64::INFINITY, f64::min);
             assert!(off_m <= mover.position_uncertainty_m + 1e-6, "{off_m} {mover:?}");
         }
-        // Half of somebody who walks through a wall is part of the wall.
+        // A pedestrian who walks through a wall is half hidden in it.
         let is_in_hall =
             |mover: &MovingObstacle| (0.4..5.6).contains(&mover.at(cycle.t_s).centre.y);
         if self.movers.iter().all(is_in_hall) {
@@ -100,8 +100,8 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
             if name == "to and fro"
                 && contact.is_some_and(|contact| contact.robot_stood || !is_safe)
             {
-                // It turns back without looking where the robot waits, or passes without the stop
-                // rule.
+                // The obstacle turns back into the waiting robot, or the robot passes without the
+                // stop rule.
                 continue;
             }
             assert_eq!(report.outcome, EpisodeOutcome::Reached, "{name}: {:?}", report.reason);
@@ -119,8 +119,8 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
     assert!(all_waited > 100, "{all_waited} cycles in which something that moved held it up");
 }
 
-/// It walks into the way and stays: first it is waited for, then it is gone around like anything
-/// that stands.
+/// A moving obstacle enters the route and stops: the robot first waits for it, then goes around
+/// it as around any static obstacle.
 #[test]
 fn who_stops_in_the_way_is_gone_around() {
     let frame = |t_s: f64, x: f64, y: f64| KeyFrame { t_s, position: Point::new(x, y) };
@@ -133,7 +133,8 @@ fn who_stops_in_the_way_is_gone_around() {
     assert!(run.length_m > 8.0 - 0.15 && run.time_s < 40.0, "{}", run.time_s);
 }
 
-/// Nobody gives way to a robot here: one that cannot get out of the way stands when it is run into.
+/// The obstacles do not give way to the robot: if it cannot clear the path, it is stationary at
+/// the contact.
 #[test]
 fn who_comes_straight_on_meets_a_robot_that_stands() {
     let Seen { report, .. } = watched(&across(vec![walker([9.5, 2.95], [-1.0, 0.0])]));
@@ -142,8 +143,8 @@ fn who_comes_straight_on_meets_a_robot_that_stands() {
     }
 }
 
-/// Posts that are on no map, and somebody who comes out from behind one of them, slower than the
-/// stop rule expects.
+/// Unmapped posts, and a pedestrian who emerges from behind one of them, slower than the stop
+/// rule expects.
 #[test]
 fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
     let frame = GridFrame::new(80, 60, 0.05, Pose::default()).unwrap();
@@ -173,8 +174,8 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
     assert!(driving == 0 && standing > 10, "{driving} {standing}");
 }
 
-/// A robot in a lane with a bay, and somebody who comes along it, in cells of 5 cm: the lane spans
-/// some rows, the bay some columns and rows.
+/// A robot in a lane with a bay, and a pedestrian who comes along the lane, in cells of 5 cm: the
+/// lane is given by its rows, the bay by its columns and rows.
 fn in_a_lane(
     robot: Robot,
     (lane, bay): (std::ops::Range<i32>, [std::ops::Range<i32>; 2]),
@@ -195,7 +196,7 @@ fn in_a_lane(
     episode.with_each_robot(|robot| robot.start = start)
 }
 
-/// The robot drives far enough into the bay for whoever comes along the lane.
+/// The robot drives far enough into the bay for the pedestrian in the lane to pass.
 #[test]
 fn who_comes_along_a_lane_passes_a_robot_in_a_bay() {
     let bay = [88..108, 20..54];
@@ -206,7 +207,7 @@ fn who_comes_along_a_lane_passes_a_robot_in_a_bay() {
     assert!(report.run.unwrap().recoveries.make_way > 0);
 }
 
-/// Marks of the other one from before it was known to move do not keep the robot in the bay.
+/// Cells that were marked before the pedestrian was tracked do not keep the robot in the bay.
 #[test]
 fn a_robot_that_made_way_leaves_the_bay_again() {
     let robot = Robot::derived(Footprint::circle(0.27).unwrap(), 0.8);
@@ -217,7 +218,7 @@ fn a_robot_that_made_way_leaves_the_bay_again() {
     assert!(report.run.unwrap().recoveries.make_way > 0);
 }
 
-/// Somebody in view has not passed, however long the robot has waited for that.
+/// A pedestrian in view has not passed, however long the robot has waited.
 #[test]
 fn who_stands_before_a_robot_in_a_bay_has_not_gone() {
     let bay = [88..108, 20..54];

@@ -23,7 +23,7 @@ fn small_navigator(map: &OccupancyGrid) -> Navigator {
     bound_for(map, &Stack::key_point_fusion(&robot).fit(&robot).unwrap(), START, GOAL).unwrap()
 }
 
-/// Everything a navigator saw and answered in a run.
+/// Inputs and decisions of a navigator in a run.
 type Record = Vec<(Pose, Velocity, Scan, Step)>;
 
 fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
@@ -54,7 +54,7 @@ fn drive(map: &OccupancyGrid, unknown: Vec<Disc>, record: &mut Record) -> Run {
     simulate(&world, &mut [participant]).unwrap().remove(0)
 }
 
-/// A scan that meets nothing.
+/// A scan without hits.
 fn nothing() -> Scan {
     Scan::of_nothing(&Robot::small().sensors[0])
 }
@@ -68,7 +68,7 @@ fn drives_around_what_no_map_shows() {
     let map = building();
     let clear = drive(&map, vec![], &mut Record::new());
     assert_eq!(clear.outcome, Outcome::Reached);
-    // In the middle of the way that the first run took.
+    // In the middle of the path of the first run.
     let middle = clear.samples[clear.samples.len() / 2].pose;
     let unknown = vec![circle(middle.x, middle.y, 0.15)];
     let run = drive(&map, unknown, &mut Record::new());
@@ -97,7 +97,7 @@ fn the_same_inputs_give_the_same_commands() {
     }
 }
 
-/// Once everything is warm, and unless a scan changes the map or a route is planned.
+/// After warm-up, unless a scan changes the map or a route is planned.
 #[test]
 fn a_cycle_allocates_nothing() {
     let map = building();
@@ -145,8 +145,8 @@ fn says_when_what_it_sees_leaves_no_route() {
     assert!(steps.iter().any(no_route));
 }
 
-/// What is seen on the way is planned around at once, however far ahead; and no second time while
-/// it stays.
+/// An obstacle on the route causes immediate replanning, at any distance, and only once while it
+/// stays.
 #[test]
 fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     let rows = ["############", "#..........#", "#..........#", "#..........#", "############"];
@@ -173,18 +173,18 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
         next_step(&mut navigator, pose, Velocity::ZERO, &scan(0));
     }
     assert_eq!(navigator.routes_planned(), 2, "nothing new");
-    // Beams that see only what the first ones have seen, or nothing at all.
+    // Beams that only hit what the first ones have hit, or nothing.
     next_step(&mut navigator, pose, Velocity::ZERO, &scan(12));
     assert_eq!(navigator.routes_planned(), 2);
-    // As published, nobody watches.
+    // The published stack does not watch its route.
     stack.controller.watch_route = false;
     let mut unwatched = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     next_step(&mut unwatched, pose, Velocity::ZERO, &scan(0));
     assert_eq!(unwatched.routes_planned(), 1);
 }
 
-/// In metres, and with the radius of the robot: cells and the clearance of a layer are not what a
-/// user has set.
+/// The message uses metres and the radius of the robot, because cells and the clearance of a layer
+/// are not user settings.
 #[test]
 fn says_that_something_stands_on_the_goal() {
     let map = blocks(&["############", "#..........#", "#..........#", "############"]);
@@ -213,8 +213,8 @@ fn says_that_something_stands_on_the_goal() {
     assert!(text.contains("nearest position with room is ("), "{text}");
 }
 
-/// A guide that needs less room than the robot turns in leads it along corners by which it cannot
-/// pass.
+/// If the guide required less clearance than the robot needs to turn, it would lead the robot
+/// along impassable corners.
 #[test]
 fn the_guide_leaves_a_rectangle_room_to_turn() {
     let (map, robot) = (building(), Robot::jackal());
@@ -238,7 +238,8 @@ fn the_guide_leaves_a_rectangle_room_to_turn() {
     assert!(guides.len() > 1, "there is a corner");
 }
 
-/// Where a rectangle cannot turn, its route keeps to the middle, and not to one side.
+/// In a passage that is too narrow to turn, the route of a rectangle keeps to the middle, not to
+/// one side.
 #[test]
 fn a_route_through_a_narrow_place_keeps_to_its_middle() {
     // A wall with a passage of 0.65 m, from y = 1.2 to 1.85 m; to turn, the robot needs 0.686 m.
@@ -336,7 +337,7 @@ fn says_so_as_long_as_there_is_no_route() {
     assert!(blocked > 250);
     // 1 + 2 + 4 + 8 + 8 s of waiting.
     assert!(navigator.routes_planned() <= 8, "{}", navigator.routes_planned());
-    // The fence is taken away.
+    // The fence is removed.
     let gone =
         (0..100).map(|_| next_step(&mut navigator, pose, Velocity::ZERO, &fence(f64::INFINITY)));
     assert!(gone.into_iter().any(|step| matches!(step, Step::Drive(_))));

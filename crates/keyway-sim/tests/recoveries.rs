@@ -1,5 +1,5 @@
-//! Dead ends, wrong headings, corridors that close, hidden guide points, goals with a heading,
-//! way-points: whole runs.
+//! Whole runs with dead ends, wrong headings, corridors that close, hidden guide points, goals
+//! with a heading, and way-points.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 #[path = "../../keyway/tests/support/driving.rs"]
@@ -14,7 +14,7 @@ use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episo
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// 0.1 m cells from a drawing of square blocks.
+/// A map with cells of 0.1 m from a drawing of square blocks.
 fn drawn(rows: &[&str], cells_per_block: u64) -> OccupancyGrid {
     let coarse = OccupancyGrid::from_ascii(rows);
     let (width, height) = (coarse.frame().width(), coarse.frame().height());
@@ -44,7 +44,7 @@ fn two_corridors() -> OccupancyGrid {
     )
 }
 
-/// Circles of radius 0.1 m side by side.
+/// Discs of radius 0.1 m side by side.
 fn fence(from: [f64; 2], to: [f64; 2]) -> Vec<Disc> {
     let (from, to) = (Point::from(from), Point::from(to));
     let count = (from.distance(to) / 0.15).ceil();
@@ -60,7 +60,7 @@ fn tried(report: &RobotReport) -> RecoveryCounts {
     report.run.as_ref().unwrap().recoveries
 }
 
-/// The pose and the velocity at the end: x, y, yaw, v, omega.
+/// Pose and velocity at the end: x, y, yaw, v, omega.
 fn end(report: &RobotReport) -> [f64; 5] {
     let [_, end @ ..] = *report.trajectory.as_ref().unwrap().last().unwrap();
     end
@@ -73,13 +73,13 @@ fn across(obstacles: Vec<Disc>) -> Episode {
 
 #[test]
 fn a_corridor_that_is_closed_is_left_for_the_other_one() {
-    // At the far end of the lower corridor, out of the sensor's range from its mouth.
+    // At the far end of the lower corridor, beyond the sensor's range at its entrance.
     let report = run_episode(&across(fence([7.5, 0.5], [7.5, 1.5]))).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
     let rows = report.trajectory.as_ref().unwrap();
     assert!(rows.iter().any(|row| row[2] > 2.6), "through the upper corridor");
-    // As soon as the fence is seen, 3.5 m ahead, and not in front of it.
+    // The robot turns back as soon as it senses the fence, 3.5 m ahead, not in front of it.
     let farthest_m = rows.iter().filter(|row| row[2] < 1.6).map(|row| row[1]);
     let farthest_m = farthest_m.filter(|x| *x < 7.5).fold(0.0, f64::max);
     assert!(farthest_m < 6.0, "{farthest_m}");
@@ -94,7 +94,7 @@ fn where_both_corridors_are_closed_the_run_ends_soon_and_says_why() {
     assert!(clearance_m(&report) > 0.0);
     let reason = report.reason.as_ref().unwrap();
     assert!(reason.contains("what the robot has seen leaves no path to the goal"), "{reason}");
-    // Twice through a corridor of 6 m at 0.5 m/s, and 20 s without progress.
+    // Twice through a corridor of 6 m at 0.5 m/s, plus 20 s without progress.
     let time_s = report.run.as_ref().unwrap().time_s;
     assert!(time_s < 80.0, "{time_s}");
 }
@@ -123,12 +123,12 @@ fn a_key_point_under_an_obstacle_is_replaced() {
     let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
-    // No waiting in front of it.
+    // No waiting in front of the obstacle.
     let [time_s, clear_s] = [&report, &clear].map(|one| one.run.as_ref().unwrap().time_s);
     assert!(time_s < clear_s + 8.0, "{time_s} s instead of {clear_s} s");
 }
 
-/// A slot as wide as a rectangle is long, less a little, that opens into a hall.
+/// A slot slightly narrower than the length of a rectangle, which opens into a hall.
 fn slot() -> OccupancyGrid {
     drawn(
         &[
@@ -155,7 +155,7 @@ fn slot() -> OccupancyGrid {
     )
 }
 
-/// 0.56 m x 0.34 m: it cannot turn around in the slot of 0.5 m.
+/// A robot of 0.56 m x 0.34 m, which cannot turn around in the slot of 0.5 m.
 fn long_robot(v_min_mps: f64) -> Robot {
     let small = Robot::small();
     let limits = Limits { v_min_mps, ..small.limits };
@@ -177,8 +177,8 @@ fn a_wrong_heading_at_the_start() {
     let report = run_episode(&out_of_the_slot(long_robot(0.0), 100.0)).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     assert!(clearance_m(&report) > 0.0);
-    // Facing the dead end, it backs out: a dynamic window as a recovery, courses through space and
-    // time by themselves.
+    // Facing the dead end, the robot backs out: with a dynamic window by a recovery, with
+    // space-time trajectories without one.
     let mut backs_out = out_of_the_slot(long_robot(-0.3), -90.0);
     for (stack, is_recovery) in [("key-point-fusion", true), ("keyway", false)] {
         backs_out.robots[0].stack = Stack::by_name(stack, &backs_out.robots[0].robot).unwrap();
@@ -203,7 +203,7 @@ fn rooms_with_a_door() -> OccupancyGrid {
     })
 }
 
-/// Its goal is beside the door: it must not turn towards it with its nose in the door.
+/// The goal is beside the door: the robot must not turn towards it with its front in the door.
 #[test]
 fn a_long_nose_without_a_reverse_gear_comes_through_a_door() {
     let corners = [[0.55, 0.195], [-0.22, 0.195], [-0.22, -0.195], [0.55, -0.195]];
@@ -231,7 +231,7 @@ fn a_long_nose_without_a_reverse_gear_comes_through_a_door() {
 
 #[test]
 fn a_dead_end_that_nothing_leads_out_of() {
-    // It can neither turn around nor drive backwards.
+    // The robot can neither turn around nor drive backwards.
     let report = run_episode(&out_of_the_slot(long_robot(0.0), -90.0)).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck);
     assert!(clearance_m(&report) > 0.0);
@@ -270,8 +270,8 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
             let Some(heading_rad) = heading_rad else { continue };
             let off_rad = wrap_angle(yaw - heading_rad);
             assert!(off_rad.abs() <= episode.robots[0].stack.controller.goal_yaw_tolerance_rad);
-            // Once it stands at the goal, it turns to one side only, and no farther than half
-            // around.
+            // Once stationary at the goal, the robot turns in one direction only, by at most half
+            // a turn.
             let rows = report.trajectory.as_ref().unwrap();
             let first = rows.iter().rposition(|row| row[4] != 0.0).unwrap() + 1;
             let turns = rows[first..].iter().map(|row| row[5]).filter(|omega| *omega != 0.0);
@@ -283,7 +283,8 @@ fn a_goal_is_reached_standing_and_facing_where_it_is_to() {
     }
 }
 
-/// Turning towards the way, or to the heading at the goal, is progress. Neither takes a recovery.
+/// Turning towards the path, or to the heading at the goal, is progress. Neither takes a
+/// recovery.
 #[test]
 fn who_turns_slowly_is_not_stuck() {
     let slow = |omega_max_radps: f64| {
@@ -304,14 +305,14 @@ fn who_turns_slowly_is_not_stuck() {
     let report = run_episode(&facing(Episode::new(room(), slow(0.5), start, goal), turned));
     let report = report.unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
-    // 6.3 s at full rate, and what it takes to begin and to end.
+    // 6.3 s at full turn rate, plus acceleration and deceleration.
     let time_s = report.run.as_ref().unwrap().time_s;
     assert!(time_s < 1.2 * 6.4, "{time_s}");
 }
 
 #[test]
 fn a_goal_without_room_for_its_heading_is_not_reached() {
-    // At the foot of the slot only the heading along it fits. No map shows the slot.
+    // At the bottom of the slot only the heading along it fits. The slot is unmapped.
     let goal = Goal { position: Point::new(0.35, 0.5), heading_rad: Some(0.0) };
     let position = Point::new(0.45, 1.3);
     let start = Start { position, heading_rad: Some(-FRAC_PI_2) };
@@ -325,8 +326,7 @@ fn a_goal_without_room_for_its_heading_is_not_reached() {
     assert!(reason.contains("no room at the goal to turn"), "{reason}");
 }
 
-/// If the map shows that the footprint does not fit with the heading at the goal, nobody drives
-/// there.
+/// If the footprint does not fit on the map with the heading at the goal, the goal is refused.
 #[test]
 fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
     let (map, robot) = (slot(), long_robot(0.0));
@@ -346,7 +346,7 @@ fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
         text.contains("does not fit with a yaw of 0 deg; there it fits with one of -"),
         "{text}"
     );
-    // What is said to fit does, and what is beyond it does not.
+    // The reported range fits, and headings beyond it do not.
     for range in fits {
         assert_eq!((ask(range.from_deg), ask(range.to_deg)), (Ok(()), Ok(())));
         let off_deg = 1.0 + stack.controller.goal_yaw_tolerance_rad.to_degrees();
@@ -381,8 +381,8 @@ fn way_points_are_passed_in_their_order() {
     assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
 }
 
-/// A disc reaches by less than a millimetre into a square that the robot covers. It turns away from
-/// the disc, not into the squares beside.
+/// A disc extends by less than a millimetre into a square that the robot covers. The robot turns
+/// away from the disc, not into the adjacent squares.
 #[test]
 fn a_square_of_which_a_disc_fills_a_corner_is_no_way_into_the_disc() {
     let frame = GridFrame::new(26, 26, 0.1, keyway::geometry::Pose::default()).unwrap();
@@ -398,8 +398,7 @@ fn a_square_of_which_a_disc_fills_a_corner_is_no_way_into_the_disc() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// In narrow and cluttered rooms, with things that no map shows: whatever is tried, nothing is
-    /// touched.
+    /// In narrow and cluttered rooms with unmapped obstacles, no recovery causes a collision.
     #[test]
     fn recoveries_touch_nothing(walls in prop::collection::vec(prop::bool::weighted(0.03), 26 * 26),
             hidden in prop::collection::vec((0.4..2.2f64, 0.4..2.2f64, 0.03..0.15f64), 0..4),
@@ -417,7 +416,7 @@ proptest! {
         let goal = Point::new(goal.0, goal.1);
         let episode = facing(Episode::new(map, robot, position, goal), start);
         let episode = Episode { obstacles: hidden.collect(), ..episode };
-        // Ends without room are refused.
+        // A start or goal without clearance is refused.
         let Ok(report) = run_episode(&episode) else { return Err(TestCaseError::reject("no room")) };
         let report = report.first();
         let rows = report.trajectory.as_ref().map_or(0, Vec::len);

@@ -1,4 +1,4 @@
-//! What is reported of routes.
+//! Reports of routes.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Point;
@@ -11,7 +11,7 @@ use keyway::smooth::Taut;
 use keyway_sim::report::{MapSource, PlanOutcome, RouteAnswer, RouteFailure, RouteRequest};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A wall, unknown ground behind it, and a closed cell.
+/// A wall, unknown cells behind it, and an enclosed cell.
 const ROWS: [&str; 4] = ["....?...", "....?.##", ".##.?.#.", "....?.##"];
 
 fn with_request<R>(goals: &[Point], work: impl FnOnce(RouteRequest<'_>) -> R) -> R {

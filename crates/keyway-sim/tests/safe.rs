@@ -1,5 +1,5 @@
-//! The stop rule behind every local planner, in whole runs: nothing that stands is ever touched,
-//! and nothing that moves while the robot moves. Motion is ideal, and nothing hides anything.
+//! The stop rule with every local planner, in whole runs: no contact with a static obstacle, and
+//! none with a moving one while the robot moves. Motion is ideal, and there is no occlusion.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::geometry::{Disc, Point, Pose};
@@ -16,7 +16,7 @@ use proptest::prelude::*;
 const WIDTH_M: f64 = 6.0;
 const HEIGHT_M: f64 = 5.0;
 
-/// A room of 6 m x 5 m in cells of 5 cm with walls around, and blocks of 0.2 m.
+/// A room of 6 m x 5 m in cells of 5 cm with walls around it, and blocks of 0.2 m.
 fn room(blocks: &[(u32, u32)]) -> OccupancyGrid {
     let frame = GridFrame::new(120, 100, 0.05, Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |cell| {
@@ -27,7 +27,7 @@ fn room(blocks: &[(u32, u32)]) -> OccupancyGrid {
     })
 }
 
-/// Sees everything in the room.
+/// A robot whose sensor covers the whole room.
 fn robot(is_long: bool, reverses: bool, actuation_delay_s: f64) -> Robot {
     let mut robot = Robot { actuation_delay_s, ..Robot::small() };
     robot.sensors[0].range_m = 10.0;
@@ -38,12 +38,12 @@ fn robot(is_long: bool, reverses: bool, actuation_delay_s: f64) -> Robot {
     robot
 }
 
-/// None, or any part of a few cycles \[s\].
+/// No delay, or any fraction of a few cycles \[s\].
 fn delays() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), 0.0..0.4f64]
 }
 
-/// Every local planner, for a robot and as published.
+/// Every local planner, with the parameters for a robot and the published ones.
 fn local(which: usize, robot: &Robot) -> LocalConfig {
     let names = LocalConfig::NAMES;
     match which.checked_sub(names.len()) {
@@ -57,7 +57,7 @@ fn local(which: usize, robot: &Robot) -> LocalConfig {
 
 const LOCALS: usize = LocalConfig::NAMES.len() + 4;
 
-/// Any of them, and often the one that avoids nothing.
+/// Any local planner, and often the follower, which avoids nothing.
 fn locals() -> impl Strategy<Value = usize> {
     let follower = LocalConfig::NAMES.iter().position(|name| *name == "follower").unwrap();
     prop_oneof![Just(follower), 0..LOCALS]
@@ -77,14 +77,14 @@ fn ends() -> impl Strategy<Value = [(f64, f64); 2]> {
     [end().boxed(), end().boxed()].prop_filter("apart", |[a, b]| (a.0 - b.0).hypot(a.1 - b.1) > 1.5)
 }
 
-/// True if an episode can be driven at all.
+/// Runs an episode; `None` if it cannot be driven.
 fn driven(episode: &Episode) -> Option<RobotReport> {
-    // Ends without room are refused.
+    // A start or goal without clearance is refused.
     let report = run_episode(episode).ok()?.first();
     (report.run.as_ref()?.cycles > 0).then_some(report)
 }
 
-/// Between two blocks 1.2 m apart, past a disc that is on no map: whatever drives keeps the margin.
+/// Between two blocks 1.2 m apart, past an unmapped disc: every planner keeps the margin.
 #[test]
 fn the_safety_margin_of_a_robot_is_kept() {
     let clearance_m = |safety_margin_m, stack: &str| {
@@ -121,14 +121,14 @@ proptest! {
         episode.obstacles = discs.into_iter().map(disc).collect();
         let between = episode.robots[0].start.position.lerp(episode.robots[0].goal.position, on_way.0);
         episode.obstacles.push(Disc::new(between, on_way.1));
-        // Otherwise a new route leads around what is seen.
+        // Without this the stack replans around sensed obstacles.
         episode.robots[0].stack.controller.watch_route = watches;
         let Some(report) = driven(&episode) else { return Err(TestCaseError::reject("no room")) };
         prop_assert_ne!(report.outcome, EpisodeOutcome::Collided, "{:?}", report.reason);
     }
 
-    /// Movers of at most the speed of the rule, on any way, turning at once. A mover may run into a
-    /// robot that stands. At first it is far away: it takes some scans to see that something moves.
+    /// Moving obstacles of at most the speed of the rule, on any path, with instant turns. They
+    /// may run into a stationary robot. They start far away, because tracking takes some scans.
     #[test]
     fn no_mover_is_touched_by_a_robot_that_moves(
         which in locals(), is_long: bool, delay_s in delays(), ends in ends(),
@@ -146,7 +146,7 @@ proptest! {
         episode.movers = movers;
         let Some(report) = driven(&episode) else { return Err(TestCaseError::reject("no room")) };
         let contact = report.run.as_ref().unwrap().contact;
-        // A disc that turns on the spot covers no other ground.
+        // The area covered by a disc that turns on the spot does not change.
         let [.., v, _] = *report.trajectory.as_ref().unwrap().last().unwrap();
         let is_still = |stood: bool| stood || (!is_long && v == 0.0);
         prop_assert!(contact.is_none_or(|contact| is_still(contact.robot_stood)), "{:?}", report.reason);

@@ -1,4 +1,4 @@
-//! Robots with several sensors, each where it is mounted.
+//! Robots with several mounted sensors.
 
 #[path = "../../keyway/tests/support/driving.rs"]
 mod driving;
@@ -13,14 +13,15 @@ use keyway_sim::episode::{Cycle, Episode, EpisodeObserver, EpisodeOutcome, RunOp
 use keyway_sim::episode::{run_episode, watch_episode};
 use keyway_sim::sim::{MovingObstacle, World};
 
-/// A sensor with beams of a degree.
+/// A sensor with one beam per degree.
 fn mounted(x_m: f64, y_m: f64, yaw_deg: f64, field_of_view_deg: f64) -> RangeSensor {
     let mount = Mount { x_m, y_m, yaw_deg };
     let beams = field_of_view_deg as u32;
     RangeSensor { mount, ..RangeSensor::new(beams, field_of_view_deg, 8.0) }
 }
 
-/// On opposite corners, as on robots in stores: front left and rear right, 270 degrees each.
+/// Two sensors on opposite corners, as on warehouse robots: front left and rear right, 270
+/// degrees each.
 fn corners() -> Robot {
     let sensors = vec![mounted(0.25, 0.2, 45.0, 270.0), mounted(-0.25, -0.2, -135.0, 270.0)];
     Robot { sensors, ..Robot::jackal() }
@@ -39,7 +40,7 @@ fn navigator(robot: &Robot, start: Point, goal: Point) -> Navigator {
     bound_for(&hall(), &stack, start, goal).expect("there is a way")
 }
 
-/// The next cycle of a robot that stands, with scans that have just been made.
+/// The next cycle of a stationary robot, with new scans.
 fn next_step(navigator: &mut Navigator, pose: Pose, scans: &[SensorScan<'_>]) -> Step {
     let stamp_s = next_stamp_s(navigator);
     let scans: Vec<_> = scans.iter().map(|&scan| SensorScan { stamp_s, ..scan }).collect();
@@ -47,7 +48,7 @@ fn next_step(navigator: &mut Navigator, pose: Pose, scans: &[SensorScan<'_>]) ->
     navigator.step()
 }
 
-/// A post is met where it stands, seen from either sensor.
+/// A post is detected at its position by either sensor.
 #[test]
 fn a_hit_is_where_the_mount_says() {
     let robot = corners();
@@ -73,10 +74,10 @@ fn a_hit_is_where_the_mount_says() {
     }
 }
 
-/// Two sensors at one place that share a turn know what one knows that sees all of it.
+/// Two sensors at one position that share a full turn give the same map as a single one.
 #[test]
 fn halves_of_a_turn_are_as_good_as_all_of_it() {
-    /// Number of movers and marked cells, cycle by cycle.
+    /// Number of tracked obstacles, and marked cells, cycle by cycle.
     struct Known(Vec<(usize, Vec<u64>)>);
     impl EpisodeObserver for Known {
         fn decided(&mut self, cycle: &Cycle<'_>) {
@@ -98,7 +99,7 @@ fn halves_of_a_turn_are_as_good_as_all_of_it() {
         let [Known(known)] = known;
         (known, report.run.unwrap().time_s)
     };
-    // 360 beams of a degree; the halves have each of them, and both those ahead and behind.
+    // 360 beams of a degree; each half has its beams, and both have those ahead and behind.
     let half = |yaw_deg| {
         let mount = Mount { yaw_deg, ..Mount::CENTRE };
         RangeSensor { mount, ..RangeSensor::new(181, 180.0, 8.0) }
@@ -108,15 +109,15 @@ fn halves_of_a_turn_are_as_good_as_all_of_it() {
     let followed = |known: &[(usize, Vec<u64>)]| known.iter().filter(|it| it.0 == 1).count();
     let (one, two) = (followed(&whole), followed(&halves));
     assert!(one > 100, "the walker is followed: {one}");
-    // What straddles the seam is seen as two, so the runs need not be equal in every digit; the
-    // walker may hold up either.
+    // An obstacle across the seam is detected twice, so the runs need not be equal in every
+    // digit; the pedestrian may delay either robot.
     assert!(halves_s <= 1.05 * whole_s, "{whole_s} {halves_s}");
     assert!(two as f64 > 0.9 * one as f64, "one walker, followed as one: {one} {two}");
     assert!(halves.iter().all(|&(movers, _)| movers <= 1), "nobody is seen double");
     assert_eq!(whole[0].1, halves[0].1, "the first scans mark the same cells");
 }
 
-/// A robot with two lidars is there as soon as with one.
+/// A robot with two lidars arrives as early as with one.
 #[test]
 fn two_lidars_on_corners_drive_through_a_hall() {
     let (start, goal) = (Point::new(1.0, 1.5), Point::new(18.0, 1.5));
@@ -133,7 +134,8 @@ fn two_lidars_on_corners_drive_through_a_hall() {
     assert!((one_s - two_s).abs() < 0.1 * one_s, "{one_s} {two_s}");
 }
 
-/// In either order of the sensors, what one of them meets between two beams of the other stands.
+/// In either order of the sensors, an obstacle that one detects between two beams of the other
+/// stays.
 #[test]
 fn a_post_that_one_sensor_meets_is_not_cleared_by_the_other() {
     // Beams that are 10 degrees apart; those of the second are shifted by half of that.
@@ -160,7 +162,7 @@ fn a_post_that_one_sensor_meets_is_not_cleared_by_the_other() {
     }
 }
 
-/// One lost sensor of two: the robot drives by what the other one sees, and stops without both.
+/// If one of two sensors fails, the robot drives with the other one; without both it stops.
 #[test]
 fn a_robot_drives_with_what_is_left_of_its_sensors() {
     let (start, goal) = (Point::new(1.0, 1.5), Point::new(18.0, 1.5));
@@ -179,7 +181,7 @@ fn a_robot_drives_with_what_is_left_of_its_sensors() {
     assert_eq!(blind.run.unwrap().length_m, 0.0);
 }
 
-/// The one that was heard last is named, and counts.
+/// The sensor with the last scan is named, and counts.
 #[test]
 fn silence_is_that_of_all_sensors() {
     let robot = corners();
@@ -203,11 +205,11 @@ fn silence_is_that_of_all_sensors() {
     };
     assert_eq!(silent(&step(&[])), Some((0, f64::INFINITY)), "neither has seen anything");
     assert_eq!(silent(&step(&[0, 1])), None);
-    // Time-outs are 0.5 s, cycles 0.05 s. The rear one goes on for a while.
+    // Time-outs are 0.5 s, cycles 0.05 s. The rear sensor continues for a while.
     assert!((0..20).all(|_| silent(&step(&[1])).is_none()));
     assert!((0..10).all(|_| silent(&step(&[])).is_none()));
     assert_eq!(silent(&step(&[])), Some((1, 0.55)));
-    // A sensor that the robot does not have is none.
+    // Scans of a sensor that the robot does not have are ignored.
     assert_eq!(silent(&step(&[5])), Some((1, 0.6)));
     assert_eq!(silent(&step(&[0])), None);
 }

@@ -1,4 +1,4 @@
-//! A robot drives where it has seen that nothing stands, and no faster than it can stop there.
+//! A robot drives only through observed free space, and no faster than it can stop there.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 #[path = "../../keyway/tests/support/driving.rs"]
@@ -15,7 +15,7 @@ use keyway_sim::sim::{
     Action, Control, Disturbances, Outcome, Participant, RunRules, StandingPolygon, World, simulate,
 };
 
-/// A hall of 16 m x 4 m in cells of 5 cm, with walls around and nothing in it.
+/// An empty hall of 16 m x 4 m in cells of 5 cm, with walls around it.
 fn hall() -> OccupancyGrid {
     let frame = GridFrame::new(320, 80, 0.05, Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |cell| {
@@ -40,7 +40,7 @@ fn stacks(robot: &Robot) -> Vec<(String, Stack)> {
     stacks
 }
 
-/// Robots that need long to stop, and a wall on no map across three quarters of the hall.
+/// Robots with long stopping distances, and an unmapped wall across three quarters of the hall.
 #[test]
 fn nothing_is_touched_that_stands_beyond_the_range() {
     let wall = [[8.0, 0.0], [8.2, 0.0], [8.2, 3.0], [8.0, 3.0]].map(Point::from).to_vec();
@@ -61,7 +61,8 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
             assert_ne!(outcome, EpisodeOutcome::Collided, "{name} {v_max_mps} {brakes_mps2}");
             if name == "keyway" {
                 assert_eq!(outcome, EpisodeOutcome::Reached, "{v_max_mps} {brakes_mps2}");
-                // On the open ground before the wall it is as fast as its sight allows.
+                // In the free space before the wall the speed is limited only by the sensing
+                // range.
                 let fastest_mps = trajectory.unwrap().iter().map(|row| row[4]).fold(0.0, f64::max);
                 let sight_mps = robot.sight_mps().min(v_max_mps);
                 assert!(fastest_mps > 0.8 * sight_mps, "{fastest_mps} {sight_mps}");
@@ -70,8 +71,8 @@ fn nothing_is_touched_that_stands_beyond_the_range() {
     }
 }
 
-/// Known walls beside and behind the ground that was not seen are no ground that was: in a corridor
-/// as wide as one or two large cells, a robot sees no farther either.
+/// Known walls beside and behind unobserved space do not make it observed: in a corridor as wide
+/// as one or two large cells, a robot does not see farther either.
 #[test]
 fn nothing_is_touched_that_stands_beyond_the_range_of_a_narrow_corridor() {
     let mut robot = Robot::small();
@@ -99,7 +100,7 @@ fn nothing_is_touched_that_stands_beyond_the_range_of_a_narrow_corridor() {
     }
 }
 
-/// A post of 6 cm that is between two of 36 beams until the robot is near.
+/// A post of 6 cm that is between two of 36 beams until the robot is close.
 #[test]
 fn nothing_is_touched_that_is_between_two_beams() {
     for robot in [Robot::small(), Robot::jackal()] {
@@ -115,8 +116,8 @@ fn nothing_is_touched_that_is_between_two_beams() {
     }
 }
 
-/// With 19 beams a robot surely sees no farther than its own front: it creeps, and its recoveries
-/// are as slow as always.
+/// With 19 beams the guaranteed sensing range ends at the robot's own front: it creeps, and its
+/// recoveries keep their usual speed.
 #[test]
 fn who_surely_sees_nothing_creeps() {
     let mut robot = Robot::small();
@@ -132,7 +133,7 @@ fn who_surely_sees_nothing_creeps() {
     assert!(speeds.fold(0.0, f64::max) <= 0.25 * 0.5 + 1e-9);
 }
 
-/// The command of a step and, when it is the sensor's silence, since when.
+/// Command of a step, and the time since the last scan if the sensor is silent.
 fn command(step: &Step) -> (Velocity, Option<f64>) {
     match step {
         Step::Blocked { command, why: Blocked::SensorSilent { silent_s, .. } } => {
@@ -142,7 +143,7 @@ fn command(step: &Step) -> (Velocity, Option<f64>) {
     }
 }
 
-/// Scans that say nothing.
+/// Scans without information.
 fn silent_scans(robot: &Robot) -> [Scan; 4] {
     let nothing = Scan::of_nothing(&robot.sensors[0]);
     let all =
@@ -175,7 +176,7 @@ fn a_robot_that_has_never_seen_anything_stands() {
     }
 }
 
-/// The sensor fails at full speed, and comes back.
+/// The sensor fails at full speed, and recovers.
 #[test]
 fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
     for robot in [Robot::small(), Robot::jackal()] {
@@ -206,7 +207,7 @@ fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
                 };
                 let ((_, since), v) = drive(2.0, false);
                 assert!(since.is_none() && v > 0.3, "{name} {v}");
-                // Up to the time-out it drives on, as after lost scans.
+                // Before the time-out it drives on, as after lost scans.
                 let ((_, since), _) = drive(0.4, true);
                 assert_eq!(since, None, "{name}");
                 let ((_, since), v) = drive(0.2 + robot.limits.stop_s(), true);
@@ -218,7 +219,7 @@ fn a_sensor_that_falls_silent_stops_the_robot_until_it_is_back() {
     }
 }
 
-/// A step that a paper does not take, its stack as published does not do either.
+/// A published stack without a check for scans does not wait for them.
 #[test]
 fn a_published_stack_does_not_ask_for_scans() {
     let robot = Robot::paper();
@@ -231,7 +232,7 @@ fn a_published_stack_does_not_ask_for_scans() {
     assert!(matches!(step, Step::Drive(command) if command.v > 0.0), "{step:?}");
 }
 
-/// Lidars that are slow and say so, and lossy ones.
+/// Slow lidars with a correct description, and lossy ones.
 #[test]
 fn slow_and_lossy_sensors_drive() {
     for (period_s, dropped_scans) in [
@@ -257,7 +258,7 @@ fn slow_and_lossy_sensors_drive() {
     }
 }
 
-/// Drives a robot whose scans are changed on their way through a world; how its run ends.
+/// Drives a robot through a world with modified scans; returns the outcome of its run.
 fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) + Sync) -> Outcome {
     let (start, goal) = (Point::new(1.0, 2.0), Point::new(7.0, 2.0));
     let stack = Stack::keyway(robot);
@@ -287,7 +288,7 @@ fn drive_changed(robot: &Robot, unknown: Vec<Disc>, change: impl Fn(&mut Scan) +
     simulate(&world, &mut [participant]).unwrap().remove(0).outcome
 }
 
-/// Four posts of the housing stand in every scan.
+/// Four posts of the housing appear in every scan.
 #[test]
 fn a_robot_does_not_stop_for_its_own_housing() {
     let long = Robot { footprint: Footprint::rectangle(0.5, 0.3).unwrap(), ..Robot::small() };
@@ -300,14 +301,14 @@ fn a_robot_does_not_stop_for_its_own_housing() {
         let post = Disc::new(Point::new(4.0, 2.0), 0.2);
         assert_eq!(drive_changed(&robot, vec![post], housing), Outcome::Reached, "{robot:?}");
     }
-    // The same by the least range of the sensor, which may be larger than the robot.
+    // The same with the minimum range of the sensor, which may be larger than the robot.
     let mut robot = Robot::small();
     robot.sensors[0].range_min_m = 0.25;
     let housing = |scan: &mut Scan| scan.ranges_m[170..190].fill(0.24);
     assert_eq!(drive_changed(&robot, vec![], housing), Outcome::Reached);
 }
 
-/// A direction in which no beam ever says anything has not been seen.
+/// Space in a direction without valid beams is not observed.
 #[test]
 fn nothing_is_touched_in_a_blind_sector() {
     // 180 is straight ahead.
@@ -321,7 +322,7 @@ fn nothing_is_touched_in_a_blind_sector() {
     }
 }
 
-/// Cells may be larger than the robot: on open ground that it sees, nothing is refused.
+/// Cells may be larger than the robot: on observed open ground, no command is refused.
 #[test]
 fn large_cells_of_open_ground_hold_nobody_up() {
     for cell_m in [0.02, 0.05, 0.3, 1.0] {

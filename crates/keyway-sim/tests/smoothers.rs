@@ -1,5 +1,5 @@
-//! What every smoother guarantees, whatever the line: on lines of planners, on random maps and on
-//! the bundled ones, and on lines that nobody has planned.
+//! Guarantees of all smoothers for any line: planned lines on random and bundled maps, and
+//! arbitrary lines.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{PathPiece, PlannedLine, Point, Polyline, Pose};
@@ -18,7 +18,7 @@ use keyway_sim::metrics::PathMetrics;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// How finely distances of curves are measured here \[m\].
+/// Accuracy of the distances of curves in these tests \[m\].
 const TOLERANCE_M: f64 = 1e-4;
 
 fn named() -> impl Iterator<Item = SmootherConfig> {
@@ -29,7 +29,7 @@ fn all() -> impl Iterator<Item = SmootherConfig> {
     named().chain(others())
 }
 
-/// Smoothers without a safe distance of their own, and with other choices.
+/// Smoothers without their own safe distance, and with other options.
 fn others() -> [SmootherConfig; 6] {
     let hierarchical = |bends_keep| {
         let (safe_distance_m, control_distance_m) = (0.0, 3.0);
@@ -81,7 +81,7 @@ fn smoothed(
     let line = Polyline::new(finite);
     assert!(done.path.length_m() <= line.length_m() + 1e-9, "longer, {}", context());
     if let Some(bounds) = clearance.of_path(&done.path, TOLERANCE_M) {
-        // As clear as the line, or as clear as asked for.
+        // As clear as the line, or as requested.
         let before_m = clearance.of_line(&line).unwrap();
         let kept_m = bounds.at_least_m + 2.0 * TOLERANCE_M;
         assert!(kept_m >= before_m.min(asked_m), "nearer: {bounds:?}, {}", context());
@@ -105,14 +105,14 @@ fn smoothed(
         SmootherConfig::ContinuousCurvature(_) => {}
         _ => check_second_run(config, &done, clearance, asked_m, &context),
     }
-    // A single point is a path, too.
+    // A single point is also a path.
     let was_free = clearance.is_clear_path(&keyway::geometry::Path::from(&line), 0.0);
     assert!(!was_free || clearance.is_clear_path(&done.path, 0.0), "in collision, {}", context());
     done
 }
 
-/// No point of the path is nearer to an obstacle or to the map's border than was asked for, unless
-/// that is reported.
+/// Checks that no point of the path is nearer to an obstacle or to the map's border than
+/// requested, unless that is reported.
 fn check_reported(
     done: &Smoothed,
     clearance: &Clearance<'_>,
@@ -129,8 +129,8 @@ fn check_reported(
     }
 }
 
-/// The B-spline: smooth at its joints except at the corners that were left sharp, and these are its
-/// non-smooth turns.
+/// Checks the B-spline: smooth at its joints except at the corners that were left sharp, which
+/// are its non-smooth turns.
 fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -> String) {
     for pair in done.path.pieces().windows(2) {
         match pair {
@@ -151,15 +151,15 @@ fn check_spline(done: &Smoothed, clearance: &Clearance<'_>, context: &dyn Fn() -
     let turns_rad: Vec<f64> = done.path.joint_turns_rad().iter().map(|turn| turn.abs()).collect();
     let turns = |above_rad: f64| turns_rad.iter().filter(|&&turn| turn > above_rad).count();
     assert_eq!(turns(1e-6), done.sharp_corners.len(), "{}", context());
-    // On a path without curves every turn is one.
+    // On a path without curves every turn is non-smooth.
     let is_curved = done.inserted_points > 0;
     let expected = turns(if is_curved { 5f64.to_radians() } else { 1e-6 });
     let metrics = PathMetrics::of_path(&done.path, *clearance);
     assert_eq!(metrics.non_smooth_turns, expected, "{metrics:?}, {}", context());
 }
 
-/// Straight segments again: not longer, no more points (except for the smoother that cuts its line
-/// into new ones), and the same from smoothers that are idempotent.
+/// Smooths straight segments again: the result is not longer, has no more points (except for the
+/// smoother that cuts its line into new ones), and is the same for idempotent smoothers.
 fn check_second_run(
     smoother: &SmootherConfig,
     done: &Smoothed,
@@ -179,7 +179,7 @@ fn check_second_run(
     }
 }
 
-/// The line of a plan, if there is one.
+/// The line of a plan, if one is found.
 fn planned(
     planner: &PlannerConfig,
     map: &SearchMap,
@@ -225,7 +225,7 @@ proptest! {
         }
     }
 
-    /// Through obstacles, with repeated points and reversals.
+    /// Lines through obstacles, with repeated points and reversals.
     #[test]
     fn lines_that_nobody_has_planned(cells in any_cells(), corners in prop::collection::vec((0..40u32, 0..30u32), 0..9),
                                      resolution_m in 0.1..2.0f64, yaw in -3.0..3.0f64, asked_m in 0.0..1.0f64) {
@@ -238,7 +238,7 @@ proptest! {
         }
     }
 
-    /// Lines of half cells graze many corners of obstacles.
+    /// Lines on a half-cell grid, which graze many corners of obstacles.
     #[test]
     fn taut_lines_that_touch(cells in any_cells(), corners in prop::collection::vec((0..40u32, 0..30u32), 2..9),
                              resolution_m in 0.1..2.0f64, yaw in prop_oneof![Just(0.0), -3.0..3.0f64]) {
@@ -277,7 +277,7 @@ fn bundled_maps() {
 
 #[test]
 fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
-    // Along the border, 0.3 m from it: beside no obstacle, and beside one that is farther away.
+    // Along the border, 0.3 m from it: without obstacles, and with one that is farther away.
     let line = Polyline::new([[0.3, 0.7], [0.3, 2.7], [1.5, 3.7]].map(Point::from).to_vec());
     let rows = |obstacle| ["....", obstacle, "....", "....", "...."];
     for rows in [rows("...."), rows("...#")] {
@@ -296,7 +296,7 @@ fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
             );
         }
     }
-    // The centre of the start's cell would be far enough.
+    // The centre of the start's cell is far enough away.
     let grid = OccupancyGrid::from_ascii(&["....", "@...", "...."]);
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let line = Polyline::new(vec![Point::new(1.05, 1.5), Point::new(3.5, 1.5)]);
@@ -307,7 +307,7 @@ fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
             "{smoother:?}: {reported_m:?}"
         );
     }
-    // Off the map, as in an obstacle, nothing is kept.
+    // Outside the map, as in an obstacle, the clearance is 0.
     let line = Polyline::new(vec![Point::new(2.5, 1.5), Point::new(9.5, 1.5)]);
     let reported_m = Unsmoothed.smooth(&line.into(), &clearance, 0.4).shortfall_m;
     assert_eq!(reported_m, Some(0.0));

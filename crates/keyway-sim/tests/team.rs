@@ -13,7 +13,7 @@ use keyway_sim::report::ContactPart;
 use keyway_sim::sim::{Obstacle, StandingPolygon};
 use std::f64::consts::FRAC_PI_2;
 
-/// A hall of 8 m x 8 m, with a wall across it at x = 4 m if so.
+/// A hall of 8 m x 8 m, optionally with a wall across it at x = 4 m.
 fn hall(has_wall: bool) -> OccupancyGrid {
     let frame = GridFrame::new(80, 80, 0.1, Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |cell| {
@@ -34,7 +34,7 @@ fn a_team_drives_the_same_on_any_number_of_threads() {
         robot([7.0, 7.0], [1.0, 1.0]),
         robot([4.0, 1.0], [4.0, 7.0]),
     ];
-    // One has no route, and stands.
+    // One robot has no route, and stays.
     robots.push(robot([4.0, 6.0], [4.0, 6.0]));
     let mut team = Episode::of_robots(hall(false), robots);
     team.rules.time_limit_s = Some(30.0);
@@ -72,7 +72,7 @@ fn each_robot_has_its_own_stack_report_and_observer() {
     let runs: Vec<_> = report.robots.iter().map(|robot| robot.run.as_ref().unwrap()).collect();
     assert_eq!(report.makespan_s, Some(runs[1].time_s));
     assert!(runs[1].time_s > runs[0].time_s + 1.0);
-    // 4 m from row to row, and two radii of 0.18 m.
+    // 4 m from row to row, minus two radii of 0.18 m.
     let clearance_m = report.min_robot_clearance_m.unwrap();
     assert!((clearance_m - 3.64).abs() < 0.02, "{clearance_m}");
     for (index, (one, run)) in watched.iter().zip(runs).enumerate() {
@@ -87,7 +87,7 @@ fn each_robot_has_its_own_stack_report_and_observer() {
 
 #[test]
 fn a_robot_without_a_route_stands_in_the_way_of_the_others() {
-    // On the way of the second robot, with the goal behind the wall.
+    // On the route of the second robot, with the goal behind the wall.
     let robots = vec![robot([2.0, 4.0], [7.0, 4.0]), robot([2.0, 1.0], [2.0, 7.0])];
     let report = run_episode(&Episode::of_robots(hall(true), robots)).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::NoPath, EpisodeOutcome::Reached]);
@@ -96,7 +96,7 @@ fn a_robot_without_a_route_stands_in_the_way_of_the_others() {
     assert!(run.length_m > 5.9, "{}", run.length_m);
     let clearance_m = report.min_robot_clearance_m.unwrap();
     assert!(clearance_m > 0.0 && clearance_m < 0.5, "{clearance_m}");
-    // Where none has a route, nothing is driven.
+    // If no robot has a route, nothing is driven.
     let none = vec![robot([2.0, 4.0], [7.0, 4.0]), robot([2.0, 4.1], [7.0, 1.0])];
     let report = run_episode(&Episode::of_robots(hall(true), none)).unwrap();
     assert_eq!(report.outcomes, [EpisodeOutcome::NoPath; 2]);
@@ -143,8 +143,8 @@ fn what_no_map_shows_is_in_the_way_of_every_robot() {
     assert_eq!(run_episode(&team).unwrap_err().robot, None);
 }
 
-/// Two that are not round meet in a lane around a corner, in which they cannot pass: a corner of
-/// the other one sticks out of the disc for which it is taken while it turns.
+/// Two robots that are not round meet in a lane around a corner, in which they cannot pass. While
+/// a robot turns, a corner of it sticks out of the disc that the other one estimates.
 #[test]
 fn who_turns_beside_another_does_not_touch_it() {
     let frame = GridFrame::new(140, 140, 0.05, Pose::default()).unwrap();

@@ -1,6 +1,5 @@
-//! Every reader says in plain words what is wrong with a file: no names of Rust's types, no advice
-//! for those who write the program, no more than one line. Sound files are damaged in every place,
-//! in many ways.
+//! Every reader reports file errors in plain words: no names of Rust types, no advice for
+//! developers, at most one line. Valid files are damaged at many places and in many ways.
 #![allow(clippy::unwrap_used)]
 
 use keyway::files::from_toml;
@@ -15,7 +14,7 @@ use keyway_sim::scene_files::SceneFile;
 use std::collections::BTreeSet;
 use std::fmt::Display;
 
-/// What only a programmer understands, or what a message must not advise.
+/// Words that only programmers understand, or advice that a message must not give.
 const FORBIDDEN: [&str; 38] = [
     "i128",
     "u128",
@@ -57,7 +56,7 @@ const FORBIDDEN: [&str; 38] = [
     "sequence",
 ];
 
-/// Texts that are put into sound files.
+/// Texts that are inserted into valid files.
 const INSERTED: [&[u8]; 34] = [
     b"\n",
     b" ",
@@ -120,7 +119,7 @@ fn toml_of<E: Display, T>(bytes: &[u8], read: impl Fn(&str) -> Result<T, E>) -> 
     }
 }
 
-/// A sound file of each kind, and what reads it.
+/// A valid file of each kind, with its reader.
 fn readers() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let yaml = "image: depot.pgm\nmode: trinary\nresolution: 0.05\norigin: [1.5, -2, 0.25]\n\
         negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
@@ -153,8 +152,8 @@ fn readers() -> Vec<(&'static str, Vec<u8>, Reader)> {
     ]
 }
 
-/// The file cut off, with a byte replaced, left out, or something put in: at every place, or at
-/// some of many.
+/// Files that are truncated, or have a byte replaced, removed, or text inserted: at every
+/// position, or at some of many.
 fn damaged(sound: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
     let step = sound.len().div_ceil(400);
     (0..=sound.len()).step_by(step).flat_map(move |at| {
@@ -171,7 +170,7 @@ fn damaged(sound: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
 fn check(reader: &str, message: &str) {
     let found: Vec<&&str> = FORBIDDEN.iter().filter(|word| message.contains(**word)).collect();
     assert!(found.is_empty(), "{reader}: {found:?} in: {message}");
-    // A value as it is printed for debugging: `Name { ...`.
+    // A value in Rust's debug format: `Name { ...`.
     let mut words = message.split(" { ").map(|part| part.rsplit(' ').next().unwrap_or_default());
     let is_name = |word: &str| word.starts_with(|first: char| first.is_ascii_uppercase());
     assert!(!words.any(is_name) || !message.contains(" { "), "{reader}: {message}");
@@ -191,7 +190,7 @@ fn no_reader_speaks_of_its_program() {
     }
 }
 
-/// What a parser protects itself against.
+/// Attacks on a parser.
 #[test]
 fn large_and_deep_files() {
     let long_list = format!("image: [{}\n", "a,".repeat(300_000));
@@ -221,7 +220,7 @@ fn large_and_deep_files() {
     }
 }
 
-/// Line, field, what stands there, what would be right.
+/// Messages with line, field, given value and expected value.
 #[test]
 fn messages_that_help() {
     let of = |wanted: &str, old: &str, new: &str| {

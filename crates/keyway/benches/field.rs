@@ -44,7 +44,7 @@ fn whole_maps(criterion: &mut Criterion) {
     }
 }
 
-/// Someone 0.4 m wide walks 0.2 m within a window of 10 m.
+/// A person 0.4 m wide walks 0.2 m within a window of 10 m.
 fn windows(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("field/window");
     for side in [600, 4096] {

@@ -1,6 +1,6 @@
-//! Times of decisions of the dynamic window, with 1,056 candidates of 30 poses each: for a disc and
-//! for a box, on open ground, along a corridor and among scattered obstacles. Each iteration
-//! decides once at every one of 64 places; the throughput is in candidates. `cargo bench -p keyway
+//! Times of decisions of the dynamic window, with 1,056 candidates of 30 poses each: for a disc
+//! and for a box, in open space, along a corridor and among scattered obstacles. Each iteration
+//! decides once at each of 64 poses; the throughput is in candidates. `cargo bench -p keyway
 //! --bench local`.
 
 #![allow(clippy::unwrap_used, missing_docs)]
@@ -45,8 +45,7 @@ fn planner(robot: Robot) -> Dwa {
     Dwa::new(config, robot).unwrap()
 }
 
-/// Places along the middle of the map at which the robot stands free, with headings up to 0.3 rad
-/// to either side.
+/// Collision-free poses along the middle of the map, with headings up to 0.3 rad to either side.
 fn poses(robot: &Robot, field: &DistanceField) -> Vec<Pose> {
     let pose = |i: i32| {
         let i = f64::from(i);

@@ -111,8 +111,8 @@ fn sight(criterion: &mut Criterion) {
     }
 }
 
-/// The edits of a scan: 720 cells around a place, one on each ray, become occupied and free again,
-/// for robots of 8 and 40 cells on a large map.
+/// The edits of a scan: 720 cells around a position, one on each ray, become occupied and free
+/// again, for robots of 8 and 40 cells on a large map.
 fn edits(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("edits of a scan");
     let frame = GridFrame::new(2000, 2000, 1.0, Pose::default()).unwrap();
@@ -138,7 +138,7 @@ fn edits(criterion: &mut Criterion) {
     }
 }
 
-/// What a map costs: all layers, component labels, one edit and its reversal.
+/// Costs of a map: all layers, component labels, one edit and its reversal.
 fn layers(criterion: &mut Criterion) {
     let [_, (_, rooms), _] = maps();
     let grid = OccupancyGrid::from_fn(*rooms.frame(), |cell| {

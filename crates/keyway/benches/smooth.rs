@@ -15,7 +15,7 @@ use std::path::Path;
 
 const CLEARANCES_M: [f64; 2] = [0.0, 0.3];
 
-/// How many paths are smoothed.
+/// Number of paths that are smoothed.
 const PATHS: usize = 20;
 
 /// The house for a robot, and paths between free cells all over it.

@@ -1,5 +1,5 @@
-//! From a ROS map to a path that a robot can drive, to copy: plan, smooth, check the footprint, and
-//! find how fast it can be driven.
+//! From a ROS map to a path that a robot can drive, to copy: plan, smooth, check the footprint,
+//! and compute a speed profile.
 //!
 //! `cargo run --release --example driveable_path -- [MAP.yaml [START_X START_Y GOAL_X GOAL_Y]]`
 
@@ -21,7 +21,8 @@ const HOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../keyway-cli/scenes/s
 /// Distance between samples of the path \[m\].
 const SPACING_M: f64 = 0.01;
 
-/// The footprint is checked this much larger \[m\]: between two samples the robot moves on.
+/// Margin by which the checked footprint is larger \[m\], because the robot moves between two
+/// samples.
 const MARGIN_M: f64 = 0.02;
 
 /// A box that turns around a point behind its middle: 0.5 m long, 0.3 m wide.
@@ -57,8 +58,8 @@ fn smooth_path(
     Ok(done.path)
 }
 
-/// The first place where the robot would touch something, on its way or while it turns on the spot;
-/// it stands at the first sample with heading `from_rad`.
+/// The first pose at which the robot would touch an obstacle, along the path or while it turns in
+/// place. It starts at the first sample with the heading `from_rad`.
 fn first_contact(
     samples: &[PathSample],
     from_rad: f64,
@@ -69,7 +70,7 @@ fn first_contact(
     for sample in samples {
         let at = sample.position();
         let pose = Pose::new(at.x, at.y, sample.heading_rad);
-        // Nothing is driven between the two samples of a corner.
+        // The two samples of a corner have no distance between them.
         let turn_rad = wrap_angle(sample.heading_rad - heading_rad);
         let turns = sample.s_m == s_m && turn_rad != 0.0;
         let is_free = footprint.is_free(pose, field)

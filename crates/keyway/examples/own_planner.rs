@@ -1,6 +1,6 @@
-//! A global planner of your own, with its own memory: a wavefront that spreads from the start, cell
-//! by cell, until it reaches the goal. Smoothers, pictures and measurements take its plans like
-//! those of any other planner.
+//! A global planner of your own, with its own memory: a wavefront that spreads from the start,
+//! cell by cell, until it reaches the goal. Smoothers, pictures and measurements accept its plans
+//! like those of any other planner.
 //!
 //! `cargo run --example own_planner`
 
@@ -24,13 +24,13 @@ const ROOMS: [&str; 7] = [
     "..........#.",
 ];
 
-/// Shortest paths with 4 neighbours: every step costs the same, so no order is needed but first in,
-/// first out.
+/// Shortest paths with 4 neighbours: every step costs the same, so first in, first out is the
+/// right order.
 #[derive(Debug)]
 struct Wavefront;
 
-/// What a [`Wavefront`] works in. Nothing is cleared between queries: a cell belongs to the wave
-/// whose number it carries.
+/// Memory of a [`Wavefront`]. Nothing is cleared between queries: a cell belongs to the wave whose
+/// number it carries.
 #[derive(Debug, Default)]
 struct Wave {
     /// By cell.
@@ -46,7 +46,7 @@ struct Reached {
     wave: u32,
     /// Steps from the start.
     steps: u32,
-    /// Where the wave came from; the start came from itself.
+    /// The cell that the wave came from; the start is its own.
     from: CellIndex,
 }
 
@@ -86,7 +86,7 @@ impl Wave {
         self.reached[at.as_usize()].steps
     }
 
-    /// The cells of the way that led to one, back to the root.
+    /// The cells of the path that led to one, back to the root.
     fn way_back(&self, at: CellIndex) -> impl Iterator<Item = CellIndex> {
         let parent = |at: &CellIndex| self.reached[at.as_usize()].from;
         std::iter::successors(Some(at), move |at| Some(parent(at)).filter(|before| before != at))
@@ -176,7 +176,7 @@ mod tests {
     use keyway::map::Cell;
     use keyway::plan::{AStar4, AStar4Config};
 
-    /// Shortest, as the planner of the library says, from each free cell to each other one.
+    /// As short as the paths of the library's planner, from each free cell to each other one.
     #[test]
     fn paths_are_shortest_ones() -> Result<(), Box<dyn Error>> {
         let map = SearchMap::new(&OccupancyGrid::from_ascii(&ROOMS), LayerConfig::default())?;

@@ -6,7 +6,8 @@ use keyway::navigate::{Navigator, Stack, Step};
 use keyway::robot::Robot;
 use keyway::sense::{Observation, Scan, SensorScan};
 
-/// Stands for your odometry, lidar and motors: here commands are obeyed at once, nothing is met.
+/// A stand-in for your odometry, lidar and motors: it obeys commands at once and meets no
+/// obstacle.
 struct Hardware {
     pose: Pose,
     velocity: Velocity,
@@ -40,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..50 {
         cycle(&mut navigator, &robot, &mut hardware);
     }
-    // A wall appears on the map; then the robot is wanted elsewhere, slowly.
+    // A wall appears on the map; then the robot gets another goal, and has to drive slowly.
     let occupied = |y| Edit { cell: Cell::new(70, y), state: CellState::Occupied };
     let wall: Vec<Edit> = (20..60).map(occupied).collect();
     navigator.edit_map(&wall);

@@ -1,10 +1,10 @@
-//! What is wrong with a config: in which field, and why.
+//! Errors of a config: the field and the reason.
 
 use crate::given::Given;
 use thiserror::Error;
 
-/// A value of a config that cannot be used. Every config is checked once, when the thing that it
-/// describes is made.
+/// A value of a config that cannot be used. Every config is checked once, when the object that it
+/// describes is created.
 ///
 /// ```
 /// use keyway::smooth::{KeyPointSmoothingConfig, SmootherConfig};
@@ -21,32 +21,32 @@ pub struct ConfigError {
     /// The field, as a path from the config that was checked: `weights.heading` of a local planner,
     /// `local.weights.heading` of a stack.
     pub path: String,
-    /// What is wrong with it and what to do; goes on after the path: `must be a positive number,
-    /// got -1`.
+    /// Description of the error and the fix; continues the sentence after the path: `must be a
+    /// positive number, got -1`.
     pub reason: String,
 }
 
 impl ConfigError {
-    /// A field that cannot be used, for a reason that goes on after its path.
+    /// Creates an error for a field, with a reason that continues the sentence after its path.
     pub fn new(path: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { path: path.into(), reason: reason.into() }
     }
 
-    /// A number that is not what was expected.
+    /// Creates an error for a number that is not the expected one.
     pub fn must_be(path: impl Into<String>, expected: &str, given: f64) -> Self {
         Self::new(path, format!("must be {expected}, got {}", Given(given)))
     }
 
-    /// The same error, of a config that stands in the field `parent` of a larger one.
+    /// The same error for a config in the field `parent` of a larger one.
     #[must_use]
     pub fn within(self, parent: &str) -> Self {
         Self { path: format!("{parent}.{}", self.path), ..self }
     }
 
-    /// Refuses what is not a positive number.
+    /// Rejects a value that is not a positive number.
     ///
     /// # Errors
-    /// When it is not; the error names the path.
+    /// Returns a [`ConfigError`] with the path if it is not.
     pub fn unless_positive(path: &str, value: f64) -> Result<(), Self> {
         if value > 0.0 && value.is_finite() {
             return Ok(());
@@ -54,10 +54,10 @@ impl ConfigError {
         Err(Self::must_be(path, if value > 0.0 { "finite" } else { "a positive number" }, value))
     }
 
-    /// Refuses what is not a number of at least 0.
+    /// Rejects a value that is not a number of at least 0.
     ///
     /// # Errors
-    /// When it is not; the error names the path.
+    /// Returns a [`ConfigError`] with the path if it is not.
     pub fn unless_not_negative(path: &str, value: f64) -> Result<(), Self> {
         if value >= 0.0 && value.is_finite() {
             return Ok(());
@@ -69,20 +69,20 @@ impl ConfigError {
         ))
     }
 
-    /// Refuses what is no range of positive numbers.
+    /// Rejects a range that does not consist of two positive numbers in ascending order.
     ///
     /// # Errors
-    /// When it is not; the error names the path.
+    /// Returns a [`ConfigError`] with the path if it does not.
     pub fn unless_range(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         Self::unless_positive(&format!("{path}[0]"), low)?;
         Self::unless_positive(&format!("{path}[1]"), high)?;
         Self::unless_ordered(path, [low, high])
     }
 
-    /// Refuses bounds of which the first is higher.
+    /// Rejects bounds of which the first is higher.
     ///
     /// # Errors
-    /// When it is not; the error names the path.
+    /// Returns a [`ConfigError`] with the path if it is.
     pub fn unless_ordered(path: &str, [low, high]: [f64; 2]) -> Result<(), Self> {
         if low <= high {
             return Ok(());
@@ -91,11 +91,11 @@ impl ConfigError {
         Err(Self::must_be(format!("{path}[1]"), &expected, high))
     }
 
-    /// Refuses what is no weight of a sum: only the proportions of weights matter, and beyond this
-    /// sums lose their digits and at last are not numbers.
+    /// Rejects a value that is no weight of a sum: only the proportions of weights matter, and
+    /// beyond this limit sums lose their digits and finally overflow.
     ///
     /// # Errors
-    /// When it is not; the error names the path.
+    /// Returns a [`ConfigError`] with the path if it is none.
     pub(crate) fn unless_weight(path: &str, value: f64) -> Result<(), Self> {
         if (0.0..=1e9).contains(&value) {
             return Ok(());

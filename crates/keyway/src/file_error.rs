@@ -1,7 +1,7 @@
 //! Errors of files that cannot be read or written.
 //!
-//! Nothing here touches a file. Readers of bytes give these errors, too: a content is too long, or
-//! the caller does not have the image that a map names.
+//! Nothing here accesses a file. Readers of bytes return these errors, too: if the content is too
+//! long, or if the caller does not have the image that a map names.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -19,13 +19,13 @@ pub enum ReadError {
         /// Message of the operating system.
         reason: io::Error,
     },
-    /// A folder.
+    /// The path is a folder.
     #[error("cannot read {}: it is a folder, expected a file", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
     },
-    /// More than such a file can sensibly hold, or a device that never ends.
+    /// More than such a file can sensibly hold, or an endless device.
     #[error(
         "cannot read {}: it holds more than {}, the most that is read here",
         path.display(),
@@ -39,17 +39,17 @@ pub enum ReadError {
     },
 }
 
-/// A file that could not be written; what was there before is kept.
+/// A file that could not be written; its previous content is kept.
 #[derive(Debug, Error)]
 #[error("cannot write {}: {}", path.display(), system_error_in_words(reason))]
 pub struct WriteError {
-    /// The file asked for.
+    /// The requested file.
     pub path: PathBuf,
     /// Message of the operating system.
     pub reason: io::Error,
 }
 
-/// Refuses a content that is longer than the file of this name may be.
+/// Refuses content that is longer than the file of this name may be.
 pub(crate) fn check_length(name: &Path, bytes: &[u8], limit_bytes: u64) -> Result<(), ReadError> {
     if bytes.len() as u64 > limit_bytes {
         return Err(ReadError::TooLarge { path: name.to_owned(), limit_bytes });
@@ -57,7 +57,7 @@ pub(crate) fn check_length(name: &Path, bytes: &[u8], limit_bytes: u64) -> Resul
     Ok(())
 }
 
-/// Describes a failure without numbers that only the operating system knows.
+/// Describes an error without numbers that are specific to the operating system.
 pub fn system_error_in_words(error: &io::Error) -> String {
     let known = match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder",

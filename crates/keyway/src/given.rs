@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Formatter, Result};
 
-/// A number that was given, in few digits whatever its size: `0.1`, `-1`, `1e308`.
+/// An input value, in few digits whatever its size: `0.1`, `-1`, `1e308`.
 pub struct Given(pub f64);
 
 impl Display for Given {
@@ -13,7 +13,8 @@ impl Display for Given {
     }
 }
 
-/// A length that was computed \[m\]: to the nearest micrometre, as its last digits mean nothing.
+/// A computed length \[m\]: rounded to the nearest micrometre, because further digits mean
+/// nothing.
 pub struct Computed(pub f64);
 
 impl Display for Computed {

@@ -1,11 +1,11 @@
 //! Mobile-robot path planning on occupancy grids.
 //!
-//! A global search finds a route, a smoother makes it short and safe, and a local planner, which
-//! searches courses through space and time, drives it among obstacles nobody has mapped: the stack
-//! `keyway`, the default. Others, such as dynamic window approaches, are there by name. For now a
+//! A global search finds a route, and a smoother makes it short and safe. A local planner, which
+//! searches space-time trajectories, follows it among unmapped obstacles. This is the default
+//! stack, `keyway`. Others, such as dynamic window approaches, are available by name. For now a
 //! robot is a differential drive with up to eight lidars.
 //!
-//! Data flows one way, each stage a module that knows only the earlier ones:
+//! Data flows one way; each stage is a module that depends only on the earlier ones:
 //!
 //! | stage | module | from -> to |
 //! |---|---|---|
@@ -13,14 +13,14 @@
 //! | plan | [`plan`] (over [`search`]) | a map and two cells -> a path |
 //! | smooth | [`smooth`] | a line -> a shorter line with the same clearance |
 //! | route | [`route`] | a map and two positions -> a smoothed route |
-//! | sense | [`sense`] | scans -> what no map shows |
+//! | sense | [`sense`] | scans -> obstacles that are not on the map |
 //! | guide | [`guide`] | a path -> the point to drive towards |
 //! | decide | [`local`] | a scene -> a velocity |
 //! | navigate | [`navigate`] | all of the above, as a value that observes and steps |
 //!
 //! Units are SI and radians; frames follow ROS REP 103. Everything is deterministic: equal inputs
-//! give equal bytes. No function prints or reads a clock. Bad input is an error and no panic; the
-//! few functions that panic, such as on grids of different sizes, say so.
+//! give equal bytes. No function prints or reads a clock. Invalid input gives an error, not a
+//! panic; the few functions that panic, such as on grids of different sizes, document it.
 //!
 //! ```
 //! use keyway::{Navigator, OccupancyGrid, Point, Pose, Robot, Stack};
@@ -36,15 +36,15 @@
 //! # Ok::<(), keyway::navigate::NavigateError>(())
 //! ```
 //!
-//! | feature | what it adds |
+//! | feature | adds |
 //! |---|---|
 //! | `files`, the default | reading and writing files; turns `formats` on |
 //! | `formats` | maps, prepared maps, robots, stacks and parameters from bytes, and back |
 //! | `images` | BMP, GIF, JPEG and TIFF images as maps; turns `formats` on |
 //! | `schema` | JSON schemas of all parameters |
 //!
-//! In a robot, give [`Navigator::observe`] what it measures, and call [`Navigator::step`] once per
-//! cycle; the example `own_robot` is such a loop.
+//! On a robot, pass the measurements to [`Navigator::observe`] and call [`Navigator::step`] once
+//! per cycle; the example `own_robot` is such a loop.
 
 mod config_error;
 #[cfg(feature = "formats")]

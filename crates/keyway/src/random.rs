@@ -1,6 +1,6 @@
-//! Random numbers that are the same everywhere.
+//! Random numbers that are the same on every platform.
 
-/// `SplitMix64`: 64 random bits at a time from 64 bits of state, any seed as good as another.
+/// `SplitMix64`: 64 random bits at a time from 64 bits of state. All seeds are equally good.
 ///
 /// # Source
 /// \[Steele2014\], with the constants of S. Vigna's `splitmix64.c`.
@@ -10,13 +10,14 @@ pub struct Random {
 }
 
 impl Random {
-    /// The numbers of a seed.
+    /// The generator for a seed.
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// One of many streams of a seed, such as that of the second robot's odometry: a stream for
-    /// every list of names. No stream depends on how many there are or on what was drawn from them.
+    /// One of many streams of a seed, one for each list of names, such as the odometry of the
+    /// second robot. A stream does not depend on the number of other streams, or on the numbers
+    /// drawn from them.
     pub fn stream(seed: u64, names: &[u64]) -> Self {
         names.iter().fold(Self::new(seed), |mut random, name| Self::new(random.bits() ^ name))
     }
@@ -30,17 +31,17 @@ impl Random {
         mixed ^ mixed >> 31
     }
 
-    /// A number below `limit` (0 if that is 0), all equally likely except for one part in 2^32.
+    /// A number below `limit` (0 if that is 0), uniform except for one part in 2^32.
     pub const fn below(&mut self, limit: u32) -> u32 {
         ((self.bits() as u128 * limit as u128) >> 64) as u32
     }
 
-    /// A number of at least 0 and less than 1: a multiple of 2^-53, all equally likely.
+    /// A number of at least 0 and less than 1: a multiple of 2^-53, uniform.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / Self::UNIT
     }
 
-    /// A number from `low` to `high`, all equally likely.
+    /// A number from `low` to `high`, uniform.
     pub fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -50,12 +51,12 @@ impl Random {
         self.unit() < probability
     }
 
-    /// A number above 0 and up to 1, any multiple of 2^-53 as likely as another.
+    /// A number above 0 and up to 1: a multiple of 2^-53, uniform.
     pub fn part(&mut self) -> f64 {
         ((self.bits() >> 11) + 1) as f64 / Self::UNIT
     }
 
-    /// 2^53, up to which every whole number is a floating point number.
+    /// 2^53, up to which every integer is a floating point number.
     const UNIT: f64 = 9_007_199_254_740_992.0;
 }
 

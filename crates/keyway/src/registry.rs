@@ -1,13 +1,13 @@
-//! How things with names and parameters are entered: one line each.
+//! Registration of named things with parameters: one line each.
 
-/// Enters things of one kind. Each line has the documentation, the variant with its parameters, and
-/// the type whose `NAME` it is known by.
+/// Registers things of one kind. Each line has the documentation, the variant with its parameters,
+/// and the type whose `NAME` identifies it.
 ///
-/// It makes the type that is a choice as data, its `NAMES`, `by_name`, `name`, `as_published` and
-/// `readings`; and `parameters`, which gives the parameters as the kind's own trait. That trait has
-/// a provided `as_published` and `readings`, and whatever else is to be known of every thing of the
-/// kind; it is implemented beside the thing. Parameters begin with their defaults; with `for Robot`
-/// after the trait's name, with those that its `for_robot` derives.
+/// The macro generates the enum of choices, as data, with `NAMES`, `by_name`, `name`,
+/// `as_published` and `readings`, and with `parameters`, which returns the parameters as the
+/// kind's own trait. That trait provides `as_published` and `readings`, and any other property
+/// that every thing of the kind has; it is implemented beside the thing. Parameters start with
+/// their defaults, or, with `for Robot` after the trait's name, with those of its `for_robot`.
 macro_rules! registry {
     (
         $(#[$enum_attribute:meta])*
@@ -20,7 +20,7 @@ macro_rules! registry {
         }
 
         impl $choice {
-            /// The one of this name, with its default parameters.
+            /// The one of this name, with its default parameters; `None` if there is none.
             pub fn by_name(name: &str) -> Option<Self> {
                 $(if name == <$thing>::NAME {
                     return Some(Self::$variant(<$config>::default()));
@@ -40,7 +40,7 @@ macro_rules! registry {
         }
 
         impl $choice {
-            /// The one of this name, with the parameters for a robot.
+            /// The one of this name, with the parameters for a robot; `None` if there is none.
             pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
                 $(if name == <$thing>::NAME {
                     return Some(Self::$variant(<$config as $parameters>::for_robot(robot)));
@@ -75,7 +75,7 @@ macro_rules! registry {
                 }
             }
 
-            /// The same with the parameters as its paper has them; `None` without such a paper.
+            /// The same with the parameters of its paper; `None` without such a paper.
             pub fn as_published(&self) -> Option<Self> {
                 match self {
                     $(Self::$variant(_) => {
@@ -84,7 +84,7 @@ macro_rules! registry {
                 }
             }
 
-            /// The fields of [`Self::as_published`] for which the paper gives no value: they are
+            /// The fields of [`Self::as_published`] that the paper gives no value for: they are
             /// readings.
             pub fn readings(&self) -> &'static [&'static str] {
                 self.parameters().readings()

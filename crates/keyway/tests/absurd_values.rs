@@ -23,7 +23,7 @@ fn hall() -> OccupancyGrid {
     OccupancyGrid::from_ascii(&["..........", "......#...", "..........", ".........."])
 }
 
-/// Something 1 m ahead, to the left of the way.
+/// An obstacle 1 m ahead, to the left of the route.
 fn scan() -> Scan {
     let range = |beam: i32| if (10..14).contains(&beam) { 1.0 } else { f64::INFINITY };
     Scan {
@@ -66,8 +66,8 @@ fn drive(stack: &Stack, robot: &Robot, what: &str) -> Result<(), NavigateError> 
     Ok(())
 }
 
-/// Every local planner, guide and smoother, one at a time beside the usual ones; with the parts
-/// that are its own.
+/// Every local planner, guide and smoother, one at a time with the defaults for the rest, and the
+/// parts that are its own.
 fn stacks(robot: &Robot) -> Vec<(String, &'static [&'static str], Stack)> {
     let usual = Stack::key_point_fusion(robot);
     let mut stacks = Vec::new();
@@ -123,7 +123,7 @@ fn absurd_values_are_refused_by_name_or_harmless() {
     assert!(refused > 50 && driven > 50, "{refused} refused, {driven} driven");
 }
 
-/// Any robot that is valid, from the ends of what is allowed.
+/// Any valid robot, up to the ends of the permitted ranges.
 fn any_robot() -> impl Strategy<Value = Robot> {
     let between = |low: f64, high: f64| (low.ln()..high.ln()).prop_map(f64::exp);
     let footprint = prop_oneof![
@@ -156,7 +156,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
 }
 
 proptest! {
-    /// So no error ever names a parameter that was derived, and that nobody has set.
+    /// So no error ever names a derived parameter that the user has not set.
     #[test]
     fn what_is_derived_from_a_robot_fits_it(robot in any_robot()) {
         prop_assume!(robot.validate().is_ok());

@@ -1,4 +1,4 @@
-//! A planner whose memory is warm allocates nothing, whatever is asked of it.
+//! A planner whose memory is warm allocates nothing, for any query.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Pose;
@@ -43,7 +43,7 @@ fn short_queries(map: &SearchMap) -> Vec<Query> {
 
 fn planner(name: &str, map: &SearchMap) -> Box<dyn GlobalPlanner + Send + Sync> {
     let config = match PlannerConfig::by_name(name).unwrap() {
-        // The map's lanes are narrow: otherwise there would be no path to find.
+        // The map's lanes are narrow: without this, no path would exist.
         PlannerConfig::Hsta(config) => {
             PlannerConfig::Hsta(HstaConfig { if_no_path: IfNoPath::Relax, ..config })
         }

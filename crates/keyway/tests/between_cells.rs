@@ -30,7 +30,7 @@ impl Squares {
         Self { frame, cells }
     }
 
-    /// Distance from a point to the nearest square or the border \[m\], one by one.
+    /// Distance from a point to the nearest square or the border \[m\], tested one by one.
     fn room_at(&self, world: Point) -> f64 {
         let at = self.frame.grid_from_world(world);
         let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
@@ -44,7 +44,7 @@ impl Squares {
     }
 }
 
-/// The least room along a route, on its path and on its chords.
+/// The least clearance along a route, on its path and on its chords.
 fn room_along(grid: &OccupancyGrid, route: &Route) -> f64 {
     let squares = Squares::of(grid);
     let step_m = 0.02 * grid.frame().resolution_m();
@@ -74,7 +74,7 @@ fn planned(grid: &OccupancyGrid, clearance_m: f64, query: &RouteQuery) -> Option
     route
 }
 
-/// Room at points that are an eighth of a cell apart.
+/// Clearance at points that are an eighth of a cell apart.
 struct FinePoints {
     frame: GridFrame,
     rooms: Vec<f64>,
@@ -98,7 +98,8 @@ impl FinePoints {
         Point::new(f64::from(x), f64::from(y)) * (1.0 / f64::from(Self::PER_CELL))
     }
 
-    /// True if a disc can certainly go from one place to the other; true if it certainly cannot.
+    /// Two flags: true if a disc can certainly go from one point to the other; true if it
+    /// certainly cannot.
     fn joins(&self, radius_m: f64, ends: [Point; 2]) -> [bool; 2] {
         let half = 0.5 * std::f64::consts::SQRT_2 / f64::from(Self::PER_CELL);
         let (half_m, radius_m) = (half * self.frame.resolution_m(), radius_m);
@@ -109,7 +110,7 @@ impl FinePoints {
         ]
     }
 
-    /// True if points with this room lead from near one place to near the other.
+    /// True if points with this clearance lead from near one position to near the other.
     fn reaches(&self, ends: [Point; 2], least_m: f64, near: f64) -> bool {
         let [start, goal] = ends.map(|end| self.frame.grid_from_world(end));
         let is_open = |index: usize| self.rooms[index] >= least_m;
@@ -135,7 +136,7 @@ impl FinePoints {
     }
 }
 
-/// Map, radius and ends for which no path of cells exists, by seed; few seeds have one.
+/// Map, radius, start and goal for which no path of cells exists, by seed; few seeds have one.
 fn random_case(seed: u64, radii: [f64; 2]) -> Option<(OccupancyGrid, f64, RouteQuery)> {
     const SIDE: u32 = 16;
     let mut random = Random::new(seed);
@@ -218,7 +219,8 @@ fn a_route_begins_and_ends_in_the_middle_between_two_rows() {
         assert_eq!(on_cells(&grid, 1.9, &query), None);
         let route = planned(&grid, 1.9, &query).unwrap();
         assert!(room_along(&grid, &route) >= 1.9 - 1e-9);
-        // Without that rule the centres of their cells count, and the ends must have room.
+        // With the other rule the centres of their cells count, and start and goal must have
+        // clearance.
         let own = RouteQuery { ends: EndRule::OwnCell, ..query };
         assert!(planned(&grid, 1.9, &own).is_some());
     }
@@ -274,7 +276,7 @@ fn a_slanted_tunnel_is_passed_as_far_as_it_is_wide() {
     assert!(found >= 5, "{found}");
 }
 
-/// The robot's own routes: the first one, and one from where it is.
+/// The robot's own routes: the first one, and one from its current position.
 #[test]
 fn a_navigator_leads_between_the_cells_only_where_no_path_of_cells_does() {
     let footprint = Footprint::circle(0.22).unwrap();
@@ -310,7 +312,7 @@ fn a_navigator_leads_between_the_cells_only_where_no_path_of_cells_does() {
         }
         assert!(room_along(&grid, &first) >= needed_m);
         assert_eq!(navigator.plan(start, goal).unwrap(), first);
-        // From inside it leads as the rule for ends says: straight, where the disc fits.
+        // From inside, the rule for start and goal applies: straight, if the disc fits.
         let from = Point::new(2.5, 1.5);
         for to in [goal, Point::new(2.2, 1.5)] {
             let inside = navigator.plan(from, to).unwrap();

@@ -1,5 +1,5 @@
 //! Bidirectional jump point search on random maps: it never misses a path with its default meeting
-//! rule, and its paths are legal whatever the parameters are.
+//! rule, and its paths are legal for all parameters.
 #![allow(clippy::unwrap_used)]
 
 mod support;
@@ -63,7 +63,7 @@ fn any_planners(
     })
 }
 
-/// Counts what is reported to it, and checks that scans are lines of free cells.
+/// Counts its events, and checks that scans are lines of free cells.
 struct Counter<'m> {
     map: &'m SearchMap,
     reported: SearchStatistics,
@@ -95,8 +95,8 @@ impl Observer for Counter<'_> {
     }
 }
 
-/// Plans; the path is legal and as long as it says, and what the observer saw is what the
-/// statistics say.
+/// Plans; the path is legal and has the reported length, and the observed events agree with the
+/// statistics.
 fn checked_plan(config: &PlannerConfig, raw: &Raw, query: &Query) -> Result<Plan, PlanError> {
     let rules = Rules::default();
     let map = raw.search_map(&rules);
@@ -137,8 +137,8 @@ proptest! {
         }
     }
 
-    /// Going on after the sides have met never makes the path longer, and what is left of it then
-    /// was expanded, too.
+    /// Continuing after the sides have met never makes the path longer, and expands the remaining
+    /// nodes, too.
     #[test]
     fn going_on_is_no_worse(raw in any_map(), ends: (u32, u32, u32, u32),
                             of_first in any_planners(Just(JumpMeeting::Generated))) {
@@ -162,7 +162,7 @@ proptest! {
         }
     }
 
-    /// With the literal rule only moving targets are missed.
+    /// The literal rule misses only moving targets.
     #[test]
     fn the_literal_rule_gives_legal_paths(raw in any_map(), ends: (u32, u32, u32, u32),
                                           planners in any_planners(Just(JumpMeeting::Literal))) {
@@ -178,7 +178,7 @@ proptest! {
     }
 }
 
-/// Where a side's scans cross words of 64 cells, and one workspace serves maps of several sizes.
+/// A side's scans cross words of 64 cells, and one workspace serves maps of several sizes.
 #[test]
 fn wide_and_high_maps() {
     let mut workspace = Workspace::default();

@@ -1,5 +1,4 @@
-//! What rounding must not change about clearances: lines and arcs that just keep one, on turned
-//! maps.
+//! Clearances in spite of rounding: lines and arcs that just keep one, on turned maps.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::{Arc, Point, Pose, Segment};

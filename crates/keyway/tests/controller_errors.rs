@@ -1,4 +1,4 @@
-//! Tasks that a navigator refuses, and what it says then.
+//! Tasks that a navigator refuses, and its messages.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/building.rs"]
@@ -46,7 +46,7 @@ fn starts_and_goals_that_are_no_places() {
 fn a_stack_must_leave_room_for_its_robot() {
     let robot = Robot::small();
     let mut stack = Stack::key_point_fusion(&Robot::paper());
-    // That of the paper is a point.
+    // The robot of the paper is a point.
     assert!(stack.fit(&Robot::paper()).is_ok());
     stack = Stack { map: stack.map, ..Stack::key_point_fusion(&robot) };
     let error = stack.fit(&robot).unwrap_err();
@@ -100,7 +100,7 @@ fn refuses_what_cannot_be_driven() {
     assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
 }
 
-/// Whatever cannot be used, the error gives its whole path in the stack.
+/// For every invalid value, the error gives its whole path in the stack.
 #[test]
 fn errors_name_the_whole_path_of_a_field() {
     let map = building();

@@ -54,7 +54,7 @@ fn warm_decisions_allocate_nothing() {
             (pose.point().distance(path.points()[0]), is_on_detour)
         };
         let (driven_m, is_on_detour) = drive();
-        // The same way again.
+        // The same drive again.
         let info = allocation_counter::measure(|| assert_eq!(drive(), (driven_m, is_on_detour)));
         assert_eq!(info.count_total, 0, "{name}");
         assert!(driven_m > 1.0, "{name} drove {driven_m} m");

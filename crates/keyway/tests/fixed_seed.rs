@@ -1,4 +1,4 @@
-//! `cargo test` gives everybody the same answer: properties draw their cases from a fixed seed.
+//! `cargo test` gives the same result for everyone: properties draw their cases from a fixed seed.
 
 use proptest::test_runner::{Config, RngSeed};
 

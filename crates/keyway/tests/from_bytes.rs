@@ -1,5 +1,5 @@
 //! Reading from bytes alone, as a page in a browser does: each kind against a known content, and
-//! the words of its errors. The names of files here exist nowhere.
+//! its error messages. The file names here exist nowhere.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::file_error::ReadError;
@@ -27,7 +27,7 @@ const YAML: &str = "image: office.pgm\nresolution: 0.05\norigin: [1.5, -2, 0.25]
 /// The drawing that all images here show.
 const DRAWN: [&str; 2] = ["#.?", "..#"];
 const PGM: &[u8] = b"P5\n3 2\n255\n\x00\xfe\xcd\xfe\xfe\x00";
-/// The same pixels as another program packs them, without compression.
+/// The same pixels as packed by another program, without compression.
 const PNG: &[u8] =
     b"\x89PNG\r\n\x1a\n\x00\x00\x00\x0dIHDR\x00\x00\x00\x03\x00\x00\x00\x02\x08\x00\x00\x00\
       \x00\xb8\x1f9\xc6\x00\x00\x00\x13IDATx\x01\x01\x08\x00\xf7\xff\x00\x00\xfe\xcd\x00\xfe\xfe\
@@ -58,7 +58,7 @@ fn text<T>(result: Result<T, impl Display>) -> String {
     result.map(drop).unwrap_err().to_string()
 }
 
-/// A drawn grid that lies elsewhere.
+/// A drawn grid with another origin.
 fn placed(rows: &[&str], resolution_m: f64, origin: Pose) -> OccupancyGrid {
     let drawn = OccupancyGrid::from_ascii(rows);
     let (width, height) = (drawn.frame().width().into(), drawn.frame().height().into());
@@ -226,7 +226,7 @@ fn prepared_maps() {
     );
 }
 
-/// The limits of files, whose readers see no more than this.
+/// The size limits of files, which their readers apply, too.
 #[test]
 fn limits() {
     let (name, robot) = (Path::new("big.toml"), Robot::small());

@@ -40,7 +40,7 @@ impl Raw {
         SearchMap::new(&OccupancyGrid::from_fn(frame, state), LayerConfig::default()).unwrap()
     }
 
-    /// Costs of the shortest paths to all cells, row by row. Corners are cut only where paths have
+    /// Costs of the shortest paths to all cells, row by row. Corners are cut only if paths have
     /// the connectivity of such steps.
     fn costs(&self, start: Cell, connectivity: Connectivity) -> Vec<Option<Cost>> {
         let index = |c: Cell| (c.y * self.width + c.x) as usize;
@@ -81,7 +81,7 @@ fn any_raw() -> impl Strategy<Value = Raw> {
     })
 }
 
-/// All planners; without a distance to obstacles, which may leave no path where there is one.
+/// All planners; without a distance to obstacles, which could hide an existing path.
 fn planners() -> impl Iterator<Item = PlannerConfig> {
     PlannerConfig::NAMES.into_iter().map(|name| match PlannerConfig::by_name(name).unwrap() {
         PlannerConfig::Hsta(config) => {
@@ -91,7 +91,7 @@ fn planners() -> impl Iterator<Item = PlannerConfig> {
     })
 }
 
-/// Reports which goals were planned to.
+/// Records the goals that were planned to.
 #[derive(Debug)]
 struct Recorded {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
@@ -150,7 +150,7 @@ proptest! {
                 }
                 None => prop_assert!(matches!(result, Err(PlanError::Blocked { .. })), "{:?}", result),
             }
-            // Unless it is asked for, nothing replaces the goal.
+            // The goal is replaced only on request.
             let strict = planner.plan_into(&map, &asked, &mut workspace, None, &mut plan);
             let is_reachable = costs[(goal.y * raw.width + goal.x) as usize].is_some();
             prop_assert_eq!(strict.is_ok(), is_reachable, "{}", config.name());

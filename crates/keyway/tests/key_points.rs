@@ -1,5 +1,5 @@
-//! The jump points of a plan, and the key-point optimisation of [You2021] written out step by step,
-//! as slowly as it stands in the paper, with whole numbers in place of the library's geometry.
+//! The jump points of a plan, and the key-point optimisation of [You2021] written out step by
+//! step, as slowly as in the paper, with integers in place of the library's geometry.
 #![allow(clippy::unwrap_used)]
 
 mod support;
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::collections::HashMap;
 use support::{Raw, Rules, query_on};
 
-/// Remembers where the way to each node comes from, and where the sides met.
+/// Records the parent of each node, and the node at which the sides met.
 #[derive(Default)]
 struct Parents {
     parents: HashMap<(bool, Cell), (f64, Cell)>,
@@ -23,7 +23,7 @@ struct Parents {
 impl Observer for Parents {
     fn generated(&mut self, side: Side, at: Cell, parent: Cell, g_cells: f64) {
         let known = self.parents.entry((side == Side::Forward, at)).or_insert((g_cells, parent));
-        // A way of the same length is another direction of arrival, no other parent.
+        // A path of the same length is another direction of arrival, not another parent.
         if g_cells < known.0 {
             *known = (g_cells, parent);
         }
@@ -53,7 +53,7 @@ impl Parents {
         nodes
     }
 
-    /// The nodes of `jps` on its path, with the cells in which its legs, diagonal first, turn.
+    /// The nodes of `jps` on its path, with the cells at which its legs, diagonal first, turn.
     fn nodes_and_turns(&self, query: &Query) -> Vec<Cell> {
         let mut nodes = self.way_back(true, query.goal, query.start);
         nodes.reverse();
@@ -155,12 +155,13 @@ impl Steps {
         Self { squares: raw.cells().filter(occupied).map(corner).collect(), safe_m }
     }
 
-    /// On which side of the line through a and b a point is.
+    /// The side of the line through a and b that a point is on.
     const fn side((ax, ay): At, (bx, by): At, (px, py): At) -> i64 {
         (bx - ax) * (py - ay) - (by - ay) * (px - ax)
     }
 
-    /// True if the line runs through the inside of a square, or between two that meet in a corner.
+    /// True if the line runs through the interior of a square, or between two that meet in a
+    /// corner.
     fn meets_obstacle(&self, a: At, b: At) -> bool {
         let is_crossed = |&(x, y): &At| {
             let overlaps_x = a.0.max(b.0) > x && a.0.min(b.0) < x + 2;
@@ -170,7 +171,7 @@ impl Steps {
             overlaps_x && overlaps_y && sides.iter().any(|&s| s > 0) && sides.iter().any(|&s| s < 0)
         };
         let is_occupied = |x: i64, y: i64| self.squares.contains(&(x, y));
-        // Corners on the line are passed between the two squares beside it.
+        // The line passes corners on it between the two squares beside it.
         let is_gap = |&(x, y): &At| {
             let is_between = (a.0.min(b.0)..=a.0.max(b.0)).contains(&x)
                 && (a.1.min(b.1)..=a.1.max(b.1)).contains(&y);
@@ -225,11 +226,11 @@ impl Steps {
         self.distance_m(a, b) >= self.safe_m - 1e-9
     }
 
-    /// Steps 2 and 3 for the points Q of step 1: the way of step 4.
+    /// Steps 2 and 3 for the points Q of step 1: the path of step 4.
     fn key_points(&self, q: &[At]) -> Vec<At> {
         let mut u = vec![0];
         for next in 2..q.len() {
-            // The point before is kept where the line past it meets an obstacle.
+            // The previous point is kept if the line past it meets an obstacle.
             if self.meets_obstacle(q[u[u.len() - 1]], q[next]) {
                 u.push(next - 1);
             }
@@ -245,7 +246,7 @@ impl Steps {
                 };
                 let between = q[pair[0] + 1..pair[1]].iter().copied();
                 let safe = between.filter(|&via| self.is_safe(from, via) && self.is_safe(via, to));
-                // Of equal ones the first.
+                // The first of equal ones.
                 way.extend(safe.min_by(|&a, &b| length(a).total_cmp(&length(b))));
             }
             way.push(to);
@@ -268,7 +269,7 @@ proptest! {
                                                 safe_m in prop_oneof![3 => Just(0.5), 1 => Just(0.0), 1 => 0.1..1.6f64]) {
         let (map, query) = (raw.search_map(&Rules::default()), query_on(&raw, ends));
         let found = planned(&PlannerConfig::by_name("bidirectional-jps").unwrap(), &map, &query);
-        // Not an assumption: those that fail end long runs.
+        // Not an assumption: rejected cases would end long runs.
         let Some((plan, _)) = found else { return Ok(()) };
         let [start, goal] = [query.start, query.goal].map(|end| map.frame().world_from_cell(end));
         let line = plan.line(&map, start, goal);

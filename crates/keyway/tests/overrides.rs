@@ -1,4 +1,4 @@
-//! Commands that somebody else gives in the place of the navigator's.
+//! Commands that replace those of the navigator.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/driving.rs"]
@@ -11,7 +11,7 @@ use keyway::navigate::{Stack, Step};
 use keyway::robot::Robot;
 use keyway::sense::Scan;
 
-/// Motors that obey at once, of a robot that somebody stops for a while again and again.
+/// Motors that obey at once, on a robot that is stopped from outside for a while again and again.
 fn stopped_again_and_again(name: &str, is_told: bool) -> (Vec<String>, f64) {
     let map = OccupancyGrid::from_ascii(&["............"; 6]);
     let robot = Robot::by_name(name).unwrap();
@@ -22,7 +22,7 @@ fn stopped_again_and_again(name: &str, is_told: bool) -> (Vec<String>, f64) {
     let (mut pose, mut velocity) = (Pose::new(start.x, start.y, 0.0), Velocity::ZERO);
     let (mut doubts, cycle_s) = (Vec::new(), robot.cycle_s);
     for cycle in 0..400 {
-        // Just begun to move, it is stopped.
+        // It is stopped just after it has begun to move.
         let is_stopped = cycle % 8 >= 2 && cycle < 200;
         let command = if is_stopped {
             if is_told {

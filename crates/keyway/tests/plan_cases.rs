@@ -1,4 +1,4 @@
-//! The cases of `testdata/plan`, which every shell of the library runs as well.
+//! The cases of `testdata/plan`, which every front end of the library runs as well.
 #![allow(clippy::unwrap_used)]
 
 use keyway::map::{Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap};
@@ -58,8 +58,8 @@ impl Case {
         planner.plan_into(&map, &query, &mut workspace, None, &mut plan).map(|()| plan)
     }
 
-    /// Checks that an answer is no better than the truth, and no worse where the planner is said to
-    /// be optimal.
+    /// Checks that an answer is no better than the truth, and no worse if the planner claims to be
+    /// optimal.
     fn check(&self, planner: &PlannerConfig) {
         let about = format!("{}, {}\n{}", self.name, planner.name(), self.map);
         let optimum = self.cost.map(|[straight, diagonal]| Cost::new(straight, diagonal).cells());

@@ -1,4 +1,4 @@
-//! Jump point search against an independent truth, and what planners say when there is no path.
+//! Jump point search against an independent truth, and the errors of planners if there is no path.
 #![allow(clippy::unwrap_used)]
 
 mod support;

@@ -1,5 +1,5 @@
-//! Prepared maps: as short as A* everywhere, only on their own map, and whole or not at all as
-//! files.
+//! Prepared maps: path costs equal to A* everywhere, valid only for their own map, and read from
+//! files completely or not at all.
 #![allow(clippy::unwrap_used)]
 
 use keyway::geometry::Pose;
@@ -37,7 +37,7 @@ fn grid(width: i32, height: i32, rectangles: bool, density: f64, seed: u64) -> O
     })
 }
 
-/// A map's size as it is held, and from cells as they are held to those of the original.
+/// A transformed map: its size, and the mapping from its cells to those of the original.
 type Held<'a> = (i32, i32, &'a dyn Fn(Cell) -> Cell);
 
 fn xorshift(seed: u64) -> impl FnMut() -> u64 {
@@ -118,7 +118,7 @@ proptest! {
         }
     }
 
-    /// The cost does not depend on which way a map is held.
+    /// The cost does not depend on the orientation of a map.
     #[test]
     fn mirrored_and_turned_maps(width in 2i32..40, height in 2i32..40, rectangles: bool,
                                 density in 0.0..0.4f64, seed: u64) {
@@ -128,7 +128,7 @@ proptest! {
         let queries: Vec<(Cell, Cell)> = (0..20).map(|_| (cell(), cell())).collect();
         let mirrored = |cell: Cell| Cell::new(width - 1 - cell.x, cell.y);
         let turned = |cell: Cell| Cell::new(cell.y, cell.x);
-        // Each way of holding it leads back when it is done twice.
+        // Each transformation is undone by applying it again.
         let held: [Held<'_>; 3] =
             [(width, height, &|cell| cell), (width, height, &mirrored), (height, width, &turned)];
         let costs = held.map(|(width, height, hold)| {
@@ -165,7 +165,7 @@ fn maps_without_turns() {
     assert_eq!(Prepared::build(&closed).unwrap().preparation().label_entries, 0);
 }
 
-/// A closed form: along a corridor of one cell that goes to and fro.
+/// A closed form: along a winding corridor of one cell.
 #[test]
 fn a_serpentine() {
     let rows = ["......", ".#####", "......", "#####.", "......"];

@@ -69,7 +69,7 @@ fn an_end_in_a_blocked_cell_is_joined_only_where_the_disc_fits() {
     let route = planned(&map, &joined(0.3)).unwrap();
     assert_eq!(route.line.polyline().points()[0], beside.start);
     assert_eq!(route.clearance_m, 0.8);
-    // In the closed recess the way to the nearest free cell leads through the wall.
+    // In the closed recess, the path to the nearest free cell leads through the wall.
     let inside = RouteQuery { start: Point::new(2.5, 4.5), ..joined(0.3) };
     assert!(planned(&map, &inside).is_err());
 }
@@ -134,7 +134,7 @@ fn a_navigator_follows_the_route_of_the_pipeline() {
     assert_eq!(navigator.route(), Some(&route));
 }
 
-/// Each part of a fitted stack can be exchanged.
+/// Each part of a fitted stack can be replaced.
 #[test]
 fn a_navigator_takes_parts_of_ones_own() {
     let grid = OccupancyGrid::from_ascii(&["..........", "....##....", ".........."]);

@@ -1,4 +1,4 @@
-//! The commands of a navigator, whatever velocity it is told.
+//! The commands of a navigator for arbitrary velocity estimates.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/driving.rs"]
@@ -12,8 +12,8 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use proptest::prelude::*;
 
-/// Every stack as it comes for a robot, with and without the stop rule, and every one as it was
-/// published.
+/// Every stack with its parameters for a robot, with and without the stop rule, and every one as
+/// it was published.
 fn stacks(robot: &Robot) -> Vec<Stack> {
     let usual = Stack::NAMES.iter().filter_map(|name| Stack::by_name(name, robot));
     let published = Stack::NAMES.iter().filter_map(|name| Stack::published_by_name(name));
@@ -25,7 +25,7 @@ fn stacks(robot: &Robot) -> Vec<Stack> {
     stacks
 }
 
-/// Mostly what a navigator may believe: up to twice its limits.
+/// Mostly plausible values: up to twice the limits.
 fn told(most: f64) -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -2.0 * most..=2.0 * most,

@@ -1,4 +1,4 @@
-//! Starts that are told nearer to something than the robot can stand.
+//! Start poses that are estimated closer to an obstacle than the robot can be.
 #![allow(clippy::unwrap_used)]
 
 #[path = "support/driving.rs"]
@@ -11,10 +11,10 @@ use keyway::navigate::{NavigateError, Stack, Step};
 use keyway::robot::{Footprint, Robot};
 use keyway::sense::Scan;
 
-/// The face of the wall.
+/// Position of the wall's surface.
 const WALL_M: f64 = 0.05;
 
-/// Poses are wrong by this much.
+/// Error of the pose estimate.
 const TOLD_NEARER_M: f64 = 0.04;
 
 /// A hall of 8 m x 4 m in cells of 0.05 m, with a wall along its lower side.
@@ -30,14 +30,14 @@ fn plate() -> Robot {
     Robot { footprint: Footprint::rectangle(0.5, 0.36).unwrap(), ..Robot::small() }
 }
 
-/// Every stack whose local planner looks at what stands beside it.
+/// Every stack whose local planner senses the obstacles beside it.
 fn stacks(robot: &Robot) -> Vec<(&'static str, Stack)> {
     let of_name = |name: &&'static str| Some((*name, Stack::by_name(name, robot)?));
     let all = Stack::NAMES.iter().filter_map(of_name);
     all.filter(|(_, stack)| stack.local.name() != "follower").collect()
 }
 
-/// The robot's scan of the wall, which is told to be nearer than it is.
+/// The robot's scan of the wall, which is closer according to the estimate than it is.
 fn scan_of_the_wall(robot: &Robot, told: Pose) -> Scan {
     let mut scan = Scan::of_nothing(&robot.sensors[0]);
     let to_wall_m = told.y - WALL_M + TOLD_NEARER_M;
@@ -50,7 +50,7 @@ fn scan_of_the_wall(robot: &Robot, told: Pose) -> Scan {
     scan
 }
 
-/// The robot's pose after 60 s, and true if it has arrived there.
+/// The robot's pose after 60 s, and true if it has arrived.
 fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) {
     let mut navigator =
         bound_for(&hall(), &stack.fit(robot).unwrap(), start.point(), GOAL).unwrap();
@@ -72,14 +72,14 @@ fn drive(robot: &Robot, stack: &Stack, start: Pose, what: &str) -> (Pose, bool) 
         let reached = robot.limits.reached(velocity, command, robot.cycle_s);
         pose = pose.after_ramp(velocity, reached, robot.cycle_s);
         velocity = reached;
-        // It leaves what is too near and does not come nearer.
+        // It leaves the obstacle and does not come closer.
         let deeper_m = lowest_m(start) - lowest_m(pose);
         assert!(deeper_m < 1e-3, "{what}: by {deeper_m} m at {pose:?}");
     }
     (pose, false)
 }
 
-/// Along the wall, which is 0.03 m nearer than a robot can stand.
+/// Along the wall, 0.03 m closer than a robot can be.
 const TOLD: Pose = Pose { x: 2.0, y: WALL_M + 0.18 - 0.03, theta: 0.0 };
 
 #[test]
@@ -91,9 +91,9 @@ fn a_round_robot_leaves_a_wall_that_it_is_told_to_be_too_near_to() {
     }
 }
 
-/// A rectangle cannot turn away from a wall that it is told to touch without a corner that comes
-/// nearer: so it goes along the wall. With `keyway`, it stands, as it does a centimetre beside a
-/// wall.
+/// A rectangle that touches a wall according to its pose estimate cannot turn away without
+/// bringing a corner closer, so it drives along the wall. With `keyway` it stays stationary, as it
+/// does a centimetre beside a wall.
 #[test]
 fn the_stop_rule_lets_a_robot_go_along_what_it_is_told_to_touch() {
     for robot in [Robot::small(), plate()] {
@@ -148,8 +148,8 @@ fn a_start_that_is_too_near_by_more_is_refused() {
     }
 }
 
-/// On its way a robot is not told that it began too near once it has left, even if it is told to be
-/// too near again.
+/// Once a robot has left the obstacle that it started too close to, the start is not reported
+/// again, even if its estimate is too close again.
 #[test]
 fn what_has_been_left_is_not_told_again() {
     let (map, robot) = (hall(), Robot::small());

@@ -18,8 +18,8 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_1_SQRT_2;
 use support::{Raw, Rules, any_raw, any_rules, query_on};
 
-/// The length of a step in the 5 x 5, if every cell on its line is free: looked up at 64 points of
-/// it, none of which lies between two cells. Diagonals are walked cell by cell.
+/// The length of a step in the 5 x 5 neighbourhood, if every cell on its line is free: tested at
+/// 64 points of it, none of which lies between two cells. Diagonals are walked cell by cell.
 fn long_step(raw: &Raw, from: Cell, to: Cell, rules: &Rules) -> Option<f64> {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     if (dx, dy) == (0, 0) || dx.abs().max(dy.abs()) > 2 {
@@ -61,7 +61,7 @@ fn shortest_24(raw: &Raw, query: &Query, rules: &Rules) -> f64 {
     best[raw.index(query.goal)]
 }
 
-/// The L1 distance to the nearest obstacle, by looking at all of them.
+/// The L1 distance to the nearest obstacle, by testing all of them.
 fn distance(raw: &Raw, rules: &Rules, cell: Cell) -> u32 {
     let is_obstacle = |other: &Cell| match raw.state(*other) {
         Some(CellState::Occupied) => true,

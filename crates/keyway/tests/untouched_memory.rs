@@ -1,4 +1,4 @@
-//! Memory that is reserved for a large map is not used before a search comes there.
+//! Memory that is reserved for a large map is not used before a search gets there.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)]
 
@@ -7,7 +7,7 @@ use keyway::map::{Cell, Connectivity, GridFrame, LayerConfig, OccupancyGrid, Sea
 use keyway::plan::{Plan, PlannerConfig};
 use keyway::search::{Query, Workspace};
 
-/// Memory of this process that is really there \[bytes\].
+/// Resident memory of this process \[bytes\].
 fn resident_bytes() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with("VmRSS:")).unwrap();
@@ -30,8 +30,8 @@ fn a_short_query_on_a_large_map_touches_little() {
         planner.plan_into(&map, &query, &mut workspace, None, &mut plan).unwrap();
         let touched = resident_bytes().saturating_sub(before);
         let reserved = workspace.memory_bytes() as u64;
-        // Half a byte per cell (18 MB here) may be touched: bits that the allocator clears when it
-        // takes their memory from a query before.
+        // Half a byte per cell (18 MB here) may be touched: bits that the allocator clears if it
+        // reuses memory of an earlier query.
         assert!(touched < 24 << 20, "{name} touched {touched} of {reserved} bytes");
         most_reserved = reserved.max(most_reserved);
     }

@@ -16,8 +16,8 @@ fn write(animation: &Animation) -> Result<Vec<u8>, EncodingError> {
     encoder.set_palette(animation.palette.bytes());
     encoder.set_trns(opacities());
     encoder.set_compression(Compression::High);
-    // Last, because setting the compression chooses a filter, too. Neighbouring palette indices
-    // have nothing in common that a filter could use.
+    // Set last, because setting the compression chooses a filter, too. Neighbouring palette
+    // indices have nothing in common that a filter could use.
     encoder.set_filter(Filter::NoFilter);
     // 0: loop for ever.
     encoder.set_animated(animation.frames.len() as u32, 0)?;
@@ -34,7 +34,7 @@ fn write(animation: &Animation) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-/// Only the last palette entry is transparent.
+/// Opacities of the palette: only the last entry is transparent.
 fn opacities() -> Vec<u8> {
     let mut opacities = vec![255; 256];
     opacities[usize::from(super::TRANSPARENT)] = 0;

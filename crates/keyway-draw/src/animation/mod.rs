@@ -1,4 +1,4 @@
-//! Pictures shown one after another: animations as GIF and APNG.
+//! Animations of pictures, as GIF and APNG.
 
 mod apng;
 mod gif;
@@ -14,10 +14,11 @@ use crate::svg::Svg;
 use palette::{Palette, TRANSPARENT};
 use resvg::tiny_skia::Pixmap;
 
-/// Pictures of one size, shown one after another in a loop.
+/// Animation of pictures of one size, which loops.
 ///
-/// Only the rectangle of each frame that changed is kept. The colours are those of one picture, at
-/// most 255; any other colour becomes the nearest of these. The same input gives the same bytes.
+/// Only the rectangle of each frame that changed is stored. The palette is that of one picture,
+/// with at most 255 colours; any other colour becomes the nearest of these. The same input gives
+/// the same bytes.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -44,25 +45,25 @@ pub struct Animation {
     scale: f64,
     palette: Palette,
     frames: Vec<Frame>,
-    /// The last frame as a whole.
+    /// The last complete frame.
     last: Vec<u8>,
 }
 
-/// What changes in a picture, and how long the result is shown.
+/// Changed part of a picture, and the time for which the result is shown.
 #[derive(Clone, Debug)]
 struct Frame {
     left: u16,
     top: u16,
     width: u16,
     height: u16,
-    /// Palette indices, row by row; [`TRANSPARENT`] where nothing changes.
+    /// Palette indices, row by row; [`TRANSPARENT`] for unchanged pixels.
     pixels: Vec<u8>,
     centiseconds: u16,
 }
 
 impl Animation {
-    /// An animation without frames, for pictures of the size and colours of `still`, with `scale`
-    /// pixels per unit of it.
+    /// Creates an animation without frames, for pictures of the size and colours of `still`, with
+    /// `scale` pixels per unit of it.
     ///
     /// # Errors
     /// As for [`Svg::to_png`].
@@ -77,38 +78,39 @@ impl Animation {
     /// Shows a picture for this many hundredths of a second.
     ///
     /// # Errors
-    /// When the picture does not have the size that the animation was made for.
+    /// Returns [`DrawError`] if the picture does not have the size of the animation.
     pub fn push(&mut self, picture: &Svg, centiseconds: u16) -> Result<(), DrawError> {
         self.push_pixels(&picture.to_pixels(self.scale)?, centiseconds)
     }
 
-    /// Its size \[px\].
+    /// Size \[px\].
     pub const fn size_px(&self) -> (u16, u16) {
         (self.width, self.height)
     }
 
-    /// How many different pictures follow each other.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.frames.len()
     }
 
-    /// How long it takes until it begins again \[s\].
+    /// Duration of one loop \[s\].
     pub fn duration_s(&self) -> f64 {
         self.frames.iter().map(|frame| f64::from(frame.centiseconds)).sum::<f64>() / 100.0
     }
 
-    /// The bytes of a GIF file.
+    /// Returns the bytes of a GIF file.
     ///
     /// # Errors
-    /// When there is no frame.
+    /// Returns [`DrawError`] if there is no frame.
     pub fn to_gif(&self) -> Result<Vec<u8>, DrawError> {
         gif::encode(self)
     }
 
-    /// The bytes of an APNG file: a PNG whose first frame is shown where animations are not played.
+    /// Returns the bytes of an APNG file: a PNG whose first frame is shown by viewers that do not
+    /// play animations.
     ///
     /// # Errors
-    /// When there is no frame.
+    /// Returns [`DrawError`] if there is no frame.
     pub fn to_apng(&self) -> Result<Vec<u8>, DrawError> {
         apng::encode(self)
     }
@@ -135,7 +137,8 @@ impl Animation {
     }
 }
 
-/// The smallest rectangle in which two pictures differ, with the pixels of `new` that do.
+/// Returns the smallest rectangle in which two pictures differ, with the differing pixels of
+/// `new`.
 fn changed(new: &[u8], old: &[u8], width: usize) -> Option<Frame> {
     let rows = || new.chunks(width).zip(old.chunks(width));
     let differs = |(new, old): (&[u8], &[u8])| new != old;

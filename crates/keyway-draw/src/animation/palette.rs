@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 type Color = [u8; 3];
 
-/// The palette index that stands for no colour: what was there before stays.
+/// Palette index for no colour: the pixel keeps its previous colour.
 pub(super) const TRANSPARENT: u8 = 255;
 
 /// Colours, and their indices.
@@ -17,8 +17,9 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    /// The colours of a picture, frequent ones first. When there are more than 255, a colour is
-    /// left out where a more frequent one lies within a tolerance, which grows until the rest fit.
+    /// Returns the colours of a picture, frequent ones first. If there are more than 255, a
+    /// colour is left out if a more frequent one is within a tolerance, which grows until the
+    /// rest fit.
     pub(super) fn of(pixels: &Pixmap) -> Self {
         let mut counts: HashMap<Color, u32> = HashMap::new();
         for color in colors(pixels) {
@@ -35,9 +36,9 @@ impl Palette {
         }
     }
 
-    /// The palette indices of a picture's pixels, row by row.
+    /// Returns the palette indices of a picture's pixels, row by row.
     pub(super) fn indices(&mut self, pixels: &Pixmap) -> Vec<u8> {
-        // Neighbours are mostly equal.
+        // Neighbouring pixels are mostly equal.
         let mut last = ([0, 0, 0], self.nearest([0, 0, 0]));
         let place = |color: Color| {
             if color != last.0 {
@@ -48,7 +49,7 @@ impl Palette {
         colors(pixels).map(place).collect()
     }
 
-    /// All colours as red, green, blue; the transparent entry is the last.
+    /// Returns all colours as red, green, blue; the transparent entry is the last.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let mut bytes = self.colors.concat();
         bytes.resize(3 * (usize::from(TRANSPARENT) + 1), 0);
@@ -70,8 +71,8 @@ impl Palette {
     }
 }
 
-/// Colours such that each colour of the picture is within the tolerance of one of them; `None` when
-/// that takes too many.
+/// Picks colours such that each colour of the picture is within the tolerance of one of them;
+/// `None` if that takes too many.
 fn pick(by_count: &[(u32, Color)], tolerance_sq: u32) -> Option<Vec<Color>> {
     let mut picked: Vec<Color> = Vec::new();
     for &(_, color) in by_count {

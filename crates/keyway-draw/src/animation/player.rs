@@ -1,4 +1,4 @@
-//! Many pictures on the same ground, one after another.
+//! Animations of many pictures over the same map.
 
 use super::Animation;
 use crate::map_picture::{Layout, MapPicture};
@@ -6,17 +6,17 @@ use crate::raster::DrawError;
 use keyway_sim::parallel::{in_parallel, processors};
 use resvg::tiny_skia::Pixmap;
 
-/// How long the result is shown \[1/100 s\].
+/// Display time of the result \[1/100 s\].
 const RESULT_CS: u16 = 200;
-/// Cells along the longer side of a picture, in blocks where there are more.
+/// Maximum number of cells along the longer side of a picture; larger maps are drawn in blocks.
 const MAX_SIDE_CELLS: i32 = 1024;
 
-/// Plays `pictures` pictures, each for this many hundredths of a second; then `still`, the picture
-/// of the result, for 2 s. It has one pixel per unit of `still`.
+/// Animates `pictures` pictures, each shown for this many hundredths of a second, followed by
+/// `still`, the picture of the result, for 2 s. The animation has one pixel per unit of `still`.
 ///
-/// `frame` gives a picture by its number, from 0. All are shown in the layout of `still`; its
-/// legend explains what any of them shows. The map and its tints are drawn once, so they must be
-/// the same in all pictures. Colours are those of `still` and of the legend. `progress` is called
+/// `frame` returns a picture by its number, from 0. All pictures have the layout of `still`, with
+/// a legend that covers all of them. The map and its tints are drawn once, so they must be the
+/// same in all pictures. Colours are those of `still` and of the legend. `progress` is called
 /// with the number of pictures drawn so far, and their total.
 ///
 /// ```
@@ -34,7 +34,7 @@ const MAX_SIDE_CELLS: i32 = 1024;
 /// ```
 ///
 /// # Errors
-/// When a picture cannot be drawn.
+/// Returns [`DrawError`] if a picture cannot be drawn.
 pub fn animate_frames<'a>(
     still: &MapPicture<'a>,
     pictures: usize,
@@ -75,7 +75,7 @@ pub(super) fn play<'a>(
     Ok(animation)
 }
 
-/// Draws pictures on all processors, a few at a time, and hands them over in their order.
+/// Draws pictures on all processors, a few at a time, and passes them on in order.
 fn in_order(
     count: usize,
     draw: impl Fn(usize) -> Result<Pixmap, DrawError> + Sync,

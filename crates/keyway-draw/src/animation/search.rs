@@ -1,4 +1,4 @@
-//! A search as it progressed.
+//! Animation of the progress of a search.
 
 use super::Animation;
 use super::player::play;
@@ -7,21 +7,21 @@ use crate::map_picture::MapPicture;
 use crate::raster::DrawError;
 use keyway::search::Recording;
 
-/// Pictures of a search, at most.
+/// Maximum number of pictures of a search.
 const FRAMES: usize = 80;
-/// How long a search is shown \[1/100 s\], and each of its pictures at most.
+/// Maximum display time of a search, and of each of its pictures \[1/100 s\].
 const SEARCH_CS: usize = 800;
 const LONGEST_FRAME_CS: usize = 40;
 /// Longer side \[px\].
 const SIDE_PX: f64 = 640.0;
 
-/// Plays a search: up to 80 pictures, each with the same number of further events, for 8 s at most;
-/// then `still`, the picture of the result, for 2 s. Its longer side has 640 pixels.
+/// Animates a search: up to 80 pictures, each with the same number of further events, for 8 s at
+/// most, followed by `still`, the picture of the result, for 2 s. The longer side has 640 pixels.
 ///
-/// `frame` gives the picture of a part of the search. It must contain whatever `still` shows from
-/// the beginning on, and is shown in its layout. The map and its tints are drawn once, so they must
-/// be the same in all pictures. `progress` is called with the number of pictures drawn so far, and
-/// their total.
+/// `frame` returns the picture of a part of the search. It must contain everything that `still`
+/// shows from the beginning on, and has the layout of `still`. The map and its tints are drawn
+/// once, so they must be the same in all pictures. `progress` is called with the number of
+/// pictures drawn so far, and their total.
 ///
 /// ```
 /// use keyway::geometry::{Point, Polyline};
@@ -49,7 +49,7 @@ const SIDE_PX: f64 = 640.0;
 /// ```
 ///
 /// # Errors
-/// When a picture cannot be drawn, which no recording causes.
+/// Returns [`DrawError`] if a picture cannot be drawn, which no recording causes.
 pub fn animate_search<'a>(
     recording: &'a Recording,
     still: &MapPicture<'_>,

@@ -1,4 +1,4 @@
-//! Cells of the map's grid in a colour.
+//! Map cells in a colour.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -20,14 +20,14 @@ pub struct CellTint<'a> {
 #[derive(Clone, Copy, Debug)]
 enum Cells<'a> {
     Grid(&'a BitGrid),
-    /// In ascending order.
+    /// Cells in ascending order.
     List(&'a [Cell]),
 }
 
 impl Cells<'_> {
     fn has(self, cell: Cell) -> bool {
         match self {
-            // The grid may differ from the map in size: its padding is not drawn.
+            // The grid may be smaller than the map, and its padding is not drawn.
             Self::Grid(grid) => {
                 cell.x < grid.width() as i32 && cell.y < grid.height() as i32 && grid.get(cell)
             }
@@ -37,7 +37,7 @@ impl Cells<'_> {
 }
 
 impl<'a> CellTint<'a> {
-    /// Cells in a colour, behind obstacles and paths.
+    /// Creates cells in a colour, behind obstacles and paths.
     pub fn new(cells: &'a BitGrid, label: impl Into<String>, color: Rgb) -> Self {
         Self::of(Cells::Grid(cells), label, color)
     }
@@ -46,41 +46,41 @@ impl<'a> CellTint<'a> {
         Self { cells, color, label: label.into(), depth: Depth::Cells, free_only: false }
     }
 
-    /// Cells that a search must not enter although the map calls them free: the inflation. Cells
-    /// that are not free on the map may be set; they are left out.
+    /// Creates the inflation layer: cells that a search must not enter although they are free on
+    /// the map. Cells that are not free on the map may be set; they are left out.
     pub fn blocked(cells: &'a BitGrid) -> Self {
         let tint = Self::new(cells, "free, too close for the robot", BLOCKED);
         Self { depth: Depth::Tint, free_only: true, ..tint }
     }
 
-    /// Cells in which the sensor has seen something.
+    /// Creates the cells in which the sensor has detected something.
     pub fn sensed(cells: &'a BitGrid) -> Self {
         Self::new(cells, "sensed", SENSED)
     }
 
-    /// The same from a list in ascending order: a small one, for one of many pictures.
+    /// Creates the same from a list in ascending order: a small one, for one of many pictures.
     pub fn sensed_list(cells: &'a [Cell]) -> Self {
         Self::of(Cells::List(cells), "sensed", SENSED)
     }
 
-    /// Cells that are occupied although the map does not show it, in ascending order.
+    /// Creates the cells that are occupied but not on the map, in ascending order.
     pub fn unknown_obstacles(cells: &'a [Cell]) -> Self {
         let tint = Self::of(Cells::List(cells), "unknown obstacle (cells)", OBSTACLE);
         Self { depth: Depth::Obstacles, ..tint }
     }
 
-    /// Cells that the map shows as occupied although nothing is there, in ascending order.
+    /// Creates the cells that are occupied on the map but free in the world, in ascending order.
     pub fn absent(cells: &'a [Cell]) -> Self {
         Self::of(Cells::List(cells), "on the map, but not there", ABSENT)
     }
 
-    /// In another colour.
+    /// Sets another colour.
     #[must_use]
     pub fn color(self, color: Rgb) -> Self {
         Self { color, ..self }
     }
 
-    /// What the legend says.
+    /// Sets the text in the legend.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self { label: label.into(), ..self }

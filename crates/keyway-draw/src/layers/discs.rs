@@ -1,4 +1,4 @@
-//! Obstacles in their true shape.
+//! Disc obstacles in their true shape.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -17,22 +17,22 @@ pub struct HatchedDiscs<'a> {
 }
 
 impl<'a> HatchedDiscs<'a> {
-    /// Hatched discs in a colour.
+    /// Creates hatched discs in a colour.
     pub fn new(discs: &'a [Disc], label: impl Into<String>, color: Rgb) -> Self {
         Self { all: discs, label: label.into(), color }
     }
 
-    /// Obstacles that stand in the world but not on the map.
+    /// Creates the static obstacles that are in the world but not on the map.
     pub fn unknown_obstacles(discs: &'a [Disc]) -> Self {
         Self::new(discs, "unknown obstacle", OBSTACLE)
     }
 
-    /// Obstacles that move, where they are at a moment.
+    /// Creates the moving obstacles, at their positions at one time.
     pub fn moving_obstacles(discs: &'a [Disc]) -> Self {
         Self::new(discs, "moving obstacle", OBSTACLE)
     }
 
-    /// Discs that can be drawn: finite, and not of negative size.
+    /// Returns the discs that can be drawn: finite, and not of negative size.
     fn drawable(&self) -> impl Iterator<Item = &Disc> {
         self.all.iter().filter(|disc| disc.is_valid())
     }

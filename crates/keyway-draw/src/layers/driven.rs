@@ -1,4 +1,4 @@
-//! What a robot drove: its trajectory coloured by speed, and its outline on the way.
+//! Driven trajectory of a robot, coloured by speed, and its outlines along it.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -16,17 +16,18 @@ fn is_drawable(point: &TrajectoryPoint) -> bool {
     point.pose.point().is_finite() && point.velocity.v.is_finite()
 }
 
-/// Wide enough for a path to be seen over it.
+/// Wide enough that a path is visible over it.
 pub(crate) const DRIVEN_WIDTH_PX: f64 = 4.0;
 /// Distinct colours along a trajectory.
 const COLORS: u32 = 32;
-/// Points closer than this \[px\] count as one: nobody can see more.
+/// Points closer than this \[px\] count as one: a smaller distance is not visible.
 const MIN_STEP_PX: f64 = 0.25;
 
-/// Radius below which a robot's outline \[px\] is a blot on its trajectory.
+/// Radius below which a robot's outline \[px\] would only blot its trajectory.
 const MIN_ROBOT_PX: f64 = 3.0;
 
-/// A dark rim below a coloured line: without it the light end of the colours vanishes on white.
+/// Draws a dark rim below a coloured line: without it, the light end of the colours vanishes on
+/// white.
 pub(crate) fn casing(out: &mut SvgWriter, path: &PathData) {
     let line = out.tag("path").attr("fill", "none").stroke(INK, DRIVEN_WIDTH_PX + 1.1);
     let line = line.attr("stroke-linecap", "round").attr("stroke-linejoin", "round");
@@ -41,13 +42,13 @@ pub struct DrivenPath<'a> {
 }
 
 impl<'a> DrivenPath<'a> {
-    /// The colours range from standstill (or the fastest reverse speed) to the highest speed
-    /// driven.
+    /// Creates the layer with colours from standstill (or the fastest reverse speed) to the
+    /// highest speed driven.
     pub const fn new(points: &'a [TrajectoryPoint]) -> Self {
         Self { points, v_max_mps: None }
     }
 
-    /// The speed of the lightest colour, so that several pictures can be compared.
+    /// Sets the speed of the lightest colour, so that several pictures can be compared.
     #[must_use]
     pub const fn v_max_mps(self, v_max_mps: f64) -> Self {
         Self { v_max_mps: Some(v_max_mps), ..self }
@@ -67,7 +68,7 @@ impl<'a> DrivenPath<'a> {
         }
     }
 
-    /// Pixels and speed of the points that can be told apart.
+    /// Returns the pixels and speeds of the distinguishable points.
     fn steps(&self, canvas: &Canvas<'_>) -> Vec<((f64, f64), f64)> {
         let mut steps: Vec<((f64, f64), f64)> = Vec::new();
         let drawable: Vec<&TrajectoryPoint> =
@@ -98,7 +99,7 @@ impl Layer for DrivenPath<'_> {
         let mut steps = self.steps(canvas);
         let Some(&first) = steps.first() else { return };
         if steps.len() == 1 {
-            // A line of no length with round ends is a dot.
+            // A line of length 0 with round ends is a dot.
             steps.push(first);
         }
         let (low, high) = self.speed_range();
@@ -118,8 +119,8 @@ impl Layer for DrivenPath<'_> {
     }
 }
 
-/// Outlines of a robot along the way it drove, with a stroke that points ahead. Nothing is drawn
-/// where the picture's scale makes the robot a dot.
+/// Outlines of a robot along its trajectory, with a stroke for the heading. Nothing is drawn if
+/// the robot is only a dot at the picture's scale.
 #[derive(Clone, Debug)]
 pub struct Footprints<'a> {
     points: &'a [TrajectoryPoint],
@@ -132,24 +133,24 @@ pub struct Footprints<'a> {
 impl<'a> Footprints<'a> {
     const STYLE: LineStyle = LineStyle::solid(QUIET, 0.9);
 
-    /// Outlines of a robot, at distances at which they can be told apart.
+    /// Creates the outlines of a robot, at distances at which they are distinguishable.
     pub const fn new(points: &'a [TrajectoryPoint], footprint: &'a Footprint) -> Self {
         Self { points, footprint, every_m: None, label: "robot", style: Self::STYLE }
     }
 
-    /// In another style, and what the legend says then; nothing, if that is empty.
+    /// Sets another style and its text in the legend; an empty text has no entry.
     #[must_use]
     pub const fn looking(self, label: &'static str, style: LineStyle) -> Self {
         Self { label, style, ..self }
     }
 
-    /// The distance driven between two outlines \[m\].
+    /// Sets the driven distance between two outlines \[m\].
     #[must_use]
     pub const fn every_m(self, every_m: f64) -> Self {
         Self { every_m: Some(every_m), ..self }
     }
 
-    /// How far the footprint reaches straight ahead of the centre of rotation.
+    /// Returns the front of the footprint, straight ahead of the centre of rotation.
     fn front(&self) -> Point {
         let x = match self.footprint {
             Footprint::Circle(disc) => disc.radius_m(),
@@ -160,13 +161,13 @@ impl<'a> Footprints<'a> {
         Point::new(x, 0.0)
     }
 
-    /// Poses at equal distances, beginning with the first.
+    /// Returns poses at equal distances, beginning with the first.
     fn poses(&self) -> Vec<Pose> {
         let poses = || self.points.iter().filter(|p| is_drawable(p)).map(|p| p.pose);
         let step = |from: Option<Point>, to: Point| from.map_or(0.0, |from| from.distance(to));
         let mut last = None;
         let length: f64 = poses().map(|p| step(last.replace(p.point()), p.point())).sum();
-        // About twenty outlines on a long way, never overlapping on a short one.
+        // About twenty outlines on a long trajectory, never overlapping on a short one.
         let apart_m = (length / 20.0).max(2.5 * self.footprint.circumscribed_radius_m());
         let every = self.every_m.filter(|d| *d > 0.0).unwrap_or(apart_m);
         let (mut last, mut since) = (None, f64::INFINITY);

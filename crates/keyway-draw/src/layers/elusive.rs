@@ -1,4 +1,4 @@
-//! Obstacles that stand for a time only, or that sensors miss.
+//! Obstacles that are present only for a time, or that sensors miss.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -8,8 +8,8 @@ use crate::marks::{hatched_disc, hatched_polygon};
 use crate::view::Extent;
 use keyway_sim::sim::{ElusiveObstacle, ElusiveShape};
 
-/// Obstacles that stand for a time only, or that sensors miss, hatched in a colour of their own:
-/// all of them, or those that stand at a time.
+/// Obstacles that are present only for a time, or that sensors miss, hatched in a separate
+/// colour: all of them, or those that are present at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct ElusiveObstacles<'a> {
     all: &'a [ElusiveObstacle],
@@ -19,12 +19,12 @@ pub struct ElusiveObstacles<'a> {
 impl<'a> ElusiveObstacles<'a> {
     const COLOR: Rgb = Rgb(0x00, 0x8b, 0x8b);
 
-    /// All of them, for a picture of a whole run.
+    /// Creates the layer of all of them, for a picture of a whole run.
     pub const fn new(all: &'a [ElusiveObstacle]) -> Self {
         Self { all, at_s: None }
     }
 
-    /// Those that stand at a time \[s\].
+    /// Creates the layer of those that are present at a time \[s\].
     pub const fn at(all: &'a [ElusiveObstacle], t_s: f64) -> Self {
         Self { all, at_s: Some(t_s) }
     }
@@ -42,7 +42,7 @@ impl Layer for ElusiveObstacles<'_> {
     }
 
     fn extend(&self, extent: &mut Extent) {
-        // Those that do not stand now count: the frames of an animation show the same ground.
+        // Absent ones count, too: all frames of an animation show the same area.
         for shape in self.all.iter().map(ElusiveObstacle::shape) {
             match shape {
                 ElusiveShape::Disc(disc) => extent.include_disc(disc.centre, disc.radius_m),
@@ -100,7 +100,7 @@ mod tests {
             ElusiveObstacle::new(parcel, from_5_s).unwrap(),
         ];
         let color = ElusiveObstacles::COLOR.to_string();
-        // Each is an area and its hatching, and so is the mark of the legend.
+        // Each is an area and its hatching, and so is the mark in the legend.
         let marks = |layer: ElusiveObstacles<'_>| {
             let svg = MapPicture::new(&map).with(layer).svg().as_str().to_owned();
             let drawn = svg.matches(&format!("fill=\"{color}\"")).count();

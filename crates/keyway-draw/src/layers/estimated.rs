@@ -1,4 +1,4 @@
-//! What a robot believes to move.
+//! A robot's estimate of moving obstacles.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -8,9 +8,9 @@ use crate::line_style::LineStyle;
 use crate::marks::time_mark;
 use keyway::sense::Mover;
 
-/// Movers as they are estimated: the ground that each may cover, where its centre is in a second
-/// when it goes on as it does, and the number of its track ([`Mover::id`]). They do not make the
-/// picture larger.
+/// Estimated moving obstacles: the area that each may cover, the position of its centre in a
+/// second at constant velocity, and the number of its track ([`Mover::id`]). They do not enlarge
+/// the picture.
 #[derive(Clone, Debug)]
 pub struct EstimatedMovers<'a>(pub &'a [Mover]);
 
@@ -18,10 +18,10 @@ impl EstimatedMovers<'_> {
     const STYLE: LineStyle =
         LineStyle { color: Rgb(0xd5, 0x5e, 0x00), width_px: 1.6, dashes: "4 2" };
 
-    /// How far ahead the stroke points \[s\].
+    /// Prediction time of the stroke \[s\].
     const AHEAD_S: f64 = 1.0;
 
-    /// From the ground to the middle of the number above it \[px\].
+    /// Distance from the area to the middle of the number above it \[px\].
     const ABOVE_PX: f64 = 9.0;
 }
 

@@ -1,4 +1,4 @@
-//! The velocities that a local planner tried, as the ways on which they would lead.
+//! The velocities that a local planner tried, as the resulting trajectories.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -14,17 +14,18 @@ use std::collections::BTreeMap;
 
 /// Distinct colours of scores.
 const SHADES: usize = 24;
-/// Colours of the rules that refuse candidates, that of contacts first: none is one of the scores'.
+/// Colours of the rules that refuse candidates, that of contacts first: none is a colour of the
+/// scores.
 const RULES: [Rgb; 4] =
     [Rgb(0xd5, 0x5e, 0x00), Rgb(0x8c, 0x56, 0x4b), Rgb(0xcc, 0x79, 0xa7), Rgb(0x99, 0x99, 0x99)];
-/// Where a candidate would touch something \[px\].
+/// Radius of the dot at a predicted contact \[px\].
 const CONTACT_PX: f64 = 1.3;
-/// Candidates in an animation: admissible, and refused.
+/// Colours of candidates in an animation: admissible, and refused.
 const PALE: Rgb = Rgb(0x8f, 0xb8, 0xde);
 const PALE_REFUSED: Rgb = Rgb(0xf0, 0xc9, 0xa8);
 
-/// The ways of all candidates of a cycle: refused ones thin and coloured by rule, with a dot where
-/// they would touch something; admissible ones coloured by score; the best and the second best one
+/// Trajectories of all candidates of a cycle: refused ones thin and coloured by rule, with a dot
+/// at a predicted contact; admissible ones coloured by score; the best and the second best one
 /// thick.
 #[derive(Clone, Debug)]
 pub struct Fan<'a> {
@@ -37,12 +38,13 @@ impl<'a> Fan<'a> {
     const CHOSEN: LineStyle = LineStyle::solid(INK, 2.6);
     const RUNNER_UP: LineStyle = LineStyle { color: OVER_DRIVEN, width_px: 5.6, dashes: "6 4" };
 
-    /// The fan of a robot at a pose.
+    /// Creates the fan of a robot at a pose.
     pub const fn new(from: Pose, explanation: &'a Explanation) -> Self {
         Self { from, explanation, is_pale: false }
     }
 
-    /// Pale and behind everything else, with the best one alone standing out: for animations.
+    /// Makes the fan pale and draws it behind everything else, with only the best candidate
+    /// highlighted: for animations.
     #[must_use]
     pub const fn pale(self) -> Self {
         Self { is_pale: true, ..self }
@@ -52,7 +54,7 @@ impl<'a> Fan<'a> {
         std::iter::once(&self.from).chain(&candidate.poses).map(Pose::point).collect()
     }
 
-    /// Adds a candidate's way to a line.
+    /// Adds a candidate's trajectory to a line.
     fn add(&self, line: &mut PathData, candidate: &JudgedCandidate, canvas: &Canvas<'_>) {
         let points = self.points(candidate);
         if points.iter().all(|point| point.is_finite()) {
@@ -60,8 +62,8 @@ impl<'a> Fan<'a> {
         }
     }
 
-    /// The rules that refused some, with what is wrong and the number of candidates: that of
-    /// contacts first, the others by their names, so that pictures can be compared.
+    /// Returns the rules that refused candidates, with the reason and the number of candidates:
+    /// that of contacts first, the others by name, so that pictures can be compared.
     fn rules(&self) -> Vec<(&str, &str, usize)> {
         let mut rules: BTreeMap<(bool, &str), (&str, usize)> = BTreeMap::new();
         for candidate in &self.explanation.candidates {
@@ -108,7 +110,7 @@ impl<'a> Fan<'a> {
                 self.add(&mut shades[shade.min(SHADES - 1)], candidate, canvas);
             }
         }
-        // Good ones over bad ones.
+        // Good candidates are drawn over bad ones.
         for (i, line) in shades.iter().enumerate() {
             let color = viridis(i as f64 / (SHADES - 1) as f64);
             canvas.path(line, LineStyle::solid(color, 1.1));
@@ -121,7 +123,7 @@ impl<'a> Fan<'a> {
 
     fn draw_best(&self, canvas: &mut Canvas<'_>) {
         let Explanation { candidates, chosen, runner_up, .. } = self.explanation;
-        // The second one first: it is wider, so both are seen where they run together.
+        // The second best first: it is wider, so both are visible where they overlap.
         for (place, style, label) in
             [(runner_up, Self::RUNNER_UP, "second best"), (chosen, Self::CHOSEN, "chosen")]
         {

@@ -19,41 +19,42 @@ pub struct PathLine<'a> {
 }
 
 impl<'a> PathLine<'a> {
-    /// A path in a style of its own.
+    /// Creates a path in a custom style.
     pub fn new(path: &'a Polyline, label: impl Into<String>, style: LineStyle) -> Self {
         Self { path, label: label.into(), style, rim_px: 0.0, depth: Depth::Paths }
     }
 
-    /// A path as the search returned it: thin, dashed, grey-blue.
+    /// Creates a path as returned by the search: thin, dashed, grey-blue.
     pub fn planned(path: &'a Polyline) -> Self {
         let style = LineStyle { color: PLANNED, width_px: 1.3, dashes: "5 2.5" };
         Self::new(path, "planned path", style)
     }
 
-    /// A path to be followed: solid, blue.
+    /// Creates the path that is followed: solid, blue.
     pub fn smoothed(path: &'a Polyline) -> Self {
         Self::new(path, "smoothed path", LineStyle::solid(SMOOTHED, 1.6))
     }
 
-    /// With a white rim, to be seen on coloured ground.
+    /// Adds a white rim, for visibility over colours.
     #[must_use]
     pub fn rimmed(self) -> Self {
         Self { rim_px: 0.7, ..self }
     }
 
-    /// In front of all other paths.
+    /// Draws the path in front of all other paths.
     #[must_use]
     pub fn in_front(self) -> Self {
         Self { depth: Depth::Points, ..self }
     }
 
-    /// Over what was driven, which is wider: both are seen where they run together.
+    /// Draws the path over the driven trajectory, which is wider: both are visible where they
+    /// overlap.
     #[must_use]
     pub fn over_driven(self) -> Self {
         Self { style: LineStyle::solid(OVER_DRIVEN, 1.3), depth: Depth::Driven, ..self }
     }
 
-    /// What the legend says.
+    /// Sets the text in the legend.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self { label: label.into(), ..self }

@@ -1,4 +1,4 @@
-//! What can be put on a map. A new kind of picture is a new file here with a type that implements
+//! Layers of map pictures. To add a new kind, add a file here with a type that implements
 //! [`Layer`].
 
 mod caption;
@@ -35,8 +35,8 @@ pub use walked::WalkedGround;
 use crate::canvas::Canvas;
 use crate::view::Extent;
 
-/// How far in front something is drawn. Layers of one depth are drawn in the order in which they
-/// were added.
+/// Drawing order of a layer, from back to front. Layers of one depth are drawn in the order in
+/// which they were added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Depth {
@@ -44,33 +44,33 @@ pub enum Depth {
     Ground,
     /// Tints of free cells.
     Tint,
-    /// What a search did.
+    /// Expanded and open nodes of a search.
     Search,
-    /// Cells that something was measured in.
+    /// Cells with measurements.
     Cells,
     /// Paths.
     Paths,
     /// Points of interest along paths.
     Points,
-    /// What was driven.
+    /// Driven trajectories.
     Driven,
     /// Outlines of the robot.
     Robot,
-    /// Obstacles that the map does not show; what is below them shines through.
+    /// Obstacles that are not on the map; they are translucent.
     Obstacles,
     /// Start, goal and other markers.
     Markers,
 }
 
-/// Something that can be drawn on a map.
+/// A layer that can be drawn on a map.
 pub trait Layer {
-    /// How far in front it is drawn.
+    /// Returns its position in the drawing order.
     fn depth(&self) -> Depth;
 
-    /// Grows the shown part of the world so that the layer is in it. Layers of cells need not: they
-    /// lie in the map.
+    /// Enlarges the shown part of the world so that it contains the layer. Layers of cells need
+    /// not do this: they are within the map.
     fn extend(&self, _extent: &mut Extent) {}
 
-    /// Draws it, and explains it in the legend when there was something to draw.
+    /// Draws the layer, and adds it to the legend if something was drawn.
     fn draw(&self, canvas: &mut Canvas<'_>);
 }

@@ -1,4 +1,4 @@
-//! What moves, and where everything is at the same moments.
+//! Moving obstacles, with time marks that show positions at equal times.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -10,49 +10,51 @@ use crate::ticks::Ticks;
 use keyway::geometry::Point;
 use keyway_sim::sim::{Motion, MovingObstacle, TrajectoryPoint};
 
-/// Moments that are marked in a run, at most.
+/// Maximum number of times that are marked in a run.
 const MOST_MOMENTS: usize = 6;
-/// Times at one place that are written there; of more, the first and the last.
+/// Maximum number of times written at one position; of more, only the first and the last are
+/// written.
 const MOST_TIMES: usize = 3;
-/// Places nearer than this are one \[px\].
+/// Positions nearer than this are one \[px\].
 const SAME_PX: f64 = 3.0;
-/// Radius of a dot where something is at a moment \[px\].
+/// Radius of the dot at a marked time \[px\].
 const DOT_PX: f64 = 2.6;
-/// From a dot to the middle of its time \[px\].
+/// Distance from a dot to the middle of its time \[px\].
 const ASIDE_PX: f64 = 11.0;
-/// Points along a mover's way.
+/// Number of points along the trajectory of a moving obstacle.
 const STEPS: u32 = 4000;
 
-/// Obstacles that move: where they are at the beginning of a run, their way in its time, and the
-/// time in seconds where they are at equal times, with the same numbers along the robot's way. What
-/// lies outside the map does not make the picture larger.
+/// Moving obstacles: their positions at the beginning of a run, their trajectories during it, and
+/// marks with the time in seconds at equal intervals, with the same times along the robot's
+/// trajectory. Parts outside the map do not enlarge the picture.
 #[derive(Clone, Debug)]
 pub struct Movers<'a> {
     all: &'a [MovingObstacle],
-    /// Those of one robot or several, with the colour of the times along them.
+    /// Runs of one or several robots, with the colour of the time marks.
     runs: Vec<(&'a [TrajectoryPoint], Rgb)>,
 }
 
-/// Times at one place \[px\].
+/// Times at one position \[px\].
 struct Mark {
     px: (f64, f64),
     times: Vec<String>,
 }
 
-/// Where numbers stand already: middles and half widths \[px\].
+/// Numbers that were already placed: centres and half widths \[px\].
 type Taken = Vec<((f64, f64), f64)>;
 
 impl<'a> Movers<'a> {
     const WAY: LineStyle = LineStyle::solid(OBSTACLE, 1.0);
     const OUTLINE: LineStyle = LineStyle::solid(OBSTACLE, 0.9);
 
-    /// Movers while a robot drives a run; without a run, at its beginning.
+    /// Creates the layer for the run of a robot; without a run, it shows the initial positions.
     pub fn new(movers: &'a [MovingObstacle], run: &'a [TrajectoryPoint]) -> Self {
         Self { all: movers, runs: vec![(run, INK)] }
     }
 
-    /// Movers while several robots drive, each with a colour for the times along its way. The times
-    /// are shown without movers, too: the robots move among each other.
+    /// Creates the layer for several robots, each with a colour for the times along its
+    /// trajectory. The times are shown without moving obstacles, too: the robots move among each
+    /// other.
     pub const fn among(
         movers: &'a [MovingObstacle],
         runs: Vec<(&'a [TrajectoryPoint], Rgb)>,
@@ -60,7 +62,7 @@ impl<'a> Movers<'a> {
         Self { all: movers, runs }
     }
 
-    /// When the last run has ended.
+    /// End time of the last run.
     fn end_s(&self) -> f64 {
         let ends_s = self.runs.iter().filter_map(|(run, _)| Some(run.last()?.t_s));
         ends_s.fold(0.0, f64::max)
@@ -82,7 +84,7 @@ impl<'a> Movers<'a> {
     }
 }
 
-/// Where a robot is at a moment of its run, or after it.
+/// Returns the position of a robot at a time during its run, or after it.
 fn robot_at(run: &[TrajectoryPoint], t_s: f64) -> Option<Point> {
     let after = run.partition_point(|point| point.t_s <= t_s);
     let from = run.get(after.checked_sub(1)?)?;
@@ -118,10 +120,11 @@ impl Layer for Movers<'_> {
             self.draw_mover(canvas, mover, &moments);
         }
         let mut taken = Taken::new();
-        // Below the robot's way, above those of movers: they meet where it matters.
+        // Below the robot's trajectory, but above those of moving obstacles, which it meets at
+        // the critical points.
         for &(run, color) in &self.runs {
             let end_s = run.last().map_or(0.0, |point| point.t_s);
-            // After its end it stands.
+            // After its end, the robot is stationary.
             let at = |t_s: f64| robot_at(run, t_s).filter(|_| t_s <= end_s);
             let robot = marks(canvas, &moments, at);
             draw_marks(canvas, &robot, color, ASIDE_PX, &mut taken);
@@ -133,7 +136,7 @@ impl Layer for Movers<'_> {
     }
 }
 
-/// The way of a mover up to a time, in parts where it jumps.
+/// Returns the trajectory of a moving obstacle up to a time, split at its jumps.
 fn ways(motion: &Motion, end_s: f64) -> Vec<Vec<Point>> {
     let (mut ways, mut way) = (Vec::new(), Vec::new());
     let mut next_jump_s = motion.next_jump_s(0.0);
@@ -150,13 +153,13 @@ fn ways(motion: &Motion, end_s: f64) -> Vec<Vec<Point>> {
     ways
 }
 
-/// Whole seconds at equal distances.
+/// Returns whole seconds at equal intervals.
 fn moments(end_s: f64) -> Ticks {
     let step_s = Ticks::new(0.0, end_s, MOST_MOMENTS).step.ceil();
     Ticks::with_step(0.0, end_s, step_s)
 }
 
-/// Where something is at the moments after the first: where everything begins is seen without a
+/// Returns the marks at all times after the first: initial positions are visible without a
 /// number.
 fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Point>) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
@@ -172,8 +175,8 @@ fn marks(canvas: &Canvas<'_>, moments: &Ticks, place: impl Fn(f64) -> Option<Poi
     marks
 }
 
-/// Dots, each with its times `aside_px` below it. A number that would cover another one is left
-/// out: its neighbours along the way say which it is.
+/// Draws dots, each with its times `aside_px` below it. A number that would cover another one is
+/// left out: its neighbours along the trajectory identify it.
 fn draw_marks(
     canvas: &mut Canvas<'_>,
     marks: &[Mark],

@@ -1,4 +1,4 @@
-//! Start, goal and points along the way.
+//! Start, goal and points along the route.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -19,12 +19,12 @@ pub struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Rings in a style of their own; its dashes are not used.
+    /// Creates rings in a custom style; its dashes are not used.
     pub fn new(points: &'a [Point], label: impl Into<String>, style: LineStyle) -> Self {
         Self { all: points, label: label.into(), style }
     }
 
-    /// The key points of a path.
+    /// Creates the key points of a path.
     pub fn key_points(points: &'a [Point]) -> Self {
         Self::new(points, "key point", LineStyle::solid(SMOOTHED, 1.4))
     }
@@ -53,10 +53,10 @@ impl Layer for Points<'_> {
     }
 }
 
-/// Small dots where a range sensor met something.
+/// Small dots at the hits of a range sensor.
 #[derive(Clone, Debug)]
 pub struct Hits<'a>(
-    /// Where \[m\].
+    /// Positions of the hits \[m\].
     pub &'a [Point],
 );
 
@@ -74,7 +74,7 @@ impl Layer for Hits<'_> {
         let view = *canvas.view();
         let mut dots = PathData::default();
         for &point in self.0.iter().filter(|point| point.is_finite()) {
-            // A line without length has round ends.
+            // A line of length 0 has round ends.
             dots.append([view.px_from_world(point); 2]);
         }
         if canvas.path(&dots, LineStyle::solid(Self::COLOR, 2.0 * Self::RADIUS_PX)) {
@@ -89,7 +89,7 @@ impl Layer for Hits<'_> {
 /// The start: S.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartMark(
-    /// Where \[m\].
+    /// Position \[m\].
     pub Point,
 );
 
@@ -107,19 +107,19 @@ impl Layer for StartMark {
     }
 }
 
-/// The goal: G, with the circle in which it counts as reached when that is given.
+/// The goal: G, with the tolerance circle if a tolerance is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoalMark {
-    /// Where \[m\].
+    /// Position \[m\].
     pub point: Point,
-    /// How near is near enough \[m\].
+    /// Distance within which the goal counts as reached \[m\].
     pub tolerance_m: Option<f64>,
 }
 
 impl GoalMark {
     const TOLERANCE: LineStyle = LineStyle { color: INK, width_px: 0.9, dashes: "2.5 2" };
 
-    /// The tolerance; 0 without one, or when it is not a length.
+    /// Returns the tolerance; 0 without one, or if it is not a valid length.
     fn radius_m(&self) -> f64 {
         self.tolerance_m.filter(|r| r.is_finite() && *r > 0.0).unwrap_or(0.0)
     }
@@ -138,7 +138,7 @@ impl Layer for GoalMark {
     fn draw(&self, canvas: &mut Canvas<'_>) {
         draw_letter(canvas, self.point, GOAL, "goal");
         let radius = self.radius_m() * canvas.view().px_per_m();
-        // A circle that the letter hides is not drawn.
+        // A circle hidden by the letter is not drawn.
         if radius > LETTER_MARK_PX + 2.0 && self.point.is_finite() {
             let (x, y) = canvas.view().px_from_world(self.point);
             let circle = canvas.writer().tag("circle").round(x, y, radius).attr("fill", "none");
@@ -148,7 +148,7 @@ impl Layer for GoalMark {
     }
 }
 
-/// Goals that are not gone to: G, light.
+/// Goals that were not chosen: G, light.
 #[derive(Clone, Debug)]
 pub struct OtherGoals<'a> {
     all: &'a [Point],
@@ -156,12 +156,12 @@ pub struct OtherGoals<'a> {
 }
 
 impl<'a> OtherGoals<'a> {
-    /// Goals beside the one that the path leads to.
+    /// Creates the goals other than the one that the path leads to.
     pub fn new(goals: &'a [Point]) -> Self {
         Self { all: goals, label: "other goal".to_owned() }
     }
 
-    /// What the legend says.
+    /// Sets the text in the legend.
     #[must_use]
     pub fn label(self, label: impl Into<String>) -> Self {
         Self { label: label.into(), ..self }
@@ -185,7 +185,8 @@ impl Layer for OtherGoals<'_> {
     }
 }
 
-/// Start and goal of several robots: their numbers, from 0, on light discs and on dark ones.
+/// Start and goal of several robots: their numbers, from 0, on light discs for starts and dark
+/// ones for goals.
 #[derive(Clone, Debug)]
 pub struct NumberedEnds<'a>(
     /// Start and goal of each robot \[m\].
@@ -216,7 +217,8 @@ impl Layer for NumberedEnds<'_> {
                     continue;
                 }
                 let (mut x, y) = canvas.view().px_from_world(at);
-                // The start of one robot may be the goal of another: both are seen, side by side.
+                // The start of one robot may be the goal of another: both are visible, side by
+                // side.
                 let is_taken = |x: f64| {
                     placed.iter().any(|one| (one.0 - x).hypot(one.1 - y) < 2.0 * LETTER_MARK_PX)
                 };
@@ -230,25 +232,25 @@ impl Layer for NumberedEnds<'_> {
     }
 }
 
-/// A letter or a number, and whether its disc is dark.
+/// A letter or a number; the flag is true if its disc is dark.
 type Mark<'a> = (&'a str, bool);
 const START: Mark<'_> = ("S", false);
 const GOAL: Mark<'_> = ("G", true);
 const OTHER_GOAL: Mark<'_> = ("G", false);
 
-/// Draws a marker, and explains it unless the label is empty. What it would hide stays seen: then
-/// it stands beside its place, at the end of a line from there.
+/// Draws a marker, and explains it unless the label is empty. If the marker would hide a disc, it
+/// is drawn beside its position, at the end of a line from there.
 fn draw_letter(canvas: &mut Canvas<'_>, at: Point, (text, dark): Mark<'_>, label: &str) {
     if !at.is_finite() {
         return;
     }
     let (x, y) = canvas.view().px_from_world(at);
-    // A disc shows when this much of it looks out.
+    // A disc is visible if this much of it protrudes.
     let hidden_px = LETTER_MARK_PX + 3.0;
     let reach = |((cx, cy), radius): &((f64, f64), f64)| (cx - x).hypot(cy - y) + radius;
     let hidden = canvas.discs.iter().map(reach).filter(|reach_px| *reach_px < hidden_px);
     let px = hidden.reduce(f64::max).map_or((x, y), |reach_px| {
-        // Towards the middle of the plot, where there is room.
+        // Towards the middle of the plot, where there is space.
         let aside_px = (reach_px + LETTER_MARK_PX + 6.0) * std::f64::consts::FRAC_1_SQRT_2;
         let view = canvas.view();
         let towards = |at: f64, side: f64| aside_px.copysign(0.5 * side - at);

@@ -1,4 +1,4 @@
-//! Obstacles that are polygons.
+//! Polygon obstacles.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -18,12 +18,12 @@ pub struct Polygons<'a> {
 }
 
 impl<'a> Polygons<'a> {
-    /// Hatched polygons in a colour; those with a vertex that is not finite are left out.
+    /// Creates hatched polygons in a colour; those with a vertex that is not finite are left out.
     pub fn new(polygons: &'a [&'a [Point]], label: impl Into<String>, color: Rgb) -> Self {
         Self { all: polygons, label: label.into(), color }
     }
 
-    /// Obstacles that stand in the world but not on the map.
+    /// Creates the static obstacles that are in the world but not on the map.
     pub fn unknown_obstacles(polygons: &'a [&'a [Point]]) -> Self {
         Self::new(polygons, "unknown obstacle", OBSTACLE)
     }

@@ -9,9 +9,9 @@ use crate::view::Extent;
 use keyway::geometry::{Point, Pose};
 use keyway::robot::{Mount, RangeSensor};
 
-/// Sensors of a robot at a pose: a dot where each is mounted, a stroke where it looks, and the ring
-/// within which it is blind (`range_min_m`). A single one at the centre that is blind nowhere is
-/// not drawn: every robot has it.
+/// Sensors of a robot at a pose: a dot at each mount, a stroke in its direction, and the ring
+/// within which it is blind (`range_min_m`). A single sensor at the centre without a blind ring
+/// is not drawn: every robot has it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensors<'a> {
     robot: Pose,
@@ -25,7 +25,7 @@ impl<'a> Sensors<'a> {
     const LINE: LineStyle = LineStyle::solid(Self::COLOR, 1.4);
     const BLIND: LineStyle = LineStyle { color: Self::COLOR, width_px: 0.9, dashes: "2 2" };
 
-    /// The sensors of a robot at a pose in the world frame.
+    /// Creates the sensors of a robot at a pose in the world frame.
     pub const fn new(robot: Pose, sensors: &'a [RangeSensor]) -> Self {
         Self { robot, sensors }
     }
@@ -92,9 +92,9 @@ mod tests {
         let front = RangeSensor { mount: mount(0.5), ..RangeSensor::new(9, 90.0, 3.0) };
         let rear = RangeSensor { mount: mount(-1.0), range_min_m: 0.3, ..front.clone() };
         let both = svg(pose, &[front, rear]);
-        // Each, and the mark of the legend; one of them is blind within a ring.
+        // Two sensors, and the mark in the legend; one of them is blind within a ring.
         assert_eq!((dots(&both), both.matches("stroke-dasharray=\"2 2\"").count()), (3, 1));
-        // The robot looks up the page: the rear sensor is 1.5 m below the front one.
+        // The robot faces up the page: the rear sensor is 1.5 m below the front one.
         let heights: Vec<f64> = both
             .split("<circle ")
             .filter(|tag| tag.contains("r=\"2.4\""))

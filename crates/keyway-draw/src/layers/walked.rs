@@ -1,4 +1,4 @@
-//! Ground that a robot goes around.
+//! Area that a robot avoids because moving obstacles walk there.
 
 use super::{Depth, Layer};
 use crate::canvas::Canvas;
@@ -6,8 +6,8 @@ use crate::color::Rgb;
 use crate::legend::{LegendEntry, LegendMark};
 use keyway::geometry::Disc;
 
-/// Ground on which movers walk to and fro, and around which a robot goes; what is below it shines
-/// through. It does not make the picture larger.
+/// Area in which moving obstacles walk back and forth, and which a robot avoids. It is
+/// translucent and does not enlarge the picture.
 #[derive(Clone, Debug)]
 pub struct WalkedGround<'a>(pub &'a [Disc]);
 
@@ -31,7 +31,7 @@ impl Layer for WalkedGround<'_> {
         if discs.peek().is_none() {
             return;
         }
-        // They overlap: the group is as one.
+        // The discs overlap, so the opacity applies to their group.
         canvas.writer().tag("g").attr("opacity", Self::OPACITY).open();
         for disc in discs {
             let (x, y) = view.px_from_world(disc.centre);

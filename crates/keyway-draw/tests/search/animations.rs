@@ -1,4 +1,4 @@
-//! How searches are played.
+//! Tests of animated searches.
 
 use super::{ROWS, search};
 use keyway::geometry::{Point, Polyline};
@@ -7,7 +7,7 @@ use keyway::search::Recording;
 use keyway_draw::layers::{GoalMark, Meeting, PathLine, SearchTrace, StartMark};
 use keyway_draw::{Animation, MapPicture, animate_search};
 
-/// Width, height, and all frames as they are shown: red, green and blue of each pixel.
+/// Width, height, and all frames as shown: red, green and blue of each pixel.
 type Film = (usize, usize, Vec<Vec<[u8; 3]>>);
 
 fn paint(

@@ -1,4 +1,5 @@
-//! Searches: which shapes they are drawn with, and (with the feature `raster`) how they are played.
+//! Tests of searches: the shapes with which they are drawn, and (with the feature `raster`) their
+//! animations.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 #[cfg(feature = "raster")]
@@ -19,7 +20,7 @@ const ROWS: [&str; 6] = [
     "...#........",
 ];
 
-/// A planner's search from the lower left to the middle, recorded, and its plan.
+/// A planner's recorded search from the lower left to the middle, and its plan.
 fn search(planner: &str) -> (OccupancyGrid, Recording, Plan) {
     let grid = OccupancyGrid::from_ascii(&ROWS);
     let map = SearchMap::new(&grid, LayerConfig::default()).unwrap();
@@ -36,7 +37,7 @@ fn picture(grid: &OccupancyGrid, seen: &Recording) -> Svg {
     MapPicture::new(grid).with(trace).with(SearchNodes(trace)).with(Meeting(trace)).svg()
 }
 
-/// The texts of the legend behind those of the map.
+/// Returns the texts of the legend after those of the map.
 fn legend(picture: &Svg) -> Vec<String> {
     let texts = picture.as_str().lines().filter_map(|line| line.strip_suffix("</text>"));
     let texts: Vec<&str> = texts.filter_map(|line| line.rsplit('>').next()).collect();
@@ -45,7 +46,7 @@ fn legend(picture: &Svg) -> Vec<String> {
     texts[map..].iter().filter(is_of_search).map(|&text| text.to_owned()).collect()
 }
 
-/// Path data of the elements with a fill of one colour.
+/// Returns the path data of the elements with a fill of one colour.
 fn filled<'a>(picture: &'a Svg, color: &str) -> Vec<&'a str> {
     let fill = format!("fill=\"{color}\" d=\"");
     let paths = picture.as_str().lines().filter_map(|line| line.split_once(&fill));
@@ -64,9 +65,9 @@ fn cells_are_shaded_by_order_by_hand() {
     seen.generated(Side::Forward, cell(2), cell(1), 2.0);
     let drawn = picture(&grid, &seen);
     assert_eq!(legend(&drawn), ["expanded, early to late", "generated only"]);
-    // The darkest blue; that of shade 8, 8/15 of the way along five steps: 2/3 from the third
-    // colour (33, 113, 181) to the fourth (66, 146, 198); the tint of open cells. Shade 8 is the
-    // ground, too.
+    // The darkest blue; that of shade 8, 8/15 of the distance along five steps: 2/3 from the
+    // third colour (33, 113, 181) to the fourth (66, 146, 198); the tint of open cells. Shade 8
+    // is the base, too.
     assert_eq!(filled(&drawn, "#08306b"), ["m0 0h1v1h-1z"]);
     assert_eq!(filled(&drawn, "#3787c0"), ["m0 0h2v1h-2z", "m1 0h1v1h-1z"]);
     assert_eq!(filled(&drawn, "#d6e8f5"), ["m2 0h1v1h-1z"]);
@@ -99,13 +100,13 @@ fn jump_points_are_dots_and_scans_lines() {
     let drawn = picture(&grid, &seen);
     let entries = ["scans, early to late", "jump point, generated only", "jump point, expanded"];
     assert_eq!(legend(&drawn), entries);
-    // The start is expanded: a line without length.
+    // The start is expanded: a line of length 0.
     assert!(drawn.as_str().contains("M0 0h0"), "{}", drawn.as_str());
 }
 
 #[test]
 fn trees_are_distinguished_from_cells() {
-    // A tree as RRT grows it: from the nearest node a step towards anywhere.
+    // A tree as RRT grows it: from the nearest node a step in any direction.
     let mut tree = Recording::default();
     let nodes = [(0, 0), (4, 1), (2, 5), (8, 3)].map(|(x, y)| Cell::new(x, y));
     for (at, parent) in [(1, 0), (2, 0), (3, 1)] {
@@ -121,7 +122,7 @@ fn trees_are_distinguished_from_cells() {
     assert!(drawn.as_str().contains("M4 1l-2 4"), "the last known link");
     assert!(!drawn.as_str().contains("M0 0l2 5"), "not the one before");
 
-    // A prepared map has nodes on both sides, even where none is expanded.
+    // A preprocessed map has nodes on both sides, even if none is expanded.
     tree.generated(Side::Backward, nodes[2], nodes[3], 0.0);
     let entries = legend(&picture(&grid, &tree));
     for end in ["start", "goal"] {

@@ -1,23 +1,23 @@
-//! Random maps as the papers draw them: black blocks of a few cells, strewn over a square.
+//! Random maps as the papers draw them: black blocks of a few cells, scattered over a square.
 
 use crate::random::Random;
 use keyway::geometry::Pose;
 use keyway::map::{Cell, CellState, FrameError, GridFrame, OccupancyGrid};
 
-/// Cells along each side of a block, at most.
+/// Maximum number of cells along each side of a block.
 const LARGEST_BLOCK: i32 = 3;
 
-/// Blocks of 1 x 1 to 3 x 3 cells, strewn until they cover a share of the map.
+/// Blocks of 1 x 1 to 3 x 3 cells, added until they cover a share of the map.
 #[derive(Clone, Copy)]
 pub(crate) struct Clutter {
     /// Cells along each side of the map, of 1 m.
     pub(crate) side: i32,
-    /// How much is covered, at least.
+    /// Minimum covered share.
     pub(crate) percent: i32,
 }
 
 impl Clutter {
-    /// A map in which the cells of `free` are free.
+    /// Generates a map in which the cells of `free` are free.
     pub(crate) fn map(
         self,
         random: &mut Random,

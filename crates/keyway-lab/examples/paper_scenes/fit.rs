@@ -7,14 +7,14 @@ use keyway::plan::{AStar, GlobalPlanner, Plan};
 use keyway::search::{Cost, Query, Workspace};
 use std::error::Error;
 
-/// Maps that are tried before the search is given up.
+/// Maximum number of maps that are tried.
 const MAPS: u64 = 1_000_000;
 
-/// A planner of a paper's comparison, what it was asked, and what its path costs there.
+/// A planner of a paper's comparison, its query, and the published cost of its path.
 pub(crate) struct Baseline {
     planner: Box<dyn GlobalPlanner>,
     query: Query,
-    /// Published; `None`: there is a path, of any length.
+    /// Published cost; `None` if a path of any length is enough.
     cost: Option<Cost>,
 }
 
@@ -23,7 +23,7 @@ impl Baseline {
         Self { planner: Box::new(planner), query, cost: Some(cost) }
     }
 
-    /// There is a way that cuts no corner.
+    /// Requires a path that cuts no corner.
     pub(crate) fn any_length(query: Query) -> Self {
         Self { planner: Box::new(AStar::default()), query, cost: None }
     }
@@ -34,7 +34,7 @@ impl Baseline {
     }
 }
 
-/// The first map, by its seed from 1, on which all of that holds.
+/// Returns the first map, by its seed from 1, on which all baselines hold.
 pub(crate) fn first_fit(
     clutter: Clutter,
     baselines: &[Baseline],

@@ -1,10 +1,10 @@
-//! The scenes of the papers that are made of random obstacles: their maps, and their obstacles that
-//! are not on the map. The papers print pictures and lengths of paths, but no map; each map here is
-//! the first of a row of seeded ones on which the papers' baselines have the published lengths. See
-//! `scenes/README.md`.
+//! The scenes of the papers with random obstacles: their maps, and the obstacles that are not on
+//! the map. The papers print pictures and lengths of paths, but no map; each map here is the
+//! first in a series of seeded ones on which the papers' baselines have the published lengths.
+//! See `scenes/README.md`.
 //!
 //! `cargo run --release -p keyway-lab --example paper_scenes -- scenes`
-//! writes the files in `scenes/` again, byte for byte.
+//! regenerates the files in `scenes/`, byte for byte.
 
 mod clutter;
 mod fit;
@@ -25,7 +25,7 @@ use unknown::{random_cells, scene};
 /// Numbers of unknown obstacles in the scenes of \[S1\].
 const UNKNOWN: [usize; 5] = [0, 5, 10, 20, 40];
 
-/// A file, relative to the folder of the scenes, and what is in it.
+/// A file, relative to the folder of the scenes, and its content.
 struct File {
     path: String,
     text: String,
@@ -37,7 +37,7 @@ impl File {
     }
 }
 
-/// From the lower left to the upper right cell of a square map.
+/// Query from the lower left to the upper right cell of a square map.
 fn across(side: i32) -> Query {
     Query::new(Cell::new(0, 0), Cell::new(side - 1, side - 1))
 }
@@ -53,8 +53,8 @@ fn you2021() -> Result<Vec<File>, Box<dyn Error>> {
     Ok(vec![File::map("you2021/clutter.map", &grid)])
 }
 
-/// \[S1\], tables 1 and 3: A* that cuts corners, from two starts on one map. A robot has to get
-/// through without cutting any.
+/// \[S1\], tables 1 and 3: A* that cuts corners, from two starts on one map. A robot must be able
+/// to pass without cutting any.
 fn s1() -> Result<Vec<File>, Box<dyn Error>> {
     let clutter = Clutter { side: 30, percent: 15 };
     let query = across(clutter.side);

@@ -1,4 +1,4 @@
-//! Random obstacles that are not on the map, more and more of them.
+//! Random obstacles that are not on the map, in growing sets.
 
 use crate::random::Random;
 use keyway::map::{Cell, CellState, Edit, GridFrame, LayerConfig, OccupancyGrid, SearchMap};
@@ -8,13 +8,13 @@ use std::error::Error;
 use std::fmt::Write;
 
 const SEED: u64 = 1;
-/// Cells around the start and the goal in which no obstacle is put.
+/// Cells around the start and the goal that stay free of obstacles.
 const MARGIN: i32 = 2;
-/// Draws before it is given up.
+/// Maximum number of draws.
 const DRAWS: u32 = 100_000;
 
-/// Free cells of a square map for obstacles, in the order in which they are added. After each of
-/// them a way is left that cuts no corner of its cell.
+/// Returns free cells of a square map for obstacles, in the order in which they are added. After
+/// each of them, a path remains that cuts no corner of its cell.
 pub(crate) fn random_cells(
     grid: &OccupancyGrid,
     query: &Query,
@@ -51,7 +51,7 @@ fn leaves_a_way(grid: &OccupancyGrid, query: &Query) -> Result<bool, Box<dyn Err
     Ok(AStar::default().plan_into(&map, query, &mut workspace, None, &mut plan).is_ok())
 }
 
-/// The scene file.
+/// Returns the scene file.
 pub(crate) fn scene(
     frame: &GridFrame,
     query: &Query,

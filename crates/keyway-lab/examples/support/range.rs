@@ -1,4 +1,4 @@
-//! What many numbers say together, in a cell of a table.
+//! Summary of many numbers, for a cell of a table.
 
 use keyway_sim::metrics::statistics::Sample;
 
@@ -10,7 +10,7 @@ pub(crate) fn mean_and_range(values: &[f64], decimals: usize) -> String {
     format!("{:.decimals$} ({low} to {high})", sample.mean())
 }
 
-/// To a whole number, without a sign where it is 0.
+/// Rounds to a whole number, without a sign if it is 0.
 fn rounded(value: f64) -> f64 {
     value.round() + 0.0
 }

@@ -1,4 +1,4 @@
-//! Comparison of each stack with the first one: is the difference more than chance?
+//! Comparison of each stack with the first one, with significance tests.
 
 use super::record::Record;
 use super::row::Row;
@@ -10,7 +10,7 @@ use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 use std::collections::HashMap;
 
-/// A stack against the first one, run by run: the same scene with the same seed.
+/// Paired comparison of a stack with the first one: the same scene with the same seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstFirst {
     first: String,
@@ -81,7 +81,8 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
 
 const HEADER: [&str; 6] = ["stack", "reached alone", "p", "pairs", "time against the first", "p"];
 
-/// Column names with units, where the text below the table is a comment, which is not printed.
+/// Column names with units, for papers: there, the text below the table is a comment and not
+/// printed.
 const WITH_UNITS: [&str; 6] =
     ["stack", "reached alone", "p (reached)", "pairs", "time against the first s", "p (time)"];
 

@@ -25,7 +25,7 @@ pub(super) fn occupied_share(episode: &Episode) -> Option<f64> {
     (cells > 0).then(|| (occupied_m2 / (cells as f64 * cell_m2)).min(1.0))
 }
 
-/// Area of an obstacle that stands for a time only \[m²\].
+/// Area of an obstacle that is present only for a time \[m²\].
 fn shape_m2(shape: &ElusiveShape) -> f64 {
     match shape {
         ElusiveShape::Disc(disc) => PI * disc.radius_m.powi(2),
@@ -65,7 +65,8 @@ mod tests {
         episode.hidden_cells = vec![Cell::new(0, 2)];
         let share = occupied_share(&episode).unwrap();
         assert!((share - (4.5 + 1.25 * PI) / 10.0).abs() < 1e-12, "{share}");
-        // A disc that stands from the beginning, another that does not yet, and a cell less.
+        // A disc that is present from the beginning, another one that appears later, and one cell
+        // less.
         let disc = |from_s| {
             let presence = Presence { from_s, ..Presence::ALWAYS };
             ElusiveObstacle::new(ElusiveShape::Disc(Disc::new(goal, 0.5)), presence).unwrap()

@@ -1,4 +1,4 @@
-//! The runs of a batch, made several at a time.
+//! The runs of a batch, executed in parallel.
 
 use super::earlier::known;
 use super::kept::Kept;
@@ -14,14 +14,15 @@ use std::sync::mpsc;
 use std::thread;
 
 impl BatchRequest {
-    /// Makes the runs that the folder of the results does not hold yet, and writes all files.
+    /// Executes the runs that the folder of the results does not hold yet, and writes all files.
     ///
-    /// Each finished run is in the journal of the folder at once. So a batch that was stopped or
-    /// killed goes on where it was when it is driven again.
+    /// Each finished run is appended to the folder's journal at once. A batch that was stopped or
+    /// killed therefore resumes when it is driven again.
     ///
     /// # Errors
-    /// When the request, a file that it names or a run cannot be used, a result cannot be written,
-    /// or the observer stops the batch. A goal that is not reached is a result.
+    /// Returns [`BatchError`] if the request, a file that it names or a run cannot be used, a
+    /// result cannot be written, or the observer stops the batch. A goal that is not reached is a
+    /// result.
     pub fn drive(
         &self,
         pictures: &dyn Pictures,
@@ -47,7 +48,7 @@ impl BatchRequest {
     }
 }
 
-/// Puts records to the runs that they are of.
+/// Assigns records to their runs.
 fn fill(runs: &[Planned], records: &mut [Option<Record>], held: impl IntoIterator<Item = Record>) {
     let held: Vec<Record> = held.into_iter().collect();
     let held: HashMap<RunId<'_>, &Record> =
@@ -59,7 +60,7 @@ fn fill(runs: &[Planned], records: &mut [Option<Record>], held: impl IntoIterato
     }
 }
 
-/// Runs of which some are to be made.
+/// Runs, some of which are still to be executed.
 struct Missing<'a> {
     runs: &'a [Planned],
     kept: &'a Kept,
@@ -67,8 +68,8 @@ struct Missing<'a> {
 }
 
 impl Missing<'_> {
-    /// Makes the runs without a record, several at a time. Each is in the journal as soon as it is
-    /// finished.
+    /// Executes the runs without a record in parallel. Each is appended to the journal as soon as
+    /// it is finished.
     fn drive(
         &self,
         records: &mut [Option<Record>],
@@ -90,7 +91,7 @@ impl Missing<'_> {
                 let (sender, next, missing) = (sender.clone(), &next, &missing);
                 scope.spawn(move || {
                     while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        // Nobody listens any more after an error.
+                        // The receiver is gone after an error.
                         if sender.send((index, self.drive_one(index))).is_err() {
                             return;
                         }
@@ -110,7 +111,7 @@ impl Missing<'_> {
         })
     }
 
-    /// Makes a run, and keeps its full record if it is to be kept.
+    /// Executes a run, and stores its full record if that is to be kept.
     fn drive_one(&self, index: usize) -> Result<Record, BatchError> {
         let planned = &self.runs[index];
         let driven = planned.drive()?;

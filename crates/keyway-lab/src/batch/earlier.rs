@@ -9,17 +9,17 @@ use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// More than `part.json` takes.
+/// Upper bound of the size of `part.json`.
 const MAX_PART_BYTES: u64 = 1 << 20;
 
-/// All results of a batch that has ended, or of a part of one.
+/// All results of a finished batch, or of a part of one.
 pub(super) struct EarlierBatch {
     pub(super) folder: PathBuf,
     pub(super) records: Vec<Record>,
     pub(super) part: Option<Part>,
 }
 
-/// Returns the runs that a folder holds already. Runs of another version are not among them.
+/// Returns the runs that a folder already holds, except those of another version.
 pub(super) fn known(out: &OutDir) -> Result<Vec<Record>, ResultsError> {
     let Some((runs, times)) = out.earlier(RUNS)?.zip(out.earlier(TIMES)?) else {
         return Ok(Vec::new());
@@ -52,7 +52,7 @@ impl Robots {
         Self(by_run)
     }
 
-    /// Takes out the robots of a run, if all are there.
+    /// Removes and returns the robots of a run, if all are present.
     fn take(&mut self, run: &Row) -> Option<Vec<Row>> {
         let rows = self.0.remove(&(run.scene.clone(), run.digest.clone()))?;
         let are_all = (0..run.robots).map(Some).eq(rows.iter().map(|row| row.robot));
@@ -84,7 +84,7 @@ impl EarlierBatch {
     }
 }
 
-/// Reads which part of a batch a folder holds; `None` for a whole batch.
+/// Reads the part of a batch that a folder holds; `None` for a whole batch.
 fn read_part(folder: &Path) -> Result<Option<Part>, PartsError> {
     let path = folder.join(PART);
     if !path.exists() {

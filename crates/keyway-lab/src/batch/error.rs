@@ -13,7 +13,7 @@ use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Reason why a batch cannot be driven, or batches cannot be put together.
+/// Reason why a batch cannot be driven, or batches cannot be merged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum BatchError {
@@ -35,7 +35,7 @@ pub enum BatchError {
     /// `jobs` is 0.
     #[error("jobs must be at least 1")]
     NoJobs,
-    /// `stacks` has a stack twice.
+    /// `stacks` names a stack twice.
     #[error("the stack `{stack}` is given twice")]
     StackTwice {
         /// The stack.
@@ -61,7 +61,7 @@ pub enum BatchError {
         /// Error of the operating system.
         reason: io::Error,
     },
-    /// A folder of `scenes` and its subfolders hold none.
+    /// A folder of `scenes` and its subfolders hold no scene.
     #[error("{}: there is no scene (*.toml) in this folder and its subfolders; name a scene file, or a folder that holds some", path.display())]
     EmptyFolder {
         /// The folder.
@@ -91,7 +91,7 @@ pub enum BatchError {
     /// The map of a scene cannot be read.
     #[error(transparent)]
     Map(#[from] MapFileError),
-    /// The world of a scene cannot be made.
+    /// The world of a scene cannot be created.
     #[error("{scene}: {reason}")]
     World {
         /// The scene.
@@ -99,7 +99,7 @@ pub enum BatchError {
         /// Error of the world.
         reason: SceneError,
     },
-    /// A run cannot be made.
+    /// A run cannot be executed.
     #[error("{scene}, {stack}, seed {seed}: {reason}")]
     Run {
         /// The scene.
@@ -111,7 +111,7 @@ pub enum BatchError {
         /// Error of the robots.
         reason: EpisodeError,
     },
-    /// A file that is no record stands in `out` where a record is to be written.
+    /// A file that is no record has the name of a record that is to be written to `out`.
     #[error("{}: it is in the way, and no record of a run; move it away", path.display())]
     RecordInTheWay {
         /// The file.
@@ -123,7 +123,7 @@ pub enum BatchError {
         /// The folder.
         out: PathBuf,
     },
-    /// The `parts` cannot be put together.
+    /// The `parts` cannot be merged.
     #[error(transparent)]
     Parts(#[from] PartsError),
     /// Results cannot be written to `out`.
@@ -138,7 +138,7 @@ pub enum BatchError {
 }
 
 impl BatchError {
-    /// Name of the field of the request that is to blame; `None` where no single field is.
+    /// Name of the request's field that is at fault; `None` if no single field is.
     pub const fn field(&self) -> Option<&'static str> {
         match self {
             Self::NoScenes

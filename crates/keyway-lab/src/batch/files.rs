@@ -1,4 +1,4 @@
-//! The files that a batch leaves.
+//! The files that a batch writes.
 
 use super::part::Part;
 use super::wins::Contest;
@@ -25,9 +25,9 @@ const AGAINST_TEX: &str = "against_first.tex";
 const WINS_CSV: &str = "wins.csv";
 const WINS_MD: &str = "wins.md";
 
-/// All files but the pictures. The runs are there twice, and so are their robots where there are
-/// several. Then come the times, the part of a batch, the summary, the stacks against the first,
-/// and the wins of the first one, for programs, for people and for papers.
+/// All files except pictures: the runs in two formats, their robots if there are several, the
+/// times, the part of a batch, the summary, the comparison with the first stack, and the wins of
+/// the first stack. Tables are for programs, for display and for papers.
 pub(super) const TABLES: [&str; 13] = [
     RUNS,
     RUNS_CSV,
@@ -53,7 +53,7 @@ pub(super) struct TimeLine {
     pub(super) measured: RunTimes,
 }
 
-/// Writes the runs, their robots and their times, and the part of a batch that they are.
+/// Writes the runs, their robots and their times, and the description of the part of a batch.
 pub(super) fn write_runs(
     records: &[Record],
     part: Option<&Part>,
@@ -65,7 +65,7 @@ pub(super) fn write_runs(
         .map(|record| TimeLine { digest: record.run.digest.clone(), measured: record.measured })
         .collect();
     let robots: Vec<&Row> = records.iter().flat_map(|record| &record.robots).collect();
-    // The runs come last, so that all is known of a known run.
+    // The runs come last, so that a known run is complete.
     out.write(TIMES, lines(&times).as_bytes())?;
     if !robots.is_empty() {
         out.write(ROBOTS, lines(&robots).as_bytes())?;
@@ -79,7 +79,7 @@ pub(super) fn write_runs(
     }
 }
 
-/// Writes what the runs say together.
+/// Writes the summaries of the runs.
 pub(super) fn write_summaries(
     stacks: &[StackSummary],
     against_first: &[AgainstFirst],
@@ -96,7 +96,7 @@ pub(super) fn write_summaries(
     }
 }
 
-/// Writes the wins and losses of the first stack, where there are several.
+/// Writes the wins and losses of the first stack, if there are several.
 pub(super) fn write_wins(
     records: &[Record],
     contest: &Contest<'_>,

@@ -1,7 +1,7 @@
 //! The full records of runs, which can be replayed: a file for each in the folder `records`.
 //!
-//! A record is written before the line of its run in the journal. So the record of a known run is
-//! there, unless it was not asked for then: such a run is made again.
+//! A record is written before the line of its run in the journal. The record of a known run
+//! therefore exists, unless it was not requested at that time: such a run is executed again.
 
 use super::{BatchError, Keep, PartsError, Record, RunId};
 use crate::replay::RunRecord;
@@ -25,7 +25,7 @@ impl Kept {
     /// Name of the folder in the folder of the results.
     const FOLDER: &str = "records";
 
-    /// Refuses to replace what is not a record in a folder of results.
+    /// Refuses to replace files that are not records in a folder of results.
     pub(super) fn prepare<'a>(
         out: &Path,
         keep: Keep,
@@ -50,7 +50,7 @@ impl Kept {
         self.keep.wants(run.run.outcome)
     }
 
-    /// True if a run is known, but not the record of it that is to be kept.
+    /// True if a run is known, but its record, which is to be kept, is missing.
     pub(super) fn lacks(&self, run: RunId<'_>, known: &Record) -> bool {
         self.wants(known) && !self.has(run)
     }
@@ -76,7 +76,7 @@ impl Kept {
         Ok(write_atomically(&self.path(run), text)?)
     }
 
-    /// Copies the record that another folder of results has of a run.
+    /// Copies the record of a run from another folder of results.
     pub(super) fn take_over(&self, run: RunId<'_>, other: &Path) -> Result<(), BatchError> {
         let path = other.join(Self::FOLDER).join(file_name(run));
         if !begins(&path, Some(run.digest)) || self.has(run) {
@@ -97,7 +97,7 @@ impl Kept {
         };
         let paths = entries.flatten().map(|entry| entry.path()).filter(is_other);
         for path in paths.filter(|path| begins(path, None)) {
-            // Another program that removed it before did the same.
+            // On an error, another program has already removed it.
             let _ = fs::remove_file(path);
         }
     }
@@ -107,11 +107,11 @@ impl Kept {
     }
 }
 
-/// Longer names are not file names everywhere.
+/// Maximum length of a name; longer ones are not valid file names everywhere.
 const LONGEST: usize = 180;
 
-/// `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` stand for themselves, everything else as
-/// in a web address, so no two runs have the same name.
+/// File name `SCENE.STACK.SEED.json`. Letters, digits, `-` and `_` are kept, everything else is
+/// encoded as in a web address, so no two runs have the same name.
 fn file_name(run: RunId<'_>) -> String {
     let name = format!("{}.{}.{}", safe(run.scene), safe(run.stack), run.seed);
     if name.len() <= LONGEST {
@@ -129,8 +129,8 @@ fn safe(name: &str) -> String {
     name.bytes().map(letter).collect()
 }
 
-/// True if a file is a record, of this digest where one is given. A record is written as a whole,
-/// so its first lines say it.
+/// True if a file is a record, and has this digest if one is given. A record is written as a
+/// whole, so its first lines are sufficient.
 fn begins(path: &Path, digest: Option<&str>) -> bool {
     let head = RunRecord::head(digest);
     let mut found = vec![0; head.len()];

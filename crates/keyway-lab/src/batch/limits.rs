@@ -2,5 +2,5 @@
 
 use std::ops::RangeInclusive;
 
-/// Numbers of seeds that a scene may be driven with.
+/// Valid numbers of seeds for a scene.
 pub(super) const SEEDS: RangeInclusive<u64> = 1..=1_000_000;

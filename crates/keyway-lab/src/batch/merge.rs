@@ -1,4 +1,4 @@
-//! Batches that were made elsewhere, put together.
+//! Merging of batches that were executed elsewhere.
 
 use super::earlier::EarlierBatch;
 use super::kept::Kept;
@@ -11,12 +11,11 @@ use std::collections::HashMap;
 use std::path::Path;
 
 impl MergeRequest {
-    /// Puts results together and writes all files. The scenes are not needed, and nothing is
-    /// driven.
+    /// Merges results and writes all files. The scenes are not needed, and nothing is driven.
     ///
     /// # Errors
-    /// When the results of a folder cannot be read, or do not belong together, and when a file
-    /// cannot be written.
+    /// Returns [`BatchError`] if the results of a folder cannot be read, or do not belong
+    /// together, or a file cannot be written.
     pub fn merge(
         &self,
         pictures: &dyn Pictures,
@@ -29,9 +28,9 @@ impl MergeRequest {
         refuse_a_run_twice(&parts)?;
         let records = in_order(&parts)?;
         let out = Output::prepare(&self.out, pictures, progress)?;
-        // The folder stays locked until the records are there, too.
+        // The folder stays locked until the records are complete, too.
         let _lock = out.lock();
-        // Whatever records the folders have are kept.
+        // All records in the folders are kept.
         let runs = || parts.iter().flat_map(|one| one.records.iter().map(|it| it.run.id()));
         let kept = Kept::prepare(&self.out, Keep::All, runs())?;
         for EarlierBatch { folder, records, .. } in &parts {
@@ -41,7 +40,7 @@ impl MergeRequest {
     }
 }
 
-/// A scene of one name with the same stack and seed is one run, wherever it was made.
+/// Scene name, stack and seed identify a run, wherever it was executed.
 fn refuse_a_run_twice(batches: &[EarlierBatch]) -> Result<(), PartsError> {
     let mut found: HashMap<(&str, &str, u64), (&str, &Path)> = HashMap::new();
     for EarlierBatch { folder, records, .. } in batches {
@@ -62,8 +61,8 @@ fn refuse_a_run_twice(batches: &[EarlierBatch]) -> Result<(), PartsError> {
     Ok(())
 }
 
-/// Returns the runs in the order of one batch: the parts of a batch in turn, batches one after the
-/// other.
+/// Returns the runs in the order of one batch: the parts of a batch interleaved, different
+/// batches one after the other.
 fn in_order(all: &[EarlierBatch]) -> Result<Vec<Record>, PartsError> {
     let mut batches: Vec<Vec<&EarlierBatch>> = Vec::new();
     for one in all {

@@ -1,15 +1,15 @@
 //! Batches: many runs of scenes with stacks and seeds, and summaries by stack.
 //!
-//! A [`BatchRequest`] describes the runs. It drives them and writes all files. A [`MergeRequest`]
-//! puts together what was driven elsewhere. Both give a [`BatchReport`].
+//! A [`BatchRequest`] describes the runs, executes them and writes all files. A [`MergeRequest`]
+//! merges the results of runs that were executed elsewhere. Both return a [`BatchReport`].
 //!
-//! A run is a pure function of its scene, its stack and its seed; where several robots drive in a
-//! scene, it is a function of all of them. Each finished run is appended to a journal at once, with
-//! a digest of all inputs, by which later batches find it. So a batch may be killed at any moment,
-//! extended, or made in parts: only the missing runs are made. At the end the results are written
-//! in the order of the runs, and the journal is removed. Measured times are in a file of their own.
-//! Everything else is the same, byte for byte, however often a batch was killed, and on any number
-//! of threads.
+//! A run is a pure function of its scene, its stack and its seed; if several robots drive in a
+//! scene, it is a function of all of them. Each finished run is appended to a journal at once,
+//! with a digest of all inputs, by which later batches find it. A batch may therefore be killed
+//! at any moment, extended, or executed in parts: only the missing runs are executed. At the end
+//! the results are written in the order of the runs, and the journal is removed. Measured times
+//! are in a separate file. Everything else is byte-identical, however often a batch was killed,
+//! and on any number of threads.
 
 mod against_first;
 mod clutter;

@@ -34,12 +34,12 @@ impl<'a> Output<'a> {
         Ok(Self { folder: out, pictures })
     }
 
-    /// Returns the right to write to the folder.
+    /// Returns the write lock of the folder.
     pub(super) fn lock(&self) -> Arc<OutputLock> {
         self.folder.lock()
     }
 
-    /// Writes all results, and returns what is in them.
+    /// Writes all results, and returns their report.
     pub(super) fn finish(
         mut self,
         records: &[Record],

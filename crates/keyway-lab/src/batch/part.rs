@@ -5,14 +5,14 @@ use crate::results::digest;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// A part of the runs of a batch, which go to the parts in turn.
+/// A part of the runs of a batch; the runs are dealt to the parts in turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
     of: usize,
 }
 
-/// Error of a part that no batch has.
+/// Error of a part number or a number of parts that is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "shard must be a part and the number of parts, at most {}, got part {number} of {of}",
@@ -29,10 +29,10 @@ impl Shard {
     /// Largest number of parts of a batch.
     pub const MOST: usize = 10_000;
 
-    /// Returns the part of this number, from 1, of so many parts.
+    /// Returns the part with this number, from 1, of the given number of parts.
     ///
     /// # Errors
-    /// When there are too many parts, or none of this number.
+    /// Returns [`ShardError`] if there are too many parts, or no part has this number.
     pub const fn new(number: usize, of: usize) -> Result<Self, ShardError> {
         if 1 <= number && number <= of && of <= Self::MOST {
             Ok(Self { number, of })
@@ -64,7 +64,7 @@ impl Part {
     /// Name and version of this form.
     const SCHEMA: &'static str = "keyway.batch.part/1";
 
-    /// `runs` are all runs of the batch.
+    /// Creates the description of a part; `runs` are all runs of the batch.
     pub(super) fn new<'a>(shard: Shard, runs: impl Iterator<Item = RunId<'a>>) -> Self {
         let Shard { number, of } = shard;
         Self { schema: Self::SCHEMA.to_owned(), number, of, batch: Self::batch_of(runs) }
@@ -76,7 +76,7 @@ impl Part {
         digest(all.concat().as_bytes())
     }
 
-    /// True if there is such a part.
+    /// True if the schema is known and such a part exists.
     pub(super) fn is_sound(&self) -> bool {
         self.schema == Self::SCHEMA && Shard::new(self.number, self.of).is_ok()
     }

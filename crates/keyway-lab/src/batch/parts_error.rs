@@ -1,4 +1,4 @@
-//! Errors of results that are to be put together.
+//! Errors of results that are to be merged.
 
 use super::Shard;
 use crate::results::LinesError;
@@ -6,7 +6,7 @@ use keyway::files::TextFileError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Reason why the results of some folders cannot be put together.
+/// Reason why the results of some folders cannot be merged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PartsError {
@@ -43,7 +43,7 @@ pub enum PartsError {
     /// The description of a part, or a record, cannot be read.
     #[error(transparent)]
     File(#[from] TextFileError),
-    /// The description of a part is something else.
+    /// The description of a part is invalid.
     #[error(
         "{}: it does not say which part of a batch this is, of at most {} parts",
         path.display(),
@@ -105,12 +105,12 @@ const fn advice(error: &LinesError) -> &'static str {
     }
 }
 
-/// Missing parts that are named.
+/// Maximum number of missing parts that are listed.
 const SHOWN: usize = 10;
 
 fn shown(missing: &[usize], of: usize) -> String {
     let names: Vec<String> = missing.iter().map(|number| format!("{number}/{of}")).collect();
-    // A rest of one takes no more room than the number of the rest.
+    // A single remaining part takes no more space than the text that replaces it.
     if names.len() < SHOWN + 2 {
         return names.join(", ");
     }

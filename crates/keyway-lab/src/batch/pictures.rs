@@ -3,7 +3,7 @@
 use super::Record;
 use std::error::Error;
 
-/// Drawer of pictures of the results of a batch. `()` draws none.
+/// Drawer of pictures of the results of a batch. `()` draws nothing.
 pub trait Pictures {
     /// Returns the names of all files that may be drawn, relative to the folder of the results.
     fn names(&self) -> Vec<&'static str>;
@@ -11,7 +11,7 @@ pub trait Pictures {
     /// Draws the runs of these stacks.
     ///
     /// # Errors
-    /// When a picture cannot be drawn.
+    /// Returns an error if a picture cannot be drawn.
     fn draw(
         &self,
         records: &[Record],

@@ -15,37 +15,37 @@ use std::sync::Arc;
 
 /// All runs of a request, or those of a part of it.
 pub(super) struct PlannedBatch {
-    /// Scene by scene, for each its stacks, for each stack its seeds.
+    /// The runs in order: scene by scene, then stack by stack, then seed by seed.
     pub(super) runs: Vec<Planned>,
     /// The part; `None` for a whole batch.
     pub(super) part: Option<Part>,
 }
 
-/// A run that is to be made.
+/// A run that is to be executed.
 pub(super) struct Planned {
     scene: Arc<BatchScene>,
-    /// Name of the stack, or the path of its file; of robots with different stacks, their names.
+    /// Name of the stack, or the path of its file; for robots with different stacks, their names.
     stack: String,
     seed: u64,
     /// Digest of all inputs.
     digest: String,
     /// Stack of each robot.
     stacks: Arc<[NamedStack]>,
-    /// The same for all stacks.
+    /// World of the run, shared by all stacks.
     pub(super) world: Arc<SharedWorld>,
 }
 
-/// A run that was made.
+/// An executed run.
 pub(super) struct DrivenRun<'a> {
     planned: &'a Planned,
     episode: Episode,
     report: EpisodeReport,
-    /// Wall clock \[s\].
+    /// Wall-clock time \[s\].
     wall_s: f64,
 }
 
 impl PlannedBatch {
-    /// Reads all scenes, and what they name.
+    /// Reads all scenes, and the files that they name.
     pub(super) fn new(request: &BatchRequest, progress: &dyn Progress) -> Result<Self, BatchError> {
         let mut runs = Vec::new();
         let mut reader = SceneReader::new(request, progress);
@@ -69,8 +69,8 @@ impl PlannedBatch {
     }
 }
 
-/// Returns the runs of a scene with the stacks of its robots: one in each of its worlds, whose
-/// seeds follow each other.
+/// Returns the runs of a scene with the stacks of its robots: one in each of its worlds, which
+/// have consecutive seeds.
 fn runs_of<'a>(
     scene: &'a Arc<BatchScene>,
     stack_names: &[String],
@@ -91,7 +91,7 @@ fn runs_of<'a>(
     }))
 }
 
-/// Returns the name of the stacks of all robots together: each different one once.
+/// Returns the joint name of the stacks of all robots: each distinct one once.
 fn label(names: &[String]) -> String {
     let is_new = |i: &usize| !names[..*i].contains(&names[*i]);
     let different: Vec<&str> = (0..names.len()).filter(is_new).map(|i| names[i].as_str()).collect();
@@ -129,7 +129,7 @@ impl Planned {
         Ok(episode)
     }
 
-    /// Makes the run of all stacks, but for their names and parameters.
+    /// Creates the episode that all stacks share, apart from their names and parameters.
     fn made_episode(&self) -> Result<Episode, SceneError> {
         let (scene, BatchScene { robots, map, .. }) = (self.scene_file(), &*self.scene);
         let map = match (map, scene.generated_map()) {
@@ -139,12 +139,12 @@ impl Planned {
         };
         let stacks = self.stacks.iter().map(|stack| stack.config.clone());
         let mut drivers = robots.iter().cloned().zip(stacks);
-        // There are as many as the scene has robots.
+        // There are as many drivers as robots in the scene.
         let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
         scene.episode(map, next)
     }
 
-    /// Makes the run.
+    /// Executes the run.
     pub(super) fn drive(&self) -> Result<DrivenRun<'_>, BatchError> {
         let episode = self.episode()?;
         let clock = wall_clock();
@@ -166,7 +166,7 @@ impl DrivenRun<'_> {
         Record::of(planned.id(), (episode, report), reference_time_s, *wall_s)
     }
 
-    /// Returns everything that it takes to make the run again.
+    /// Returns everything that is needed to repeat the run.
     pub(super) fn full_record(&self) -> RunRecord {
         let Planned { scene, digest, .. } = self.planned;
         let inputs = RecordedInputs {

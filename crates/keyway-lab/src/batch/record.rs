@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Record {
     /// The run as a whole.
     pub run: Row,
-    /// The individual robots, where there are several.
+    /// The individual robots, if there are several.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<Row>,
     /// Times of the run.
@@ -23,9 +23,9 @@ pub struct Record {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunTimes {
-    /// Wall clock of the whole run \[s\].
+    /// Wall-clock time of the whole run \[s\].
     pub wall_s: f64,
-    /// Mean wall clock of a decision \[us\].
+    /// Mean wall-clock time of a decision \[us\].
     pub mean_cycle_us: Option<f64>,
 }
 
@@ -40,8 +40,8 @@ impl RunTimes {
 }
 
 impl Record {
-    /// Collects the results of a run with its report. `reference_time_s` is the time of the fastest
-    /// route at top speed, by which runs are scored; `wall_s` is the wall clock.
+    /// Collects the results of a run with its report. `reference_time_s` is the time of the
+    /// fastest route at top speed, by which runs are scored; `wall_s` is the wall-clock time.
     pub fn of(
         id: RunId<'_>,
         (episode, report): (&Episode, &EpisodeReport),

@@ -6,10 +6,10 @@ use crate::table::{number, paragraph};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// `keyway.batch/1`: what the runs of a batch say together, and where they are.
+/// Report `keyway.batch/1`: summaries of the runs of a batch, and the paths of their files.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BatchReport {
-    /// Name and version of this form.
+    /// Name and version of the format.
     pub schema: &'static str,
     /// Number of runs.
     pub runs: usize,
@@ -17,9 +17,9 @@ pub struct BatchReport {
     pub stacks: Vec<StackSummary>,
     /// The stacks but the first, each compared with the first.
     pub against_first: Vec<AgainstFirst>,
-    /// Wins and losses of the first stack, against each other one by each measure.
+    /// Wins and losses of the first stack against each other one, by each measure.
     pub wins: Vec<Wins>,
-    /// Clock time of a decision, by stack.
+    /// Wall-clock time of a decision, by stack.
     pub cycles: Vec<StackCycles>,
     /// Paths of the files that were written, in their order.
     pub files: Vec<String>,
@@ -30,12 +30,12 @@ pub struct BatchReport {
     pub records_folder: PathBuf,
 }
 
-/// Clock time of a decision, which differs from batch to batch; nothing is judged by it.
+/// Wall-clock time of a decision. It differs from batch to batch; no comparison uses it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StackCycles {
     /// Name of the stack.
     pub stack: String,
-    /// Mean of the runs' means \[us\]; `None` where no run decided anything.
+    /// Mean of the runs' means \[us\]; `None` if no run made a decision.
     pub mean_cycle_us: Option<f64>,
 }
 
@@ -47,7 +47,7 @@ impl StackCycles {
     }
 }
 
-/// Clock times for the terminal; `None` for a single stack.
+/// Wall-clock times for the terminal; `None` for a single stack.
 pub fn cycles_line(cycles: &[StackCycles]) -> Option<String> {
     let of = |one: &StackCycles| format!("{} {}", one.stack, number(one.mean_cycle_us, 0));
     let all: Vec<String> = cycles.iter().map(of).collect();
@@ -56,6 +56,6 @@ pub fn cycles_line(cycles: &[StackCycles]) -> Option<String> {
 }
 
 impl BatchReport {
-    /// Name and version of the form.
+    /// Name and version of the format.
     pub const SCHEMA: &'static str = "keyway.batch/1";
 }

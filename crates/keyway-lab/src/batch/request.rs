@@ -1,4 +1,4 @@
-//! Batch that is to be driven.
+//! Request for a batch.
 
 use super::limits::SEEDS;
 use super::{BatchError, Keep, Shard};
@@ -8,7 +8,7 @@ use keyway_sim::sim::ReachedBy;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// Scenes, what drives them, and where the results go.
+/// Scenes, the stacks and robots that drive in them, and the folder for the results.
 ///
 /// ```no_run
 /// use keyway_lab::batch::BatchRequest;
@@ -24,45 +24,46 @@ use std::path::PathBuf;
 pub struct BatchRequest {
     /// Scene files, and folders with scene files in them or in their subfolders.
     pub scenes: Vec<PathBuf>,
-    /// Folder for the results. Runs that it holds are not made again.
+    /// Folder for the results. Runs that it already holds are not repeated.
     pub out: PathBuf,
-    /// The stacks that drive each scene, all its robots: names, or files relative to the current
-    /// folder; `all` alone names all stacks. Empty: those of the scenes.
+    /// The stacks that drive each scene, with all its robots: names, or files relative to the
+    /// current folder; `all` alone means all stacks. Empty: those of the scenes.
     pub stacks: Vec<String>,
-    /// The robot in the place of all robots: a name, or a file relative to the current folder;
+    /// The robot that replaces all robots: a name, or a file relative to the current folder;
     /// `None`: those of the scenes.
     pub robot: Option<String>,
     /// Values of all robots (`robot.cycle_s=0.2`) and parameters of all stacks, changed one by one.
     pub set: Vec<Assignment>,
-    /// True if the stop rule stands behind every stack, also where a scene does not ask for it.
+    /// True if every stack runs with the stop rule, even if a scene does not ask for it.
     pub safe: bool,
     /// File of the disturbances; `None`: those of the scenes.
     pub disturbances: Option<PathBuf>,
     /// Pose by which a goal is reached; `None`: as the scenes say.
     pub reached_by: Option<ReachedBy>,
-    /// Number of seeds for each scene: its own seed, and the numbers that follow.
+    /// Number of seeds for each scene: its own seed, and the numbers that follow it.
     pub seeds: u64,
-    /// Number of runs at the same time; `None`: as many as there are processors.
+    /// Number of parallel runs; `None`: the number of processors.
     pub jobs: Option<usize>,
-    /// The part of the runs that is made; `None`: all runs.
+    /// The part of the runs that is executed; `None`: all runs.
     pub shard: Option<Shard>,
     /// The runs whose full records are stored.
     pub keep: Keep,
-    /// A map of more cells is refused before memory is taken for it.
+    /// Maximum number of cells of a map; larger maps are refused before memory is allocated.
     pub max_cells: u64,
 }
 
-/// Results of other batches that are to be put together, and where they go.
+/// Results of other batches that are to be merged, and the folder for the merged results.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MergeRequest {
-    /// Folders of results. The parts of a batch must all be there; other batches follow each other.
+    /// Folders of results. All parts of a batch must be given; different batches are
+    /// concatenated.
     pub parts: Vec<PathBuf>,
-    /// Folder for all results together.
+    /// Folder for the merged results.
     pub out: PathBuf,
 }
 
 impl BatchRequest {
-    /// Numbers of seeds that a scene may be driven with.
+    /// Valid numbers of seeds for a scene.
     pub const SEEDS: RangeInclusive<u64> = SEEDS;
 
     /// Returns a request for one run of each scene with everything that the scene names.
@@ -84,7 +85,7 @@ impl BatchRequest {
         }
     }
 
-    /// Checks what can be checked before any file is read.
+    /// Checks everything that can be checked before any file is read.
     pub(super) fn check(&self) -> Result<(), BatchError> {
         if self.scenes.is_empty() {
             return Err(BatchError::NoScenes);
@@ -107,7 +108,7 @@ impl BatchRequest {
 }
 
 impl MergeRequest {
-    /// Checks what can be checked before any file is read.
+    /// Checks everything that can be checked before any file is read.
     pub(super) fn check(&self) -> Result<(), BatchError> {
         if self.parts.is_empty() {
             return Err(BatchError::NoParts);
@@ -115,7 +116,7 @@ impl MergeRequest {
         if self.out.as_os_str().is_empty() {
             return Err(BatchError::NoOut);
         }
-        // Results that are read must not be replaced on the way.
+        // The output must not replace results that are read.
         let Ok(out) = self.out.canonicalize() else { return Ok(()) };
         let is_out = |part: &PathBuf| part.canonicalize().is_ok_and(|part| part == out);
         if self.parts.iter().any(is_out) {

@@ -17,8 +17,8 @@ pub struct RunId<'a> {
     pub digest: &'a str,
 }
 
-/// A line of `runs.jsonl` and `runs.csv`, or one of `robots.jsonl` and `robots.csv`; identical
-/// wherever and whenever it is computed.
+/// A line of `runs.jsonl` and `runs.csv`, or one of `robots.jsonl` and `robots.csv`; it is
+/// deterministic.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
@@ -39,7 +39,7 @@ pub struct Row {
     pub robots: u32,
     /// Robots that reached their goals.
     pub robots_reached: u32,
-    /// State of the robot at the contact that ended the run.
+    /// Motion state of the robot at the contact that ended the run.
     pub contact: Option<ContactWhile>,
     /// Speed of the moving obstacle that was touched \[m/s\].
     pub mover_speed_mps: Option<f64>,
@@ -57,7 +57,7 @@ pub struct Row {
     pub min_standing_clearance_m: Option<f64>,
     /// Least clearance from moving obstacles \[m\].
     pub min_mover_clearance_m: Option<f64>,
-    /// Least clearance between two robots \[m\]; `None` where there is only one.
+    /// Least clearance between two robots \[m\]; `None` if there is only one.
     pub min_robot_clearance_m: Option<f64>,
     /// Searches for a route.
     pub routes_planned: Option<u32>,
@@ -69,7 +69,7 @@ pub struct Row {
     pub v_variation_mps: Option<f64>,
     /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: Option<f64>,
-    /// Least distance from an obstacle \[m\]; this and the next three are measures of MRPB.
+    /// Least distance from an obstacle \[m\]; this and the next three are metrics of MRPB.
     pub min_distance_m: Option<f64>,
     /// Share of the time spent nearer than the safe distance.
     pub share_near: Option<f64>,
@@ -79,8 +79,8 @@ pub struct Row {
     pub velocity_smoothness_mps2: Option<f64>,
     /// Time of the fastest route at top speed \[s\].
     pub reference_time_s: Option<f64>,
-    /// Success times reference time over time, the time limited to two to eight times the
-    /// reference: at most 0.5.
+    /// Score: success times reference time over time, with the time clamped to two to eight times
+    /// the reference; at most 0.5.
     pub score: Option<f64>,
     /// Reason why the goal was not reached.
     pub reason: Option<String>,
@@ -90,13 +90,13 @@ pub struct Row {
     pub digest: String,
 }
 
-/// State of a robot at a contact.
+/// Motion state of a robot at a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactWhile {
     /// The robot was driving.
     Driving,
-    /// The robot was standing.
+    /// The robot was stationary.
     Standing,
 }
 
@@ -108,7 +108,7 @@ impl Row {
     }
 }
 
-/// Figures that all robots of a run have in common.
+/// Values that all robots of a run share.
 pub(super) struct World {
     /// Occupied share of the map.
     pub occupied_share: Option<f64>,

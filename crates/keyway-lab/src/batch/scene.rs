@@ -1,4 +1,4 @@
-//! Scenes of a batch, with everything that their runs depend on.
+//! Scenes of a batch, with all inputs of their runs.
 
 use super::scene_list::ListedScene;
 use super::{BatchError, BatchRequest};
@@ -28,17 +28,17 @@ pub(super) struct BatchScene {
     /// Folder of its file.
     pub(super) folder: PathBuf,
     pub(super) robots: Vec<Robot>,
-    /// Parameters of all stacks that are changed.
+    /// Changed parameters of all stacks.
     set: Vec<Assignment>,
-    /// The map; `None` where it is made from the seed.
+    /// The map; `None` if it is generated from the seed.
     pub(super) map: Option<Arc<SceneMap>>,
-    /// Folder of the files of stacks: that of the scene that names them, otherwise the current one.
+    /// Base folder of stack files: that of the scene that names them, otherwise the current one.
     stack_folder: PathBuf,
-    /// Digest of all that the runs depend on but stacks and seed.
+    /// Digest of all inputs of the runs except stacks and seed.
     digest: String,
 }
 
-/// Reader of the scenes of a request. Many scenes have the same map, which is read once.
+/// Reader of the scenes of a request. A map that several scenes use is read once.
 pub(super) struct SceneReader<'a> {
     request: &'a BatchRequest,
     progress: &'a dyn Progress,
@@ -50,7 +50,7 @@ impl<'a> SceneReader<'a> {
         Self { request, progress, maps: HashMap::new() }
     }
 
-    /// Reads everything that a scene or the request names.
+    /// Reads all files that a scene or the request names.
     pub(super) fn read(&mut self, listed: ListedScene) -> Result<BatchScene, BatchError> {
         let request = self.request;
         let ListedScene { name, path, mut file } = listed;
@@ -93,8 +93,8 @@ impl<'a> SceneReader<'a> {
     }
 }
 
-/// Returns the digest of a scene with its robots and its map. Places and names of files are no part
-/// of a run. The time with which a run is compared is.
+/// Returns the digest of a scene with its robots and its map. It excludes paths and names of
+/// files, and includes the reference time of the score.
 fn digest_of(file: &SceneFile, robots: &[Robot], map: Option<&SceneMap>) -> String {
     let (description, robot, stack) = (None, String::new(), String::new());
     let scene = SceneFile { description, map: None, robot, stack, seed: 0, ..file.clone() };
@@ -105,8 +105,8 @@ fn digest_of(file: &SceneFile, robots: &[Robot], map: Option<&SceneMap>) -> Stri
 }
 
 impl BatchScene {
-    /// Returns the names of the stacks of all robots, once for each choice of stacks. A stack that
-    /// the request names drives all robots.
+    /// Returns the names of the stacks of all robots, once for each choice of stacks. A stack
+    /// that the request names drives all robots.
     pub(super) fn stack_names(&self, request: &BatchRequest) -> Vec<Vec<String>> {
         let own = self.file.robots_and_stacks();
         let of_all = |name: &str| vec![name.to_owned(); own.len()];
@@ -139,7 +139,7 @@ impl BatchScene {
         changed.map_err(|error| BatchError::Set(Box::new(error)))
     }
 
-    /// Returns the digest of all that the runs with these stacks depend on but the seed.
+    /// Returns the digest of all inputs of the runs with these stacks except the seed.
     pub(super) fn digest_with(&self, stacks: &[NamedStack]) -> String {
         let stacks: Vec<_> = stacks.iter().map(|one| (&one.name, &one.config)).collect();
         digest(json_text(&(&self.digest, stacks)).as_bytes())

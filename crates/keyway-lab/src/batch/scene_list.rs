@@ -1,4 +1,4 @@
-//! The scenes that a request names: files, and those of folders and their subfolders.
+//! The scenes that a request names: files, and the scene files in folders and their subfolders.
 
 use super::{BatchError, BatchRequest};
 use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, read_scene};
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// A scene of a request.
 pub(super) struct ListedScene {
-    /// The path of its file below the folder that the request names, without `.toml`; of a file
-    /// that the request names itself, the name without `.toml`.
+    /// Path of the file below the folder that the request names, without `.toml`; for a file that
+    /// the request itself names, its name without `.toml`.
     pub(super) name: String,
     pub(super) path: PathBuf,
     pub(super) file: SceneFile,
@@ -24,8 +24,8 @@ struct Candidate {
 }
 
 /// Reads the scenes of a request, in its order; those of a folder in the order of their paths. A
-/// file of a folder that is no scene is left out where a scene or the request refers to it, as to a
-/// robot or a stack.
+/// file of a folder that is no scene is left out if a scene or the request refers to it, for
+/// example as a robot or a stack.
 pub(super) fn listed_scenes(request: &BatchRequest) -> Result<Vec<ListedScene>, BatchError> {
     let (mut scenes, mut others) = (Vec::new(), Vec::new());
     for Candidate { name, path, is_named } in candidates(&request.scenes)? {
@@ -49,7 +49,7 @@ pub(super) fn listed_scenes(request: &BatchRequest) -> Result<Vec<ListedScene>, 
     }
 }
 
-/// True if the file has nothing of a scene.
+/// True if the file has no content of a scene.
 const fn is_of_another_kind(error: &SceneFileError) -> bool {
     matches!(error, SceneFileError::Scene { reason: SceneError::NoScene, .. })
 }
@@ -99,8 +99,8 @@ fn candidates(given: &[PathBuf]) -> Result<Vec<Candidate>, BatchError> {
     Ok(all)
 }
 
-/// Adds the TOML files of a folder and its subfolders. What is hidden is left out, such as what an
-/// editor keeps, and so are subfolders that are links: these may lead in circles.
+/// Adds the TOML files of a folder and its subfolders. Hidden entries, such as those of an
+/// editor, are left out, and so are subfolders that are links, which may form cycles.
 fn add_files_of(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), BatchError> {
     let unreadable = |reason| BatchError::Folder { path: folder.to_owned(), reason };
     for entry in read_dir(folder).map_err(unreadable)? {
@@ -118,7 +118,8 @@ fn add_files_of(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), BatchErro
     Ok(())
 }
 
-/// Returns the path of a file below a folder, without its ending: `fleet/crossing`, on any system.
+/// Returns the path of a file below a folder, without its extension: `fleet/crossing` on any
+/// system.
 fn name_below(folder: &Path, file: &Path) -> String {
     let below = file.strip_prefix(folder).unwrap_or(file).with_extension("");
     let parts: Vec<_> = below.iter().map(|part| part.to_string_lossy()).collect();

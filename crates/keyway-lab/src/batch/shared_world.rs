@@ -1,22 +1,22 @@
-//! The world of a scene and a seed: it is made once for all stacks that drive in it.
+//! The world of a scene and a seed, created once for all stacks that drive in it.
 //!
-//! Making it takes time where the map is generated or obstacles are random. Runs in the same world
-//! follow each other, and the last one that waits for it takes it away. So however long a batch is,
-//! there is at most one world more than there are runs under way.
+//! Creating it takes time if the map is generated or obstacles are random. Runs in the same world
+//! are consecutive, and the last one that needs the world removes it. Regardless of the length of
+//! the batch, at most one more world exists than runs are in progress.
 
 use keyway_sim::episode::Episode;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A world that is made when the first run asks for it.
+/// A world that is created when the first run requests it.
 pub(super) struct SharedWorld {
-    /// Place in the order in which worlds are driven.
+    /// Position in the order in which worlds are driven.
     pub(super) number: usize,
     state: Mutex<State>,
 }
 
 #[derive(Default)]
 struct State {
-    /// Number of runs that will ask for it.
+    /// Number of runs that still need the world.
     waiting: usize,
     made: Option<Arc<Episode>>,
 }
@@ -26,12 +26,12 @@ impl SharedWorld {
         Self { number, state: Mutex::default() }
     }
 
-    /// Announces one more run that will ask for it.
+    /// Registers one more run that needs the world.
     pub(super) fn expect_run(&self) {
         self.state().waiting += 1;
     }
 
-    /// Returns the world, with the stacks of the run that made it. A run that asks meanwhile waits.
+    /// Returns the world, with the stacks of the run that created it. Concurrent requests wait.
     pub(super) fn take<E>(
         &self,
         make: impl FnOnce() -> Result<Episode, E>,
@@ -45,7 +45,7 @@ impl SharedWorld {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // A thread that died left nothing half done: a world is there, or it is made again.
+        // A thread that panicked left no partial state: the world exists, or it is created again.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -30,7 +30,7 @@ pub struct StackSummary {
     pub(super) no_path: usize,
     pub(super) mean_time_s: Option<f64>,
     pub(super) sd_time_s: Option<f64>,
-    /// The bootstrap's 95 % interval of the mean, as for the score.
+    /// Bootstrap 95 % interval of the mean, as for the score.
     pub(super) ci_low_time_s: Option<f64>,
     pub(super) ci_high_time_s: Option<f64>,
     pub(super) mean_length_m: Option<f64>,
@@ -46,7 +46,7 @@ pub struct StackSummary {
     pub(super) ci_high_score: Option<f64>,
 }
 
-/// Summaries of all stacks, in the order in which they first drive.
+/// Summaries of all stacks, in the order of their first runs.
 pub fn summaries(records: &[Record]) -> Vec<StackSummary> {
     let mut names: Vec<&str> = Vec::new();
     for record in records {
@@ -109,7 +109,7 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
     }
 }
 
-/// Interval with a fixed seed: the same runs give the same bytes.
+/// Interval with a fixed seed, so that the same runs give the same bytes.
 fn mean_interval(sample: &Sample) -> Option<Interval> {
     sample.mean_interval(Confidence::USUAL, 0)
 }
@@ -129,7 +129,7 @@ const COLUMNS: [[&str; 2]; 11] = [
     ["score", "score"],
 ];
 
-/// Column that is useful only for several robots.
+/// Index of the column that is useful only for several robots.
 const ROBOTS: usize = 3;
 
 /// A table for the terminal and for papers.

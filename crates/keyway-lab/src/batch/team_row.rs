@@ -4,8 +4,8 @@ use super::row::{ContactWhile, Row, score};
 use keyway_sim::episode::EpisodeOutcome;
 
 /// Combines the rows of all robots, under the stack of the first one: the gravest outcome, the
-/// first contact, the time until the last robot ended, and sums and minima of the rest. Measures
-/// that are means over time are left out.
+/// first contact, the time at which the last robot finished, and sums and minima of the rest.
+/// Time averages are left out.
 pub(super) fn of_all(robots: &[Row], min_robot_clearance_m: Option<f64>) -> Row {
     let first = &robots[0];
     let touched = first_touched(robots);
@@ -45,7 +45,7 @@ pub(super) fn of_all(robots: &[Row], min_robot_clearance_m: Option<f64>) -> Row 
     }
 }
 
-/// The robot that was touched first; of several at that time, one that was driving.
+/// The robot that was touched first; of several at the same time, one that was driving.
 fn first_touched(robots: &[Row]) -> Option<&Row> {
     let touched = robots.iter().filter(|row| row.contact.is_some());
     let when =

@@ -7,13 +7,13 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum BatchWarning {
-    /// A scene has several seeds but nothing random.
+    /// A scene has several seeds but no randomness.
     #[error("{scene}: nothing in it is random; every seed is the same run")]
     NotRandom {
         /// The scene.
         scene: String,
     },
-    /// The system cannot keep others from writing results at the same time.
+    /// The system cannot prevent other programs from writing results at the same time.
     #[error(
         "{}: files cannot be locked here; see to it that nobody else writes there",
         folder.display()

@@ -6,7 +6,8 @@ use keyway_sim::episode::EpisodeOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// The first stack against another one by a measure, over the runs of the same scene and seed.
+/// Comparison of the first stack with another one by a measure, over the runs of the same scene
+/// and seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Wins {
     /// Name of the first stack.
@@ -17,7 +18,7 @@ pub struct Wins {
     pub measure: RunMeasure,
     /// Number of runs in which the first stack is better.
     pub better: usize,
-    /// Number of runs in which both are the same, or nearly so.
+    /// Number of runs in which both are equal, up to [`RunMeasure::SAME_SHARE`].
     pub equal: usize,
     /// Number of runs in which the first stack is worse.
     pub worse: usize,
@@ -40,8 +41,8 @@ pub struct ComparedRun {
     pub of_stack: f64,
 }
 
-/// A measure by which runs are compared; its name is that of the field of a run. None is measured
-/// by a clock.
+/// A measure by which runs are compared, named after the field of a row. None is a wall-clock
+/// time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -126,7 +127,7 @@ impl RunMeasure {
         matches!(self, Self::Reached | Self::MinClearanceM)
     }
 
-    /// Returns the value of a run; `None` where it has none.
+    /// Returns the value of a run; `None` if it has none.
     pub(super) fn of(self, run: &Row) -> Option<f64> {
         let has_reached = run.outcome == EpisodeOutcome::Reached;
         let value = match self {
@@ -149,15 +150,15 @@ impl RunMeasure {
     }
 }
 
-/// Runs by their scenes and seeds.
+/// Runs by scene and seed.
 type ByScene<'a> = HashMap<(&'a str, u64), &'a Row>;
 
 fn runs_of<'a>(records: &'a [Record], stack: &str) -> impl Iterator<Item = &'a Row> {
     records.iter().map(|record| &record.run).filter(move |run| run.stack == stack)
 }
 
-/// Compares the first stack with all other ones by all measures: stack by stack, for each its
-/// measures, for each its runs.
+/// Compares the first stack with all other ones: stack by stack, then measure by measure, then
+/// run by run.
 fn lines<'a>(records: &'a [Record], stacks: &'a [String]) -> Vec<WinsLine<'a>> {
     let Some((first, others)) = stacks.split_first() else { return Vec::new() };
     let firsts: ByScene<'_> =
@@ -178,15 +179,15 @@ fn lines<'a>(records: &'a [Record], stacks: &'a [String]) -> Vec<WinsLine<'a>> {
 
 /// Comparison of the first stack with all other ones.
 pub(super) struct Contest<'a> {
-    /// Run by run.
+    /// Comparisons of single runs.
     pub(super) lines: Vec<WinsLine<'a>>,
-    /// Stack by stack, for each its measures.
+    /// Totals, stack by stack, then measure by measure.
     pub(super) wins: Vec<Wins>,
 }
 
 impl<'a> Contest<'a> {
-    /// `stacks` are in their order, the first one first; those that never drive where it does are
-    /// left out.
+    /// Compares the first of `stacks` with the others, in their order; stacks without a run in
+    /// common with it are left out.
     pub(super) fn of(records: &'a [Record], stacks: &'a [String]) -> Self {
         let lines = lines(records, stacks);
         let of = |(first, stack, measure): (&String, &String, RunMeasure)| {
@@ -238,7 +239,7 @@ pub(super) mod tests {
     use crate::batch::RunTimes;
     use crate::batch::row::tests::reached;
 
-    /// A run of a stack that took so long, or did not reach its goal.
+    /// A run of a stack with this time, or one that did not reach its goal.
     pub(in crate::batch) fn record(scene: &str, stack: &str, time_s: Option<f64>) -> Record {
         let outcome = time_s.map_or(EpisodeOutcome::Stuck, |_| EpisodeOutcome::Reached);
         let (scene, stack, robot) = (scene.to_owned(), stack.to_owned(), None);
@@ -276,7 +277,7 @@ pub(super) mod tests {
         assert_eq!(counts(RunMeasure::Reached), (0, 3, 1));
         assert_eq!(counts(RunMeasure::TimeS), (1, 1, 1));
         assert_eq!(counts(RunMeasure::LengthM), (0, 3, 0));
-        // The rows have none.
+        // The rows have no such value.
         assert_eq!(counts(RunMeasure::VelocitySmoothnessMps2), (0, 0, 0));
         let time = &wins[1];
         assert_eq!((time.stack.as_str(), time.worse_in[0].scene.as_str()), ("theirs", "slow"));

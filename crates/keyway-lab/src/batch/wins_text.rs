@@ -1,4 +1,4 @@
-//! Tables of wins and losses, for people.
+//! Tables of wins and losses, for display.
 
 use super::record::Record;
 use super::summary::markdown_table;
@@ -6,11 +6,11 @@ use super::wins::{Contest, RunMeasure, Verdict, Wins};
 use crate::table::{number, paragraph, rows};
 use std::collections::HashMap;
 
-/// Longest list of runs on the terminal; files have all of them.
+/// Maximum number of runs listed on the terminal; files list all of them.
 const MOST_NAMED: usize = 8;
 
-/// Counts for the terminal, and the runs in which the first stack is worse than another one; `None`
-/// for a single stack.
+/// Table of counts for the terminal, with the runs in which the first stack is worse than another
+/// one; `None` for a single stack.
 pub fn wins_table(wins: &[Wins]) -> Option<String> {
     let first = &wins.first()?.first;
     let table = rows(&header(), counts(wins), 1);
@@ -21,8 +21,8 @@ pub fn wins_table(wins: &[Wins]) -> Option<String> {
     Some(format!("Runs in which {first} is better : equal : worse:\n\n{table}\n\n{ABOUT}{worse}"))
 }
 
-/// Counts as Markdown, and every scene with the values of the first stack and the best of others;
-/// empty for a single stack.
+/// Counts as Markdown, and a table of all scenes with the values of the first stack and the best
+/// other one; empty for a single stack.
 pub(super) fn wins_markdown(records: &[Record], contest: &Contest<'_>) -> String {
     let Some(Wins { first, .. }) = contest.wins.first() else { return String::new() };
     let counts = markdown_table(&header(), counts(&contest.wins).into_iter());
@@ -49,8 +49,8 @@ fn counts(wins: &[Wins]) -> Vec<Vec<String>> {
     wins.chunks(RunMeasure::ALL.len()).map(line).collect()
 }
 
-/// The runs in which some stack is better than the first one by a measure, in words; `None` where
-/// there is none.
+/// Lists the runs in which a stack is better than the first one by a measure; `None` if there is
+/// none.
 fn worse_line(wins: &[Wins], measure: RunMeasure, with_seeds: bool) -> Option<String> {
     let mut names: Vec<String> = Vec::new();
     for one in wins.iter().filter(|one| one.measure == measure) {
@@ -69,7 +69,7 @@ fn worse_line(wins: &[Wins], measure: RunMeasure, with_seeds: bool) -> Option<St
     (!names.is_empty()).then(|| format!("\n{}", paragraph(&text)))
 }
 
-/// True if a scene is among these runs with several seeds.
+/// True if a scene appears among these runs with several seeds.
 fn has_seeds<'a>(runs: impl Iterator<Item = (&'a str, u64)>) -> bool {
     let mut first_seeds = HashMap::new();
     runs.into_iter().any(|(scene, seed)| *first_seeds.entry(scene).or_insert(seed) != seed)
@@ -79,7 +79,7 @@ fn name(scene: &str, seed: u64, with_seed: bool) -> String {
     if with_seed { format!("{scene} (seed {seed})") } else { scene.to_owned() }
 }
 
-/// Table of all runs of the first stack: its values, and the best ones of others.
+/// Table of all runs of the first stack: its values, and the best ones of other stacks.
 fn scenes(records: &[Record], contest: &Contest<'_>) -> String {
     let first = &contest.wins[0].first;
     let runs = || records.iter().map(|record| &record.run).filter(|run| run.stack == *first);
@@ -95,8 +95,8 @@ fn scenes(records: &[Record], contest: &Contest<'_>) -> String {
     markdown_table(&header, runs().map(line))
 }
 
-/// Value of the first stack, and in brackets the best stack that is better, its value, and how many
-/// are better.
+/// Value of the first stack, and in brackets the best stack that is better, its value, and the
+/// number of better ones.
 fn scene_cell(contest: &Contest<'_>, run: &super::Row, measure: RunMeasure) -> String {
     let own = measure.of(run);
     let better: Vec<_> = contest.better_than_first(measure, &run.scene, run.seed).collect();
@@ -152,7 +152,7 @@ mod tests {
         let several = |runs: &[(&str, u64)]| has_seeds(runs.iter().copied());
         assert!(several(&[("a", 1), ("b", 1), ("a", 2)]));
         assert!(!several(&[("a", 1), ("b", 2), ("a", 1)]));
-        // Also where the runs of the other seed are equal.
+        // Seeds also appear if the runs of the other seed are equal.
         let mut records = records();
         let again = records.iter().filter(|record| record.run.scene == "same").cloned();
         let again: Vec<Record> = again.collect();

@@ -74,7 +74,7 @@ impl<'a> Contender<'a> {
             path,
             optimum: match path {
                 _ if is_reachable => Some(optimal_length),
-                // Published for those who do not cut corners: others may get through.
+                // Published for planners that do not cut corners; others may find a path.
                 PathFound::Legal { length_cells } if self.corners() == CornerRule::Allow => {
                     Some(length_cells)
                 }
@@ -88,7 +88,7 @@ impl<'a> Contender<'a> {
         corner_rule(&*self.planner)
     }
 
-    /// A length that no legal path of the planner is below.
+    /// Lower bound of the lengths of the planner's legal paths.
     fn least(&self, scenario: &Scenario) -> f64 {
         let Scenario { start, goal, optimal_length, .. } = *scenario;
         if self.corners() == CornerRule::Forbid && !self.planner.is_any_angle() {
@@ -97,7 +97,7 @@ impl<'a> Contender<'a> {
         f64::from(goal.x - start.x).hypot(f64::from(goal.y - start.y))
     }
 
-    /// The answers that are wrong.
+    /// Returns the wrong answers.
     pub(super) fn mistakes(&self, file: &str, scenarios: &[Scenario]) -> Vec<Mistake> {
         let config = &self.stack.planner;
         let mistake = |(scenario, answer): (&Scenario, &GridAnswer)| {

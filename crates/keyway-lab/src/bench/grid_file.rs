@@ -11,13 +11,13 @@ use thiserror::Error;
 
 /// A scenario file with its map.
 pub struct GridFile {
-    /// Its name in the list of mistakes.
+    /// Name of the scenario file in the list of mistakes.
     pub name: String,
     /// Name of the map.
     pub map_name: String,
     /// The map.
     pub grid: OccupancyGrid,
-    /// The same map as the judge of paths reads it.
+    /// The same map as the checker of paths reads it.
     pub raw: RawMap,
     /// The queries.
     pub scenarios: Vec<Scenario>,
@@ -30,7 +30,7 @@ pub enum GridFileError {
     /// The scenario file cannot be used.
     #[error(transparent)]
     Scenarios(MapFileError),
-    /// There is no map beside the scenario file, or in the folder of maps.
+    /// No map is beside the scenario file, or in the folder of maps.
     #[error("{}: there is no map, expected {}", path.display(), searched(expected))]
     NoMap {
         /// The scenario file.
@@ -48,7 +48,7 @@ impl GridFile {
     /// has the name that the file gives, or the scenario file's own name without `.scen`.
     ///
     /// # Errors
-    /// When the scenario file cannot be used, or there is no such map.
+    /// Returns [`GridFileError`] if the scenario file cannot be used, or there is no such map.
     pub fn map_of(path: &Path, map_folder: Option<&Path>) -> Result<PathBuf, GridFileError> {
         let folder = map_folder.or(path.parent()).unwrap_or(Path::new(""));
         let scenarios = read_scenarios(path).map_err(GridFileError::Scenarios)?;
@@ -64,11 +64,11 @@ impl GridFile {
         Err(GridFileError::NoMap { path: path.to_owned(), expected })
     }
 
-    /// Reads a scenario file for its map, whose grid was read before. Of the queries, every
-    /// `every`-th is taken, beginning with the first.
+    /// Reads a scenario file for its map, whose grid was already read. It takes every `every`-th
+    /// query, beginning with the first.
     ///
     /// # Errors
-    /// When a file cannot be read, or the queries are not of this map.
+    /// Returns [`GridFileError`] if a file cannot be read, or the queries are not of this map.
     pub fn read(
         path: &Path,
         map_path: &Path,

@@ -1,9 +1,9 @@
-//! The table for people.
+//! The table for display.
 
 use super::tally::GridRow;
 use crate::table::{number, percent, range, rows};
 
-/// The range of a mean, in a line below it.
+/// Range of a mean, as a line below it.
 fn below(low: Option<f64>, high: Option<f64>, shown: fn(Option<f64>) -> String) -> String {
     let range = range(low, high, shown);
     if range.is_empty() { range } else { format!("\n{range}") }

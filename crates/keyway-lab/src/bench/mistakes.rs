@@ -1,9 +1,9 @@
-//! Wrong answers: the place of each query, what was expected, and what came.
+//! Wrong answers: the line of each query, the expected answer and the given one.
 
 use keyway::map::Cell;
 use serde::Serialize;
 
-/// This many are listed below the table.
+/// Maximum number of mistakes listed below the table.
 const LINES: usize = 10;
 
 /// An answer that is counted as a mismatch or as an illegal path.
@@ -16,22 +16,22 @@ pub struct Mistake {
     pub(super) planner: &'static str,
     pub(super) start: Cell,
     pub(super) goal: Cell,
-    /// Published length of the best path; `None`: there is none.
+    /// Published length of the best path; `None` if no path exists.
     pub(super) expected_cells: Option<f64>,
     pub(super) got: Got,
-    /// Length of the path that was found, if it is a legal one.
+    /// Length of the path that was found, if it is legal.
     pub(super) got_cells: Option<f64>,
 }
 
-/// What came in place of the expected answer.
+/// Answer that differs from the expected one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Got {
-    /// Of another length, or where there is none.
+    /// A path of a wrong length, or for a query without a path.
     Path,
     IllegalPath,
     NoPath,
-    /// The planner says that there is a path that it did not find.
+    /// The planner reports that a path exists that it did not find.
     Missed,
 }
 

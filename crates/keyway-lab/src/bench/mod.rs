@@ -1,11 +1,11 @@
 //! Planners on the queries of MovingAI scenario files: their times, and their wrong answers.
 //!
-//! Planners take turns round by round: each answers all queries, then the next one does, and so on.
-//! So a planner runs on caches that are warm with its own data, as in real use, and what disturbs
-//! the machine for a while disturbs all planners alike. For each query the fastest of its rounds
-//! counts.
+//! Planners take turns, round by round: each answers all queries, then the next one does, and so
+//! on. Each planner thus runs on caches that are warm with its own data, as in real use, and a
+//! temporary disturbance of the machine affects all planners alike. For each query, the fastest
+//! round counts.
 //!
-//! A [`ScaleRequest`] measures time and memory against the size of a map instead.
+//! A [`ScaleRequest`] instead measures time and memory as functions of the map size.
 
 mod contender;
 mod grid_file;
@@ -34,20 +34,20 @@ use std::time::Duration;
 use tally::row;
 use thiserror::Error;
 
-/// Planners that are to answer queries.
+/// Planners that are to answer queries, and the number of rounds.
 #[derive(Clone, Copy, Debug)]
 pub struct GridRequest<'a> {
     /// The planners, each with its layers.
     pub stacks: &'a [Stack],
-    /// Every query is answered this many times; the fastest time counts.
+    /// Number of times each query is answered; the fastest time counts.
     pub repeat: u64,
 }
 
-/// All that came of a scenario file.
+/// All results of a scenario file.
 pub struct FileResult {
     /// A row for each planner.
     pub rows: Vec<GridRow>,
-    /// The answers that are wrong.
+    /// The wrong answers.
     pub mistakes: Vec<Mistake>,
     answers: Vec<Vec<GridAnswer>>,
 }
@@ -56,13 +56,13 @@ pub struct FileResult {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GridError {
-    /// A planner's layers cannot be made.
+    /// A planner's layers cannot be derived.
     #[error(transparent)]
     Map(ConfigError),
     /// A planner cannot be used.
     #[error(transparent)]
     Planner(PlanError),
-    /// The observer stopped it.
+    /// The observer stopped the measurement.
     #[error("stopped before the end")]
     Stopped,
 }
@@ -71,8 +71,8 @@ impl GridRequest<'_> {
     /// Answers the queries of a file.
     ///
     /// # Errors
-    /// When a planner cannot be used on the map, or the observer stops it. Queries without a path
-    /// are results.
+    /// Returns [`GridError`] if a planner cannot be used on the map, or the observer stops the
+    /// measurement. Queries without a path are results.
     pub fn on(&self, file: &GridFile, progress: &dyn Progress) -> Result<FileResult, GridError> {
         let GridFile { name, map_name, grid, raw, scenarios } = file;
         let prepare = |stack| Contender::prepare(stack, grid);
@@ -109,7 +109,7 @@ impl GridRow {
     }
 }
 
-/// A row for each planner over the answers of all files, which are taken out of them.
+/// Returns a row for each planner over the answers of all files, which are taken out of them.
 pub fn totals(stacks: &[Stack], files: &mut [FileResult]) -> Vec<GridRow> {
     let total = |(i, stack): (usize, &Stack)| {
         let answers: Vec<GridAnswer> =

@@ -1,5 +1,5 @@
-//! A MovingAI map as plain text, and the rules of its benchmark: the judge of all planners. It
-//! shares nothing with them, not even the reader of maps.
+//! A MovingAI map as plain text, with the rules of its benchmark. It checks the paths of all
+//! planners and shares no code with them, not even the reader of maps.
 
 use keyway::map::Cell;
 use keyway::search::CornerRule;
@@ -10,7 +10,8 @@ pub struct RawMap {
 }
 
 impl RawMap {
-    /// The rows after the line `map` of a file's text. The reader checks that they are complete.
+    /// Reads the rows after the line `map` of a file's text. The reader checks that they are
+    /// complete.
     pub fn new(text: &str) -> Self {
         let rows = text.lines().skip_while(|line| line.trim() != "map").skip(1);
         Self { rows: rows.map(|row| row.trim_end().as_bytes().to_vec()).collect() }
@@ -18,7 +19,7 @@ impl RawMap {
 
     /// True if a cell, counted from the lower left, can be passed.
     pub(super) fn is_passable(&self, cell: Cell) -> bool {
-        // From the bottom to from the top.
+        // Converts a row counted from the bottom to one counted from the top.
         let row = usize::try_from(cell.y).ok().and_then(|y| self.height().checked_sub(y + 1));
         let tile = row.and_then(|row| self.rows[row].get(usize::try_from(cell.x).ok()?));
         matches!(tile, Some(b'.' | b'G' | b'S'))
@@ -29,9 +30,9 @@ impl RawMap {
         self.rows.iter().rposition(|row| !row.is_empty()).map_or(0, |last| last + 1)
     }
 
-    /// Length of a path \[cells\], or `None` when it does not lead from `start` to `goal`, leaves
-    /// the passable cells, stands still, or cuts a corner that may not be cut. Legs between
-    /// waypoints that are not neighbours are swept.
+    /// Length of a path \[cells\]; `None` if it does not lead from `start` to `goal`, leaves the
+    /// passable cells, contains a step of zero length, or cuts a corner that must not be cut.
+    /// Legs between waypoints that are not neighbours are swept.
     pub(super) fn legal_length(
         &self,
         path: &[Cell],
@@ -53,18 +54,18 @@ impl RawMap {
 }
 
 /// The cells that must be passable for a straight leg from centre to centre: those whose interior
-/// it crosses, and, where it passes a common corner of four cells, all four of them, unless corners
+/// it crosses, and, if it passes a common corner of four cells, all four of them, unless corners
 /// may be cut.
 fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell> {
-    // Along the axis with more cells, so that there are at most two cells to a column.
+    // Sweeps the axis with more cells, so that there are at most two cells per column.
     let is_steep = (to.x - from.x).abs() < (to.y - from.y).abs();
     let turned = move |cell: Cell| if is_steep { Cell::new(cell.y, cell.x) } else { cell };
     let (a, b) = (turned(from), turned(to));
     let (a, b) = if a.x <= b.x { (a, b) } else { (b, a) };
     let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
     (a.x..=b.x).flat_map(move |x| {
-        // The rows of a column, from where the leg enters it to where it leaves: heights are
-        // fractions with the denominator 2 dx.
+        // Range of rows of a column, from the height at which the leg enters it to the height at
+        // which it leaves. Heights are fractions with the denominator 2 dx.
         let height =
             |line: i32| (2 * i64::from(a.y) + 1) * dx + (2 * i64::from(line - a.x) - 1) * dy;
         let row = |height: i64| height.div_euclid(2 * dx);
@@ -75,7 +76,7 @@ fn swept(from: Cell, to: Cell, corners: CornerRule) -> impl Iterator<Item = Cell
         let (mut first, mut last) = if dx == 0 {
             (i64::from(a.y), i64::from(a.y))
         } else {
-            // A height that is a corner is not part of the row above it, unless corners count.
+            // A height at a corner does not belong to the row above it, unless corners count.
             (row(low), if is_corner(high) && low < high { row(high) - 1 } else { row(high) })
         };
         if dx > 0 && corners == CornerRule::Forbid {
@@ -95,7 +96,7 @@ mod tests {
     }
 
     fn length_by(path: &[(i32, i32)], corners: CornerRule) -> Option<f64> {
-        // (2, 1) is blocked; the map is written with the line endings of Windows.
+        // (2, 1) is blocked; the map has Windows line endings.
         let text = "type octile\r\nheight 3\r\nwidth 4\r\nmap\r\n....\r\n.G@S\r\n...T\r\n\r\n";
         let path: Vec<Cell> = path.iter().map(|&(x, y)| Cell::new(x, y)).collect();
         let map = RawMap::new(text);
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(length_by(&[(1, 1), (2, 1)], CornerRule::Allow), None);
     }
 
-    /// Every leg within 7 x 7 cells against a geometric test of each single cell.
+    /// Compares every leg within 7 x 7 cells with a geometric test of each single cell.
     #[test]
     fn swept_cells_are_those_that_a_leg_crosses() {
         for (dx, dy) in (-6..=6).flat_map(|dx| (-6..=6).map(move |dy| (dx, dy))) {
@@ -160,8 +161,8 @@ mod tests {
     }
 
     /// True if the leg meets the cell's square: its interior, or any of its corners. In a frame
-    /// along the leg: a square is met when its corners lie on both sides of the leg's line, and its
-    /// extent along the leg overlaps the leg's.
+    /// along the leg, a square is met if its corners lie on both sides of the leg's line and its
+    /// extent along the leg overlaps that of the leg.
     fn is_crossed((dx, dy): (i32, i32), from: Cell, cell: Cell, corners: CornerRule) -> bool {
         let at = [(0, 0), (2, 0), (0, 2), (2, 2)]
             .map(|(cx, cy)| (2 * (cell.x - from.x) + cx - 1, 2 * (cell.y - from.y) + cy - 1));

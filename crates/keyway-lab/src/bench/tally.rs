@@ -1,11 +1,11 @@
-//! From single answers to a row of the table.
+//! Aggregation of answers to a row of the table.
 
 use super::mistakes::Got;
 use crate::measure::{Spread, Times, mean, quantile};
 use serde::Serialize;
 use std::time::Duration;
 
-/// Published lengths have few digits: they may differ by this much \[cells\].
+/// Tolerance of published lengths, which have few digits \[cells\].
 const TOLERANCE_CELLS: f64 = 0.01;
 
 /// One row of `keyway.bench.grid/1`, whose members docs/reference/json.md explains.
@@ -17,7 +17,7 @@ pub struct GridRow {
     pub(crate) solved: usize,
     pub(crate) mismatches: usize,
     pub(crate) illegal_paths: usize,
-    /// Queries for which the planner says that it missed a path that exists.
+    /// Queries for which the planner reports that it missed an existing path.
     pub(crate) missed: usize,
     pub(crate) mean_us: Option<f64>,
     pub(crate) median_us: Option<f64>,
@@ -36,20 +36,20 @@ pub struct GridRow {
     pub(crate) memory_bytes: usize,
 }
 
-/// What a planner answered to one query.
+/// Answer of a planner to one query.
 pub struct GridAnswer {
     pub(super) times: Times,
     pub(super) expanded: u64,
     pub(super) generated: u64,
     pub(super) path: PathFound,
-    /// Published length of the best path \[cells\]; `None`: there is none.
+    /// Published length of the best path \[cells\]; `None` if no path exists.
     pub(super) optimum: Option<f64>,
-    /// No path of this planner is shorter \[cells\]: the optimum, unless the planner goes other
-    /// ways than those for which it was published.
+    /// Lower bound of this planner's path lengths \[cells\]: the optimum, unless the planner has
+    /// other moves than those for which it was published.
     pub(super) least: f64,
 }
 
-/// A path, judged.
+/// A path, with the result of its check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PathFound {
     None,
@@ -59,8 +59,8 @@ pub(super) enum PathFound {
 }
 
 impl GridAnswer {
-    /// True if the answer contradicts the published one. An illegal path is counted as such, but
-    /// says that there is a path, as does a planner that says that it missed one.
+    /// True if the answer contradicts the published one. An illegal path is counted separately,
+    /// but still claims that a path exists; so does a planner that reports that it missed one.
     fn is_mismatch(&self, is_optimal: bool) -> bool {
         match (self.path, self.optimum) {
             (PathFound::None, None) | (PathFound::Illegal | PathFound::Missed, Some(_)) => false,
@@ -72,7 +72,8 @@ impl GridAnswer {
         }
     }
 
-    /// What is wrong with the answer, compared with the published length; `None` when it is right.
+    /// Returns the error of the answer, compared with the published length; `None` if it is
+    /// right.
     pub(super) fn mistake(&self, is_optimal: bool) -> Option<(Option<f64>, Got)> {
         let got = match self.path {
             PathFound::Illegal => Got::IllegalPath,
@@ -92,7 +93,7 @@ impl GridAnswer {
         }
     }
 
-    /// The share by which the path is longer than the best one.
+    /// Relative excess of the path's length over the best one.
     fn excess(&self) -> Option<f64> {
         match (self.path, self.optimum) {
             (PathFound::Legal { length_cells }, Some(optimum)) if optimum > 0.0 => {
@@ -103,7 +104,7 @@ impl GridAnswer {
     }
 }
 
-/// Counts and means; what is not measured in answers is given.
+/// Counts and means; values that are not part of answers are arguments.
 pub(super) fn row(
     map: String,
     planner: &'static str,
@@ -216,10 +217,10 @@ mod tests {
         let row = row("m".to_owned(), "p", false, &answers, (Duration::from_millis(2), 7));
         assert_eq!((row.queries, row.solved, row.mismatches, row.illegal_paths), (4, 3, 0, 1));
         assert!((row.mean_excess.unwrap() - 0.05).abs() < 1e-12);
-        // 0 and 0.1: 5 and 95 % of the way.
+        // Excesses of 0 and 0.1: 5 and 95 % between them.
         assert!((row.p5_excess.unwrap() - 0.005).abs() < 1e-12, "{row:?}");
         assert!((row.p95_excess.unwrap() - 0.095).abs() < 1e-12, "{row:?}");
-        // 5, 5, 5, 8 us: that of 0.99 lies at the place 2.97.
+        // 5, 5, 5, 8 us: the quantile of 0.99 lies at position 2.97.
         assert_eq!((row.mean_us, row.median_us), (Some(5.75), Some(5.0)));
         assert!((row.p99_us.unwrap() - 7.91).abs() < 1e-9, "{row:?}");
         assert_eq!((row.mean_expanded, row.mean_generated), (Some(3.0), Some(4.0)));

@@ -11,7 +11,7 @@ pub(super) fn file(value: &impl Serialize, head: &str, parameters: &[Parameter])
     let (mut text, mut table) = (comment(head), String::new());
     for line in toml.lines() {
         if let Some(name) = line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            // One of several tables of a name stands in a pair of brackets more.
+            // The header of an array of tables has a second pair of brackets.
             name.trim_matches(['[', ']']).clone_into(&mut table);
         }
         let key = line.split(" = ").next().unwrap_or_default();

@@ -41,7 +41,7 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    /// Name for people.
+    /// Display name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Planner => "planner",
@@ -53,7 +53,7 @@ impl EntryKind {
         }
     }
 
-    /// True if defaults are derived for a robot.
+    /// True if its defaults depend on the robot.
     pub const fn depends_on_robot(self) -> bool {
         matches!(self, Self::Guide | Self::LocalPlanner | Self::Stack)
     }
@@ -76,12 +76,12 @@ pub struct CatalogueEntry {
     pub file: Option<String>,
 }
 
-/// Values that stacks have in a catalogue.
+/// Source of the values of stacks in a catalogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StackValues {
     /// Defaults, derived for the robot.
     ForRobot,
-    /// Values of the paper, if anybody published the stack; otherwise the defaults.
+    /// Values of the paper, if the stack is published; otherwise the defaults.
     AsPublished,
 }
 
@@ -129,7 +129,7 @@ fn value(config: impl Serialize) -> Value {
     serde_json::to_value(config).unwrap_or_default()
 }
 
-/// Returns the values of a paper, without those that it leaves to the reader.
+/// Returns the values of a paper, without those that it leaves open.
 fn published(config: impl Serialize, readings: &[&str]) -> Value {
     let mut paper = value(config);
     for reading in readings {
@@ -143,17 +143,17 @@ fn published(config: impl Serialize, readings: &[&str]) -> Value {
     paper
 }
 
-/// Returns the values of a local planner's paper; null without one.
+/// Returns the values of a local planner's paper; null if it has none.
 fn paper_local(local: &LocalConfig) -> Value {
     published(local.as_published(), local.readings())
 }
 
-/// Returns the values of a guide's paper; null without one.
+/// Returns the values of a guide's paper; null if it has none.
 fn paper_guide(guide: &GuideConfig) -> Value {
     published(guide.as_published(), guide.readings())
 }
 
-/// Returns one of several alternatives; its parameters have their paths in a stack.
+/// Returns the entry of one of several alternatives; its parameters have their paths in a stack.
 fn alternative(
     kind: EntryKind,
     name: &'static str,

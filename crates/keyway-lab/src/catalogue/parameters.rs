@@ -1,4 +1,4 @@
-//! Parameters of a config, from its values and from its schema, which has the doc comments.
+//! Parameters of a config, from its values and from its schema, which contains the doc comments.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -6,17 +6,17 @@ use serde_json::Value;
 /// A parameter of a part.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Path in a stack such as `planner.corners`; of a robot, its place in a robot file.
+    /// Path in a stack such as `planner.corners`; for a robot, its path in a robot file.
     pub path: String,
     /// Unit; `None` for a number, a text or a switch.
     pub unit: Option<&'static str>,
-    /// Value that is used if no other is given.
+    /// Default value.
     pub default: Value,
     /// Published value; `None` if the paper has none.
     pub paper: Option<Value>,
     /// Possible values; `None` for a number, a text or a switch.
     pub choices: Option<Vec<String>>,
-    /// Description for people.
+    /// Description for display.
     pub description: String,
 }
 
@@ -63,14 +63,14 @@ pub(super) fn summary_of(root: &Value, name: &str) -> String {
     plain(node.schema["description"].as_str().unwrap_or_default())
 }
 
-/// Returns a doc comment, which is Markdown with links into the code, as text for people.
+/// Converts a doc comment, which is Markdown with links into the code, to plain text for display.
 pub(crate) fn plain(doc: &str) -> String {
     let text = doc.replace('\n', " ").replace("[`Self::", "`").replace("[`", "`");
     let text = text.replace("`]", "`").replace("\\[", "[").replace("\\]", "]");
     text.replace('²', "2")
 }
 
-/// A place in a schema document.
+/// A node of a schema document.
 #[derive(Clone, Copy)]
 struct Node<'a> {
     root: &'a Value,
@@ -78,8 +78,8 @@ struct Node<'a> {
 }
 
 impl Node<'_> {
-    /// Returns the place that a `$ref` refers to, or the place itself; of a value that may be
-    /// absent, that of a present one.
+    /// Returns the node that a `$ref` refers to, or the node itself; for an optional value, the
+    /// node of a present one.
     fn resolved(self) -> Self {
         let mut present = self.schema["anyOf"].as_array().into_iter().flatten();
         let reference = present.find(|one| !one["$ref"].is_null()).unwrap_or(self.schema);
@@ -88,7 +88,7 @@ impl Node<'_> {
         Self { schema, ..self }
     }
 
-    /// Returns the alternative that a value takes: by its name, or by its only field.
+    /// Returns the alternative that a value selects: by its name, or by its only field.
     fn taken_by(self, value: &Value) -> Self {
         if let Some(name) = value["name"].as_str() {
             return self.alternative(name);
@@ -110,7 +110,7 @@ impl Node<'_> {
         Self { schema: &self.schema["properties"][key], ..self }
     }
 
-    /// Returns the place of an item of a list.
+    /// Returns the node of a list item.
     fn item(self) -> Self {
         Self { schema: &self.resolved().schema["items"], ..self }
     }
@@ -137,7 +137,7 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
             walk(&property, &path, value, &paper[key], found);
             continue;
         }
-        // Of several tables of a kind, the fields of the first.
+        // For an array of tables, the fields of the first one.
         if let Some(first) = value.get(0).filter(|first| first.is_object()) {
             walk(&property.item(), &path, first, &paper[key], found);
             continue;
@@ -159,7 +159,7 @@ fn walk(node: &Node<'_>, path: &str, config: &Value, paper: &Value, found: &mut 
     }
 }
 
-/// Text of a value, with enough digits for people.
+/// Text of a value, with enough digits for display.
 pub fn value_text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),

@@ -1,7 +1,7 @@
 //! Uses of a part in the papers: their own methods and their baselines.
 //!
-//! A part already has its paper's values. The table below has what belongs to a method beside the
-//! part: another corner rule, a layer of the map, or the planner that feeds a smoother.
+//! A part has the values of its paper by default. The table below lists the other settings of a
+//! method: another corner rule, a layer of the map, or the planner whose path a smoother smooths.
 
 use keyway::local::Dwa;
 use keyway::navigate::Stack;
@@ -54,7 +54,7 @@ const CORNERS: &[&str] = &["planner.corners=allow"];
 const STRAIGHT_LINE: &[&str] =
     &["planner.corners=allow", "planner.g=straight-line", "planner.heuristic=euclidean"];
 
-/// Methods with a planner or a smoother of ours. The paper's own method has both.
+/// Methods with a planner or a smoother of this library. The paper's own method has both.
 const ROWS: &[PublishedUse] = &[
     row("You2021", "the paper's method", "bidirectional-jps", "key-points", &[]),
     row("You2021", "fixed targets, its first design", "bidirectional-jps-fixed", "none", &[]),
@@ -99,7 +99,7 @@ pub(super) fn of_part(name: &str) -> Vec<PublishedUse> {
     ROWS.iter().filter(is_used).copied().collect()
 }
 
-/// Returns the stack of this name as published, if anybody published it.
+/// Returns the stack of this name as published, if it is published.
 pub(super) fn of_stack(stack: &'static str) -> Option<PublishedUse> {
     let (method, source) = (Stack::summary(stack)?, Stack::source(stack)?);
     let setup = PublishedSetup::Drive { stack, set: &[] };
@@ -121,7 +121,7 @@ const SAMPLE_SET: &[&str] = &[
     "local.distance_term_cap_m=1.0",
 ];
 
-/// The program behind much of this literature: it turns `DwaConfig::PAPER` into
+/// The sample program behind much of this literature: its settings turn `DwaConfig::PAPER` into
 /// `DwaConfig::SAMPLE`.
 const SAMPLE: PublishedUse = PublishedUse {
     source: "You2021",

@@ -13,7 +13,7 @@ pub struct Claim {
     pub paper: &'static str,
     /// The claim in a sentence.
     pub statement: &'static str,
-    /// Figures of the claim; it holds when all of them do.
+    /// Figures of the claim; it holds if all of them do.
     pub figures: &'static [Figure],
     /// Experiment that measures the claim.
     pub experiment: &'static Experiment,
@@ -22,9 +22,9 @@ pub struct Claim {
 /// One part of a claim: the statement about one measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
-    /// The measure ...
+    /// The measure.
     pub measure: Measure,
-    /// ... of this method of the experiment (of a driving claim, of this stack).
+    /// Method of the experiment to which the measure applies; for a driving claim, a stack.
     pub of: &'static str,
     /// Statement of the paper about it.
     pub expected: Expected,
@@ -273,7 +273,7 @@ mod tests {
             (Some(-0.75), Some(0.0), None)
         );
         assert_eq!(Scale::Absolute.change(0.0, 0.75), Some(0.75));
-        // From zero heading jumps there is no relative change.
+        // A relative change from zero heading jumps is undefined.
         let jumps = |published| Figure::lower(Measure::NonSmoothTurns, "new", "old", published);
         assert_eq!(jumps(None).scale(), Scale::Absolute);
         assert_eq!(jumps(Some([18.0, 0.0])).published_effect(), Some(-1.0));

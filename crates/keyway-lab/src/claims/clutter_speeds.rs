@@ -1,4 +1,4 @@
-//! Parts of a run with few and with many obstacles around the robot, and the speed in them.
+//! Parts of a run with few and with many obstacles around the robot, and the mean speed in each.
 
 use keyway::geometry::Point;
 use keyway::map::{Cell, OccupancyGrid};
@@ -11,9 +11,9 @@ use keyway_sim::sim::{Run, TrajectoryPoint};
 pub enum Part {
     /// The whole run.
     Whole,
-    /// The half of the run with the least ground within 3 m covered by obstacles of the map.
+    /// The half of the run in which obstacles of the map cover the least ground within 3 m.
     Sparse,
-    /// The half of the run with the most ground covered.
+    /// The half of the run in which they cover the most ground.
     Dense,
 }
 
@@ -21,12 +21,12 @@ impl Part {
     /// Range within which obstacles change the speed weight in \[You2021\] \[m\].
     const AROUND_M: f64 = 3.0;
 
-    /// Returns, for each sample of a run, whether it belongs to this part.
+    /// Returns true for each sample of a run that belongs to this part.
     ///
-    /// The halves contain the moments at which obstacles of the map cover less, or more, of the
-    /// ground within [`Self::AROUND_M`] of the robot than at the median moment. A robot speeds up
-    /// at its start and brakes at its goal whatever the obstacles are, so moments within the
-    /// distance that this takes belong to neither half.
+    /// The halves contain the samples at which obstacles of the map cover less, or more, of the
+    /// ground within [`Self::AROUND_M`] of the robot than at the median sample. The robot
+    /// accelerates at its start and brakes at its goal regardless of obstacles, so samples within
+    /// its acceleration distance of either belong to neither half.
     pub(super) fn samples(self, run: &Run, episode: &Episode) -> Vec<bool> {
         let (Some(first), Some(last)) = (run.samples.first(), run.samples.last()) else {
             return Vec::new();

@@ -31,7 +31,7 @@ pub struct Driving {
     pub local: Option<LocalConfig>,
     /// Real obstacles that are not on the map.
     pub unknown: Option<RandomObstacles>,
-    /// False for a robot that drives along its first route to the end, whatever is sensed.
+    /// False for a robot that follows its first route to the end and ignores what it senses.
     pub is_watching: bool,
     /// Part of a run over which its mean speed is taken.
     pub part: Part,
@@ -58,27 +58,28 @@ pub struct RunFigures {
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
-    /// Distance over time \[m/s\]; for a part of a run, the mean speed of that part. `None` where
+    /// Distance over time \[m/s\]; for a part of a run, the mean speed of that part. `None` if
     /// no time passed.
     pub mean_speed_mps: Option<f64>,
     /// Standard deviation of the speeds of all cycles \[m/s\]; `None` for a single cycle.
     pub speed_deviation_mps: Option<f64>,
     /// Sum of the absolute changes of the speed from cycle to cycle, per metre \[1/s\]; `None`
-    /// where nothing was driven.
+    /// if nothing was driven.
     pub speed_variation_per_s: Option<f64>,
-    /// Changes of the turning direction per metre \[1/m\]; `None` where nothing was driven.
+    /// Changes of the turning direction per metre \[1/m\]; `None` if nothing was driven.
     pub oscillation_per_m: Option<f64>,
     /// Smallest distance to any real obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
     /// Points at which the heading jumps: changes of more than 5 degrees within 1 cm.
     pub non_smooth_turns: usize,
-    /// Mean wall clock time of a control cycle \[s\]; `None` without a clock.
+    /// Mean wall-clock time of a control cycle \[s\]; `None` without a clock.
     pub cycle_s: Option<f64>,
-    /// Wall clock time of the first route and of all control cycles \[s\]; `None` without a clock.
+    /// Wall-clock time of the first route and of all control cycles \[s\]; `None` without a
+    /// clock.
     pub total_search_s: Option<f64>,
 }
 
-/// Observer that keeps the run.
+/// Observer that stores the run.
 #[derive(Default)]
 pub(super) struct Keeper(pub(super) Option<Run>);
 
@@ -110,10 +111,11 @@ impl Vehicle {
 }
 
 impl Driving {
-    /// Drives once; `None` without a route, or if the robot has no room at its start.
+    /// Drives once; `None` without a route, or if the robot does not fit at its start or goal.
     ///
     /// # Errors
-    /// When the stack does not exist, or a value of the random obstacles cannot be used.
+    /// Returns [`EpisodeError`] if the stack does not exist, or a value of the random obstacles
+    /// is invalid.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
@@ -130,7 +132,7 @@ impl Driving {
         }))
     }
 
-    /// Drives once with an observer; `None` if the robot has no room at an end.
+    /// Drives once with an observer; `None` if the robot does not fit at its start or goal.
     pub(super) fn watch(
         &self,
         grid: &OccupancyGrid,
@@ -160,7 +162,7 @@ impl Driving {
         let options = RunOptions { clock, ..RunOptions::default() };
         match watch_episode(&episode, options, std::slice::from_mut(watcher)) {
             Ok(report) => Ok(Some((episode, report.first()))),
-            // Without room at an end, there is no run.
+            // Without clearance at the start or goal, there is no run.
             Err(EpisodeError {
                 why:
                     RunError::Navigate(
@@ -249,7 +251,7 @@ mod tests {
         let mean_mps = driven.length_m / driven.time_s;
         assert!((driven.mean_speed_mps.unwrap() - mean_mps).abs() < 1e-12, "{driven:?}");
         assert!(driven.speed_deviation_mps > Some(0.1), "it begins and ends at rest: {driven:?}");
-        // Up to 1 m/s or less, and down again.
+        // The robot accelerates to 1 m/s or less, and brakes again.
         let variation_per_s = driven.speed_variation_per_s.unwrap();
         let top_mps = 0.5 * variation_per_s * driven.length_m;
         assert!((0.5..1.01).contains(&top_mps), "{top_mps} {driven:?}");
@@ -262,7 +264,7 @@ mod tests {
         assert_eq!((driven.cycle_s, driven.total_search_s), (None, None));
     }
 
-    /// An unknown disc stands on the only way.
+    /// An unknown disc blocks the only route.
     #[test]
     fn an_unwatched_robot_touches_what_it_does_not_know() {
         let unknown = RandomObstacles {

@@ -19,12 +19,12 @@ use serde::{Deserialize, Serialize};
 pub struct Experiment {
     /// Name of the experiment.
     pub name: &'static str,
-    /// Description of the family's maps in one sentence, for people.
+    /// Description of the family's maps in one sentence, for display.
     pub about: &'static str,
     /// Family of maps similar to the paper's, one map for each seed.
     pub family: GeneratedMap,
-    /// Selects the maps of the right kind, if not all count: others are skipped, whatever a method
-    /// would do on them.
+    /// Selects the maps of the right kind, if not all count. Other maps are skipped, regardless
+    /// of the methods' results on them.
     pub kind: Option<fn(&OccupancyGrid, [Cell; 2]) -> bool>,
     /// Start and goal on these maps.
     pub ends: [Cell; 2],
@@ -60,8 +60,8 @@ pub struct MapRow {
 
 /// Number of timed plans of each method; the median counts.
 const ROUNDS: usize = 7;
-/// Maximum number of maps of a seed that are tried for the right kind, and the name of their random
-/// number stream.
+/// Maximum number of maps of a seed that are tried for the right kind, and the key of their
+/// random number stream.
 const KIND_TRIES: u64 = 1000;
 const KIND: u64 = 0x6b69_6e64;
 /// Seed of the randomness in a run on the scene.
@@ -80,7 +80,7 @@ impl Experiment {
     /// times counts.
     ///
     /// # Errors
-    /// When a parameter of the family or of a method cannot be used.
+    /// Returns [`EpisodeError`] if a parameter of the family or of a method is invalid.
     pub fn on_seed(&self, seed: u64, clock: Clock<'_>) -> Result<MapRow, EpisodeError> {
         let grid = self.map(seed)?;
         let outcomes = self.outcomes(&grid, (self.ends, seed), clock)?;
@@ -90,7 +90,8 @@ impl Experiment {
     /// Returns the map of a seed: the first of a series of maps that is of the right kind.
     ///
     /// # Errors
-    /// When a parameter of the family cannot be used, or no map is of the kind.
+    /// Returns [`ConfigError`] if a parameter of the family is invalid, or no map is of the right
+    /// kind.
     pub fn map(&self, seed: u64) -> Result<OccupancyGrid, ConfigError> {
         let cell_m = self.family.resolution_m;
         let centre =
@@ -144,7 +145,7 @@ impl Experiment {
             outcomes.push(method.run(grid, task, workspace, clock)?);
         }
         if clock.is_some() {
-            // Earlier work has only warmed up the memory.
+            // The runs above only warmed up the memory.
             let mut times = vec![Vec::new(); contenders.len()];
             for _ in 0..ROUNDS {
                 for ((method, workspace), times) in contenders.iter_mut().zip(&mut times) {

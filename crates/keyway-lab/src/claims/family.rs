@@ -9,9 +9,9 @@ use super::reconstruction::Fitted;
 pub struct Family {
     /// Maps on which every method that must succeed did so, in the order of their seeds.
     pub rows: Vec<MapRow>,
-    /// Maps before the last of these on which such a method failed: they are left out.
+    /// Number of maps left out: those before the last row on which such a method failed.
     pub left_out: usize,
-    /// Number of all these maps on which each method succeeded.
+    /// Number of all these maps, counted or left out, on which each method succeeded.
     pub succeeded: Vec<usize>,
     /// Results on the scene.
     pub scene: Option<MapRow>,

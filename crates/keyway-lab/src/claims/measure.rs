@@ -40,7 +40,7 @@ pub enum Measure {
     UnknownClearance,
     /// 1 if a path exists that the planner does not find, otherwise 0.
     Missed,
-    /// Length of the planned or driven path \[m\]: where a paper compares a run with a path.
+    /// Length of the planned or driven path \[m\], for papers that compare a run with a path.
     WayLength,
     /// Smallest distance of the path or the robot to any obstacle \[m\].
     WayClearance,

@@ -84,7 +84,7 @@ impl Method {
         self
     }
 
-    /// Drives along its first route to the end, whatever is sensed.
+    /// Follows its first route to the end and ignores what it senses.
     pub(super) const fn unwatched(mut self) -> Self {
         if let How::Drive(driving) = &mut self.how {
             driving.is_watching = false;
@@ -100,8 +100,9 @@ impl Method {
         self
     }
 
-    /// Adds unknown obstacles: discs as wide as a cell, of which the given numbers are static and
-    /// walk to and fro. The static ones are at most `near_way_m` from the path \[m\].
+    /// Adds unknown obstacles: discs as wide as a cell, the given numbers of static ones and of
+    /// ones that walk back and forth. The static ones are at most `near_way_m` from the path
+    /// \[m\].
     pub(super) const fn among_unknown(
         mut self,
         [standing, walking]: [u32; 2],
@@ -149,11 +150,11 @@ impl Method {
         self
     }
 
-    /// Plans or drives once from the first end of the task to the second; `None` without a path.
-    /// The task's seed determines the unknown obstacles.
+    /// Plans or drives once from the task's start to its goal; `None` without a path. The task's
+    /// seed determines the unknown obstacles.
     ///
     /// # Errors
-    /// When a parameter of the method cannot be used.
+    /// Returns [`EpisodeError`] if a parameter of the method is invalid.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,

@@ -1,10 +1,10 @@
-//! Claims of the papers as data, experiments that measure them again, and the rule for the
+//! Claims of the papers as data, experiments that measure them, and the rule for the
 //! verdicts.
 //!
-//! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods on
-//! a family of maps, one for each seed, and on the paper's reconstructed scene. A [`Finding`]
+//! A [`Claim`] has figures, such as fewer nodes than A*. An [`Experiment`] runs all its methods
+//! on a family of maps, one for each seed, and on the paper's reconstructed scene. A [`Finding`]
 //! summarises a figure over the family: the change on each map, their mean and its 95 % interval.
-//! [`FigureVerdict::of`] judges by a rule in words. No results are stored here.
+//! [`FigureVerdict::of`] applies the rule for verdicts. No results are stored here.
 //!
 //! ```
 //! use keyway_lab::claims::{Claim, ClaimReport, Family, Verdict};
@@ -21,8 +21,8 @@
 //! ```
 //!
 //! # Errors / cost
-//! Methods that cannot be used are errors; a missing path and a missed goal are outcomes. No clock
-//! is read: callers bring theirs.
+//! Invalid methods are errors; a missing path and a missed goal are outcomes. The module reads no
+//! clock: callers pass theirs.
 
 mod ablations;
 mod catalogue;

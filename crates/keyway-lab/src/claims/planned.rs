@@ -18,7 +18,7 @@ use keyway_sim::report::{Clock, timed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Maximum distance of a line from its curve \[cells\].
+/// Maximum distance between a curve and its chords \[cells\].
 const CHORD_CELLS: f64 = 0.05;
 
 /// Setup of a plan.
@@ -45,7 +45,7 @@ pub struct Planned {
     pub path: PathMetrics,
     /// Cells of the planned path that were visited before.
     pub revisited: usize,
-    /// Smallest distance from the path to static unknown obstacles \[m\], 0 where it goes through
+    /// Smallest distance from the path to static unknown obstacles \[m\], 0 if it goes through
     /// one; `None` without obstacles.
     pub unknown_clearance_m: Option<f64>,
     /// Relative excess of the path's length over that of
@@ -100,7 +100,7 @@ impl Planning {
     /// timed. `seed` determines the unknown obstacles.
     ///
     /// # Errors
-    /// When a parameter cannot be used.
+    /// Returns [`EpisodeError`] if a parameter is invalid.
     pub(super) fn run(
         &self,
         grid: &OccupancyGrid,
@@ -203,7 +203,7 @@ impl Planning {
     }
 }
 
-/// Maximum distance of a line from its curve \[m\].
+/// Maximum distance between a curve and its chords \[m\].
 fn chord_m(grid: &OccupancyGrid) -> f64 {
     CHORD_CELLS * grid.frame().resolution_m()
 }
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!((revisited(moving), revisited(JPS)), (2, 0));
     }
 
-    /// The disc of the seed is on the path, a straight line.
+    /// The disc of the seed is on the path, which is a straight line.
     #[test]
     fn what_stands_on_the_path() {
         let grid = OccupancyGrid::from_ascii(&["...................."; 9]);

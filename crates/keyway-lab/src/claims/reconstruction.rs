@@ -30,7 +30,7 @@ pub struct Reconstruction {
 /// A baseline with its published figure.
 #[derive(Debug)]
 pub struct Baseline {
-    /// Name for people.
+    /// Display name.
     pub name: &'static str,
     /// Planning of the baseline.
     pub planning: Planning,
@@ -72,7 +72,7 @@ impl Reconstruction {
     /// Returns the map of a seed, whether it fits or not.
     ///
     /// # Errors
-    /// When a parameter of the family cannot be used.
+    /// Returns [`ConfigError`] if a parameter of the family is invalid.
     pub fn map(&self, seed: u64) -> Result<OccupancyGrid, ConfigError> {
         let cell_m = self.family.resolution_m;
         let centre =
@@ -85,7 +85,7 @@ impl Reconstruction {
     /// up to the first mismatch.
     ///
     /// # Errors
-    /// When a parameter cannot be used.
+    /// Returns [`EpisodeError`] if a parameter is invalid.
     pub fn find(&self, wanted: usize) -> Result<Fitted, EpisodeError> {
         let (mut fitted, mut workspace) = (Fitted::default(), Workspace::default());
         while fitted.seeds.len() < wanted && fitted.tried < Self::MOST_TRIED {

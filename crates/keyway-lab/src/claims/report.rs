@@ -149,12 +149,12 @@ pub struct FamilyFigure {
     pub new_mean: Option<f64>,
     /// Mean change; for a bound, the share of maps on which it is kept.
     pub mean: Option<f64>,
-    /// Lower end of the 95 % confidence interval of the true value: from a bootstrap, for a share
-    /// after Wilson.
+    /// Lower end of the 95 % confidence interval of the true value: bootstrap, or Wilson's
+    /// interval for a share.
     pub ci95_low: Option<f64>,
     /// Upper end of the interval.
     pub ci95_high: Option<f64>,
-    /// Verdict on it; `None` where nothing is expected.
+    /// Verdict on it; `None` if nothing is expected.
     pub verdict: Option<FigureVerdict>,
 }
 
@@ -210,8 +210,8 @@ pub struct MethodReport {
 }
 
 impl ClaimReport {
-    /// Judges a claim by its measured figures. Without `times`, no figure that a clock measures is
-    /// reported; none is judged anyway.
+    /// Judges a claim by its measured figures. Timed figures are never judged; without `times`,
+    /// they are not reported either.
     pub fn new(claim: &Claim, family: &Family, times: bool) -> Self {
         let figures = || claim.figures.iter().filter(|figure| times || !figure.measure.is_timed());
         let published: Vec<PublishedFigure> = claim.figures.iter().filter_map(published).collect();
@@ -231,7 +231,7 @@ impl ClaimReport {
             figures: family_figures(&findings_of(&family.reconstructed)),
         });
         let family = FamilyReport::new(experiment, family, &findings_of(&family.rows));
-        // Times count also where they are not reported.
+        // Timed figures count even if they are not reported.
         let unreported =
             std::iter::repeat_n(FigureVerdict::NotJudged, claim.figures.len() - figures().count());
         let judged = family.figures.iter().filter_map(|figure| figure.verdict);

@@ -112,8 +112,8 @@ static SMOOTHING: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// An experiment with runs; each compares only the methods of its claim, so that no map is left out
-/// because of another method.
+/// Creates an experiment with runs. Each compares only the methods of its claim, so that no map
+/// is left out because of another method.
 const fn runs(
     name: &'static str,
     methods: &'static [Method],
@@ -128,8 +128,8 @@ const fn runs(
 const RANDOM_00: ExperimentScene =
     ExperimentScene { file: "scenes/s1/random_00.toml", ends: ENDS, map: SCENE_MAP };
 
-/// Figure 6: one evaluation function against the other, without a route as guidance. So both drive
-/// straight to the goal, and both measure the distance as the paper does.
+/// Figure 6: the two evaluation functions without a route as guidance. Both drive straight to the
+/// goal and measure the distance as the paper does.
 static AGAINST_CLASSIC: Experiment = runs(
     "s1-classic",
     &[
@@ -184,9 +184,9 @@ fn encloses(map: &OccupancyGrid, [start, goal]: [Cell; 2]) -> bool {
     wall > start.x + 1 && sides.into_iter().all(|mut side| side.any(|y| is_wall(wall - 1, y)))
 }
 
-/// Figures 10 to 12; the unknown obstacles are discs as wide as a cell, and the fewer are among the
-/// more. Their numbers are those of the scenes. All runs must arrive, so that the numbers are
-/// compared on the same maps.
+/// Figures 10 to 12. The unknown obstacles are discs as wide as a cell; each smaller set is part
+/// of the larger ones. Their numbers are those of the scenes. All runs must reach the goal, so
+/// that the numbers are compared on the same maps.
 static AMONG_MORE: Experiment = runs(
     "s1-unknown",
     &[
@@ -352,8 +352,8 @@ mod tests {
             encloses(&OccupancyGrid::from_ascii(rows), [Cell::new(0, 2), Cell::new(6, 2)])
         };
         assert!(is_so(&["..###..", "....#..", "....#..", "....#..", "..###.."]));
-        // Open to the other side; beside the straight line; only half; around the goal, which the
-        // walls do not hide.
+        // The walls open to the other side; lie beside the straight line; enclose only half;
+        // surround the goal and do not hide it.
         assert!(!is_so(&["..###..", "..#....", "..#....", "..#....", "..###.."]));
         assert!(!is_so(&["..###..", "....#..", ".......", "....#..", "..###.."]));
         assert!(!is_so(&["..###..", "....#..", "....#..", "....#..", "....#.."]));

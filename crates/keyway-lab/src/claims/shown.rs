@@ -19,8 +19,8 @@ pub struct Shown {
     pub search: Option<Recording>,
     /// The run; `None` for a path.
     pub run: Option<Run>,
-    /// For each sample of a run, whether it belongs to the part of the mean speed; `None` if that
-    /// is the whole run.
+    /// For each sample of a run, true if it belongs to the part over which the mean speed is
+    /// taken; `None` if that is the whole run.
     pub part: Option<Vec<bool>>,
     /// Static obstacles that are not on the map.
     pub obstacles: Vec<Disc>,
@@ -28,7 +28,7 @@ pub struct Shown {
     pub movers: Vec<MovingObstacle>,
 }
 
-/// A map with its ends, and the results of every method there.
+/// A map with its start and goal, and the results of every method on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The map.

@@ -6,11 +6,11 @@ use keyway::map::{Cell, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, RandomObstacles};
 
-/// Returns the static discs of a seed: those that a run of [`Robot::paper`] between the two ends
-/// meets with the same seed.
+/// Returns the static discs of a seed: those that a run of [`Robot::paper`] between the same
+/// start and goal encounters with this seed.
 ///
 /// # Errors
-/// When a value cannot be used.
+/// Returns [`ConfigError`] if a value is invalid.
 pub(super) fn standing(
     unknown: Option<&RandomObstacles>,
     grid: &OccupancyGrid,
@@ -23,7 +23,7 @@ pub(super) fn standing(
     Ok(episode.obstacles)
 }
 
-/// Smallest distance from a line to discs \[m\], 0 where it goes through one; `None` without discs.
+/// Smallest distance from a line to discs \[m\], 0 if it goes through one; `None` without discs.
 pub(super) fn clearance_m(line: &Polyline, discs: &[Disc]) -> Option<f64> {
     let from = |centre: Point| {
         let distances = line.segments().map(|segment| segment.distance_sq_to_point(centre).sqrt());

@@ -1,31 +1,34 @@
 //! Rule for the verdicts on figures and on claims.
 //!
 //! A figure is a statement about one measure. It *holds*, *does not hold* or *cannot be decided*,
-//! by the 95 % interval of what was measured over the family of maps:
+//! by the 95 % interval of the measurements over the family of maps:
 //!
-//! - *Lower*, *higher*: it holds when the whole interval of the mean change lies on that side of
-//!   zero and the mean is at least half of the published change, if there is one. It does not hold
-//!   when the whole interval lies on the other side, or is less than half of the published change.
-//! - *The same*: it holds when the whole interval lies within the tolerance of the figure, and does
-//!   not when all of it lies outside. *Not higher*: the same, but less is as good.
-//! - *Always* (a bound that is kept, a path that is found): it holds when that is true on more than
-//!   nine maps in ten with certainty (\[Wilson1927\]), and does not when it is true on fewer with
-//!   certainty. So one odd map in a hundred does not refute a paper, and ten maps do not prove it.
+//! - *Lower*, *higher*: it holds if the whole interval of the mean change lies on that side of
+//!   zero and the mean is at least half of the published change, if there is one. It does not
+//!   hold if the whole interval lies on the other side, or is less than half of the published
+//!   change.
+//! - *The same*: it holds if the whole interval lies within the tolerance of the figure, and does
+//!   not hold if the whole interval lies outside. *Not higher*: the same, but lower values also
+//!   hold.
+//! - *Always* (a bound that is kept, a path that is found): it holds if that is true on
+//!   significantly more than nine maps in ten (\[Wilson1927\]), and does not hold if it is true
+//!   on significantly fewer. One odd map in a hundred therefore does not refute a paper, and ten
+//!   maps do not prove it.
 //! - Otherwise it cannot be decided.
 //!
-//! Times are reported and not judged: they hang on the clock, the machine and the care with which
-//! each method was written.
+//! Times are reported and not judged: they depend on the clock, the machine and the effort put
+//! into each implementation.
 //!
-//! A claim holds when all of its judged figures hold. When none of them does, the claim does not
-//! hold, or is undecided if no figure contradicts the paper. Otherwise it is mixed, and the counts
-//! say how. A figure that could not be measured leaves the claim without a verdict: missing data
-//! supports neither side.
+//! A claim holds if all of its judged figures hold. If none of them holds, the claim does not
+//! hold, or is undecided if no figure contradicts the paper. Otherwise it is mixed, and the
+//! counts give the details. A figure that could not be measured leaves the claim without a
+//! verdict: missing data supports neither side.
 
 use super::claim::{Direction, Expected, Figure};
 use keyway_sim::metrics::statistics::{Confidence, Rate};
 use serde::Serialize;
 
-/// Share of maps on which something has to be so that is always so.
+/// Share of maps above which a statement counts as always true.
 const NEARLY_ALWAYS: f64 = 0.9;
 
 /// Evidence for a figure over a family of maps.
@@ -54,9 +57,9 @@ pub enum FigureVerdict {
     Holds,
     /// The measurement contradicts the paper.
     DoesNotHold,
-    /// The measurement may agree or not.
+    /// The measurement is compatible with both.
     Undecided,
-    /// It is a time.
+    /// The figure is a time.
     NotJudged,
     /// There is no evidence, or evidence of another kind.
     NotMeasured,
@@ -68,9 +71,9 @@ pub enum FigureVerdict {
 pub enum Verdict {
     /// All figures hold.
     Holds,
-    /// Figures that hold, and others.
+    /// Some figures hold, but not all.
     Mixed,
-    /// No figure holds, and some do not.
+    /// No figure holds, and at least one does not hold.
     DoesNotHold,
     /// No figure can be decided.
     Undecided,
@@ -84,15 +87,15 @@ pub enum Verdict {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct FigureCounts {
-    /// They hold.
+    /// Figures that hold.
     pub holds: usize,
-    /// They do not.
+    /// Figures that do not hold.
     pub does_not_hold: usize,
-    /// They cannot be decided.
+    /// Figures that cannot be decided.
     pub undecided: usize,
-    /// They are times.
+    /// Figures that are times.
     pub not_judged: usize,
-    /// They could not be measured.
+    /// Figures that could not be measured.
     pub not_measured: usize,
 }
 
@@ -193,7 +196,7 @@ impl std::fmt::Display for Verdict {
     }
 }
 
-/// As in `4 hold, 1 does not, 2 undecided`; empty without a judged figure.
+/// Writes, for example, `4 hold, 1 does not, 2 undecided`; empty without a judged figure.
 impl std::fmt::Display for FigureCounts {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let numbers = [
@@ -233,7 +236,7 @@ mod tests {
         change(HALVED, [-0.249, -0.5, -0.125], Undecided);
         change(HALVED, [-0.2, -0.24, -0.125], DoesNotHold); // certainly less than half
         change(HALVED, [-0.4, -0.9, 0.0], Undecided); // touches zero
-        change(HALVED, [0.4, 0.3, 0.5], DoesNotHold); // the other way
+        change(HALVED, [0.4, 0.3, 0.5], DoesNotHold); // opposite direction
         change(HALVED, [0.0, 0.0, 0.0], DoesNotHold);
     }
 
@@ -268,7 +271,7 @@ mod tests {
         assert_eq!([kept(100, 0), kept(96, 4)], [Holds, Holds]);
         assert_eq!([kept(95, 5), kept(85, 15)], [Undecided, Undecided]);
         assert_eq!([kept(84, 16), kept(0, 100)], [DoesNotHold, DoesNotHold]);
-        // Ten maps prove nothing, and none is none.
+        // Ten maps prove nothing, and no map is no evidence.
         assert_eq!([kept(10, 0), kept(0, 0)], [Undecided, NotMeasured]);
     }
 

@@ -3,11 +3,11 @@
 //!
 //! Both maps have 100 x 100 cells, and their starts and goals are published; their obstacles are
 //! not. So nothing could be fitted, and there is no scene. The families are blocks that cover a
-//! fifth, and rooms with doors; the rectangles in the paper's rooms are missing there.
+//! fifth of the map, and rooms with doors, without the rectangles in the paper's rooms.
 //!
-//! According to the paper, the expansion adds to the time to find a path. So the complete method is
-//! compared by the time from the map to the path. Steps that both methods do without the expansion
-//! are compared by search and smoothing.
+//! According to the paper, the expansion adds to the time to find a path. The complete method is
+//! therefore compared by the time from the map to the path. Steps that both methods do without
+//! the expansion are compared by search and smoothing.
 
 use super::claim::{Bound, Claim, Figure};
 use super::experiment::Experiment;
@@ -67,7 +67,7 @@ pub(super) const COMPLETE_METHOD: Method = Method {
     must_succeed: true,
 };
 
-/// A map of 100 x 100 cells, with room for the expansion around its ends.
+/// A map of 100 x 100 cells, with free space for the expansion around its start and goal.
 const fn map(obstacles: Pattern) -> GeneratedMap {
     square(100.0, 1.0, obstacles)
 }

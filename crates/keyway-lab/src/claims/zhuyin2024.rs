@@ -60,7 +60,7 @@ pub(super) const fn hsta(weight: Weight, correction: Correction, l: f64) -> Plan
 const L: f64 = 2.0;
 const PUBLISHED: PlannerConfig = hsta(Weight::Dynamic, Correction::Distance, L);
 
-/// The definitions in the place of step 4: k of the current node weighs the whole open list.
+/// The definitions in place of step 4: k of the current node weighs the whole open list.
 pub(super) const fn by_definition(weight: Weight) -> PlannerConfig {
     PlannerConfig::Hsta(HstaConfig {
         weight,
@@ -70,7 +70,7 @@ pub(super) const fn by_definition(weight: Weight) -> PlannerConfig {
     })
 }
 
-/// Maps of both experiments. Around their ends there is room for the constraint.
+/// Maps of both experiments. Their starts and goals have enough clearance for the constraint.
 pub(super) const ABOUT: &str =
     "42 x 42 cells, 15 % of them in blocks of 1 to 3 cells, from corner to corner";
 pub(super) const FAMILY: GeneratedMap =
@@ -139,7 +139,7 @@ static STATIC: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// Maps on which the constraint leaves a path: do the two sides meet?
+/// Maps on which the constraint leaves a path, to test if the two sides meet.
 static MEETING: Experiment = Experiment {
     name: "zhuyin2024-meeting",
     about: ABOUT,

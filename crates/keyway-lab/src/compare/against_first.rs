@@ -1,4 +1,4 @@
-//! Comparison of each row of a map with the first one: is the difference more than chance?
+//! Comparison of each row of a map with the first one, with significance tests.
 
 use super::Compared;
 use super::contest::ContestEntry;
@@ -8,7 +8,7 @@ use crate::table::{number, rows, with_range};
 use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 
-/// A row against the first one of its map, query by query.
+/// Paired comparison of a row with the first one of its map, query by query.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AgainstFirst {
     map: String,

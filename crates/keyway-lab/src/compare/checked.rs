@@ -8,10 +8,10 @@ use super::request::CompareRequest;
 use super::request_error::CompareRequestError;
 
 impl CompareRequest {
-    /// Checks all of the request before anything is planned.
+    /// Checks the whole request before anything is planned.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with its value.
+    /// Returns [`CompareRequestError`] for the first field that cannot be used, with its value.
     pub fn check(self) -> Result<Comparison, CompareRequestError> {
         self.check_numbers()?;
         let choice = Choice::of(&self)?;

@@ -11,18 +11,18 @@ use keyway::plan::PlannerConfig;
 use keyway::smooth::SmootherConfig;
 use std::path::Path;
 
-/// Parts of a stack of which several are compared.
+/// Parts of a stack that are compared.
 const PLANNER: &str = "planner";
 const SMOOTHER: &str = "smoother";
 
-/// Name that stands for all names.
+/// Name that means all names.
 const ALL: &str = "all";
-/// Usual planners and smoothers: shortest paths on the grid and paths in any direction, each as
-/// planned, pulled tight, and with curves.
+/// Default planners and smoothers: shortest paths on the grid and any-angle paths, each as
+/// planned, pulled taut, and with curves.
 const USUAL_PLANNERS: [&str; 2] = ["jps", "theta-star"];
 const USUAL_SMOOTHERS: [&str; 3] = ["none", "taut", "continuous-curvature"];
 
-/// Everything that names and parameters of a request stand for.
+/// Resolved names and parameters of a request.
 #[derive(Debug)]
 pub(super) struct Choice {
     pub(super) size: RobotSize,
@@ -42,10 +42,10 @@ impl Choice {
         let assignments = &request.parameters.assignments;
         assignments.iter().try_for_each(refuse_renaming)?;
         let size = size(request)?;
-        // Parts without a name are defaults, or those of a file.
+        // Parts without a name take the default, or the value of a file.
         let (planner, smoother) = (planners.first(), smoothers.first());
         let usual = Pair { request, size: &size, planner, smoother };
-        // The names are known afterwards.
+        // Accepts parameters of all names: the compared ones are known only afterwards.
         let all = PlannerConfig::NAMES.iter().chain(&SmootherConfig::NAMES);
         let base = usual.stack(&all.map(|name| (*name).to_owned()).collect::<Vec<_>>())?;
         let planners = or(&planners, base.planner.name());
@@ -81,11 +81,11 @@ fn or(names: &[String], default: &str) -> Vec<String> {
 
 /// Names in a request.
 enum Listed<'a> {
-    /// Nothing says what is compared.
+    /// Neither names nor a file are given.
     Usual,
-    /// All that there are.
+    /// All existing names.
     All,
-    /// These; none stands for the default.
+    /// These names; an empty list means the default.
     Names(&'a [String]),
 }
 
@@ -123,7 +123,7 @@ fn size(request: &CompareRequest) -> Result<RobotSize, CompareRequestError> {
     RobotSize::new(robot, request.radius_m).map_err(CompareRequestError::Footprint)
 }
 
-/// A planner and a smoother; `None` is the default.
+/// A planner and a smoother; `None` means the default.
 #[derive(Clone, Copy)]
 struct Pair<'a> {
     request: &'a CompareRequest,
@@ -133,7 +133,7 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Returns the stack with both; parameters of other `compared` names are passed over.
+    /// Returns the stack with both; parameters of other `compared` names are ignored.
     fn stack(&self, compared: &[String]) -> Result<Stack, CompareRequestError> {
         let parameters = &self.request.parameters;
         let name = |field, path, name: Option<&String>| {
@@ -177,7 +177,7 @@ fn target(path: &str) -> Option<(&str, &str)> {
     is_name.then_some((name, rest))
 }
 
-/// A parameter of something that is not compared would be lost.
+/// Refuses a parameter of a part that is not compared: it would be lost.
 fn refuse_absent(
     assignments: &[Assignment],
     planners: &[String],
@@ -190,7 +190,7 @@ fn refuse_absent(
     Err(CompareRequestError::NotCompared { path, planners, smoothers })
 }
 
-/// Other fields name the planners and smoothers.
+/// Refuses a parameter that is the name of a planner or a smoother: other fields give those.
 fn refuse_renaming(set: &Assignment) -> Result<(), CompareRequestError> {
     let parent = set.path.strip_suffix(".name");
     let is_named = |parent| parent == PLANNER || parent == SMOOTHER;
@@ -200,7 +200,7 @@ fn refuse_renaming(set: &Assignment) -> Result<(), CompareRequestError> {
     Ok(())
 }
 
-/// A name may also hide in a table.
+/// Refuses a name that is set by a table.
 fn refuse_other(name: &str, wanted: &str, part: &str) -> Result<(), CompareRequestError> {
     if name == wanted {
         return Ok(());
@@ -208,7 +208,7 @@ fn refuse_other(name: &str, wanted: &str, part: &str) -> Result<(), CompareReque
     Err(CompareRequestError::Renamed { path: format!("{part}.name") })
 }
 
-/// Refuses a list with an empty or a repeated name, or with the name for all and others.
+/// Refuses a list with an empty or a repeated name, or with the name for all beside others.
 pub(super) fn refuse_repeated(
     field: &'static str,
     names: &[String],
@@ -232,7 +232,7 @@ mod tests {
     use super::*;
     use keyway::robot::Robot;
 
-    /// Otherwise the path `NAME.field` of a parameter could mean two things.
+    /// Otherwise, the path `NAME.field` of a parameter would be ambiguous.
     #[test]
     fn names_are_unique() {
         let stack = toml::Table::try_from(Stack::for_plans(&Robot::small())).unwrap();

@@ -1,4 +1,4 @@
-//! The printed table: in the terminal and in LaTeX.
+//! The table of a comparison, for the terminal and for LaTeX.
 
 use super::Compared;
 use super::figures::{
@@ -18,7 +18,7 @@ struct Column {
     id: &'static str,
     /// Header in LaTeX, which has all columns.
     name: &'static str,
-    /// Header in the terminal, in two lines where it is longer than its numbers; `None` where the
+    /// Header in the terminal, in two lines if it is longer than its numbers; `None` if the
     /// terminal shows the column only on request.
     heading: Option<&'static str>,
     cell: Cell,
@@ -29,19 +29,19 @@ struct Column {
 #[derive(Debug)]
 enum Cell {
     Text(fn(&CompareRow) -> String),
-    /// A mean, with the range of the values of most queries. The numbers are their decimals.
+    /// A mean, with the range of the values of most queries. The two numbers are their decimals.
     Mean(&'static Figure, Written, [usize; 2]),
 }
 
 type Written = fn(Option<f64>, usize) -> String;
 
-/// Names that come first in every row; the terminal has the map above its table.
+/// Names that come first in every row; the terminal shows the map above its table.
 const MAP: Column = always("map", "map", None, |row| row.map.clone());
 const PLANNER: Column = always("planner", "planner", None, |row| row.planner.to_owned());
 const SMOOTHER: Column = always("smoother", "smoother", None, |row| row.smoother.to_owned());
 
-/// Columns of means with the range of most queries, except the worst excess, the least clearance
-/// and the median times.
+/// Columns of means have the range of most queries; the worst excess, the least clearance and the
+/// median times have none.
 const COLUMNS: [Column; 14] = [
     always(CORNERS, "corners", None, |row| corners(row).to_owned()),
     always("solved", "solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
@@ -66,7 +66,7 @@ const COLUMNS: [Column; 14] = [
         name: "shortfalls",
         heading: Some("short-\nfalls"),
         cell: Cell::Text(shortfalls),
-        // Shown only where a path falls short of the requested clearance.
+        // Shown only if a path falls short of the requested clearance.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
     always(TIMES[0], "plan us", Some("plan\nus"), |row| number(row.median_plan_us, 1)),
@@ -135,17 +135,17 @@ pub enum ColumnError {
 /// Columns of the tables of a comparison.
 #[derive(Debug)]
 pub struct ChosenColumns {
-    /// Requested columns; `None` for the usual ones.
+    /// Requested columns; `None` for the default ones.
     asked: Option<Vec<&'static Column>>,
     has_times: bool,
 }
 
 impl ChosenColumns {
-    /// Selects the columns of these names, after the names of planner and smoother, or the usual
-    /// columns if there are no names; `has_times` says whether times were measured.
+    /// Selects the columns of these names, which follow the names of planner and smoother;
+    /// without names, the default columns. `has_times` is true if times were measured.
     ///
     /// # Errors
-    /// Names the column that cannot be shown.
+    /// Returns [`ColumnError`] for a column that cannot be shown.
     pub fn new(names: &[String], has_times: bool) -> Result<Self, ColumnError> {
         let column = |id: &String| {
             if !has_times && TIMES.contains(&id.as_str()) {
@@ -179,13 +179,14 @@ impl ChosenColumns {
         (columns.iter().map(|column| column.name).collect(), lines, words)
     }
 
-    /// The table of all rows as LaTeX.
+    /// Returns the table of all rows as LaTeX.
     pub fn latex(&self, rows: &[CompareRow]) -> String {
         let (header, lines, words) = self.table(rows);
         latex_table(&header, &lines, words)
     }
 
-    /// The table of a map, as wide as a terminal unless columns were requested: not all columns.
+    /// Returns the table of a map. Without requested columns, it has only those that fit the
+    /// width of a terminal.
     pub fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
         let mut columns = vec![&PLANNER, &SMOOTHER];
         columns.extend(self.of(all, |column| column.heading.is_some()));
@@ -200,7 +201,7 @@ impl ChosenColumns {
     }
 }
 
-/// Properties that all rows of a map share.
+/// Returns a title with the properties that all rows of a map share.
 fn title(map: &Compared, own: &[CompareRow]) -> String {
     let (queries, compared) = (map.counts.len(), map.counts.iter().filter(|&&is| is).count());
     let rules: BTreeSet<&str> = own.iter().map(corners).collect();
@@ -230,7 +231,7 @@ fn shortfalls(row: &CompareRow) -> String {
 mod tests {
     use super::*;
 
-    /// A figure that nothing summarises would be an empty column.
+    /// A metric without a summary would be an empty column.
     #[test]
     fn the_figure_of_every_column_is_summarised() {
         let means = COLUMNS.iter().filter_map(|column| match column.cell {

@@ -1,7 +1,7 @@
 //! All planners and smoothers on one map.
 //!
 //! The planners take turns, round by round. For each query, the fastest round of each planner
-//! counts. Smoothers follow the planner whose lines they smooth.
+//! counts. Smoothers run after the planner whose paths they smooth.
 
 use super::choice::Choice;
 use super::ends::Ends;
@@ -19,7 +19,7 @@ use keyway::smooth::{Smoothed, SmootherConfig};
 use keyway_sim::metrics::PathMetrics;
 use keyway_sim::report::PlanOutcome;
 
-/// One planner with one smoother, and their answers to each query.
+/// Answers of one planner with one smoother to each query.
 pub struct ContestEntry {
     /// Name of the planner.
     pub planner: &'static str,
@@ -27,7 +27,7 @@ pub struct ContestEntry {
     pub smoother: &'static str,
     /// Corner rule of the planner.
     pub corners: CornerRule,
-    /// Preparation time of the planner; `None` where times are left out.
+    /// Preparation time of the planner; `None` if times are left out.
     pub preparation: Option<Times>,
     /// Answers to all queries, in their order.
     pub answers: Vec<Answer>,
@@ -37,25 +37,26 @@ pub struct ContestEntry {
 pub struct Answer {
     /// Result of the search.
     pub outcome: PlanOutcome,
-    /// Reason why there is no path, in the words of the request.
+    /// Reason why no path was found, as [`CompareRequest::why`](super::CompareRequest::why) words
+    /// it.
     pub reason: Option<String>,
-    /// Search time; `None` where times are left out.
+    /// Search time; `None` if times are left out.
     pub plan: Option<Times>,
     /// The planner's note on its plan.
     pub note: Option<PlanNote>,
-    /// The path, if there is one.
+    /// The path, if one was found.
     pub found: Option<Found>,
 }
 
 /// A smoothed and measured path.
 pub struct Found {
-    /// Smoothing time; `None` where nothing is smoothed, or times are left out.
+    /// Smoothing time; `None` if nothing is smoothed, or times are left out.
     pub smooth: Option<Times>,
     /// The smoothed path.
     pub done: Smoothed,
     /// Metrics of the smoothed path.
     pub metrics: PathMetrics,
-    /// Length of the shortest line between the same ends \[m\].
+    /// Length of the shortest line between the same start and goal \[m\].
     pub shortest_m: Option<f64>,
 }
 
@@ -121,7 +122,7 @@ pub(super) fn compete(
     Ok(Contest { entries, left_out, oracles })
 }
 
-/// Returns an oracle for each corner rule that a planner has.
+/// Returns an oracle for each corner rule of the planners.
 fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<Oracle> {
     let rules = [CornerRule::Forbid, CornerRule::Allow];
     let is_wanted = |rule: &CornerRule| contenders.iter().any(|one| one.corners() == *rule);
@@ -132,10 +133,10 @@ fn oracles(map: &SearchMap, contenders: &[Contender], queries: &[Ends]) -> Vec<O
     rules.into_iter().filter(is_wanted).map(oracle).collect()
 }
 
-/// A smoothed path, and the smoothing time where anything was smoothed.
+/// A smoothed path, and the smoothing time if anything was smoothed.
 type TimedSmoothed = (Smoothed, Option<Times>);
 
-/// A planner with its memory, and its results and those of each smoother so far.
+/// A planner with its memory, its results so far, and those of each smoother.
 struct Contender {
     planner: Box<dyn GlobalPlanner + Send + Sync>,
     name: &'static str,
@@ -227,7 +228,8 @@ impl Contender {
         for (config, results) in smoothers.iter().zip(&mut self.smoothed) {
             let smoother =
                 config.build().map_err(|error| CompareError::Smoother(error.within("smoother")))?;
-            // The planned line is measured and checked, too, but that is not smoothing.
+            // Without a smoother, the planned line is also measured and checked, but that is not
+            // smoothing.
             let is_smoother = !matches!(config, SmootherConfig::None(_));
             for (i, planned) in self.planned.iter().enumerate() {
                 let smooth = |line| {
@@ -291,7 +293,7 @@ impl Planned {
     }
 }
 
-/// Names the field of a wrong config as that of a stack.
+/// Renames the field of an invalid config to that of a stack.
 fn in_stack(error: PlanError) -> PlanError {
     match error {
         PlanError::Config(error) => PlanError::Config(error.within("planner")),
@@ -299,7 +301,8 @@ fn in_stack(error: PlanError) -> PlanError {
     }
 }
 
-/// Reason why there is no path; an error if the planner cannot plan on such a map at all.
+/// Returns the outcome of a search without a path; an error if the planner cannot plan on such a
+/// map at all.
 fn outcome(error: &PlanError) -> Result<PlanOutcome, CompareError> {
     if let PlanError::Constrained { .. } = error {
         return Ok(PlanOutcome::Missed);

@@ -14,12 +14,12 @@ pub struct Ends {
     pub start_cell: Cell,
     /// Cell of the goal.
     pub goal_cell: Cell,
-    /// Line of the file that contains the query, from 1.
+    /// Line of the query in its file, from 1.
     pub line: Option<usize>,
 }
 
 impl Ends {
-    /// Returns the ends for two cells.
+    /// Creates the start and goal of two cells.
     pub fn of_cells(
         frame: &GridFrame,
         [start_cell, goal_cell]: [Cell; 2],
@@ -29,7 +29,7 @@ impl Ends {
         Self { start, goal, start_cell, goal_cell, line }
     }
 
-    /// Returns the ends for two positions; `None` if one is outside the map.
+    /// Creates the start and goal at two positions; `None` if one is outside the map.
     pub fn of_points(
         frame: &GridFrame,
         (start, goal): (Point, Point),

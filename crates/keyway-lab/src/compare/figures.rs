@@ -1,4 +1,4 @@
-//! The figures of the paths of a comparison: what is measured of each path, and summarised for the
+//! The metrics of the paths of a comparison: measured on each path, and summarised over the
 //! queries that count.
 
 use super::contest::Found;
@@ -10,14 +10,14 @@ use serde::{Serialize, Serializer};
 /// Seed of the resamples for the intervals.
 const SEED: u64 = 0;
 
-/// A figure of a path.
+/// A metric of a path.
 #[derive(Debug)]
 pub(super) struct Figure {
-    /// Name in a report, where `mean_` and the like come before it.
+    /// Name in a report, where it follows a prefix such as `mean_`.
     name: &'static str,
-    /// Value of a path; `None` where it has none.
+    /// Value of a path; `None` if it has none.
     of: fn(&Found) -> Option<f64>,
-    /// Name in a report of the worst value, and the order in which the worst comes last.
+    /// Name of the worst value in a report, and the order in which the worst value comes last.
     worst: Option<(&'static str, Order)>,
 }
 
@@ -37,7 +37,7 @@ pub(super) const CLEARANCE_M: Figure = Figure {
     worst: Some(("min_clearance_m", |a, b| b.total_cmp(a))),
 };
 
-/// All figures, in the order of reports.
+/// All metrics, in the order of reports.
 const FIGURES: [&Figure; 6] =
     [&LENGTH_M, &EXCESS, &TURNS, &TURNING_ANGLE_DEG, &NON_SMOOTH_TURNS, &CLEARANCE_M];
 
@@ -45,7 +45,7 @@ const fn usual(name: &'static str, of: fn(&Found) -> Option<f64>) -> Figure {
     Figure { name, of, worst: None }
 }
 
-/// Summary of the values of one figure; all `None` without a value.
+/// Summary of the values of one metric; all fields are `None` without a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Summary {
     pub(super) mean: Option<f64>,
@@ -58,12 +58,12 @@ pub(super) struct Summary {
     pub(super) worst: Option<f64>,
 }
 
-/// Summaries of all figures.
+/// Summaries of all metrics.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Summaries([Summary; FIGURES.len()]);
 
 impl Figure {
-    /// Its place in [`FIGURES`]; `None` for one that is missing there.
+    /// Returns its index in [`FIGURES`]; `None` if it is not there.
     pub(super) fn place(&self) -> Option<usize> {
         FIGURES.iter().position(|one| one.name == self.name)
     }
@@ -85,7 +85,7 @@ impl Summaries {
         Self(FIGURES.map(|figure| figure.summary(found)))
     }
 
-    /// The summary of one figure of [`FIGURES`].
+    /// Returns the summary of one metric of [`FIGURES`].
     pub(super) fn get(&self, figure: &Figure) -> Summary {
         figure.place().map_or_else(Summary::default, |place| self.0[place])
     }

@@ -1,4 +1,4 @@
-//! Names of the files that a comparison leaves: the report, tables, and pictures of each map.
+//! Names of the files that a comparison writes: the report, tables, and pictures of each map.
 
 use super::Compared;
 use super::report::SCHEMA;
@@ -9,7 +9,7 @@ use std::path::Path;
 /// Names of the files of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompareFiles {
-    /// For each map.
+    /// SVG and PNG of each map.
     pictures: Vec<[String; 2]>,
 }
 
@@ -29,11 +29,11 @@ impl CompareFiles {
         Self { pictures: picture_stems(maps).into_iter().map(names).collect() }
     }
 
-    /// Returns the names of the files of an earlier comparison in a folder; none without one. Its
-    /// pictures of other maps would seem to belong to this comparison.
+    /// Returns the names of the files of an earlier comparison in a folder; empty without one.
+    /// Its pictures of other maps would otherwise seem to belong to this comparison.
     ///
     /// # Errors
-    /// When the earlier report cannot be read.
+    /// Returns [`ResultsError`] if the earlier report cannot be read.
     pub fn of_earlier(out: &OutDir) -> Result<Vec<String>, ResultsError> {
         let report = out.earlier(Self::REPORT)?.and_then(|text| serde_json::from_str(&text).ok());
         let Some(report) = report.filter(|report: &Value| report["schema"] == SCHEMA) else {
@@ -48,18 +48,19 @@ impl CompareFiles {
         Ok(Self::of_maps(&maps.filter_map(name).collect::<Vec<_>>()).names())
     }
 
-    /// All names: the tables, then for each map its picture as SVG and as PNG.
+    /// Returns all names: the tables, then for each map its picture as SVG and as PNG.
     pub fn names(&self) -> Vec<String> {
         let tables = Self::TABLES.map(str::to_owned);
         tables.into_iter().chain(self.pictures.iter().flatten().cloned()).collect()
     }
 
-    /// Names of the pictures of each map, as SVG and as PNG.
+    /// Returns the names of the pictures of each map, as SVG and as PNG.
     pub fn pictures(&self) -> &[[String; 2]] {
         &self.pictures
     }
 
-    /// Paths of the files in a folder; a map on which nothing was compared has no picture.
+    /// Returns the paths of the files in a folder; a map on which nothing was compared has no
+    /// picture.
     pub fn paths(&self, maps: &[Compared], out: &OutDir) -> Vec<String> {
         let is_drawn = |(map, _): &(&Compared, &[String; 2])| map.picture_query().is_some();
         let drawn = maps.iter().zip(&self.pictures).filter(is_drawn);
@@ -72,16 +73,16 @@ impl CompareFiles {
     const TABLES: [&str; 4] = [Self::REPORT, Self::TABLE, Self::LATEX, Self::QUERIES];
 }
 
-/// Returns names of files for pictures of maps, without an extension: each map's name without its
-/// own, folders joined by `-`, with a number where that is taken.
+/// Returns file names for pictures of maps, without an extension: each map's name without its own
+/// extension, folders joined by `-`, with a number if the name is taken.
 fn picture_stems(names: &[String]) -> Vec<String> {
     let mut stems: Vec<String> = Vec::new();
     for name in names {
         let stem = file_name_of(name);
-        // Some file systems do not tell `A` from `a`.
+        // Some file systems do not distinguish `A` from `a`.
         let is_free = |stem: &String| !stems.iter().any(|one| one.eq_ignore_ascii_case(stem));
         let numbered = (2..).map(|number| format!("{stem}-{number}"));
-        // There is always another number.
+        // A free number always exists.
         stems.extend(std::iter::once(stem.clone()).chain(numbered).find(is_free));
     }
     stems

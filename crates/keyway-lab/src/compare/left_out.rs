@@ -12,7 +12,7 @@ pub struct LeftOut {
 }
 
 impl LeftOut {
-    /// True if the map is to blame, and not a parameter.
+    /// True if the error is caused by the map, and not by a parameter.
     pub(super) const fn is_for(error: &PlanError) -> bool {
         matches!(error, PlanError::NeedsUniformCost { .. } | PlanError::Preparation(_))
     }
@@ -29,7 +29,7 @@ impl LeftOut {
     }
 }
 
-/// Text below the table; `None` where all planners were compared.
+/// Text below the table; `None` if all planners were compared.
 pub fn left_out_note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> =
         maps.iter().flat_map(|map| lines(&map.name, &map.contest.left_out)).collect();

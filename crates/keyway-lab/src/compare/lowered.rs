@@ -4,7 +4,7 @@ use super::Compared;
 use super::contest::ContestEntry;
 use keyway::plan::{PlanNote, Relaxed};
 
-/// Text below the table; `None` where every constraint was kept.
+/// Text below the table; `None` if every constraint was kept.
 pub fn lowered_note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> = maps.iter().flat_map(of_map).collect();
     let title = "\nConstraints lowered as far as was needed to leave a path:";
@@ -15,7 +15,7 @@ fn of_map(map: &Compared) -> Vec<String> {
     let mut lines = Vec::new();
     let mut planners: Vec<&str> = Vec::new();
     for entry in &map.contest.entries {
-        // Each smoother has an entry of its own, too.
+        // Each smoother has its own entry, too.
         if !planners.contains(&entry.planner) {
             planners.push(entry.planner);
             lines.extend(line(&map.name, entry));

@@ -1,4 +1,4 @@
-//! Unique names of maps: many maps are called `map.yaml`.
+//! Unique names of maps, since many map files are called `map.yaml`.
 
 use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
@@ -9,11 +9,11 @@ pub(super) struct MapNames(Vec<MapName>);
 
 #[derive(Clone, Debug)]
 struct MapName {
-    /// The shortest end of the path that no other map has.
+    /// The shortest end of the path that is unique among the maps.
     name: String,
     /// Path as given.
     given: PathBuf,
-    /// Path from the root, without `.` and `..`.
+    /// Absolute path, without `.` and `..`.
     whole: PathBuf,
 }
 
@@ -27,7 +27,7 @@ pub struct SameMap {
     pub second: PathBuf,
 }
 
-/// Text that names several maps.
+/// Error of a text that names several maps.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{text}` names several maps; write {}", names.join(" or "))]
 pub struct AmbiguousMap {
@@ -38,9 +38,9 @@ pub struct AmbiguousMap {
 }
 
 impl MapNames {
-    /// Refuses a file that is named twice, however it is spelled.
+    /// Refuses a file that is named twice, even if it is spelled differently.
     pub(super) fn new(maps: &[PathBuf]) -> Result<Self, SameMap> {
-        // The reader of maps refuses a file that is not there.
+        // The reader of maps refuses a file that does not exist.
         let files: Vec<Option<PathBuf>> = maps.iter().map(|map| map.canonicalize().ok()).collect();
         let earlier = |i: usize| files[..i].iter().position(|file| *file == files[i]);
         let twice =
@@ -73,7 +73,7 @@ impl MapNames {
     /// with the file's extension or without; `None` if it names none.
     ///
     /// # Errors
-    /// When the text names several maps.
+    /// Returns [`AmbiguousMap`] if the text names several maps.
     pub(super) fn named(&self, text: &str) -> Result<Option<usize>, AmbiguousMap> {
         let text = Path::new(text.strip_prefix("./").unwrap_or(text));
         // Every path ends with the empty one.
@@ -102,8 +102,8 @@ impl MapNames {
     }
 }
 
-/// Returns the path from the root. A path with `..` becomes that of the folder in which it ends,
-/// because what comes before may be a link.
+/// Returns the absolute path. A path with `..` becomes that of the folder in which it ends,
+/// because the part before it may be a link.
 fn whole(map: &Path) -> PathBuf {
     let absolute = std::path::absolute(map).unwrap_or_else(|_| map.to_owned());
     if !absolute.components().any(|part| part == Component::ParentDir) {
@@ -116,7 +116,8 @@ fn whole(map: &Path) -> PathBuf {
     }
 }
 
-/// Returns the fewest last parts of a path that no other path ends with, joined by `/`.
+/// Returns the smallest number of last components of a path that no other path ends with, joined
+/// by `/`.
 fn shortest_end(paths: &[PathBuf], of: usize) -> String {
     let parts = |path: &Path| -> Vec<String> {
         path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect()

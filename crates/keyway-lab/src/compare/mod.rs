@@ -1,7 +1,7 @@
 //! Comparison of planners and smoothers on the same queries, and with the shortest lines.
 //!
-//! A [`CompareRequest`] describes the comparison. Checked, it is a [`Comparison`], which gives a
-//! [`Compared`] for each map, and a [`CompareReport`] for all of them.
+//! A [`CompareRequest`] describes the comparison. A checked request is a [`Comparison`], which
+//! returns a [`Compared`] for each map, and a [`CompareReport`] for all of them.
 
 mod against_first;
 mod checked;
@@ -51,7 +51,7 @@ use row::{compared, most_different, row};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// A comparison that was requested and checked.
+/// A requested and checked comparison.
 #[derive(Debug)]
 pub struct Comparison {
     names: MapNames,
@@ -83,7 +83,7 @@ pub struct Compared {
     pub queries: Vec<Ends>,
     /// The answers.
     pub contest: Contest,
-    /// For each query, whether its answers count: all planners that solved any query have solved
+    /// For each query, true if its answers count: every planner that solved any query has solved
     /// it.
     pub counts: Vec<bool>,
 }
@@ -97,7 +97,7 @@ pub enum QueriedError {
     Layers {
         /// The map.
         map: PathBuf,
-        /// Fault of the radius or of the config.
+        /// Error of the radius or of the config.
         error: RobotLayersError,
     },
     /// The map has no queries.
@@ -129,8 +129,8 @@ pub enum CompareError {
 }
 
 impl Queried {
-    /// Combines a map with its layers and its queries. Where the layers ask for it, the constraints
-    /// that keep paths away from obstacles are lifted around the ends of all queries alike.
+    /// Combines a map with its layers and its queries. If the layers ask for it, the constraints
+    /// that keep paths away from obstacles are lifted around the starts and goals of all queries.
     fn new(name: String, grid: OccupancyGrid, mut map: SearchMap, queries: Vec<Ends>) -> Self {
         let ends: Vec<Cell> = queries.iter().flat_map(|q| [q.start_cell, q.goal_cell]).collect();
         map.free_ends(&ends);
@@ -157,7 +157,8 @@ impl Comparison {
     /// Returns the map of this index in the request with its layers and its queries.
     ///
     /// # Errors
-    /// When the map has no room for the robot, or there are no queries on it.
+    /// Returns [`QueriedError`] if the map has no clearance for the robot, or there are no
+    /// queries on it.
     ///
     /// # Panics
     /// If the request has no map of this index.
@@ -174,8 +175,8 @@ impl Comparison {
     /// Answers all queries on a map.
     ///
     /// # Errors
-    /// When a planner or a smoother cannot be used, or the observer stops the comparison. Queries
-    /// without a path are results.
+    /// Returns [`CompareError`] if a planner or a smoother cannot be used, or the observer stops
+    /// the comparison. Queries without a path are results.
     pub fn on(&self, map: Queried, progress: &dyn Progress) -> Result<Compared, CompareError> {
         let Queried { name, grid, map, queries } = map;
         let contest = compete(&map, self, &queries, progress)?;
@@ -183,8 +184,8 @@ impl Comparison {
         Ok(Compared { name, grid, map, queries, contest, counts })
     }
 
-    /// Returns the report of the results on all maps; `placement` is where maps lie that do not say
-    /// it themselves.
+    /// Returns the report of the results on all maps; `placement` is the placement of maps that
+    /// do not define it themselves.
     pub fn report(&self, maps: &[Compared], placement: Option<PlacementInput>) -> CompareReport {
         CompareReport::new(self, maps, placement)
     }
@@ -196,7 +197,7 @@ impl Compared {
         self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
     }
 
-    /// Returns the query whose paths differ most in length; `None` where none counts.
+    /// Returns the query whose paths differ most in length; `None` if none counts.
     pub fn picture_query(&self) -> Option<usize> {
         most_different(&self.contest.entries, &self.counts)
     }

@@ -1,4 +1,4 @@
-//! Files of pairs: a start and a goal in each line.
+//! Files of pairs: each line has a start and a goal.
 
 use super::ends::Ends;
 use super::map_names::{AmbiguousMap, MapNames};
@@ -34,13 +34,13 @@ pub enum PairsFault {
         /// The name, shortened.
         name: String,
     },
-    /// A column is there twice.
+    /// A column is repeated.
     #[error("the column `{name}` is given twice, {EXPECTED}")]
     RepeatedColumn {
-        /// Name of the second column, shortened.
+        /// Name of the repeated column, shortened.
         name: String,
     },
-    /// A column is not there.
+    /// A column is missing.
     #[error("the column `{name}` is missing, {EXPECTED}")]
     MissingColumn {
         /// Name of the column.
@@ -65,14 +65,14 @@ pub enum PairsFault {
     /// A position is not on the map.
     #[error("the {end} ({x}, {y}) is outside the map")]
     Outside {
-        /// The end of the path.
+        /// Start or goal.
         end: PathEnd,
         /// Its x as written, shortened.
         x: String,
         /// Its y as written, shortened.
         y: String,
     },
-    /// A line is for several maps.
+    /// A line names several maps.
     #[error(transparent)]
     Ambiguous(#[from] AmbiguousMap),
     /// No line is for the map.
@@ -86,7 +86,7 @@ pub enum PairsFault {
     Empty,
 }
 
-/// Returns the beginning of a word, for errors.
+/// Returns the beginning of a word, for error messages.
 fn shown(word: &str) -> String {
     let visible =
         |letter: char| if letter.is_control() { char::REPLACEMENT_CHARACTER } else { letter };
@@ -94,16 +94,16 @@ fn shown(word: &str) -> String {
     if word.chars().nth(40).is_some() { short + "..." } else { short }
 }
 
-/// Places of the values in a line.
+/// Indices of the values in a line.
 struct Columns {
-    /// For each of [`COORDINATES`].
+    /// Index for each of [`COORDINATES`].
     coordinates: [usize; 4],
     map: Option<usize>,
     count: usize,
 }
 
 impl Columns {
-    /// For a file without a header.
+    /// Columns of a file without a header.
     const USUAL: Self = Self { coordinates: [0, 1, 2, 3], map: None, count: 4 };
 
     /// Finds the columns by their names, which may end in the unit: `start_x` or `start_x_m`.
@@ -128,13 +128,13 @@ impl Columns {
         Ok(Self { coordinates: [a?, b?, c?, d?], map, count: names.len() })
     }
 
-    /// The name of a column.
+    /// Returns the name of a column.
     fn name(&self, column: usize) -> &'static str {
         let place = self.coordinates.iter().position(|&own| own == column);
         place.map_or(MAP, |place| COORDINATES[place])
     }
 
-    /// Start and goal of a line.
+    /// Returns the start and goal of a line.
     fn ends(&self, fields: &[&str], frame: &GridFrame) -> Result<(Point, Point), PairsFault> {
         if fields.len() != self.count {
             return Err(PairsFault::Count { count: fields.len(), expected: self.count });
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_column_says_of_which_map_a_line_is() {
-        // Positions of other maps are not looked at.
+        // Positions on other maps are not checked.
         let text = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\na,0,0,0,0\nb.yaml,99,0,0,0\nx/a.map,1,0,0,0";
         let starts = |text: &str, map: &str| -> Vec<f64> {
             let ends = ends_of_map(text, map).unwrap();
@@ -274,7 +274,7 @@ mod tests {
         };
         assert_eq!(starts(text, "/y/x/a.map"), [0.0, 1.0]);
         assert_eq!(starts(text, "y/a.map"), [0.0]);
-        // Wherever it stands.
+        // The column may be at any index.
         let text = "start_x,start_y,goal_x,goal_y,map\n1,0,0,0,b\n2,0,0,0,a\n";
         assert_eq!(starts(text, "a.yaml"), [2.0]);
     }

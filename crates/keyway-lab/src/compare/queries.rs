@@ -1,4 +1,4 @@
-//! Starts and goals to compare: random ones, or those of a file.
+//! Starts and goals of a comparison: random ones, or those of a file.
 
 use super::ends::Ends;
 use super::map_names::MapNames;
@@ -11,7 +11,7 @@ use keyway::search::{Query, random_queries};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Size of a file with millions of pairs \[bytes\].
+/// Maximum size of a file of pairs: millions of pairs \[bytes\].
 const PAIRS_BYTES: u64 = 1 << 30;
 
 /// Queries on each map.
@@ -24,7 +24,7 @@ pub enum QueryChoice {
         /// Seed of the random numbers.
         seed: u64,
     },
-    /// All queries of a file of pairs: a start and a goal in each line \[m\].
+    /// All queries of a file of pairs, which has a start and a goal in each line \[m\].
     Pairs {
         /// The file.
         file: PathBuf,
@@ -51,7 +51,7 @@ pub enum QueryError {
     /// The file of pairs cannot be read.
     #[error(transparent)]
     PairsFile(TextFileError),
-    /// A line of the file of pairs is wrong.
+    /// A line of the file of pairs is invalid.
     #[error("{}: {error}", path.display())]
     Pairs {
         /// The file.
@@ -80,7 +80,7 @@ pub enum QueryError {
         /// The scenario file.
         path: PathBuf,
     },
-    /// The map has no place for random queries.
+    /// The map has no positions for random queries.
     #[error(
         "{} has no two free cells that are connected{}",
         map.display(),
@@ -103,7 +103,7 @@ fn clearance_text(clearance_m: f64) -> String {
 }
 
 impl QueryChoice {
-    /// Usual number of random queries.
+    /// Default number of random queries.
     pub const USUAL_COUNT: usize = 10;
 
     /// Requested number of queries; `None` for all queries of a file.
@@ -158,7 +158,8 @@ impl QueryChoice {
     }
 }
 
-/// Returns queries that are connected for every planner, even for those that do not cut corners.
+/// Returns random queries whose start and goal are connected for every planner, including those
+/// that do not cut corners.
 fn random_ends(
     count: usize,
     seed: u64,
@@ -176,7 +177,7 @@ fn random_ends(
 
 fn ends_of_scenarios(path: &Path, map: &Path, frame: &GridFrame) -> Result<Vec<Ends>, QueryError> {
     let scenarios = read_scenarios_for(path, frame).map_err(QueryError::Scenarios)?;
-    // Many maps have the same size, so only the name tells those of another map.
+    // Many maps have the same size, so only the name identifies queries of another map.
     let is_other = |one: &&Scenario| Path::new(&one.map).file_stem() != map.file_stem();
     if let Some(Scenario { line, map: other, .. }) = scenarios.iter().find(is_other) {
         return Err(QueryError::OtherMap {
@@ -193,7 +194,8 @@ fn ends_of_scenarios(path: &Path, map: &Path, frame: &GridFrame) -> Result<Vec<E
     Ok(scenarios.iter().map(ends).collect())
 }
 
-/// Returns this many of the items, evenly spread and with the first one; all without a number.
+/// Returns this many of the items, evenly spread and with the first one; without a number, all
+/// items.
 fn spread<T>(all: Vec<T>, count: Option<usize>) -> Vec<T> {
     let total = all.len();
     let Some(count) = count.filter(|&count| count < total) else { return all };

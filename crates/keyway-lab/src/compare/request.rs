@@ -1,4 +1,4 @@
-//! Comparison that is to be made.
+//! Request for a comparison.
 
 use super::queries::QueryChoice;
 use keyway::files::{ParameterLayers, StartingValues};
@@ -22,39 +22,40 @@ use std::path::PathBuf;
 pub struct CompareRequest {
     /// Files of the maps; any name for a map in memory.
     pub maps: Vec<PathBuf>,
-    /// Names of planners; `all` alone stands for all that can plan on a map. Empty: some usual ones
-    /// if smoothers and a file of parameters are not given either, otherwise the one of the stack.
+    /// Names of planners; `all` alone means all that can plan on a map. Empty: the default
+    /// selection if smoothers and a file of parameters are not given either, otherwise the one of
+    /// the stack.
     pub planners: Vec<String>,
-    /// Names of smoothers; `all` alone stands for all. Empty: as for planners.
+    /// Names of smoothers; `all` alone means all. Empty: as for planners.
     pub smoothers: Vec<String>,
     /// Parameters of planners, smoothers and the layers of the maps.
     pub parameters: ParameterLayers,
-    /// Values with which planners and smoothers begin.
+    /// Values from which the parameters of planners and smoothers start.
     pub values: StartingValues,
-    /// The robot that paths are for: a name, or a file relative to the current folder.
+    /// The robot for which paths are planned: a name, or a file relative to the current folder.
     pub robot: Option<String>,
-    /// Radius that paths keep from obstacles instead of the robot's own \[m\].
+    /// Clearance that paths keep from obstacles, in place of the robot's own radius \[m\].
     pub radius_m: Option<f64>,
     /// Queries on each map.
     pub queries: QueryChoice,
-    /// Rounds in which every query is answered, the planners in turns; the fastest time of each
-    /// counts.
+    /// Rounds in which every query is answered; the planners take turns, and the fastest time of
+    /// each counts.
     pub repeat: u64,
     /// True if times are measured; they differ from run to run.
     pub has_times: bool,
-    /// Names of the columns of tables; empty for the usual ones.
+    /// Names of the columns of tables; empty for the default ones.
     pub columns: Vec<String>,
-    /// Text for a query without a path, with advice for the reader.
+    /// Returns the text for a query without a path, with advice for the reader.
     pub why: fn(&PlanError) -> String,
 }
 
 impl CompareRequest {
-    /// Largest number of queries that may be asked for on a map.
+    /// Maximum number of queries on a map.
     pub const MOST_QUERIES: usize = 1_000_000;
-    /// Largest number of rounds.
+    /// Maximum number of rounds.
     pub const MOST_REPEATS: u64 = 1000;
 
-    /// Returns a request for the usual comparison on maps.
+    /// Returns a request for the default comparison on maps.
     pub fn new(maps: Vec<PathBuf>) -> Self {
         Self {
             maps,

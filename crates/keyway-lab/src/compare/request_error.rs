@@ -6,7 +6,7 @@ use keyway::files::{ConfigFileError, LayerError, ParameterLayer};
 use keyway::robot::FootprintError;
 use thiserror::Error;
 
-/// Reason why a request for a comparison is refused; it names the field of the request.
+/// Reason why a request for a comparison is refused, with the field of the request.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CompareRequestError {
@@ -33,13 +33,13 @@ pub enum CompareRequestError {
         /// Number in the request.
         got: u64,
     },
-    /// The radius is not a length.
+    /// The radius is not a valid length.
     #[error("radius: expected a length of at least 0 in metres, got {radius_m:?}")]
     Radius {
         /// The radius \[m\].
         radius_m: f64,
     },
-    /// No robot can have the radius.
+    /// No robot can have this radius.
     #[error("radius: {0}; lengths are in metres, not in millimetres")]
     Footprint(FootprintError),
     /// The robot cannot be used.
@@ -55,7 +55,7 @@ pub enum CompareRequestError {
         /// Layer and fault.
         error: LayerError,
     },
-    /// A parameter belongs to something that is not compared.
+    /// A parameter belongs to a part that is not compared.
     #[error(
         "{path}: not compared here; the planners are {}, the smoothers {}",
         planners.join(", "), smoothers.join(", ")
@@ -68,7 +68,7 @@ pub enum CompareRequestError {
         /// Names of the smoothers.
         smoothers: Vec<String>,
     },
-    /// A parameter renames what is compared.
+    /// A parameter renames a compared part.
     #[error(
         "parameters: `{path}` cannot be set in a comparison; planners and smoothers name what is \
          compared"
@@ -92,13 +92,13 @@ pub enum NamesError {
         /// All names.
         names: Vec<String>,
     },
-    /// The name for all is not alone.
+    /// The name for all is combined with others.
     #[error("`{all}` stands for all names; give it alone")]
     AllAndOthers {
         /// The name for all.
         all: &'static str,
     },
-    /// A name is there twice.
+    /// A name is repeated.
     #[error("{name} is named twice")]
     Repeated {
         /// The name.
@@ -107,7 +107,7 @@ pub enum NamesError {
 }
 
 impl CompareRequestError {
-    /// Name of the field of the request that is to blame.
+    /// Returns the name of the request's field that is at fault.
     pub fn field(&self) -> &'static str {
         match self {
             Self::Names { field, .. } | Self::Count { field, .. } => field,

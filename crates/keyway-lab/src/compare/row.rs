@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Lengths that differ by less are equal \[m\].
 pub(super) const SAME_M: f64 = 1e-6;
 
-/// One row of `keyway.compare/1`, whose members docs/reference/json.md explains.
+/// One row of `keyway.compare/1`; docs/reference/json.md explains its fields.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CompareRow {
     pub(super) map: String,
@@ -35,7 +35,7 @@ pub struct CompareRow {
     pub(super) preparation_ms: Option<f64>,
 }
 
-/// For each query, whether it is compared: solved by every planner that solved any query.
+/// Returns true for each query that is compared: solved by every planner that solved any query.
 pub(super) fn compared(entries: &[ContestEntry]) -> Vec<bool> {
     let queries = entries.first().map_or(0, |entry| entry.answers.len());
     let solved = |entry: &ContestEntry, query: usize| entry.answers[query].found.is_some();
@@ -45,7 +45,7 @@ pub(super) fn compared(entries: &[ContestEntry]) -> Vec<bool> {
     (0..queries).map(by_all).collect()
 }
 
-/// Returns the compared query whose paths differ most in length (ties: the first).
+/// Returns the compared query whose paths differ most in length; the first one of equals.
 pub(super) fn most_different(entries: &[ContestEntry], compared: &[bool]) -> Option<usize> {
     let spread_m = |query: usize| {
         let found = entries.iter().filter_map(|entry| entry.answers[query].found.as_ref());
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!((row.without_path, row.compared, row.shortfalls), (1, 2, 2));
         let of = |figure: &Figure| row.figures.get(figure);
         assert_eq!((of(&LENGTH_M).mean, of(&TURNS).mean), (Some(10.5), Some(4.0)));
-        // 10 and 11: 5 and 95 % of the way between them.
+        // 10 and 11: 5 and 95 % between them.
         let near = |value: Option<f64>, expected: f64| (value.unwrap() - expected).abs() < 1e-12;
         let between = |figure: &Figure, p5: f64, p95: f64| {
             let Summary { p5: low, p95: high, .. } = of(figure);
@@ -175,7 +175,7 @@ mod tests {
         };
         between(&LENGTH_M, 10.05, 10.95);
         assert!(near(of(&LENGTH_M).sd, 0.5f64.sqrt()), "{row:?}");
-        // From two values nothing else can be drawn; from equal ones there is nothing else at all.
+        // Resamples of two values have no other extremes; those of equal values are all equal.
         assert_eq!(of(&LENGTH_M).ci, Some([10.0, 11.0]));
         let angle = of(&TURNING_ANGLE_DEG);
         assert_eq!((angle.sd, angle.ci), (Some(0.0), Some([45.0, 45.0])));

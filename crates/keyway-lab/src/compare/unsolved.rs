@@ -6,7 +6,7 @@ use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 use std::path::Path;
 
-/// Number of queries that are listed below the table.
+/// Maximum number of unsolved queries listed below the table.
 const LINES: usize = 5;
 
 /// Planners that found no path for a query, all for the same reason.
@@ -24,7 +24,7 @@ pub(super) fn unsolved(entries: &[ContestEntry], query: usize) -> Vec<Unsolved> 
         let answer = &entry.answers[query];
         let Some(reason) = &answer.reason else { continue };
         match all.iter_mut().find(|one| one.reason == *reason) {
-            // Each smoother has an entry of its own, too.
+            // Each smoother has its own entry, too.
             Some(one) if one.planners.contains(&entry.planner) => {}
             Some(one) => one.planners.push(entry.planner),
             None => all.push(Unsolved {
@@ -37,8 +37,8 @@ pub(super) fn unsolved(entries: &[ContestEntry], query: usize) -> Vec<Unsolved> 
     all
 }
 
-/// Text below the table; `None` when all queries are solved. `file` is the file of the queries;
-/// `elsewhere` says where all unsolved queries are, where the text has only some of them.
+/// Text below the table; `None` if all queries are solved. `file` is the file of the queries;
+/// `elsewhere` names the place of the complete list, for a text that has only some of them.
 pub fn unsolved_note(maps: &[Compared], file: Option<&Path>, elsewhere: &str) -> Option<String> {
     let of_map = |map: &Compared| -> Vec<String> {
         (0..map.queries.len()).flat_map(|query| lines(map, query, file)).collect()

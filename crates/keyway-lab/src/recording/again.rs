@@ -1,4 +1,4 @@
-//! Reads a flight, and decides it again.
+//! Reads a flight recording and repeats its decisions.
 
 use super::RecordingError;
 use super::flight::{OBSERVATION, RecordedObservation, RecordedStep, SNAPSHOT, STEP};
@@ -10,25 +10,27 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// A flight that was decided again, each time as recorded.
+/// Summary of a replayed flight, in which every decision was as recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Flight {
     /// Number of decisions.
     pub cycles: u64,
-    /// Times that the navigator was taken up from a snapshot: at the beginning, and after changes.
+    /// Number of snapshots from which the navigator was restored: at the beginning, and after
+    /// changes.
     pub snapshots: u64,
-    /// False where the recording was not finished, or is cut off.
+    /// False if the recording was not finished, or is truncated.
     pub is_complete: bool,
 }
 
-/// More than a recording of a day has.
+/// Upper bound of the size of a recording: more than a day.
 const MAX_BYTES: u64 = 1 << 36;
 
-/// Makes the decisions of a recording again, and shows each to `watch`. What was read is held in
+/// Repeats the decisions of a recording, and passes each to `watch`. The whole file is held in
 /// memory.
 ///
 /// # Errors
-/// When the file cannot be read or holds no flight, and at the first decision that is another one.
+/// Returns [`RecordingError`] if the file cannot be read or holds no flight, or at the first
+/// decision that differs.
 pub fn decide_again(
     path: &Path,
     watch: &mut dyn FnMut(&Cycle<'_>),
@@ -48,7 +50,7 @@ pub fn decide_again(
     Ok(Flight { is_complete, ..pilot.flight })
 }
 
-/// A navigator that lives a recorded life.
+/// A navigator that is fed with a recording.
 struct Pilot<'a> {
     path: &'a Path,
     navigator: Option<Navigator>,
@@ -56,7 +58,7 @@ struct Pilot<'a> {
     observations: u64,
     /// The last observation.
     observed: Option<RecordedObservation>,
-    /// Stamp of the first one \[s\].
+    /// Stamp of the first observation \[s\].
     begin_s: Option<f64>,
 }
 

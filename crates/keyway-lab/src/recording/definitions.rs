@@ -1,4 +1,4 @@
-//! Parts of the definitions of messages of ROS 2, as `ros2msg` has them.
+//! Parts of ROS 2 message definitions, in the `ros2msg` format.
 
 macro_rules! separator {
     () => {

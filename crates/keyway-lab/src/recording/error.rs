@@ -6,17 +6,17 @@ use keyway::navigate::RestoreError;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Reason why a recording cannot be written, read, or decided again.
+/// Reason why a recording cannot be written, read, or replayed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// It cannot be written.
+    /// The recording cannot be written.
     #[error("the recording cannot be written: {0}")]
     Write(#[from] mcap::McapError),
     /// A message cannot be encoded.
     #[error("a message of {topic} cannot be encoded: {reason}")]
     Encode {
-        /// Its topic.
+        /// Topic of the message.
         topic: String,
         /// Error of the encoder.
         reason: String,
@@ -41,7 +41,7 @@ pub enum RecordingError {
         /// The file.
         path: PathBuf,
     },
-    /// A message says nothing that can be used.
+    /// A message has invalid content.
     #[error("{}: message {index} of {topic}: {reason}", path.display())]
     Message {
         /// The file.
@@ -50,18 +50,18 @@ pub enum RecordingError {
         topic: &'static str,
         /// Number of the message among those of its topic, from 0.
         index: u64,
-        /// The fault.
+        /// Error of its content.
         reason: String,
     },
-    /// The navigator cannot be taken up again.
+    /// The navigator cannot be restored.
     #[error("{}: its navigator cannot be taken up again: {reason}", path.display())]
     Restore {
         /// The file.
         path: PathBuf,
-        /// The fault.
+        /// Error of the restoration.
         reason: RestoreError,
     },
-    /// A decision is another one now.
+    /// A decision differs from the recorded one.
     #[error(
         "{}: at {stamp_s:.3} s (cycle {cycle}) it decided otherwise: {recorded} in the recording, {made} now",
         path.display()
@@ -69,7 +69,7 @@ pub enum RecordingError {
     Differs {
         /// The file.
         path: PathBuf,
-        /// Stamp of the last observation before it \[s\].
+        /// Stamp of the last observation before the decision \[s\].
         stamp_s: f64,
         /// Number of the cycle, from 0.
         cycle: u64,

@@ -10,7 +10,7 @@ pub(super) const STEP: &str = "/keyway/step";
 pub(super) const OBSERVATION: &str = "/keyway/observation";
 pub(super) const SNAPSHOT: &str = "/keyway/snapshot";
 
-/// An observation with all that it borrows.
+/// An observation that owns its data.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct RecordedObservation {
     pub(super) stamp_s: f64,
@@ -38,7 +38,8 @@ struct RecordedPoints {
     sensor: usize,
     mount: Pose,
     points: Vec<Point>,
-    /// Right and left edge \[rad\], nearest and farthest range \[m\].
+    /// Field of view that the sensor clears: right and left edge \[rad\], nearest and farthest
+    /// range \[m\].
     clears: Option<[f64; 4]>,
 }
 
@@ -78,7 +79,7 @@ impl RecordedObservation {
         }
     }
 
-    /// Hands out the observation.
+    /// Passes the observation to `take`.
     pub(super) fn with<T>(&self, take: impl FnOnce(&Observation<'_>) -> T) -> T {
         let scans: Vec<SensorScan<'_>> = self.scans.iter().map(RecordedScan::borrowed).collect();
         let points: Vec<SensorPoints<'_>> =
@@ -123,9 +124,9 @@ impl RecordedPoints {
 /// `keyway.step/1`: a decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedStep {
-    /// Name and version of this form.
+    /// Name and version of the format.
     schema: String,
-    /// `drive`, `arrived`, `idle` or `blocked`.
+    /// Status: `drive`, `arrived`, `idle` or `blocked`.
     pub status: String,
     /// Commanded forward speed \[m/s\].
     pub v_mps: f64,
@@ -133,7 +134,7 @@ pub struct RecordedStep {
     pub omega_radps: f64,
     /// Number of the reason ([`Blocked::kind`]) of a robot that is blocked.
     pub kind: Option<u16>,
-    /// The reason, for people.
+    /// The reason, for display.
     pub why: Option<String>,
 }
 
@@ -153,7 +154,7 @@ impl RecordedStep {
         }
     }
 
-    /// True if both say the same to a robot; reasons may be worded otherwise.
+    /// True if both are the same to a robot; the wording of reasons may differ.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let said = |step: &Self| (step.v_mps.to_bits(), step.omega_radps.to_bits(), step.kind);
         said(self) == said(other) && self.status == other.status

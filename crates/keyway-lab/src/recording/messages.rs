@@ -1,7 +1,7 @@
-//! The messages of a file that anybody may have written.
+//! The messages of an untrusted file.
 //!
-//! Such a file says how long its parts are, and may lie: no part takes more memory than a file of
-//! its size can sensibly hold, and none reaches beyond what holds it.
+//! Such a file declares the lengths of its parts, and these may be wrong: no part takes more
+//! memory than a file of its size can sensibly hold, and none reaches beyond its container.
 
 use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -9,19 +9,19 @@ use mcap::{McapError, McapResult, parse_record};
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 
-/// The most bytes for which a byte of a compressed part can stand.
+/// Maximum number of bytes that one byte of a compressed part expands to.
 const MOST_COMPRESSED: usize = 255;
 
-/// More than the map of a city, in one message \[bytes\].
+/// Maximum size of a message: more than the map of a city \[bytes\].
 const MAX_RECORD_BYTES: usize = 1 << 30;
 
-/// Bytes that are read at once.
+/// Number of bytes that are read at once.
 const READ_BYTES: usize = 1 << 16;
 
-/// Hands each message and its topic to `take`, in the order of the file. The answer is `false`
-/// where the file was cut off: what was written before a loss of power is read.
+/// Passes each message and its topic to `take`, in the order of the file. Returns `false` if the
+/// file is truncated: everything that was written before a loss of power is read.
 ///
-/// `fault` makes errors of those of the file.
+/// `fault` converts the errors of the file.
 pub(super) fn for_each_message<E>(
     bytes: &[u8],
     fault: impl Fn(McapError) -> E,
@@ -52,7 +52,7 @@ pub(super) fn for_each_message<E>(
 struct Topics(BTreeMap<u16, String>);
 
 impl Topics {
-    /// Hands the message of a record to `take`, if it is one.
+    /// Passes the message of a record to `take`, if the record is one.
     fn with_message<E>(
         &mut self,
         opcode: u8,
@@ -79,8 +79,8 @@ impl Topics {
     }
 }
 
-/// Refuses a chunk that is longer than its record, or one that is not compressed and whose records
-/// reach beyond its end.
+/// Refuses a chunk that is longer than its record, or an uncompressed one whose records reach
+/// beyond its end.
 fn check_chunk(chunk: &[u8]) -> McapResult<()> {
     const HEAD_BYTES: usize = 1 + 8;
     let Record::Chunk { header, data } = parse_record(op::CHUNK, chunk)? else { return Ok(()) };
@@ -94,7 +94,7 @@ fn check_chunk(chunk: &[u8]) -> McapResult<()> {
     Ok(())
 }
 
-/// Takes kind and content of a record.
+/// Callback that takes the kind and content of a record.
 type Take<'a, E> = dyn FnMut(u8, &[u8]) -> Result<(), E> + 'a;
 
 /// Records of a file, or of one of its chunks.
@@ -120,7 +120,7 @@ impl<R: Read> Records<R> {
         Self { source, reader: LinearReader::new_with_options(options) }
     }
 
-    /// Hands kind and content of each record to `take`; `false` where the end is missing.
+    /// Passes the kind and content of each record to `take`; `false` if the end is missing.
     fn for_each<E>(
         mut self,
         fault: &impl Fn(McapError) -> E,
@@ -199,7 +199,7 @@ mod tests {
         }
     }
 
-    /// Lengths that lie, in every place where one can stand, neither panic nor ask for memory.
+    /// Wrong lengths, at every position that holds one, cause neither a panic nor an allocation.
     #[test]
     fn lies_are_errors() {
         for compression in [None, Some(Compression::Lz4)] {
@@ -216,12 +216,14 @@ mod tests {
         }
     }
 
-    /// A record of a chunk reaches beyond what the chunk calls its records, into what is behind.
+    /// A record of a chunk reaches beyond the declared records of the chunk, into the bytes
+    /// behind them.
     #[test]
     fn records_end_with_their_chunk() {
         let records = |length: u64| {
             let record = [&[op::MESSAGE][..], &5u64.to_le_bytes(), &[0; 5]].concat();
-            // Two times, the length of the records, no checksum, no compression, the length again.
+            // Two times, the length of the records, no checksum, no compression, the length
+            // again.
             let head = [&[0; 16][..], &length.to_le_bytes(), &[0; 8], &length.to_le_bytes()];
             [head.concat(), record, vec![0; 20]].concat()
         };

@@ -1,4 +1,4 @@
-//! Writes a flight.
+//! Writes a flight recording.
 
 use super::RecordingError;
 use super::flight::{OBSERVATION, RecordedObservation, RecordedStep, SNAPSHOT, STEP};
@@ -16,13 +16,13 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
-/// Records what a navigator observes and decides.
+/// Records the observations and decisions of a navigator.
 ///
-/// It is told of the navigator before its first observation ([`Self::begin`]), of each observation
-/// and each step, and of every other change ([`Self::changed`]): goals, maps, limits.
+/// Call [`Self::begin`] before the navigator's first observation, then report each observation,
+/// each step, and every other change ([`Self::changed`]): goals, maps, limits.
 ///
-/// All but about the last second is in the file, whatever happens then: one that was not finished,
-/// as after a loss of power, is read as far as it goes. Viewers show stamps before 0 as 0.
+/// The file always holds everything except about the last second: an unfinished recording, as
+/// after a loss of power, is readable up to that point. Viewers show stamps before 0 as 0.
 pub struct FlightRecorder<W: Write + Seek> {
     writer: Writer<W>,
     channels: BTreeMap<String, u16>,
@@ -43,7 +43,7 @@ impl<W: Write + Seek> FlightRecorder<W> {
     /// Records into a new file, or into memory.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if the header cannot be written.
     pub fn new(file: W) -> Result<Self, RecordingError> {
         let options = WriteOptions::new()
             .profile("ros2")
@@ -62,10 +62,11 @@ impl<W: Write + Seek> FlightRecorder<W> {
         })
     }
 
-    /// Records the map, the places of the sensors, and the navigator as it is at this time \[s\].
+    /// Records the map, the poses of the sensors, and the state of the navigator at this time
+    /// \[s\].
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn begin(&mut self, stamp_s: f64, navigator: &Navigator) -> Result<(), RecordingError> {
         self.stamp_s = stamp_s;
         let sensors = navigator.stack().robot().sensors.iter().enumerate();
@@ -74,10 +75,10 @@ impl<W: Write + Seek> FlightRecorder<W> {
         self.changed(navigator)
     }
 
-    /// Records the navigator after it was asked for something else: another goal, map or limit.
+    /// Records the navigator after a change of its goal, map or limits.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn changed(&mut self, navigator: &Navigator) -> Result<(), RecordingError> {
         self.cbor(SNAPSHOT, &navigator.snapshot())?;
         if self.map.as_ref() != Some(navigator.map()) {
@@ -88,10 +89,10 @@ impl<W: Write + Seek> FlightRecorder<W> {
         self.flush()
     }
 
-    /// Records an observation that the navigator was given, also one that it refuses.
+    /// Records an observation that the navigator was given, including one that it refuses.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn observed(&mut self, observation: &Observation<'_>) -> Result<(), RecordingError> {
         let Observation { stamp_s, pose, velocity, scans, points } = *observation;
         self.stamp_s = stamp_s;
@@ -108,10 +109,10 @@ impl<W: Write + Seek> FlightRecorder<W> {
         Ok(())
     }
 
-    /// Records a decision, and the route if it is another one.
+    /// Records a decision, and the route if it has changed.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn stepped(&mut self, step: &Step, navigator: &Navigator) -> Result<(), RecordingError> {
         self.show_route(navigator)?;
         self.ros("/cmd_vel", &CommandMessage::new(self.stamp_s, step.command()))?;
@@ -125,19 +126,19 @@ impl<W: Write + Seek> FlightRecorder<W> {
         if is_due { self.flush() } else { Ok(()) }
     }
 
-    /// Writes all that was recorded so far into the file.
+    /// Writes everything recorded so far to the file.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn flush(&mut self) -> Result<(), RecordingError> {
         self.written_s = self.stamp_s;
         Ok(self.writer.flush()?)
     }
 
-    /// Completes the recording, and gives the file back.
+    /// Completes the recording, and returns the file.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// Returns [`RecordingError`] if it cannot be written.
     pub fn finish(mut self) -> Result<W, RecordingError> {
         self.writer.finish()?;
         Ok(self.writer.into_inner())
@@ -209,7 +210,7 @@ fn topic_of(kind: &str, sensor: usize) -> String {
     if sensor == 0 { kind.to_owned() } else { format!("{kind}_{sensor}") }
 }
 
-/// Of `keyway.step/1`.
+/// JSON schema of `keyway.step/1`.
 const STEP_SCHEMA: &str = r#"{"type":"object","properties":{"schema":{"type":"string"},"status":{"type":"string"},"v_mps":{"type":"number"},"omega_radps":{"type":"number"},"kind":{"type":["integer","null"]},"why":{"type":["string","null"]}}}"#;
 
 fn not_encoded(topic: &str, reason: &dyn std::fmt::Display) -> RecordingError {

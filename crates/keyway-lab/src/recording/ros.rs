@@ -1,5 +1,5 @@
-//! Messages of ROS 2, as far as recordings have them: their fields in the order of their
-//! definitions, which is their encoding, and the definitions themselves.
+//! The ROS 2 messages that recordings use. Their fields are in the order of their definitions,
+//! which determines their encoding; the definitions themselves follow.
 
 use super::definitions::{header, pose, quaternion, separator, twist, vector3};
 use cdr_encoding::to_vec;
@@ -8,22 +8,22 @@ use keyway::map::{CellState, OccupancyGrid};
 use keyway::sense::{SensorPoints, SensorScan};
 use serde::Serialize;
 
-/// A message that has a definition.
+/// A message with a definition.
 pub(super) trait RosMessage: Serialize {
-    /// Name of its type.
+    /// Name of the message type.
     const NAME: &'static str;
-    /// Its definition and those of the types in it, as `ros2msg` has them.
+    /// Definition of the type and of those in it, in the `ros2msg` format.
     const DEFINITION: &'static str;
 }
 
-/// The message as it goes over a wire: little-endian CDR with its header.
+/// Encodes the message for transport: little-endian CDR with its header.
 pub(super) fn encoded<M: RosMessage>(message: &M) -> Result<Vec<u8>, cdr_encoding::Error> {
     let mut bytes = vec![0, 1, 0, 0];
     bytes.extend(to_vec::<_, byteorder::LittleEndian>(message)?);
     Ok(bytes)
 }
 
-/// Frame of the map, of the robot, and of one of its sensors.
+/// Frames of the map, of the robot, and of one of its sensors.
 pub(super) const MAP: &str = "map";
 pub(super) const BASE: &str = "base_link";
 
@@ -39,7 +39,7 @@ pub(super) struct Time {
 }
 
 impl Time {
-    /// Of a stamp \[s\]; the nearest one that ROS has.
+    /// Converts a stamp \[s\] to the nearest ROS time.
     pub(super) fn of(stamp_s: f64) -> Self {
         let whole = stamp_s.floor();
         let nanosec = ((stamp_s - whole) * 1e9).round() as u32;
@@ -108,7 +108,7 @@ impl From<Velocity> for Twist {
     }
 }
 
-/// Six times six; nobody has said how certain anything is.
+/// Covariance of a pose or a twist, 6 x 6; unknown, so all zero.
 type Covariance = [[f64; 6]; 6];
 
 #[derive(Debug, Serialize)]
@@ -268,7 +268,7 @@ impl RosMessage for PointsMessage {
 }
 
 impl From<&SensorPoints<'_>> for PointsMessage {
-    /// In the frame of the robot, on the ground.
+    /// Converts the points to the frame of the robot, on the ground.
     fn from(one: &SensorPoints<'_>) -> Self {
         /// `sensor_msgs/PointField.FLOAT32`, and its size \[bytes\].
         const FLOAT32: (u8, u32) = (7, 4);
@@ -328,7 +328,7 @@ impl RosMessage for PathMessage {
 }
 
 impl PathMessage {
-    /// Through these points, each with the heading to the next one.
+    /// Path through these points, each with the heading to the next one.
     pub(super) fn new(stamp_s: f64, points: &[Point]) -> Self {
         let heading_rad = |index: usize| {
             let next = points.get(index + 1).map(|next| (points[index], *next));
@@ -389,7 +389,7 @@ impl RosMessage for TransformMessage {
 }
 
 impl TransformMessage {
-    /// Frames in another one, each at a pose.
+    /// Transforms of frames in their parent, each at a pose.
     pub(super) fn new(
         stamp_s: f64,
         parent: &str,
@@ -420,8 +420,8 @@ mod tests {
         assert_eq!(Time::of(2.999_999_999_9), Time { sec: 3, nanosec: 0 });
     }
 
-    /// By the rules of CDR: numbers lie at multiples of their size behind the header, and texts end
-    /// with a zero that counts.
+    /// Expected bytes by the rules of CDR: numbers are aligned to multiples of their size behind
+    /// the header, and strings end with a zero that counts.
     #[test]
     fn a_message_by_hand() {
         let message = PoseMessage::new(1.5, Pose::new(2.0, 3.0, 0.0));
@@ -436,7 +436,7 @@ mod tests {
         assert_eq!(encoded(&message).unwrap(), bytes);
     }
 
-    /// A camera 1 m ahead that looks to the left, and meets something 2 m before it.
+    /// A camera 1 m ahead of the robot, facing left, with a point 2 m in front of it.
     #[test]
     fn points_lie_in_the_frame_of_the_robot() {
         let (mount, points) = (Pose::new(1.0, 0.0, FRAC_PI_2), [Point::new(2.0, 0.0)]);

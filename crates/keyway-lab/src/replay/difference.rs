@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Difference {
-    /// The runs ended otherwise.
+    /// The runs have different outcomes.
     #[error("its outcome was {recorded} and is {made} now")]
     Outcome {
         /// Outcome in the record.
@@ -26,21 +26,21 @@ pub enum Difference {
         /// Rows of the new run.
         made: usize,
     },
-    /// The robot was elsewhere, or moved otherwise.
+    /// The robot had another pose or another motion.
     #[error("row {row} of its trajectory was {recorded} and is {made} now")]
     Row {
-        /// The row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// Its numbers in the record.
+        /// Numbers of the row in the record.
         recorded: String,
-        /// Its numbers in the new run.
+        /// Numbers of the row in the new run.
         made: String,
     },
 }
 
 impl Difference {
-    /// Compares outcome and trajectory, byte for byte: these are the run, and everything else in a
-    /// report follows from them.
+    /// Compares outcome and trajectory, byte for byte: everything else in a report follows from
+    /// them.
     pub(super) fn between(recorded: &Value, made: &RobotReport) -> Option<Self> {
         let outcome = recorded["outcome"].as_str().unwrap_or("missing");
         if outcome != made.outcome.name() {
@@ -51,7 +51,7 @@ impl Difference {
         let rows = recorded["trajectory"].as_array().unwrap_or(&no_rows);
         let made = made.trajectory.as_deref().unwrap_or_default();
         let texts = rows.iter().zip(made).map(|(recorded, made)| {
-            // Numbers cannot fail.
+            // Serialising numbers cannot fail.
             (recorded.to_string(), serde_json::to_string(made).unwrap_or_default())
         });
         let differs = |(_, (recorded, made)): &(usize, (String, String))| recorded != made;

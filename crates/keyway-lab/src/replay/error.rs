@@ -16,7 +16,7 @@ pub enum ReplayError {
     /// The record cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The file is something else.
+    /// The file is not a record.
     #[error("{}: this is not a record of a run, as a batch stores it: {reason}", path.display())]
     Content {
         /// The file.
@@ -24,12 +24,12 @@ pub enum ReplayError {
         /// Error of its content.
         reason: serde_json::Error,
     },
-    /// The record has another form.
+    /// The record has another format.
     #[error("{}: its schema is {found}; this program replays {SCHEMA}", path.display())]
     Schema {
         /// The record.
         path: PathBuf,
-        /// Name of its form.
+        /// Name of its format.
         found: String,
     },
     /// The scene of the record cannot be used.
@@ -40,7 +40,7 @@ pub enum ReplayError {
         /// Error of the scene.
         reason: SceneError,
     },
-    /// A robot of the record cannot be.
+    /// A robot of the record is invalid.
     #[error("{}: `{}` {}", path.display(), reason.path, reason.reason)]
     Robot {
         /// The record.
@@ -53,7 +53,7 @@ pub enum ReplayError {
     Drivers {
         /// The record.
         path: PathBuf,
-        /// Number of robots that the scene lists; 0 where it has one and no list.
+        /// Number of robots that the scene lists; 0 if it has one and no list.
         robots: usize,
     },
     /// The record has neither a map file nor a generated map.
@@ -65,7 +65,7 @@ pub enum ReplayError {
     /// The map cannot be read.
     #[error(transparent)]
     Map(#[from] MapFileError),
-    /// The map is another one than that of the run.
+    /// The map is not that of the recorded run.
     #[error(
         "{}: the map {} has changed since: its digest was {recorded} and is {found} now",
         path.display(),
@@ -81,7 +81,7 @@ pub enum ReplayError {
         /// Digest of the map that was read.
         found: String,
     },
-    /// The run is another one than the recorded one.
+    /// The run differs from the recorded one.
     #[error(
         "{}: this program makes another run of it: {}{difference}; it was recorded by keyway \
          {recorded_by}, this is keyway {}",
@@ -92,7 +92,7 @@ pub enum ReplayError {
     OtherRun {
         /// The record.
         path: PathBuf,
-        /// Index of the robot that drove otherwise, where there are several.
+        /// Index of the robot whose run differs, if there are several.
         robot: Option<usize>,
         /// The first difference.
         difference: Difference,
@@ -101,7 +101,7 @@ pub enum ReplayError {
     },
 }
 
-/// The members that say who drove.
+/// Returns the fields that list the robots and their stacks.
 fn drivers(robots: usize) -> String {
     if robots == 0 {
         return "`robot` and `config`, as the scene has one robot".to_owned();

@@ -1,8 +1,8 @@
-//! Records of runs, and the same runs made again.
+//! Records of runs, and their replay.
 //!
-//! A record holds a run with everything that it takes to make it again: scene, robots and stacks as
-//! data, and what came of it. A [`ReplayRequest`] reads one. It gives a [`Replay`] with the run to
-//! be made, which then says in what the new run differs from the record.
+//! A record holds a run with everything that is needed to repeat it: scene, robots and stacks as
+//! data, and the results. A [`ReplayRequest`] reads one and returns a [`Replay`] with the run to
+//! repeat, which then compares the new run with the record.
 
 mod difference;
 mod error;
@@ -14,5 +14,5 @@ pub use error::ReplayError;
 pub(crate) use record::{RecordedInputs, RunRecord};
 pub use request::{Replay, ReplayRequest};
 
-/// Name and version of the form of a record.
+/// Name and version of the record format.
 const SCHEMA: &str = "keyway.record/1";

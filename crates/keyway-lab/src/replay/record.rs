@@ -1,4 +1,4 @@
-//! `keyway.record/1`: a run with everything that it takes to make it again.
+//! `keyway.record/1`: a run with everything that is needed to repeat it.
 
 use super::{ReplayError, SCHEMA};
 use keyway::file_system::read_file;
@@ -20,20 +20,21 @@ pub(crate) struct RunRecord {
     digest: String,
     /// Name of the scene.
     scene: String,
-    /// The map file; `None` where the map is made from the seed.
+    /// The map file; `None` if the map is generated from the seed.
     pub(super) map: Option<MapFile>,
     /// The scene, with the seed of the run and the name of its stack.
     pub(super) scene_file: SceneFile,
-    /// The robot; `None`, as `config`, where several robots drove.
+    /// The robot; `None`, as `config`, if several robots drove.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     robot: Option<Robot>,
     /// Its stack.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     config: Option<Stack>,
-    /// All robots, where several drove.
+    /// All robots, if several drove.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     robots: Vec<Driver>,
-    /// The results without measured times: `keyway.navigate/4`, of several robots `keyway.team/1`.
+    /// The results without measured times: `keyway.navigate/4`, for several robots
+    /// `keyway.team/1`.
     pub(super) report: Value,
 }
 
@@ -45,7 +46,7 @@ pub(super) struct Driver {
     pub(super) config: Stack,
 }
 
-/// Place of a map.
+/// Path and digest of a map.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MapFile {
@@ -56,7 +57,7 @@ pub(super) struct MapFile {
     pub(super) digest: String,
 }
 
-/// The inputs of a run that a record keeps beside the team that drove.
+/// The inputs of a run that a record stores besides the robots and stacks.
 pub(crate) struct RecordedInputs<'a> {
     /// Digest of all inputs of the run.
     pub(crate) digest: &'a str,
@@ -69,11 +70,11 @@ pub(crate) struct RecordedInputs<'a> {
 }
 
 impl RunRecord {
-    /// More than the record of the longest run has.
+    /// Upper bound of the size of a record: more than the longest run takes.
     pub(crate) const MAX_BYTES: u64 = 1 << 30;
 
-    /// Returns the beginning of the text of a record of this digest; without a digest, that of any
-    /// record.
+    /// Returns the beginning of the text of a record with this digest; without a digest, that of
+    /// any record.
     pub(crate) fn head(digest: Option<&str>) -> String {
         let schema = format!("{{\n  \"schema\": \"{SCHEMA}\",\n");
         digest.map_or(schema.clone(), |digest| schema + &format!("  \"digest\": \"{digest}\",\n"))
@@ -120,7 +121,7 @@ impl RunRecord {
         let blame = |reason| ReplayError::Content { path: path.to_owned(), reason };
         let value: Value =
             serde_json::from_slice(&read_file(path, Self::MAX_BYTES)?).map_err(blame)?;
-        // A later form may hold anything else.
+        // A later format may have any other content.
         if let Some(schema) = value.get("schema").filter(|schema| *schema != SCHEMA) {
             return Err(ReplayError::Schema { path: path.to_owned(), found: schema.to_string() });
         }
@@ -131,7 +132,7 @@ impl RunRecord {
         Ok(record)
     }
 
-    /// Checks that the record has the robots of its scene, and that they can be.
+    /// Checks that the record has the robots of its scene, and that they are valid.
     fn check_drivers(&self, path: &Path) -> Result<(), ReplayError> {
         let robots = self.scene_file.robots.len();
         let are_given = [self.robot.is_some(), self.config.is_some()];
@@ -157,7 +158,7 @@ impl RunRecord {
     }
 }
 
-/// Measured times are never the same twice.
+/// Removes the measured times, which differ from run to run.
 fn without_times(report: &RobotReport) -> RobotReport {
     let mut report = report.clone();
     report.plan.time_s = None;
@@ -176,7 +177,7 @@ mod tests {
     use crate::results::json_text;
     use keyway::robot::Footprint;
 
-    /// Every number comes back as it was: otherwise a run could not be the same.
+    /// Every number must be restored exactly: otherwise a run could not be repeated.
     #[test]
     fn all_stacks_and_robots_come_back_as_they_were() {
         for robot in [Robot::small(), Robot::jackal(), Robot::paper()] {

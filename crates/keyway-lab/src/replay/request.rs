@@ -1,4 +1,4 @@
-//! A record that is to be replayed.
+//! Request for the replay of a record.
 
 use super::record::{MapFile, RunRecord};
 use super::{Difference, ReplayError};
@@ -15,18 +15,18 @@ use std::path::PathBuf;
 pub struct ReplayRequest {
     /// The record.
     pub record: PathBuf,
-    /// Folder of the map; `None`: the folder in which it was when the run was recorded.
+    /// Folder of the map; `None`: the folder that it was in at the time of the recording.
     pub map_dir: Option<PathBuf>,
-    /// A map of more cells is refused before memory is taken for it.
+    /// Maximum number of cells of the map; larger maps are refused before memory is allocated.
     pub max_cells: u64,
 }
 
-/// A recorded run that is to be made again.
+/// A recorded run that is to be repeated.
 #[derive(Debug)]
 pub struct Replay {
     /// The run.
     pub episode: Episode,
-    /// True if the scene has `[[robots]]`: then the report is that of an episode
+    /// True if the scene has `[[robots]]`. In that case the report is that of an episode
     /// ([`Self::check_episode`]), otherwise that of its one robot ([`Self::check`]).
     pub has_robots: bool,
     /// The files that were read: the record and its map.
@@ -40,7 +40,8 @@ impl ReplayRequest {
     /// Reads a record and its map. Likely mistakes in the map are warnings.
     ///
     /// # Errors
-    /// When the record or its map cannot be read or used, or the map has changed since.
+    /// Returns [`ReplayError`] if the record or its map cannot be read or used, or the map has
+    /// changed since.
     pub fn read(&self, progress: &dyn Progress) -> Result<Replay, ReplayError> {
         let path = &self.record;
         let record = RunRecord::read(path)?;
@@ -53,14 +54,14 @@ impl ReplayRequest {
             (None, None) => return Err(ReplayError::NoMap { path: path.clone() }),
         };
         let mut drivers = record.drivers().into_iter().map(|one| (one.robot, one.config));
-        // There are as many as the scene has robots.
+        // There are as many drivers as robots in the scene.
         let next = |_: &str, _: &str| drivers.next().ok_or(SceneError::SeveralRobots);
         let episode = scene.episode(map, next).map_err(blame)?;
         let has_robots = !scene.robots.is_empty();
         Ok(Replay { episode, has_robots, sources, path: path.clone(), report: record.report })
     }
 
-    /// Reads the map, which must be as it was.
+    /// Reads the map, which must not have changed.
     fn map(
         &self,
         file: &MapFile,
@@ -89,7 +90,7 @@ impl Replay {
     /// Checks that a run of one robot is the recorded one.
     ///
     /// # Errors
-    /// Tells the first difference.
+    /// Returns [`ReplayError`] with the first difference.
     pub fn check(&self, made: &RobotReport) -> Result<(), ReplayError> {
         self.compare(&self.report, made, None)
     }
@@ -97,7 +98,7 @@ impl Replay {
     /// Checks that the run of a scene with `[[robots]]` is the recorded one.
     ///
     /// # Errors
-    /// Tells the first difference of the first robot that drove otherwise.
+    /// Returns [`ReplayError`] with the first difference of the first robot whose run differs.
     pub fn check_episode(&self, made: &EpisodeReport) -> Result<(), ReplayError> {
         let mut robots = made.robots.iter().enumerate();
         robots.try_for_each(|(index, made)| {

@@ -6,7 +6,7 @@ use crate::results::ResultsError;
 use keyway_sim::episode::EpisodeError;
 use thiserror::Error;
 
-/// Reason why claims cannot be measured again.
+/// Reason why claims cannot be measured.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReproduceError {
@@ -29,14 +29,14 @@ pub enum ReproduceError {
     /// A method cannot be used. A test measures every experiment, so this does not happen.
     #[error(transparent)]
     Experiment(#[from] EpisodeError),
-    /// An experiment has no map of the kind. Only existing kinds are measured, so this does not
+    /// An experiment has no map of this kind. Only existing kinds are measured, so this does not
     /// happen.
     #[error("{experiment} has no such map")]
     NoMap {
         /// The experiment.
         experiment: &'static str,
     },
-    /// A result cannot be written down, or those of an earlier run cannot be read.
+    /// A result cannot be written, or those of an earlier run cannot be read.
     #[error(transparent)]
     Results(#[from] ResultsError),
     /// The observer stopped the measurement.
@@ -45,7 +45,7 @@ pub enum ReproduceError {
 }
 
 impl ReproduceError {
-    /// Returns the field of the request that is to blame; `None` if no field is.
+    /// Returns the field of the request that is at fault; `None` if no field is.
     pub const fn field(&self) -> Option<&'static str> {
         match self {
             Self::NoClaim { .. } => Some("claims"),

@@ -1,4 +1,4 @@
-//! The files of text that a reproduction leaves.
+//! The text files that a reproduction writes.
 
 use super::figure_rows::figure_rows;
 use super::latex::latex;
@@ -8,7 +8,7 @@ use super::page::{PageParts, page};
 use super::report::{Measurements, ReproduceReport};
 use crate::table::csv;
 
-/// Results on each map, a line of JSON each.
+/// Results on each map, one line of JSON each.
 pub(super) const LINES: &str = "maps.jsonl";
 /// The same as a table.
 const MAPS: &str = "maps.csv";
@@ -22,16 +22,16 @@ const PAGE: &str = "report.html";
 /// Names of all files except pictures.
 pub const FILES: [&str; 7] = [LINES, MAPS, REPORT_FILE, CSV, TEX, TABLES, PAGE];
 
-/// A file of text.
+/// A text file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFile {
     /// Name of the file.
     pub name: &'static str,
-    /// Its content.
+    /// Content of the file.
     pub text: String,
 }
 
-/// Returns all files of text except [`REPORT_FILE`], which names the others.
+/// Returns all text files except [`REPORT_FILE`], which names the others.
 pub fn text_files(
     report: &ReproduceReport,
     measurements: &Measurements,

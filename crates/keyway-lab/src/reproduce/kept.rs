@@ -45,7 +45,7 @@ impl JournalEntry for MapLine {
 pub(super) struct KeptLines(HashMap<(String, u64), MapLine>);
 
 impl KeptLines {
-    /// Takes the lines of earlier results and of a journal. Lines of another version are left out.
+    /// Takes the lines of earlier results and of a journal, without those of another version.
     pub(super) fn new(earlier: &str, journal: Vec<MapLine>) -> Self {
         let written = earlier.lines().filter_map(|line| serde_json::from_str(line).ok());
         let by_key = |line: MapLine| ((line.digest.clone(), line.seed), line);
@@ -57,8 +57,8 @@ impl KeptLines {
     }
 }
 
-/// Returns the digest of the version of Keyway, of all parts of an experiment, and of whether times
-/// are measured.
+/// Returns a digest of the version of Keyway, all parts of an experiment, and the choice to
+/// measure times.
 pub(super) fn digest_of(experiment: &Experiment, group: MapGroup, has_times: bool) -> String {
     let Experiment { name, about, family, ends, methods, scene, reconstruction, .. } = experiment;
     let maps = match group {

@@ -42,7 +42,8 @@ pub(super) struct MethodRow {
     total_search_s: Option<f64>,
 }
 
-/// Returns the scene of each experiment first, then the maps that fit, then its family.
+/// Returns the lines in order: the scene of each experiment, then the maps that fit, then its
+/// family.
 pub(super) fn map_rows(measurements: &Measurements) -> Vec<MethodRow> {
     let of_one = |one: &Measured| -> Vec<MethodRow> {
         one.lines.iter().flat_map(|line| method_rows(one.experiment, line)).collect()

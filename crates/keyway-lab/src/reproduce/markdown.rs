@@ -46,8 +46,8 @@ pub(super) fn markdown(report: &ReproduceReport) -> String {
     text
 }
 
-/// Such as `Of 28 claims 5 hold, 5 do not, 17 are mixed, 1 has only times. Of their 60 figures 30
-/// hold, 20 do not, 10 undecided; 20 more are times.`
+/// Returns a text such as `Of 28 claims 5 hold, 5 do not, 17 are mixed, 1 has only times. Of
+/// their 60 figures 30 hold, 20 do not, 10 undecided; 20 more are times.`
 fn counted(claims: &[ClaimReport]) -> String {
     let of = |verdict| claims.iter().filter(|claim| claim.verdict == verdict).count();
     let kinds = [
@@ -79,7 +79,7 @@ fn table(header: &[&str], numbers: Range<usize>, rows: Vec<Vec<String>>) -> Stri
     format!("| {} |\n|{rule}\n{rows}", header.join(" | "))
 }
 
-/// Returns each claim with its first figure that no clock measures, one with a published change if
+/// Returns each claim with its first figure that is not a time; one with a published change if
 /// there is one.
 fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
     let row = |claim: &ClaimReport| {
@@ -98,7 +98,7 @@ fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
     claims.iter().map(row).collect()
 }
 
-/// The name of a claim stands beside its first figure.
+/// Returns a line for each figure; the first one also has the name of the claim.
 fn figures(claim: &ClaimReport) -> Vec<Vec<String>> {
     let row = |(i, figure): (usize, &FamilyFigure)| {
         let id = if i == 0 { claim.id.to_owned() } else { String::new() };
@@ -111,7 +111,7 @@ fn figures(claim: &ClaimReport) -> Vec<Vec<String>> {
     claim.family.figures.iter().enumerate().map(row).collect()
 }
 
-/// A verdict; one against the paper is bold.
+/// Returns the text of a verdict; one against the paper is bold.
 fn bold_against(verdict: FigureVerdict) -> String {
     let words = verdict.to_string();
     if verdict == FigureVerdict::DoesNotHold { format!("**{words}**") } else { words }
@@ -139,7 +139,7 @@ fn ablation(one: &AblationReport, figures: &[FamilyFigure]) -> String {
     let names: Vec<String> = measures.iter().map(|&measure| measure_name(measure)).collect();
     let header: Vec<&str> =
         std::iter::once("variant").chain(names.iter().map(String::as_str)).collect();
-    // The measures of a variant follow each other.
+    // The measures of a variant are consecutive.
     let row = |own: &[FamilyFigure]| {
         let variant = own.first().map_or("", |figure| figure.of).to_owned();
         std::iter::once(variant).chain(own.iter().map(measured)).collect()

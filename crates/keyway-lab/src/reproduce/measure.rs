@@ -1,8 +1,8 @@
-//! Experiments on as many maps as are wanted, several at a time.
+//! Experiments on the requested number of maps, in parallel.
 //!
 //! The result of a map is a pure function of the experiment, the map and the version of Keyway,
-//! except for its times. So each finished map is written down at once, and a known one is not
-//! measured again.
+//! except for its times. Each finished map is therefore written to the journal at once, and a
+//! known one is not measured again.
 
 use super::ReproduceError;
 use super::kept::{KeptLines, MapGroup, MapLine, digest_of};
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Maximum number of maps that are tried for each wanted one.
+/// Maximum number of maps that are tried for each requested one.
 const TRIES: usize = 8;
 
 /// An experiment with its results.
@@ -32,18 +32,18 @@ pub struct Measured {
 
 /// Parts that all experiments share.
 pub(super) struct Work<'a> {
-    /// Number of maps that are wanted of each experiment.
+    /// Requested number of maps for each experiment.
     pub(super) maps: usize,
     /// Seed of the first map.
     pub(super) seed: u64,
-    /// Number of maps at the same time.
+    /// Number of maps that are measured in parallel.
     pub(super) jobs: usize,
     pub(super) has_times: bool,
     pub(super) kept: KeptLines,
     pub(super) journal: Mutex<&'a mut Journal<MapLine>>,
     pub(super) progress: &'a dyn Progress,
     pub(super) is_stopped: AtomicBool,
-    /// Maps that fit, by the names of their reconstructions: several experiments have the same.
+    /// Maps that fit, by the names of their reconstructions, which several experiments share.
     pub(super) fitted: BTreeMap<&'static str, Fitted>,
 }
 
@@ -55,8 +55,8 @@ impl Work<'_> {
         experiments.iter().map(|experiment| self.measure_one(experiment)).collect()
     }
 
-    /// Maps are measured in parallel and taken in the order of their seeds, so their number at a
-    /// time changes nothing.
+    /// Maps are measured in parallel and taken in the order of their seeds, so the number of
+    /// parallel maps does not affect the results.
     fn measure_one(&mut self, experiment: &'static Experiment) -> Result<Measured, ReproduceError> {
         let (mut family, mut lines) = (Family::default(), Vec::new());
         if experiment.scene.is_some() {
@@ -86,7 +86,7 @@ impl Work<'_> {
         Ok(Measured { experiment, family, lines })
     }
 
-    /// Returns as many maps that fit as are measured at all, and no more than
+    /// Returns as many fitting maps as are measured of a family, and at most
     /// [`Reconstruction::KEPT`].
     fn fitted(&mut self, of: &'static Reconstruction) -> Result<Fitted, ReproduceError> {
         if let Some(fitted) = self.fitted.get(of.name) {
@@ -128,7 +128,7 @@ impl Work<'_> {
 
     /// Appends a finished map to the journal.
     fn write_down(&self, line: &MapLine) -> Result<(), ReproduceError> {
-        // A poisoned lock holds the journal all the same.
+        // The journal behind a poisoned lock is still valid.
         let mut journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner);
         journal.append(line)?;
         if self.progress.answered().is_break() {
@@ -144,7 +144,7 @@ impl Work<'_> {
         group: MapGroup,
         seed: u64,
     ) -> Result<MapRow, ReproduceError> {
-        // Each thread reads a clock of its own.
+        // Each thread reads its own clock.
         let now = wall_clock();
         let clock: Clock<'_> = if self.has_times { Some(&now) } else { None };
         let row = match group {

@@ -1,8 +1,8 @@
-//! Claims of the papers, measured again over families of maps, with a verdict on each.
+//! Claims of the papers, measured over families of maps, with a verdict on each.
 //!
-//! A [`ReproduceRequest`] is checked once and gives a [`Reproduction`]. That measures all
-//! experiments, writes each finished map into a journal, and reports. [`text_files`] are the tables
-//! and the page of the report. Pictures are drawn by the caller.
+//! A [`ReproduceRequest`] is checked once and returns a [`Reproduction`], which measures all
+//! experiments, writes each finished map into a journal, and reports. [`text_files`] returns the
+//! tables and the page of the report. The caller draws the pictures.
 
 mod error;
 mod figure_rows;
@@ -37,10 +37,10 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-/// Smallest number of maps over which there is an interval.
+/// Smallest number of maps for which an interval exists.
 const LEAST_MAPS: usize = 2;
 
-/// Claims to measure again.
+/// Claims to measure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReproduceRequest {
     /// Names of claims, of papers, or `all` ([`Claim::named`]).
@@ -49,10 +49,10 @@ pub struct ReproduceRequest {
     pub has_ablations: bool,
     /// Number of maps for each claim; at least 2.
     pub maps: usize,
-    /// Seed of the first map; the maps that follow have the numbers that follow.
+    /// Seed of the first map; the following maps have the following numbers.
     pub seed: u64,
-    /// Number of maps worked on at the same time; `None`: as many as there are processors. It
-    /// changes no result.
+    /// Number of maps that are measured in parallel; `None`: the number of processors. It does
+    /// not affect the results.
     pub jobs: Option<usize>,
     /// True if times are measured; they differ from run to run.
     pub has_times: bool,
@@ -70,7 +70,7 @@ impl ReproduceRequest {
     /// Checks the request.
     ///
     /// # Errors
-    /// When there is no claim of a name, or there are too few maps.
+    /// Returns [`ReproduceError`] if a name has no claim, or there are too few maps.
     pub fn check(self) -> Result<Reproduction, ReproduceError> {
         if self.maps < LEAST_MAPS {
             return Err(ReproduceError::TooFewMaps { maps: self.maps });
@@ -95,7 +95,7 @@ impl Reproduction {
         &self.claims
     }
 
-    /// Returns the ablations that were asked for.
+    /// Returns the requested ablations.
     pub fn ablations(&self) -> &[&'static Ablation] {
         &self.ablations
     }
@@ -115,7 +115,8 @@ impl Reproduction {
     /// journal, or in earlier results of the folder, are not measured again.
     ///
     /// # Errors
-    /// When a file of the folder cannot be used, or the observer stops the measurement.
+    /// Returns [`ReproduceError`] if a file of the folder cannot be used, or the observer stops
+    /// the measurement.
     pub fn measure(
         &self,
         out: &OutDir,

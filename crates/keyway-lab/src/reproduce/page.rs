@@ -1,4 +1,4 @@
-//! The report as one page that needs nothing beside it: tables, and all pictures within.
+//! The report as one self-contained page: tables, and all pictures inline.
 
 use super::report::{ReproduceReport, VERDICT_RULE};
 use super::words::{
@@ -13,12 +13,12 @@ use crate::table::number;
 use keyway_sim::report::Inputs;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// A picture in a file of its own.
+/// A picture that also has its own file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PageFigure {
-    /// Its file in the folder.
+    /// File of the picture in the folder.
     pub file: String,
-    /// The picture as SVG. It goes into the page as it is.
+    /// The picture as SVG, which is included in the page unchanged.
     pub svg: String,
 }
 
@@ -30,7 +30,7 @@ pub struct PageParts {
     pub experiments: Vec<Vec<PageFigure>>,
     /// Pictures of each ablation of the report.
     pub ablations: Vec<Vec<PageFigure>>,
-    /// Returns the command that measures the claim of an id again.
+    /// Returns the command that measures the claim of an id.
     pub command: fn(&str) -> String,
 }
 
@@ -91,7 +91,7 @@ pub(super) fn page(report: &ReproduceReport, parts: &PageParts) -> String {
     markup.into_string()
 }
 
-/// Every claim with its first figure and its verdict.
+/// Table of all claims with their first figures and their verdicts.
 fn headline(claims: &[ClaimReport]) -> Markup {
     html! {
         table {
@@ -174,7 +174,7 @@ fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     }
 }
 
-/// The change on the scene, or the value that is to keep a bound.
+/// Change on the scene, or the value that a bound applies to.
 fn on_scene(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let mut all = claim.scene.iter().flat_map(|scene| &scene.figures);
     let same =
@@ -205,7 +205,7 @@ fn experiment_section(experiment: &ExperimentReport, figures: &[PageFigure]) -> 
     }
 }
 
-/// Each variant with its change from the method as published.
+/// Section with each variant and its change from the method as published.
 fn ablation_section(ablation: &AblationReport, figures: &[PageFigure]) -> Markup {
     let AblationReport { experiment: name, about, base, maps, left_out, .. } = ablation;
     html! {
@@ -265,7 +265,7 @@ fn pictures(figures: &[PageFigure]) -> Markup {
     html! {
         @for figure in figures {
             figure {
-                // It was escaped when it was drawn.
+                // The text was escaped when the picture was drawn.
                 (PreEscaped(figure.svg.as_str()))
                 figcaption { "File: " code { (figure.file) } "." }
             }

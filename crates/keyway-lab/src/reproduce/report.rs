@@ -5,7 +5,7 @@ use super::measure::Measured;
 use crate::claims::{AblationReport, Claim, ClaimReport, ExperimentReport};
 use serde::Serialize;
 
-/// Rule of the verdicts, in words: it stands wherever there are verdicts.
+/// Rule of the verdicts, in words; it accompanies every list of verdicts.
 pub(super) const VERDICT_RULE: &str = "A figure holds when the 95 % interval of its mean change over \
     the maps lies on the side that the paper says, and the mean is at least half of the published \
     change, if there is one; it does not hold when the interval lies on the other side, or below \
@@ -20,7 +20,7 @@ pub struct ReproduceReport {
     pub schema: &'static str,
     /// Seed of the first map.
     pub seed: u64,
-    /// Number of maps that were asked for.
+    /// Requested number of maps.
     pub maps: usize,
     /// True if times were measured.
     pub times: bool,
@@ -28,7 +28,7 @@ pub struct ReproduceReport {
     pub claims: Vec<ClaimReport>,
     /// The experiments of the claims.
     pub experiments: Vec<ExperimentReport>,
-    /// Ablations of the claims' papers, if they were asked for.
+    /// Ablations of the claims' papers, if requested.
     pub ablations: Vec<AblationReport>,
     /// Paths of the files that were written.
     pub files: Vec<String>,

@@ -2,7 +2,7 @@
 
 use crate::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale, Verdict};
 
-/// Text where there is no value.
+/// Text for a missing value.
 pub(super) const NONE: &str = "-";
 
 /// Number of decimals of changes.
@@ -14,7 +14,7 @@ pub(super) struct Decimals {
     absolute: usize,
 }
 
-/// Decimals wherever there is room.
+/// Decimals if there is enough space.
 const FINE: Decimals = Decimals { relative: 2, absolute: 3 };
 /// Decimals in the documentation.
 pub(super) const COARSE: Decimals = Decimals { relative: 1, absolute: 2 };
@@ -55,7 +55,7 @@ impl Decimals {
     }
 }
 
-/// Returns the verdict on a claim; on one whose figures differ, with how many have each verdict.
+/// Returns the verdict on a claim; a mixed one has the number of figures with each verdict.
 pub(super) fn verdict_with_counts(claim: &ClaimReport) -> String {
     match claim.verdict {
         Verdict::Mixed => format!("mixed: {}", claim.figures),
@@ -104,7 +104,7 @@ pub fn statement(figure: &FamilyFigure) -> String {
     statement_with(figure, &str::to_owned)
 }
 
-/// The same with the names of methods in a form of their own.
+/// The same, with a format for the names of methods.
 pub(super) fn statement_with(figure: &FamilyFigure, of_method: &dyn Fn(&str) -> String) -> String {
     let (name, of) = (measure_name(figure.measure), of_method(figure.of));
     let expected = figure.expected.replace('_', " ");
@@ -121,7 +121,7 @@ pub(super) fn statement_with(figure: &FamilyFigure, of_method: &dyn Fn(&str) -> 
     format!("{name} of {of}, {}", tail.trim_end())
 }
 
-/// Returns the name of a measure as in JSON, in words.
+/// Returns the name of a measure as in JSON, with spaces in place of underscores.
 pub fn measure_name(measure: Measure) -> String {
     // A name is plain data: this cannot fail.
     let value = serde_json::to_value(measure).unwrap_or_default();

@@ -5,11 +5,11 @@ use keyway::file_error::{WriteError, system_error_in_words};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Error of writing results, or of using those of an earlier run.
+/// Error of writing results, or of reading those of an earlier run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ResultsError {
-    /// A file that Keyway did not write stands where a result is to be written.
+    /// A file that Keyway did not write has the name of a result.
     #[error(
         "{} is in the way: Keyway did not write it, or it has been changed since; it is not \
          overwritten; delete it or move it away, or choose another folder",
@@ -19,16 +19,16 @@ pub enum ResultsError {
         /// The file.
         path: PathBuf,
     },
-    /// Something else stands in the place of the folder.
+    /// The path of the folder is not a folder.
     #[error("{} is not a folder", path.display())]
     NoFolder {
-        /// Its path.
+        /// The path.
         path: PathBuf,
     },
-    /// Something else stands in the place of the journal.
+    /// The path of the journal is not a file.
     #[error("{}: it is no file; move it away, or choose another folder", path.display())]
     NoFile {
-        /// Its path.
+        /// The path.
         path: PathBuf,
     },
     /// Another program writes into the folder.

@@ -1,9 +1,9 @@
-//! A folder of results, in which nothing is overwritten that Keyway did not write.
+//! A folder of results, in which only files written by Keyway are overwritten.
 //!
-//! The folder's list of files ([`Manifest`]) says what Keyway wrote, with a digest of each content.
-//! A content is listed before it is written. So a run may be killed at any moment: each file is
-//! then what it was before, or what was listed last, and the next run knows both. One run at a time
-//! may write there ([`OutputLock`]).
+//! The folder's list of files ([`Manifest`]) contains the files that Keyway wrote, with a digest
+//! of each content. A content is listed before it is written. A run may therefore be killed at
+//! any moment: each file then has its previous content or the one listed last, and the next run
+//! knows both. Only one run at a time may write to the folder ([`OutputLock`]).
 
 use super::ResultsError;
 use super::json_lines::read_lines;
@@ -15,7 +15,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder and the files that are about to be written there.
+/// A folder and the files that are about to be written to it.
 #[derive(Debug)]
 pub struct OutDir {
     folder: PathBuf,
@@ -28,17 +28,16 @@ pub struct OutDir {
 }
 
 impl OutDir {
-    /// Makes sure that all the planned files may be written, and that nobody else writes there
-    /// until all has been written. A run that is refused leaves nothing behind, the folder itself
-    /// neither.
+    /// Checks that all the planned files may be written, and locks the folder until all have been
+    /// written. A run that is refused leaves nothing behind, not even the folder.
     ///
     /// # Errors
-    /// If there is a file in place of the folder, it cannot be made or written to, another program
-    /// writes there, or it holds a file of a planned name that is not Keyway's, or that somebody
-    /// changed after Keyway had written it.
+    /// Returns [`ResultsError`] if there is a file in place of the folder, the folder cannot be
+    /// created or written to, another program writes to it, or it holds a file of a planned name
+    /// that is not Keyway's, or was changed after Keyway had written it.
     pub fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<Self, ResultsError> {
         check_folder(folder)?;
-        // Before anything of the folder is looked at: whoever writes there changes it.
+        // Locks before anything in the folder is read, since a concurrent writer changes it.
         let lock = Arc::new(OutputLock::of_folder(folder)?);
         let planned: Vec<String> = planned.iter().map(|name| name.as_ref().to_owned()).collect();
         let manifest = Manifest::read(folder)?;
@@ -59,14 +58,14 @@ impl OutDir {
     /// Writes one of the planned files as a whole, or not at all.
     ///
     /// # Errors
-    /// When somebody else's file is in the way, or it cannot be written.
+    /// Returns [`ResultsError`] if a foreign file has this name, or the file cannot be written.
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         debug_assert!(self.planned.iter().any(|planned| planned == name), "{name} was not planned");
         // A name may have a folder within this one.
         let path = self.path(name);
         let folder = path.parent().unwrap_or(&self.folder);
         fs::create_dir_all(folder).map_err(|reason| folder_error(folder, reason))?;
-        // Somebody may have put a file there since.
+        // A foreign file may have appeared there since.
         self.check_free(name)?;
         self.manifest.intend(name, bytes);
         if self.supersedes {
@@ -80,10 +79,10 @@ impl OutDir {
         Ok(())
     }
 
-    /// The text of a file of the folder, if Keyway wrote it and nobody changed it since.
+    /// Returns the text of a file of the folder, if Keyway wrote it and it was not changed since.
     ///
     /// # Errors
-    /// If it is larger than such a file can be.
+    /// Returns [`ResultsError`] if it is larger than such a file can be.
     pub fn earlier(&self, name: &str) -> Result<Option<String>, ResultsError> {
         let path = self.path(name);
         if !self.manifest.is_own(name, &path) {
@@ -92,19 +91,19 @@ impl OutDir {
         Ok(String::from_utf8(read_lines(&path)?).ok())
     }
 
-    /// True if the system cannot keep others from writing there at the same time.
+    /// True if the system cannot prevent other programs from writing there at the same time.
     pub fn is_unguarded(&self) -> bool {
         self.lock.is_unguarded()
     }
 
-    /// The right to write there, for whatever is to be done after [`Self::finish`].
+    /// Returns the write lock, for work after [`Self::finish`].
     pub fn lock(&self) -> Arc<OutputLock> {
         Arc::clone(&self.lock)
     }
 
-    /// Takes files of an earlier run for planned ones, so that [`Self::finish`] removes them,
-    /// except those that somebody changed. The same goes for the files of an earlier run of this
-    /// kind that was killed.
+    /// Treats files of an earlier run as planned ones, so that [`Self::finish`] removes them,
+    /// except those that were changed by others. The same applies to the files of an earlier run
+    /// of this kind that was killed.
     pub fn supersede(&mut self, names: impl IntoIterator<Item = String>) {
         self.supersedes = true;
         let unfinished: Vec<String> = self.manifest.unfinished().cloned().collect();
@@ -116,16 +115,16 @@ impl OutDir {
     }
 
     /// Removes planned files of an earlier run that this one did not write: they would seem to
-    /// belong to it. Gives the paths of those that it wrote.
+    /// belong to it. Returns the paths of the files that this run wrote.
     ///
     /// # Errors
-    /// When the list of files cannot be written.
+    /// Returns [`ResultsError`] if the list of files cannot be written.
     pub fn finish(mut self) -> Result<Vec<PathBuf>, ResultsError> {
         let stale: Vec<String> =
             self.planned.iter().filter(|name| !self.written.contains(name)).cloned().collect();
         for name in stale {
             if self.manifest.is_own(&name, &self.path(&name)) {
-                // Whoever removed it before did the same.
+                // On an error, another program has already removed it.
                 let _ = fs::remove_file(self.path(&name));
                 record(&self.folder);
                 self.manifest.forget(&name);
@@ -140,15 +139,15 @@ impl OutDir {
         Ok(self.written.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    /// The path of a file of the folder.
+    /// Returns the path of a file of the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
 
-    /// Refuses to replace what Keyway did not write.
+    /// Refuses to replace a file that Keyway did not write.
     fn check_free(&self, name: &str) -> Result<(), ResultsError> {
         let path = self.path(name);
-        // A link that leads nowhere is somebody's file, too.
+        // A dangling link is a foreign file, too.
         if fs::symlink_metadata(&path).is_err() || self.manifest.is_own(name, &path) {
             return Ok(());
         }
@@ -173,14 +172,14 @@ impl OutDir {
     }
 }
 
-/// Refuses a folder that cannot be made or written to, before anything is computed.
+/// Refuses a folder that cannot be created or written to, before anything is computed.
 ///
 /// # Errors
-/// When it is one of these.
+/// Returns [`ResultsError`] for such a folder.
 pub fn check_folder(folder: &Path) -> Result<(), ResultsError> {
     let current = Path::new(".");
     let parents = folder.ancestors().map(|it| if it == Path::new("") { current } else { it });
-    // The nearest one that exists: the others are made within it.
+    // The nearest parent that exists: the others are created in it.
     let Some(stands) = parents.into_iter().find(|it| fs::symlink_metadata(it).is_ok()) else {
         return Ok(());
     };
@@ -192,12 +191,12 @@ pub fn check_folder(folder: &Path) -> Result<(), ResultsError> {
 }
 
 fn folder_error(folder: &Path, reason: std::io::Error) -> ResultsError {
-    // The wording for a file serves for a folder as well.
+    // The message for a file is suitable for a folder, too.
     WriteError { path: folder.to_owned(), reason }.into()
 }
 
-/// Whatever a folder holds after a change is what a run that is killed at this moment leaves: the
-/// tests look at it.
+/// Hook for the tests, called after every change of a folder: its content is then what a run that
+/// is killed at this moment leaves.
 #[cfg(not(test))]
 const fn record(_folder: &Path) {}
 

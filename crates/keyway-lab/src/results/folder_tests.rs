@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 type Files = BTreeMap<String, Vec<u8>>;
 
 thread_local! {
-    /// What a folder held after each step of this thread.
+    /// Content of a folder after each step of this thread.
     static STEPS: RefCell<Vec<Files>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -28,8 +28,8 @@ fn make(files: &Files, folder: &Path) {
     }
 }
 
-/// A run that writes these files, after it has removed those of an earlier one where it supersedes
-/// that.
+/// A run that writes these files. It first removes those of an earlier run, if it supersedes that
+/// one.
 fn run(
     folder: &Path,
     files: &[(&str, &str)],
@@ -46,8 +46,8 @@ fn run(
     out.finish().map(drop)
 }
 
-/// Every state that a killed run can leave: after each step, and within a write, when a part of
-/// the temporary file is there.
+/// Returns every state that a killed run can leave: after each step, and within a write, with a
+/// partial temporary file.
 fn states_of_killed_runs(
     before: &Files,
     files: &[(&str, &str)],
@@ -89,7 +89,7 @@ fn visible(mut files: Files) -> Files {
     files
 }
 
-/// What a first run leaves.
+/// Returns the files that a first run leaves.
 fn after_first() -> Files {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), &FIRST, Some(&[])).unwrap();
@@ -105,8 +105,7 @@ fn a_run_after_a_killed_one_is_as_if_that_had_never_been() {
         for state in states {
             let folder = tempfile::tempdir().unwrap();
             make(&state, folder.path());
-            // Which files are of an earlier run is only known from its report, which may be
-            // replaced.
+            // The files of an earlier run are known only from its report, which may be replaced.
             let known: &[&str] =
                 if state.get("a") == Some(&b"a1".to_vec()) { earlier } else { &[] };
             run(folder.path(), &THIRD, Some(known)).unwrap_or_else(|e| panic!("{e}: {state:?}"));
@@ -151,7 +150,7 @@ fn a_run_of_another_kind_leaves_what_a_killed_one_left() {
     }
 }
 
-/// As after a restored backup: the list of the first run beside the files of the second one.
+/// The list of the first run beside the files of the second one, as after a restored backup.
 #[test]
 fn an_old_or_lost_list_locks_nothing() {
     for list in Manifest::NAMES {
@@ -180,7 +179,7 @@ fn a_run_that_ends_early_locks_nothing() {
     run(folder.path(), &FIRST, None).unwrap();
     let mut out = OutDir::prepare(folder.path(), &["a"]).unwrap();
     out.write("a", b"a2").unwrap();
-    // Killed here.
+    // The run is killed here.
     drop(out);
     run(folder.path(), &THIRD, None).unwrap();
 }
@@ -231,7 +230,7 @@ fn own_files_are_replaced_and_foreign_ones_kept() {
     assert!(!path.join("b").exists(), "stale");
     assert_eq!(fs::read(path.join("c")).unwrap(), b"foreign");
 
-    // What Keyway wrote and somebody changed is theirs.
+    // A file that Keyway wrote and someone changed is foreign.
     fs::write(path.join("a"), "edited").unwrap();
     assert!(OutDir::prepare(&path, &["a"]).is_err());
     assert!(OutDir::prepare(&folder.path().join("none"), &["a"]).is_ok());

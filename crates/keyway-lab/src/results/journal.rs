@@ -1,10 +1,10 @@
-//! The finished pieces of long work that is under way.
+//! Journal of the finished pieces of long work in progress.
 //!
-//! One line for each piece, as JSON, appended as a whole when the piece is finished. Of a program
-//! that is killed while it writes one the last line may be torn: it is cut off, and its piece made
-//! again.
+//! Each piece has one line of JSON, which is appended as a whole when the piece is finished. If a
+//! program is killed while it writes, the last line may be incomplete: it is cut off, and its
+//! piece is repeated.
 //!
-//! Whoever has it open has the lock of its folder, so that no two programs write the same results.
+//! An open journal holds the lock of its folder, so that no two programs write the same results.
 
 use super::json_lines::{self, LinesError, read_lines};
 use super::lock::OutputLock;
@@ -19,9 +19,9 @@ use std::sync::Arc;
 
 /// A piece of finished work.
 pub trait JournalEntry: Serialize + DeserializeOwned {
-    /// The error of a line that is not of such work.
+    /// Error message for a line that is not of such work.
     const NOT_ONE: &'static str;
-    /// With which every line begins.
+    /// Beginning of every line.
     const BEGIN: &'static [u8];
 }
 
@@ -29,11 +29,11 @@ pub trait JournalEntry: Serialize + DeserializeOwned {
 pub struct Journal<E> {
     path: PathBuf,
     file: File,
-    /// What it held when it was opened.
+    /// Entries that it held when it was opened.
     held: Vec<E>,
-    /// True if nothing would be lost without it.
+    /// True if nothing would be lost without the journal.
     is_needless: bool,
-    /// Until the file is removed, where it is.
+    /// Lock that is held until the file is removed, if it is removed.
     _lock: Arc<OutputLock>,
 }
 
@@ -41,10 +41,10 @@ pub struct Journal<E> {
 pub const JOURNAL_NAME: &str = "journal.jsonl";
 
 impl<E: JournalEntry> Journal<E> {
-    /// Opens the one of a folder for appending, and makes it where there is none.
+    /// Opens the journal of a folder for appending, and creates it if it does not exist.
     ///
     /// # Errors
-    /// When the file cannot be used.
+    /// Returns [`ResultsError`] if the file cannot be used.
     pub fn open(out: &OutDir) -> Result<Self, ResultsError> {
         let path = out.path(JOURNAL_NAME);
         let blame = |error| refused(&path, error);
@@ -61,15 +61,15 @@ impl<E: JournalEntry> Journal<E> {
         Ok(Self { path, file, held, is_needless, _lock: out.lock() })
     }
 
-    /// Takes out what it held when it was opened.
+    /// Removes and returns the entries that it held when it was opened.
     pub fn take(&mut self) -> Vec<E> {
         std::mem::take(&mut self.held)
     }
 
-    /// Writes down a finished piece.
+    /// Appends a finished piece.
     ///
     /// # Errors
-    /// When the file cannot be used.
+    /// Returns [`ResultsError`] if the file cannot be used.
     pub fn append(&mut self, entry: &E) -> Result<(), ResultsError> {
         // An entry is plain data with string keys: this cannot fail.
         let mut line = serde_json::to_vec(entry).unwrap_or_default();
@@ -78,7 +78,7 @@ impl<E: JournalEntry> Journal<E> {
         self.file.write_all(&line).map_err(|error| refused(&self.path, error))
     }
 
-    /// Everything that it holds is written elsewhere.
+    /// Removes the journal, after all its entries were written elsewhere.
     pub fn remove(mut self) {
         self.is_needless = true;
     }
@@ -87,19 +87,19 @@ impl<E: JournalEntry> Journal<E> {
 impl<E> Drop for Journal<E> {
     fn drop(&mut self) {
         if self.is_needless {
-            // Where it stays, it says what the results say, or nothing.
+            // A journal that remains repeats the results, or is empty.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// The entries of a journal, and how many of its bytes they are: what follows is a line that was
-/// not written to its end.
+/// Returns the entries of a journal, and their number of bytes: any bytes behind them are an
+/// incomplete line.
 fn entries_of<E: JournalEntry>(path: &Path, text: &[u8]) -> Result<(Vec<E>, usize), LinesError> {
     let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let (lines, torn) = text.split_at(whole);
     if !torn.starts_with(E::BEGIN) && !E::BEGIN.starts_with(torn) {
-        // The part behind the last line end is the torn line.
+        // The part behind the last line end is the incomplete line.
         let line = text.split(|&byte| byte == b'\n').count();
         return Err(LinesError::JournalEntry { path: path.to_owned(), line, what: E::NOT_ONE });
     }
@@ -139,7 +139,7 @@ mod tests {
         assert!(path.exists());
         drop(first);
         assert!(!path.exists());
-        // As a program that was killed leaves it.
+        // As left by a program that was killed.
         for torn in [&b"{\"run\":1"[..], b"{\"run\":\"\xc3"] {
             fs::write(&path, torn).unwrap();
             open(folder.path()).unwrap().remove();

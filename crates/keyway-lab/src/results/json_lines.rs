@@ -1,4 +1,4 @@
-//! Files of JSON with a line for each entry, and other results of earlier runs, read within limits.
+//! JSON lines files and other results of earlier runs, read within limits.
 
 use keyway::file_error::ReadError;
 use keyway::file_system::read_file;
@@ -6,16 +6,16 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// More than all runs of the longest batch take.
+/// Maximum size of a file: more than all runs of the longest batch take.
 const MAX_FILE_BYTES: u64 = 4 << 30;
-/// More than a run of as many robots as there may be takes.
+/// Maximum length of a line: more than a run with the maximum number of robots takes.
 const MAX_LINE_BYTES: usize = 16 << 20;
 
 /// Error of a file of an earlier run.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LinesError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// A line is too long.
@@ -29,25 +29,25 @@ pub enum LinesError {
         path: PathBuf,
         /// The line, from 1.
         line: usize,
-        /// Its length.
+        /// Length of the line.
         bytes: usize,
     },
-    /// A line is not what it should be.
+    /// A line is not a valid entry.
     #[error("{}: line {line}: {what}", path.display())]
     JournalEntry {
         /// The file.
         path: PathBuf,
         /// The line, from 1.
         line: usize,
-        /// Description of what it is instead.
+        /// Description of the fault.
         what: &'static str,
     },
 }
 
-/// The content of a file. The last line of one that was killed may end within a character.
+/// Returns the content of a file. After a killed run, the last line may end within a character.
 ///
 /// # Errors
-/// When it cannot be read, or is too long.
+/// Returns [`LinesError`] if the file cannot be read, or a line is too long.
 pub fn read_lines(path: &Path) -> Result<Vec<u8>, LinesError> {
     let text = read_file(path, MAX_FILE_BYTES)?;
     let long = numbered(&text).find(|(_, line)| line.len() > MAX_LINE_BYTES);
@@ -57,15 +57,15 @@ pub fn read_lines(path: &Path) -> Result<Vec<u8>, LinesError> {
     Ok(text)
 }
 
-/// The lines that are not empty, with their numbers, from 1.
+/// Returns the lines that are not empty, with their numbers, from 1.
 fn numbered(text: &[u8]) -> impl Iterator<Item = (usize, &[u8])> {
     (1..).zip(text.split(|&byte| byte == b'\n')).filter(|(_, line)| !line.is_empty())
 }
 
-/// The entry of each line; `what` says what a line is that is none.
+/// Returns the entry of each line; `what` describes an invalid line.
 ///
 /// # Errors
-/// Names the first line that is none.
+/// Returns [`LinesError`] for the first invalid line.
 pub fn entries<E: DeserializeOwned>(
     path: &Path,
     text: &[u8],

@@ -1,10 +1,10 @@
-//! JSON for programs that people can read, too: one line per member, lists of numbers on one line.
+//! Human-readable JSON: one line per member, lists of numbers on one line.
 
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt::Write as _;
 
-/// The text of a report, with a line break at its end.
+/// Returns the text of a report, with a line break at its end.
 pub fn json_text(report: &impl Serialize) -> String {
     // Reports are plain data with string keys, so this cannot fail.
     let value = serde_json::to_value(report).unwrap_or_default();

@@ -1,8 +1,8 @@
-//! Whose turn it is to write several files that belong together.
+//! Lock for writing several files that belong together.
 //!
-//! Whoever writes into a folder of results holds a lock on a file in it, so that no two programs
-//! mix theirs. The system unlocks it when the program ends, in whatever way: what a killed program
-//! leaves is open to the next.
+//! A program that writes to a folder of results holds a lock on a file in it, so that no two
+//! programs mix their results. The system releases the lock when the program ends for any reason,
+//! so the next program can continue after a killed one.
 
 use super::ResultsError;
 use keyway::file_error::WriteError;
@@ -11,35 +11,37 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// The right to write, until it is dropped.
+/// Write lock, held until it is dropped.
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
     file: LockFile,
-    /// The folders that were made for it, the innermost first.
+    /// Folders that were created for the lock, the innermost first.
     made: Vec<PathBuf>,
 }
 
 impl OutputLock {
-    /// In a folder of results.
+    /// Name of the lock file in a folder of results.
     pub const NAME: &str = ".keyway-lock";
 
-    /// Number of times that a folder is made again which others remove: they do so once for each of
-    /// their runs.
+    /// Number of attempts to recreate a folder that other programs remove: they do so once for
+    /// each of their runs.
     const RETRIES: usize = 1_000;
 
-    /// For all files of a folder, which is made where there is none.
+    /// Locks all files of a folder, which is created if it does not exist.
     ///
     /// # Errors
-    /// If another program has it, or the folder cannot be written to.
+    /// Returns [`ResultsError`] if another program holds the lock, or the folder cannot be
+    /// written to.
     pub fn of_folder(folder: &Path) -> Result<Self, ResultsError> {
         let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
         let made = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
         let path = folder.join(Self::NAME);
         let open = || {
             let attempt = || fs::create_dir_all(folder).and_then(|()| open(&path));
-            // Whoever made the folder may remove it again between two steps of this one; where it
-            // can never be made (in a folder that is deleted), the last refusal is the answer.
+            // The program that created the folder may remove it between two steps of this one. If
+            // the folder can never be created (in one that is deleted), the last error is
+            // returned.
             let refused_in_passing = |it: &io::Result<File>| {
                 use ErrorKind::{AlreadyExists, NotFound};
                 it.as_ref().is_err_and(|it| matches!(it.kind(), NotFound | AlreadyExists))
@@ -52,10 +54,11 @@ impl OutputLock {
         Ok(Self { path, file, made })
     }
 
-    /// For a file and those that are written beside it.
+    /// Locks a file and those that are written beside it.
     ///
     /// # Errors
-    /// If another program has it, or the folder of the file cannot be written to.
+    /// Returns [`ResultsError`] if another program holds the lock, or the folder of the file
+    /// cannot be written to.
     pub fn of_file(file: &Path) -> Result<Self, ResultsError> {
         let mut name = OsString::from(".");
         name.push(file.file_name().unwrap_or_default());
@@ -65,7 +68,7 @@ impl OutputLock {
         Ok(Self { file: locked(|| open(&path), &path, busy)?, path, made: Vec::new() })
     }
 
-    /// True if the system cannot lock files there: others may write at the same time.
+    /// True if the system cannot lock files there: other programs may write at the same time.
     pub const fn is_unguarded(&self) -> bool {
         matches!(self.file, LockFile::Unguarded)
     }
@@ -73,29 +76,29 @@ impl OutputLock {
 
 impl Drop for OutputLock {
     fn drop(&mut self) {
-        // Where it stays it does not hinder anybody.
+        // A lock file that remains does no harm.
         let _ = fs::remove_file(&self.path);
-        // Only what is empty goes: a run that is refused leaves nothing behind.
+        // Only empty folders are removed: a run that is refused leaves nothing behind.
         let _ = self.made.iter().try_for_each(fs::remove_dir);
     }
 }
 
 fn open(path: &Path) -> io::Result<File> {
-    // A pipe in its place would keep a mere writer waiting.
+    // Opening a pipe for writing only would block.
     OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)
 }
 
-/// The file that is locked.
+/// The lock file.
 #[derive(Debug)]
 enum LockFile {
-    /// Locked as long as it is open.
+    /// Locked for as long as it is open.
     Locked { _file: File },
     /// Files cannot be locked there.
     Unguarded,
 }
 
-/// Locks the file at a path, which is still there afterwards; `busy` is the error where another
-/// program has the lock.
+/// Locks the file at a path, and checks that it is still there afterwards; `busy` is the error if
+/// another program holds the lock.
 fn locked(
     open: impl Fn() -> io::Result<File>,
     path: &Path,
@@ -112,14 +115,14 @@ fn locked(
             }
             Err(TryLockError::Error(error)) => return Err(blame(error)),
         }
-        // Whoever had it may have removed it since it was opened.
+        // The previous holder may have removed it since it was opened.
         if is_at(&file, path) {
             return Ok(LockFile::Locked { _file: file });
         }
     }
 }
 
-/// True if an open file is the one that is to be found there.
+/// True if an open file is the one at this path.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -128,7 +131,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     found.is_ok_and(|found| file.metadata().map(identity).is_ok_and(|own| own == found))
 }
 
-/// True if there is a file: elsewhere nothing says that it is the same.
+/// True if a file exists: this platform cannot tell if it is the same.
 #[cfg(not(unix))]
 fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
@@ -170,13 +173,13 @@ mod tests {
         assert_eq!(names.collect::<Vec<_>>(), ["kept"]);
     }
 
-    /// Whoever ends removes file and folder under the hands of those who want them.
+    /// Each holder removes file and folder on release, while others try to lock them.
     #[test]
     fn never_two_have_it() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a/b");
         let held = AtomicBool::new(false);
-        // Each takes its turns whenever they come: how many are refused is up to the system.
+        // The threads take turns in any order; the number of refusals depends on the system.
         let next_turn = || loop {
             match OutputLock::of_folder(&path) {
                 Ok(lock) => return lock,

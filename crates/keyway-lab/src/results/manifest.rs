@@ -1,11 +1,11 @@
-//! The list of the files in a folder that Keyway wrote.
+//! The list of the files that Keyway wrote in a folder.
 //!
-//! One line for each: `DIGEST NAME`, where a name may have several lines while a file is being
-//! replaced; and `unfinished NAME` for the files of a run that has begun to replace those of an
-//! earlier one.
+//! Each file has a line `DIGEST NAME`; a name may have several lines while its file is being
+//! replaced. Lines `unfinished NAME` list the files of a run that has begun to replace those of
+//! an earlier one.
 //!
-//! There are two copies of the list, and what either says holds. So a list that is lost, or put
-//! back from an earlier day, does not make Keyway's own files look like somebody else's.
+//! There are two copies of the list, and entries of either one are valid. A list that is lost, or
+//! restored from a backup, therefore does not make Keyway's own files look foreign.
 
 use keyway::files::{TextFileError, read_text};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,12 +14,12 @@ use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// More than a list of all files that a run leaves can have.
+/// Maximum size of a list: more than all files of a run need.
 const MAX_BYTES: u64 = 64 << 20;
-/// In the place of a digest, before a name of [`Manifest::unfinished`].
+/// Marker in place of a digest, before a name of [`Manifest::unfinished`].
 const UNFINISHED: &str = "unfinished";
 
-/// What Keyway wrote in a folder.
+/// The files that Keyway wrote in a folder.
 #[derive(Debug, Default)]
 pub(super) struct Manifest {
     /// Names with the digests of the contents that Keyway wrote, or was about to write.
@@ -31,7 +31,7 @@ pub(super) struct Manifest {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ManifestError {
-    /// It cannot be read, or is no text.
+    /// The list cannot be read, or is no text.
     #[error("{0}; {ADVICE}")]
     File(#[from] TextFileError),
     /// A line names no file.
@@ -51,10 +51,10 @@ const ADVICE: &str = "this is the list of the files that Keyway wrote; if it is 
                       is a copy beside it; without one remove the results, too, or choose another folder";
 
 impl Manifest {
-    /// The list and its copy.
+    /// Names of the list and its copy.
     pub(super) const NAMES: [&str; 2] = [".keyway-files", ".keyway-files-copy"];
 
-    /// What both lists of a folder say; nothing where there are none.
+    /// Reads both lists of a folder; empty without lists.
     pub(super) fn read(folder: &Path) -> Result<Self, ManifestError> {
         let mut manifest = Self::default();
         for name in Self::NAMES {
@@ -104,12 +104,12 @@ impl Manifest {
         digest_of_file(path).is_ok_and(|digest| digests.contains(&digest))
     }
 
-    /// A content that is about to be written.
+    /// Records a content that is about to be written.
     pub(super) fn intend(&mut self, name: &str, bytes: &[u8]) {
         self.own.entry(name.to_owned()).or_default().insert(digest(bytes));
     }
 
-    /// A content that was written: those before it no longer exist.
+    /// Records a content that was written: earlier ones no longer exist.
     pub(super) fn wrote(&mut self, name: &str, bytes: &[u8]) {
         self.own.insert(name.to_owned(), BTreeSet::from([digest(bytes)]));
     }
@@ -118,7 +118,7 @@ impl Manifest {
         self.own.remove(name);
     }
 
-    /// What is no longer there, or never was.
+    /// Removes files that no longer exist, or never existed.
     pub(super) fn forget_missing(&mut self, folder: &Path) {
         self.own.retain(|name, _| fs::symlink_metadata(folder.join(name)).is_ok());
     }
@@ -127,7 +127,7 @@ impl Manifest {
         self.own.keys().map(String::as_str)
     }
 
-    /// The files of a run that has begun, and of all before it that did not end.
+    /// Returns the files of a run that has begun, and of all earlier ones that did not end.
     pub(super) fn unfinished(&self) -> impl Iterator<Item = &String> {
         self.unfinished.iter()
     }
@@ -141,7 +141,7 @@ impl Manifest {
     }
 }
 
-/// A name in one line.
+/// Escapes a name to a single line.
 fn escaped(name: &str) -> String {
     name.replace('\\', "\\\\").replace('\n', "\\n").replace('\r', "\\r")
 }
@@ -162,7 +162,7 @@ fn unescaped(text: &str) -> String {
     name
 }
 
-/// FNV-1a, 64 bits: notices a file that was changed, not one that was forged.
+/// FNV-1a, 64 bits: detects changes of a file, but not forgery.
 fn mixed(hash: u64, bytes: &[u8]) -> u64 {
     let mix = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     bytes.iter().fold(hash, mix)
@@ -175,7 +175,7 @@ pub fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", mixed(EMPTY, bytes))
 }
 
-/// The same for a file, and only for a file, as a pipe would never end.
+/// The same for the content of a file. Anything else is an error, as a pipe would never end.
 fn digest_of_file(path: &Path) -> io::Result<String> {
     if !fs::metadata(path)?.is_file() {
         return Err(io::ErrorKind::InvalidInput.into());

@@ -1,5 +1,5 @@
-//! Files of results: a folder in which nothing is overwritten that Keyway did not write, and a
-//! journal from which long work goes on after it was killed.
+//! Result files: a folder in which only files written by Keyway are overwritten, and a journal
+//! from which long work resumes after it was killed.
 
 mod error;
 mod folder;

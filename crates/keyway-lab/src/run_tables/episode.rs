@@ -85,14 +85,14 @@ fn refusals(counts: RefusalCounts) -> String {
     ])
 }
 
-/// Text of the kinds of which there are any.
+/// Text of the kinds with a positive count.
 fn counted(kinds: &[(u32, &str)]) -> String {
     let some = kinds.iter().filter(|(count, _)| *count > 0);
     let some: Vec<String> = some.map(|(count, kind)| format!("{count} {kind}")).collect();
     if some.is_empty() { "none".to_owned() } else { some.join(", ") }
 }
 
-/// Text of the times at which way-points were passed.
+/// Text of the times at which the waypoints were passed.
 fn passed(way_points: &[WayPointPart]) -> String {
     let time = |part: &WayPointPart| quantity(part.passed_s, 1, "s");
     way_points.iter().map(time).collect::<Vec<_>>().join(", ")

@@ -1,11 +1,11 @@
-//! Worlds of BARN \[Perille2020\]: a robot crosses a field of cylinders that it does not know.
+//! Worlds of BARN \[Perille2020\]: a robot crosses a field of cylinders that are not on its map.
 //!
-//! As in the challenge, the Jackal starts at (-2.25, 3) and faces upwards. The goal is 10 m ahead.
-//! The robot reaches it within 1 m, and has 100 s. Its map is empty. The best time is that of the
-//! reference path at 2 m/s.
+//! As in the challenge, the Jackal starts at (-2.25, 3) and faces upwards. The goal is 10 m
+//! ahead, with a tolerance of 1 m and a time limit of 100 s. The map is empty. The best time is
+//! that of the reference path at 2 m/s.
 //!
-//! If the cylinders are known, the map has them: the cells whose centres they hold. These cells
-//! then stand in the world instead of the cylinders.
+//! If the cylinders are known, they are on the map: the cells whose centres they cover. The world
+//! then contains these cells instead of the cylinders.
 
 use super::table::{rows, rows_from_bytes, some_rows};
 use super::{NamedScene, ScenesError};
@@ -23,8 +23,8 @@ const START: Point = Point::new(-2.25, 3.0);
 const START_HEADING_RAD: f64 = FRAC_PI_2;
 const GOAL: Point = Point::new(-2.25, 13.0);
 
-/// The lower left corner of the map and its side \[m\]: the middle of the way is the middle of the
-/// map, and the map has what stands beside the course.
+/// The lower left corner of the map and its side \[m\]: the map is centred on the middle of the
+/// route, and includes the obstacles beside the field.
 const MAP_CORNER: Point = Point::new(-12.25, -2.0);
 const MAP_SIDE_M: f64 = 20.0;
 const CELL_M: f64 = 0.05;
@@ -38,7 +38,7 @@ const RULES: SceneRules = SceneRules {
     reference_time_s: None,
 };
 
-/// Worlds of BARN to make scenes of.
+/// Request for scenes of BARN worlds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BarnRequest {
     /// Table of the cylinders: CSV with the columns `world`, `x`, `y` and `radius` \[m\].
@@ -68,14 +68,15 @@ impl BarnRequest {
     /// Returns a scene for each world, in the order of their numbers.
     ///
     /// # Errors
-    /// When a table cannot be used, or the cylinders of a world make no scene.
+    /// Returns [`ScenesError`] if a table cannot be used, or the cylinders of a world make no
+    /// scene.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let cylinders = some_rows(&self.cylinders).map_err(ScenesError::of_table("cylinders"))?;
         scenes(cylinders, self.is_known, &self.best_times_s()?)
     }
 
-    /// Returns the same for a table of cylinders in memory, without best times; errors call it
-    /// `name`.
+    /// Returns the same for a table of cylinders in memory, without best times; errors use `name`
+    /// as its path.
     ///
     /// # Errors
     /// As for [`Self::scenes`].
@@ -126,7 +127,7 @@ fn named(
     if is_known {
         let disc = |circle: &UnknownDisc| [circle.position.x, circle.position.y, circle.radius_m];
         map.obstacles = Pattern::Discs(Discs(unknown.iter().map(disc).collect()));
-        // A cylinder near an end is an obstacle, too.
+        // A cylinder near the start or goal is an obstacle, too.
         map.free_ends_m = 0.0;
         unknown.clear();
     }

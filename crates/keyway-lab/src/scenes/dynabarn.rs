@@ -1,11 +1,11 @@
-//! Worlds of `DynaBARN` \[Nair2022\]: a robot crosses a field of moving cylinders, which give way
-//! to nobody.
+//! Worlds of `DynaBARN` \[Nair2022\]: a robot crosses a field of moving cylinders that do not
+//! yield.
 //!
 //! As in the challenge, the Jackal starts at (11, 0) and faces the field. The goal is 20 m ahead,
-//! at (-9, 0). The robot reaches it within 1 m, and has 100 s. The best time is that of the
-//! straight way at 2 m/s. Each cylinder follows the spline of its key frames and starts over after
-//! its duration. Three walls stand around the field, which is open towards the start. The map is
-//! empty.
+//! at (-9, 0), with a tolerance of 1 m and a time limit of 100 s. The best time is that of the
+//! straight line at 2 m/s. Each cylinder follows the spline of its key frames and starts over
+//! after its duration. Three walls surround the field, which is open towards the start. The map
+//! is empty.
 
 use super::table::some_rows;
 use super::{NamedScene, ScenesError};
@@ -40,11 +40,11 @@ const RULES: SceneRules = SceneRules {
     reference_time_s: Some(10.0),
 };
 
-/// Worlds of `DynaBARN` to make scenes of.
+/// Request for scenes of `DynaBARN` worlds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DynabarnRequest {
-    /// Table of the places of the cylinders: CSV with the columns `plugin`, `duration_s`, `t`, `x`
-    /// and `y` \[s, m\].
+    /// Table of the positions of the cylinders: CSV with the columns `plugin`, `duration_s`, `t`,
+    /// `x` and `y` \[s, m\].
     pub key_frames: PathBuf,
     /// Table of the cylinders of each world: CSV with the columns `world`, `plugin` and `radius`
     /// \[m\].
@@ -67,7 +67,7 @@ struct Cylinder {
     radius: f64,
 }
 
-/// A lap of a cylinder.
+/// One lap of a cylinder.
 #[derive(Default)]
 struct Lap {
     duration_s: f64,
@@ -78,7 +78,8 @@ impl DynabarnRequest {
     /// Returns a scene for each world, in the order of their numbers.
     ///
     /// # Errors
-    /// When a table cannot be used, a cylinder has no key frames, or its motion cannot be used.
+    /// Returns [`ScenesError`] if a table cannot be used, a cylinder has no key frames, or its
+    /// motion is invalid.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let laps = self.laps()?;
         let cylinders: Vec<Cylinder> =

@@ -1,4 +1,4 @@
-//! Errors of scenes that are made from files.
+//! Errors of scenes that are generated from files.
 
 use super::table::TableError;
 use keyway::ConfigError;
@@ -9,7 +9,7 @@ use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Reason why scenes cannot be made. Fields are those of the request.
+/// Reason why scenes cannot be generated. Fields are those of the request.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ScenesError {
@@ -47,7 +47,7 @@ pub enum ScenesError {
         /// Error of its motion.
         reason: ConfigError,
     },
-    /// A wall cannot be used. All walls are boxes, so this does not happen.
+    /// A wall is invalid. All walls are boxes, so this does not happen.
     #[error(transparent)]
     Wall(ConfigError),
     /// A pair names a map that does not exist.
@@ -87,7 +87,7 @@ pub enum ScenesError {
     /// The robot cannot be used.
     #[error(transparent)]
     Robot(ConfigFileError),
-    /// There is nothing of this name.
+    /// A requested name does not exist.
     #[error(
         "there is no {what} `{name}`; expected one of {}{}",
         known.join(", "),
@@ -101,11 +101,11 @@ pub enum ScenesError {
         /// All names.
         known: Vec<&'static str>,
     },
-    /// A narrow place makes no scene. All robots and places that are drawn can be used, so this
+    /// A narrow place makes no scene. All robots and places that are drawn are valid, so this
     /// does not happen.
     #[error(transparent)]
     Narrow(SceneError),
-    /// Fewer maps fit a paper than were asked for.
+    /// Fewer maps fit a paper than were requested.
     #[error("{name}: only {found} of {tried} maps fit; ask for as many")]
     TooFew {
         /// The reconstruction.
@@ -124,7 +124,7 @@ pub enum ScenesError {
 }
 
 impl ScenesError {
-    /// Returns the field of the request that is to blame; `None` if no field is.
+    /// Returns the field of the request that is at fault; `None` if no field is.
     pub const fn field(&self) -> Option<&'static str> {
         Some(match self {
             Self::Table { field, .. } | Self::Path { field, .. } => field,
@@ -141,7 +141,7 @@ impl ScenesError {
         })
     }
 
-    /// Returns a function that blames a field for an error of its table.
+    /// Returns a function that assigns an error of a table to its field.
     pub(super) fn of_table(field: &'static str) -> impl FnOnce(TableError) -> Self {
         move |reason| Self::Table { field, reason }
     }

@@ -1,7 +1,7 @@
 //! Scenes of the field's benchmarks, of tables of starts and goals, of the papers' maps, and of
 //! narrow places.
 //!
-//! Each request reads the files that it names, if any, and gives scenes with the names of their
+//! Each request reads the files that it names, if any, and returns scenes with the names of their
 //! files. Nothing is written. [`scene_schema`] describes the fields of all scene files.
 
 mod barn;

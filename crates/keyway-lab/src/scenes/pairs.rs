@@ -12,24 +12,24 @@ use std::path::{Component, Path, PathBuf};
 
 /// Sizes of posts and boxes on the floor \[m\].
 const UNKNOWN_RADIUS_M: [f64; 2] = [0.1, 0.3];
-/// Sizes of people who walk about \[m\].
+/// Sizes of walking pedestrians \[m\].
 const MOVING_RADIUS_M: [f64; 2] = [0.2, 0.35];
-/// Speeds of people who walk about \[m/s\].
+/// Speeds of walking pedestrians \[m/s\].
 const MOVING_SPEED_MPS: [f64; 2] = [0.3, 1.0];
 
-/// Pairs of start and goal to make scenes of.
+/// Request for scenes of pairs of start and goal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PairsRequest {
     /// Table of the pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and
-    /// `goal_y_m`. A map is named by its path from the table's folder.
+    /// `goal_y_m`. Paths of maps are relative to the table's folder.
     pub pairs: PathBuf,
     /// Name of a bundled robot, or the path of a file with one.
     pub robot: String,
-    /// Number of random unknown obstacles that stand near the way.
+    /// Number of random static unknown obstacles near the path.
     pub unknown: u32,
     /// Number of random moving obstacles.
     pub moving: u32,
-    /// Folder of the scenes: they name maps and robots by their paths from there.
+    /// Folder of the scenes: their paths of maps and robots are relative to it.
     pub folder: PathBuf,
 }
 
@@ -54,7 +54,7 @@ impl PairsRequest {
     /// Returns a scene for each line, in their order.
     ///
     /// # Errors
-    /// When the table, a map of it or the robot cannot be used.
+    /// Returns [`ScenesError`] if the table, a map in it or the robot cannot be used.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let pairs: Vec<Pair> = some_rows(&self.pairs).map_err(ScenesError::of_table("pairs"))?;
         let folder = resolved(&self.folder, "folder")?;
@@ -110,8 +110,8 @@ impl PairsRequest {
     }
 }
 
-/// Returns the absolute path without links and steps upwards. The part that does not exist yet
-/// stays as it is.
+/// Returns the absolute path without links and `..`. The part that does not exist yet stays as it
+/// is.
 fn resolved(path: &Path, field: &'static str) -> Result<PathBuf, ScenesError> {
     let absolute = std::path::absolute(path).map_err(|reason| ScenesError::Path {
         field,

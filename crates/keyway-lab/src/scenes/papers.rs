@@ -6,10 +6,10 @@ use keyway::geometry::Point;
 use keyway_sim::episode::Start;
 use keyway_sim::scene_files::SceneFile;
 
-/// Reconstructions of the papers' maps to make scenes of.
+/// Request for scenes of the papers' reconstructed maps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PapersRequest {
-    /// Names of reconstructions, such as `you2021`; all of them if it is empty.
+    /// Names of reconstructions, such as `you2021`; if empty, all of them.
     pub names: Vec<String>,
     /// Number of scenes of each: the first maps that fit, by their seeds from 1 on.
     pub count: usize,
@@ -19,7 +19,7 @@ impl PapersRequest {
     /// Returns the scenes of each reconstruction, in the order of their seeds.
     ///
     /// # Errors
-    /// When there is no such reconstruction, or too few maps fit.
+    /// Returns [`ScenesError`] if no such reconstruction exists, or too few maps fit.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let mut scenes = Vec::new();
         for of in self.chosen()? {

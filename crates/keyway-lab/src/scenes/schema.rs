@@ -1,6 +1,7 @@
 //! JSON schema of scene files: their fields, for editors and for programs that write scenes.
 //!
-//! It is made from the type that reads scenes. Its descriptions are the documentation of that type.
+//! It is generated from the type that reads scenes, and its descriptions are the documentation of
+//! that type.
 
 use crate::catalogue::plain;
 use keyway_sim::scene_files::SceneFile;
@@ -16,7 +17,7 @@ pub fn scene_schema() -> Value {
     document
 }
 
-/// Rewrites descriptions for people who write scenes, who do not read the code.
+/// Rewrites descriptions for authors of scenes, who do not read the code.
 fn describe_plainly(node: &mut Value) {
     match node {
         Value::Object(members) => {

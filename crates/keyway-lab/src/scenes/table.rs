@@ -1,11 +1,11 @@
-//! Lines of a CSV file, by the names of its columns.
+//! Rows of a CSV file, by the names of its columns.
 
 use keyway::files::{TextFileError, file_text, read_text};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Largest file that is read \[bytes\]: more than any benchmark's file.
+/// Maximum size of a file \[bytes\]: more than any benchmark's file.
 const LARGEST_BYTES: u64 = 256 << 20;
 
 /// Error of a table.
@@ -15,17 +15,17 @@ pub enum TableError {
     /// The file cannot be read.
     #[error(transparent)]
     File(#[from] TextFileError),
-    /// A line does not have the columns, or a value cannot be used.
+    /// A line does not have the columns, or a value is invalid.
     #[error("{}: {}{reason}", path.display(), line.map_or_else(String::new, |n| format!("line {n}: ")))]
     Line {
         /// The file.
         path: PathBuf,
-        /// The line, from 1; `None` if the reader cannot say which one.
+        /// The line, from 1; `None` if the reader cannot determine it.
         line: Option<u64>,
         /// Description of the error, with the name of the column.
         reason: String,
     },
-    /// The table has a header only.
+    /// The table has only a header.
     #[error("{}: there is no line below the header", path.display())]
     Empty {
         /// The file.
@@ -38,7 +38,7 @@ pub(super) fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, TableErro
     rows_of(path, &read_text(path, LARGEST_BYTES)?)
 }
 
-/// The same for a file in memory; errors call it `path`.
+/// The same for a file in memory; errors use `path` as its path.
 pub(super) fn rows_from_bytes<T: DeserializeOwned>(
     path: &Path,
     bytes: &[u8],

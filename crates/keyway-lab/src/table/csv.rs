@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-/// One line for each row, under a header of the member names; a missing value is empty.
+/// Returns one line for each row, under a header of the member names; a missing value is empty.
 pub fn csv(rows: &[impl Serialize]) -> String {
     let line = |cells: Vec<String>| cells.join(",") + "\n";
     let mut text = String::new();
@@ -18,7 +18,7 @@ pub fn csv(rows: &[impl Serialize]) -> String {
     text
 }
 
-/// A cell, quoted where necessary (RFC 4180).
+/// Returns a cell, quoted if necessary (RFC 4180).
 fn csv_cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),

@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-/// First lines of the file, for the author who includes it.
+/// First lines of the file, for authors who include it.
 const HEAD: &str = r"% Needs \usepackage{booktabs}. Too wide for the page? Leave out columns, turn the page
 % (landscape of \usepackage{pdflscape}), or scale the table (\usepackage{graphicx}):
 % \resizebox{\textwidth}{!}{\input{FILE}}
 ";
 
-/// A table; the columns from the `first_number`-th on are aligned as numbers. A change of the first
-/// cell draws a line between two rows; a change of the second one adds some space.
+/// Returns a table; the columns from the `first_number`-th on are aligned as numbers. A change of
+/// the first cell draws a line between two rows; a change of the second one adds some space.
 pub fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let escaped: Vec<String> = cells.map(escaped).collect();
@@ -33,15 +33,15 @@ pub fn latex_table(header: &[&str], rows: &[Vec<String>], first_number: usize) -
     text
 }
 
-/// A text as a LaTeX comment.
+/// Returns a text as a LaTeX comment.
 pub fn comment(text: &str) -> String {
     // TeX also ends a line at a carriage return.
     let lines = text.split(['\n', '\r']).filter(|line| !line.trim().is_empty());
     lines.flat_map(|line| ["% ", line.trim(), "\n"]).collect()
 }
 
-/// A cell: characters that are special to TeX are escaped, and a missing value is a dash. pdfLaTeX
-/// can print all of it: other characters are written as code points.
+/// Escapes a cell: characters that are special to TeX are escaped, and a missing value is a dash.
+/// Characters that pdfLaTeX cannot print are written as code points.
 fn escaped(cell: &str) -> String {
     if cell == "-" {
         return "--".to_owned();
@@ -113,7 +113,7 @@ const fn command(letter: char) -> Option<&'static str> {
         '°' => r"$^\circ$",
         '²' => "$^2$",
         '³' => "$^3$",
-        // The micro sign, and the Greek letter.
+        // Both the micro sign and the Greek letter.
         'µ' | 'μ' => r"$\mu$",
         '≤' => r"$\leq$",
         '≥' => r"$\geq$",
@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(cells[0], [r"name \&", r"50 \%", r"m/s\textasciicircum{}2"]);
     }
 
-    /// The reader finds errors in a table.
+    /// The reader detects errors in a table.
     #[test]
     fn the_reader_is_strict() {
         let table = |row: &str| {

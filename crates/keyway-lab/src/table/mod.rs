@@ -1,4 +1,4 @@
-//! Tables: for people, for papers and for programs.
+//! Tables: for display, for papers and for programs.
 
 mod csv;
 mod latex;

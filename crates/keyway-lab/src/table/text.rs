@@ -13,7 +13,7 @@ const MIN_TEXT_WIDTH: usize = 14;
 /// Padding of a cell \[characters\].
 const PADDING: usize = 2;
 
-/// Names and values, one pair per line; long values take several lines.
+/// Returns names and values, one pair per line; long values take several lines.
 pub fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let mut rows: Vec<Vec<String>> =
         rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
@@ -22,13 +22,13 @@ pub fn facts<'a>(rows: impl IntoIterator<Item = (&'a str, String)>) -> String {
     trimmed(&table.with(Style::empty()).to_string())
 }
 
-/// A text in lines as wide as a table.
+/// Wraps a text to the width of a table.
 pub fn paragraph(text: &str) -> String {
     wrapped(text, MAX_WIDTH)
 }
 
-/// Rows under a header, whose names may have several lines; the columns from the `first_number`-th
-/// on are aligned as numbers.
+/// Returns rows under a header, whose names may have several lines; the columns from the
+/// `first_number`-th on are aligned as numbers.
 pub fn rows(header: &[&str], rows: Vec<Vec<String>>, first_number: usize) -> String {
     let mut all = vec![header.iter().map(|name| (*name).to_owned()).collect()];
     all.extend(rows);
@@ -60,7 +60,7 @@ fn wrap_texts(rows: &mut [Vec<String>], texts: usize) {
     }
 }
 
-/// The text in lines of at most this many characters, broken at spaces; a longer word is broken
+/// Wraps a text to lines of at most this many characters, at spaces; a longer word is broken
 /// after hyphens.
 fn wrapped(text: &str, width: usize) -> String {
     let mut lines = vec![String::new()];
@@ -80,17 +80,17 @@ fn wrapped(text: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// The table without trailing spaces, which a terminal would wrap.
+/// Removes trailing spaces from a table, which a terminal would wrap.
 fn trimmed(table: &str) -> String {
     table.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
-/// A number with this many decimals, or a dash for a missing one.
+/// Formats a number with this many decimals, or a dash for a missing one.
 pub fn number(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
 }
 
-/// The two ends of the range of most values; empty where they are missing.
+/// Formats the ends of the range of most values; empty if they are missing.
 pub fn range(low: Option<f64>, high: Option<f64>, shown: impl Fn(Option<f64>) -> String) -> String {
     if low.is_none() || high.is_none() {
         return String::new();
@@ -98,7 +98,7 @@ pub fn range(low: Option<f64>, high: Option<f64>, shown: impl Fn(Option<f64>) ->
     format!("{} to {}", shown(low), shown(high))
 }
 
-/// A value with the two ends in brackets; without them where they are missing.
+/// Formats a value with the range in brackets, or without it if it is missing.
 pub fn with_range(
     value: Option<f64>,
     [low, high]: [Option<f64>; 2],
@@ -108,13 +108,13 @@ pub fn with_range(
     if ends.is_empty() { shown(value) } else { format!("{} ({ends})", shown(value)) }
 }
 
-/// A share as a percentage with this many decimals, without a sign where it rounds to 0.
+/// Formats a share as a percentage with this many decimals, without a sign if it rounds to 0.
 pub fn percent(share: Option<f64>, decimals: usize) -> String {
     let scale = 10f64.powi(decimals as i32);
     number(share.map(|share| (share * 100.0 * scale).round() / scale + 0.0), decimals)
 }
 
-/// A number with a unit.
+/// Formats a number with a unit.
 pub fn quantity(value: Option<f64>, decimals: usize, unit: &str) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$} {unit}"))
 }

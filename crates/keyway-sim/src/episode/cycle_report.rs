@@ -11,48 +11,48 @@ use serde::Serialize;
 /// `keyway.cycle/1`: the robot's pose, its decision, and the reasons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CycleReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub schema: &'static str,
     /// Number of the cycle, from 0.
     pub cycle: u64,
-    /// Simulated time at its beginning \[s\].
+    /// Simulated time at the beginning of the cycle \[s\].
     pub t_s: f64,
     /// Pose of the robot: `[x_m, y_m, yaw_rad]`.
     pub pose: [f64; 3],
     /// Velocity of the robot.
     pub velocity: Speeds,
-    /// Point to which the guide leads \[m\].
+    /// Point to which the guide directs the robot \[m\].
     pub guide_m: Point,
-    /// Point towards which the local planner drives \[m\]: that of the guide, or one of its own;
-    /// `None` when it drives to no point, or was not asked.
+    /// Point towards which the local planner drives \[m\]: the guide's point, or one of its own;
+    /// `None` if it drives to no point, or was not called.
     pub target_m: Option<Point>,
     /// Remaining path length \[m\].
     pub remaining_m: f64,
     /// Moving obstacles, as the robot estimates them.
     pub movers: Vec<Mover>,
-    /// Areas in which moving obstacles walk to and fro, and which the robot avoids: `[x, y,
+    /// Areas in which moving obstacles walk to and fro and which the robot avoids: `[x, y,
     /// radius]` each \[m\].
     pub walked: Vec<[f64; 3]>,
     /// Action of the robot.
     pub step: StepName,
-    /// Reason why the robot makes no progress, for people; `None` unless it is blocked.
+    /// Reason why the robot makes no progress, for human readers; `None` unless it is blocked.
     pub reason: Option<String>,
     /// Velocity command until the next cycle; `None` at the goal.
     pub command: Option<Speeds>,
     /// Reason why the stop rule changed the command; `None` if it did not.
     pub refusal: Option<Refusal>,
     /// Number of velocities tried; 0 if the local planner does not choose between candidates, or
-    /// was not asked.
+    /// was not called.
     pub candidates: u32,
-    /// Number of candidates that let the robot drive on.
+    /// Number of candidates with which the robot drives on.
     pub driving: u32,
-    /// Reasons why the others were rejected.
+    /// Reasons why the other candidates were rejected.
     pub rejected: Rejections,
-    /// The best candidate; `None` when none was admissible.
+    /// The best candidate; `None` if none was admissible.
     pub chosen: Option<Scored>,
     /// The second best candidate.
     pub runner_up: Option<Scored>,
-    /// Remedies that were tried to free the robot; empty while some candidate drives.
+    /// Remedies that were tried to free the robot; empty if a candidate drives.
     pub remedies: Vec<Remedy>,
 }
 
@@ -73,7 +73,7 @@ pub enum StepName {
     Drive,
     /// The robot is at the goal.
     Arrived,
-    /// The robot has no good way on.
+    /// No acceptable motion towards the goal.
     Blocked,
     /// The robot has no goal.
     Idle,
@@ -92,7 +92,7 @@ pub struct Scored {
 }
 
 impl CycleReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub const SCHEMA: &'static str = "keyway.cycle/1";
 
     /// Returns the report of a cycle, given the explanation of its decision

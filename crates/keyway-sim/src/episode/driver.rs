@@ -1,4 +1,4 @@
-//! Simulation of one robot or several in one world, with their controllers, up to their reports.
+//! Simulation of one or several robots in one world with their controllers, and their reports.
 
 use super::task::Task;
 use super::{
@@ -54,8 +54,8 @@ pub(super) fn run_all<'a>(
     tasks.into_iter().enumerate().zip(robots).filter_map(ended).collect()
 }
 
-/// Returns the real obstacles: those of the map, those that no map has, and the moving ones.
-/// Unknown cells are obstacles if all robots plan around them.
+/// Returns the true obstacles: mapped, unmapped and moving ones. Unknown cells are obstacles if
+/// all robots plan around them.
 pub(super) fn world_of(tasks: &[Task<'_>]) -> Result<World, WorldError> {
     let Episode { known, obstacles, polygons, hidden_cells, elusive, movers, .. } =
         tasks[0].episode;
@@ -89,7 +89,7 @@ fn simulated(
     tasks: &[Task<'_>],
     robots: &mut [Ready<'_>],
 ) -> Result<Vec<Run>, EpisodeError> {
-    // A robot that waits for another one is not given up before the other one.
+    // A robot that waits for another one may take as long as the other one.
     let limits_s = robots.iter().filter_map(|robot| Some(robot.driver()?.rules.time_limit_s));
     let Some(time_limit_s) = limits_s.reduce(f64::max) else {
         return Ok(Vec::new());
@@ -127,7 +127,7 @@ pub(super) fn bound_for(
     Ok((navigator, route))
 }
 
-/// Remaining length of the way to the goal \[m\].
+/// Remaining length of the route to the goal \[m\].
 pub(super) fn remaining_m(navigator: &Navigator) -> f64 {
     navigator.guidance().map_or(f64::INFINITY, |guidance| guidance.remaining_m)
 }
@@ -139,7 +139,7 @@ type Decide<'a> = dyn FnMut(&Observation<'_>) -> Control + Send + 'a;
 enum Ready<'a> {
     /// A robot with a route.
     Drives(Box<Driver<'a>>),
-    /// A robot without a route, which stands in the way of the others.
+    /// A robot without a route, which stays at its start as an obstacle for the others.
     Stands { at: Pose, report: Box<RobotReport> },
 }
 
@@ -210,7 +210,7 @@ impl<'a> Ready<'a> {
         }
     }
 
-    /// Returns the result; `None` for a driving robot without a run, which does not happen.
+    /// Returns the result; `None` for a driving robot without a run, which does not occur.
     fn ended(self, run: Option<&Run>, world: &World) -> Option<Result<Ended, ConfigError>> {
         let (report, min_robot_clearance_m) = match self {
             Self::Stands { report, .. } => (Ok(*report), None),
@@ -220,7 +220,7 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// Adds doubts to those of a run; of each kind the last one is kept.
+/// Adds doubts to those of a run, keeping the last one of each kind.
 fn note_doubts(noticed: &mut Vec<Doubt>, doubts: &[Doubt]) {
     for &doubt in doubts {
         match noticed.iter_mut().find(|known| discriminant(*known) == discriminant(&doubt)) {
@@ -230,28 +230,28 @@ fn note_doubts(noticed: &mut Vec<Doubt>, doubts: &[Doubt]) {
     }
 }
 
-/// A robot under way.
+/// A robot during its run.
 struct Driver<'a> {
     task: Task<'a>,
     observer: &'a mut dyn EpisodeObserver,
     clock: Clock<'a>,
     start: Pose,
     rules: RunRules,
-    /// The first route, followed by its key points and the place where the footprint does not fit.
+    /// The first route, with its key points and the position where the footprint does not fit.
     route: Route,
     key_points: Vec<Point>,
     misfit: Option<Misfit>,
     navigator: Navigator,
-    /// That of its commands so far.
+    /// Jerk of the commands so far.
     jerk: CommandJerk,
-    /// Decisions so far, and their total wall clock time \[s\].
+    /// Number of decisions so far, and their total wall-clock time \[s\].
     cycles: u64,
     decisions_s: f64,
-    /// Time at which each way-point was passed, up to the last passed one \[s\].
+    /// Pass times of the way-points that were passed so far \[s\].
     passed_s: Vec<f64>,
     /// The last reason why the robot was blocked, if any.
     blocked: Option<Blocked>,
-    /// The doubts of the run, each kind once.
+    /// The doubts of the run, one of each kind.
     noticed: Vec<Doubt>,
 }
 
@@ -278,7 +278,7 @@ impl Driver<'_> {
             _ if self.observer.gives_up() => Action::GiveUp,
             Step::Arrived => Action::Arrived,
             Step::Idle => Action::Stop,
-            // A recovery attempt is not the reason why the robot is blocked.
+            // A recovery attempt is not the cause of the blockage.
             Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
                 Action::Drive(command)
             }

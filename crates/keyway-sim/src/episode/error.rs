@@ -5,32 +5,32 @@ use keyway::ConfigError;
 use keyway::navigate::NavigateError;
 use thiserror::Error;
 
-/// Reason why an episode cannot be run. A start without a route to the goal is not an error but a
-/// report.
+/// Reason why an episode cannot be run. A start without a route to the goal is a report, not an
+/// error.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}{why}", robot.map_or_else(String::new, |index| format!("robot {index}: ")))]
 pub struct EpisodeError {
-    /// Index of the robot; `None` where no single one is to blame, or there is only one.
+    /// Index of the robot; `None` if the error concerns no single robot, or there is only one.
     pub robot: Option<usize>,
     /// Error of the robot or the episode.
     #[source]
     pub why: RunError,
 }
 
-/// Reason why a robot cannot be driven.
+/// Reason why a robot cannot drive.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The robot, the stack, the start or the goal cannot be used.
+    /// The robot, the stack, the start or the goal is invalid.
     #[error(transparent)]
     Navigate(#[from] NavigateError),
-    /// The obstacles cannot be used.
+    /// The obstacles are invalid.
     #[error(transparent)]
     World(#[from] WorldError),
     /// The map layers cannot be derived.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// The start's heading or the rules cannot be used.
+    /// The start's heading or the rules are invalid.
     #[error(transparent)]
     Sim(#[from] SimError),
 }

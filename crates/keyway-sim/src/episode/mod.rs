@@ -1,11 +1,12 @@
-//! A whole run: from a world, robots and their stacks to a drive and its figures.
+//! Complete runs: a world, robots and their stacks are simulated and measured.
 //!
-//! An [`Episode`] is one robot or several in one world, each with its own stack. [`run_episode`]
-//! plans, simulates and measures; it needs nothing else and writes nothing. The same episode gives
-//! the same report: all randomness in a run follows from a seed ([`EpisodeRobot::disturbances`]).
-//! [`watch_episode`] shows every cycle to an [`EpisodeObserver`], measures times by a clock of the
-//! caller's, and drives with local planners or guides of the caller's own ([`RunOptions`]).
-//! [`Episode::stepper`] gives the robot to a controller from outside.
+//! An [`Episode`] is one or several robots in one world, each with its own stack. [`run_episode`]
+//! plans, simulates and measures; it needs nothing else and writes nothing. The same episode
+//! gives the same report: all randomness in a run follows from a seed
+//! ([`EpisodeRobot::disturbances`]). [`watch_episode`] shows every cycle to an
+//! [`EpisodeObserver`], measures times by the caller's clock, and drives with the caller's own
+//! local planners or guides ([`RunOptions`]). [`Episode::stepper`] gives control of the robot to
+//! an external controller.
 //!
 //! ```
 //! use keyway_sim::episode::{Episode, EpisodeOutcome, run_episode};
@@ -60,12 +61,12 @@ use keyway::map::{Cell, OccupancyGrid};
 use keyway::navigate::Goal;
 use keyway::robot::Robot;
 
-/// One robot or several that drive in one world at the same time, each with its own stack and to
-/// its own goal. To each other they are moving obstacles: no robot knows the plans of another, and
-/// has to sense it.
+/// One or several robots that drive in one world at the same time, each with its own stack and
+/// its own goal. They are moving obstacles for each other: no robot knows another's plans, so
+/// each has to sense the others.
 ///
-/// A robot whose run has ended, with any outcome, stands in the way of the others from then on; a
-/// robot without a route does so from the beginning. All robots have the same control cycle.
+/// A robot whose run has ended, with any outcome, is an obstacle for the others from then on; a
+/// robot without a route is one from the beginning. All robots have the same control cycle.
 ///
 /// ```
 /// use keyway_sim::episode::{Episode, EpisodeOutcome, EpisodeRobot, run_episode};
@@ -85,36 +86,36 @@ use keyway::robot::Robot;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
-    /// Map that all robots know. Its occupied cells are real obstacles, and so are its unknown
+    /// Map that all robots know. Its occupied cells are true obstacles, and so are its unknown
     /// cells if `stack.map.unknown` of all robots plans around them.
     pub known: OccupancyGrid,
     /// Identification of the map in the report.
     pub source: MapSource,
-    /// Real static obstacles that are not on the map.
+    /// True static obstacles that are not on the map.
     pub obstacles: Vec<Disc>,
-    /// Real static polygons that are not on the map.
+    /// True static polygons that are not on the map.
     pub polygons: Vec<StandingPolygon>,
     /// Occupied cells that the map does not show, in ascending order.
     pub hidden_cells: Vec<Cell>,
-    /// Cells that the map shows as occupied although nothing is there, in ascending order.
+    /// Cells that the map shows as occupied although they are free, in ascending order.
     pub absent_cells: Vec<Cell>,
-    /// Obstacles that stand for a time only, or that sensors miss.
+    /// Obstacles that are present for a limited time, or that sensors miss.
     pub elusive: Vec<ElusiveObstacle>,
     /// Moving obstacles.
     pub movers: Vec<MovingObstacle>,
-    /// Number of random ones among these obstacles, and of those not placed
+    /// Numbers of random obstacles that were placed and that were left out
     /// ([`RandomObstacles::put_into`]).
     pub random: Option<Placed>,
     /// The robots: one or several.
     pub robots: Vec<EpisodeRobot>,
-    /// Rules that end each robot's run. Without a time limit, all robots have the longest limit
-    /// that one of them would have alone: a robot that lets another one pass first needs the time.
+    /// Rules that end each robot's run. Without a time limit, all robots get the longest default
+    /// limit of any of them, because a robot that lets another one pass first needs the time.
     pub rules: EpisodeRules,
 }
 
 impl Episode {
-    /// Creates an episode of one robot with a correct map and an ideal robot, with the usual stack
-    /// for it. The robot starts facing along the path.
+    /// Creates an episode of one ideal robot with its default stack on a correct map. The robot
+    /// starts facing along the path.
     pub fn new(known: OccupancyGrid, robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self::of_robots(known, vec![EpisodeRobot::new(robot, start, goal)])
     }
@@ -136,7 +137,7 @@ impl Episode {
         }
     }
 
-    /// Returns the same with each robot changed.
+    /// Returns the episode with each robot changed.
     #[must_use]
     pub fn with_each_robot(mut self, change: impl FnMut(&mut EpisodeRobot)) -> Self {
         self.robots.iter_mut().for_each(change);

@@ -1,28 +1,28 @@
-//! Goals that cannot be reached.
+//! Replacement of unreachable goals.
 
 use super::task::Task;
 use super::{Episode, EpisodeError};
 use keyway::geometry::Point;
 use keyway::navigate::{Goal, Navigator};
 
-/// A goal in the place of another one that cannot be reached.
+/// A reachable goal that replaces an unreachable one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestGoal {
     /// Index of the robot.
     pub robot: usize,
-    /// Goal that was asked for \[m\].
+    /// Requested goal \[m\].
     pub asked: Point,
-    /// Goal that it gets: the nearest place that can be reached \[m\].
+    /// Replacement: the nearest reachable position \[m\].
     pub goal: Point,
 }
 
 impl Episode {
-    /// Replaces each goal to which the map has no way, from the last way-point or the start, by the
-    /// nearest place to which it has one, with any heading; returns those that were replaced. A
-    /// goal stays where nothing can be reached.
+    /// Replaces each goal that is unreachable from the last way-point or the start by the nearest
+    /// reachable position, with any heading; returns the replaced goals. A goal stays if no
+    /// position is reachable.
     ///
     /// # Errors
-    /// When the episode cannot be run.
+    /// Returns an error if the episode cannot be run.
     pub fn reach_nearest(&mut self) -> Result<Vec<NearestGoal>, EpisodeError> {
         self.check()?;
         let mut replaced = Vec::new();

@@ -4,15 +4,14 @@ use crate::sim::Run;
 use keyway::navigate::{NavigateError, Navigator, Step};
 use keyway::sense::Observation;
 
-/// One control cycle: the robot's knowledge and its decision.
+/// One control cycle: the robot's inputs and its decision.
 #[derive(Clone, Copy)]
 pub struct Cycle<'a> {
     /// Number of the cycle, from 0.
     pub index: u64,
-    /// Simulated time at its beginning \[s\].
+    /// Simulated time at the beginning of the cycle \[s\].
     pub t_s: f64,
-    /// Measurements of the robot: its pose and velocity with the errors of its localisation, and
-    /// its scans.
+    /// Measurements of the robot: its pose and velocity with localisation errors, and its scans.
     pub observation: &'a Observation<'a>,
     /// Decision of the robot.
     pub step: &'a Step,
@@ -33,8 +32,9 @@ pub trait EpisodeObserver: Send {
     /// Reports the decision of a cycle.
     fn decided(&mut self, _cycle: &Cycle<'_>) {}
 
-    /// True if the run is no longer needed; asked after each decision. Then this run and all others
-    /// in the same world are given up: [`SimError::GivenUp`](crate::sim::SimError::GivenUp).
+    /// True if the run is no longer needed. Called after each decision. If true, this run and all
+    /// others in the same world are given up:
+    /// [`SimError::GivenUp`](crate::sim::SimError::GivenUp).
     fn gives_up(&self) -> bool {
         false
     }

@@ -1,24 +1,26 @@
 //! Random obstacles near the path, different for each seed.
 //!
-//! The same map, robots, ends and seed give the same obstacles, whatever drives among them. The
-//! *path* of a robot is a short line for its inscribed radius, from the start via the way-points to
-//! the goal, around the obstacles of the map (unknown cells are obstacles): the line of
-//! [`LazyThetaStar`](keyway::plan::LazyThetaStar), pulled tight.
+//! The same map, robots, starts, way-points, goals and seed give the same obstacles, whatever
+//! stack drives among them. The *path* of a robot is a short line for its inscribed radius, from
+//! the start via the way-points to the goal, around the obstacles of the map (unknown cells are
+//! obstacles): the line of [`LazyThetaStar`](keyway::plan::LazyThetaStar), pulled taut.
 //!
-//! A static disc has its centre on a free cell within [`RandomObstacles::near_way_m`] of a path. It
-//! is placed only if every robot still has a path from each end to the next, for its inscribed
-//! radius, around all static discs enlarged by [`RandomObstacles::MARGIN_M`]; this check ignores
-//! other robots. A moving disc walks to and fro across a path, at right angles to it, between the
-//! obstacles of the map and the discs on both sides, at most [`RandomObstacles::FARTHEST_WALK_M`]
-//! to each side; its walk is long enough for the robot to pass behind it. No obstacle comes closer
-//! than [`RandomObstacles::free_ends_m`] to the footprint of any robot at its ends, in any
-//! orientation. Of several robots, those without a path on the map keep only their ends free.
+//! A static disc has its centre on a free cell within [`RandomObstacles::near_way_m`] of a path.
+//! It is placed only if every robot still has a path between its successive stops (start,
+//! way-points and goal), for its inscribed radius, around all static discs enlarged by
+//! [`RandomObstacles::MARGIN_M`]; this check ignores other robots. A moving disc goes to and fro
+//! at right angles to a path, between the obstacles of the map and the discs on both sides, at
+//! most [`RandomObstacles::FARTHEST_WALK_M`] to each side; its walk is long enough for the robot
+//! to pass behind it. No obstacle comes closer than [`RandomObstacles::free_ends_m`] to the
+//! footprint of any robot at its stops, in any orientation. Of several robots, those without a
+//! path on the map keep only their stops free.
 //!
-//! A position that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each obstacle;
-//! an obstacle without a position is left out, and [`Placed`] counts it.
+//! A position that does not fit is drawn again, [`RandomObstacles::TRIES`] times for each
+//! obstacle. An obstacle without a valid position is left out, and [`Placed`] counts it.
 //!
 //! # Cost
-//! For each robot, an any-angle search of the map, and a grid search for each try of a disc.
+//! For each robot, an any-angle search of the map, and a grid search for each attempt to place a
+//! disc.
 
 mod lane;
 
@@ -34,44 +36,44 @@ use keyway::robot::Robot;
 use lane::Lane;
 use serde::{Deserialize, Serialize};
 
-/// How many obstacles of which kind a seed gives.
+/// Numbers and kinds of the obstacles that a seed gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomObstacles {
-    /// Those that stand and are not on the map; `None`: none.
+    /// Static obstacles that are not on the map; `None`: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unknown: Option<RandomUnknown>,
-    /// Those that move; `None`: none.
+    /// Moving obstacles; `None`: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moving: Option<RandomMoving>,
-    /// No centre of a disc that stands is farther from the way \[m\].
+    /// Largest distance of the centre of a static disc from the path \[m\].
     #[serde(default = "usual_near_way_m")]
     pub near_way_m: f64,
-    /// Nothing comes nearer to the footprint at start, way-points and goal \[m\].
+    /// Smallest distance of an obstacle from the footprint at start, way-points and goal \[m\].
     #[serde(default = "usual_free_ends_m")]
     pub free_ends_m: f64,
 }
 
-/// Random discs that stand.
+/// Random static discs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomUnknown {
-    /// How many.
+    /// Number of discs.
     pub count: u32,
-    /// Least and largest radius \[m\].
+    /// Smallest and largest radius \[m\].
     pub radius_m: [f64; 2],
 }
 
-/// Random discs that move.
+/// Random moving discs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomMoving {
-    /// How many.
+    /// Number of discs.
     pub count: u32,
-    /// Least and largest radius \[m\].
+    /// Smallest and largest radius \[m\].
     pub radius_m: [f64; 2],
     /// Lowest and highest speed \[m/s\].
     pub speed_mps: [f64; 2],
@@ -90,7 +92,7 @@ impl RandomObstacles {
     pub const USUAL_NEAR_WAY_M: f64 = 0.5;
     /// Value of [`Self::free_ends_m`] if a scene does not give it \[m\].
     pub const USUAL_FREE_ENDS_M: f64 = 0.5;
-    /// Minimum margin of the robot where it passes a static disc \[m\]: more than a cell of most
+    /// Minimum margin of the robot as it passes a static disc \[m\]: more than a cell of most
     /// maps.
     pub const MARGIN_M: f64 = 0.1;
     /// Maximum distance of a walking obstacle from the path \[m\].
@@ -103,7 +105,7 @@ impl RandomObstacles {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         if let Some(RandomUnknown { count, radius_m }) = self.unknown {
             unless_few("unknown.count", count)?;
@@ -125,7 +127,7 @@ impl RandomObstacles {
     /// Adds the obstacles of a seed to the world of an episode, and records their number there.
     ///
     /// # Errors
-    /// When a value cannot be used, or a robot is too large for any map.
+    /// Returns an error if a value is invalid, or a robot is too large for any map.
     pub fn put_into(&self, episode: &mut Episode, seed: u64) -> Result<(), ConfigError> {
         let ways: Vec<Way<'_>> = episode.robots.iter().map(Way::of).collect();
         let drawn = self.drawn(&episode.known, &ways, seed)?;
@@ -175,7 +177,7 @@ struct Drawn {
     placed: Placed,
 }
 
-/// Stops of a robot.
+/// Stops of a robot: start, way-points and goal.
 struct Way<'a> {
     robot: &'a Robot,
     start: Start,
@@ -201,7 +203,7 @@ const NAME: u64 = 0x6f62_7374_6163_6c65;
 const STANDING: u64 = 0;
 const MOVING: u64 = 1;
 
-/// Ground on which obstacles are placed.
+/// Map on which obstacles are placed.
 struct Ground {
     frame: GridFrame,
     /// Obstacles of the map.
@@ -215,7 +217,7 @@ struct Ground {
 }
 
 impl Ground {
-    /// Returns the ground; `None` if no robot has a path on the map.
+    /// Returns the map; `None` if no robot has a path on it.
     fn of(known: &OccupancyGrid, lanes: Vec<Lane>, near_way_m: f64) -> Option<Self> {
         let mut obstacles = known.occupied().clone();
         obstacles.merge(known.unknown());
@@ -231,8 +233,8 @@ impl Ground {
         })
     }
 
-    /// Places the first of [`RandomObstacles::TRIES`] discs that leaves every robot a path, if any
-    /// does.
+    /// Places the first of [`RandomObstacles::TRIES`] drawn discs that leaves every robot a path,
+    /// if any does.
     fn place(&mut self, mut draw: impl FnMut(&Self) -> Option<Disc>) {
         for _ in 0..RandomObstacles::TRIES {
             let Some(disc) = draw(self) else { continue };
@@ -250,7 +252,7 @@ impl Ground {
         }
     }
 
-    /// Draws a static disc near the path; `None` if it may not be there.
+    /// Draws a static disc near the path; `None` if its position is not allowed.
     fn standing(&self, kind: &RandomUnknown, random: &mut Random) -> Option<Disc> {
         let radius_m = random.between(kind.radius_m);
         let (_, at, across) = self.on_way(random)?;
@@ -262,7 +264,7 @@ impl Ground {
         (is_on_ground && leaves_ends).then_some(disc)
     }
 
-    /// Draws a disc that walks across the path; `None` if it may not be there.
+    /// Draws a disc that moves across the path; `None` if its position is not allowed.
     fn moving(&self, kind: &RandomMoving, random: &mut Random) -> Option<MovingObstacle> {
         let radius_m = random.between(kind.radius_m);
         let speed_mps = random.between(kind.speed_mps);
@@ -270,7 +272,7 @@ impl Ground {
         let first = if random.is_chosen(0.5) { across } else { across * -1.0 };
         let to = self.walk(at, first, radius_m)?;
         let fro = self.walk(at, first * -1.0, radius_m)?;
-        // This much is free behind it when it is at one end.
+        // Minimum length of the walk: the robot can pass behind the disc at either end.
         let least_m = 2.0 * (lane.inscribed_m + RandomObstacles::MARGIN_M);
         let middle = to.lerp(fro, 0.5);
         let length_m = to.distance(fro);
@@ -281,7 +283,7 @@ impl Ground {
         if !(leaves_ends && length_m >= least_m) {
             return None;
         }
-        // A closed course along a line: to one end, past its start to the other end, and back.
+        // A closed walk along a line: to one end, back past its start to the other end, and back.
         let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
         MovingObstacle::new(radius_m, Motion::WayPoints(motion)).ok()
     }
@@ -326,8 +328,8 @@ impl Ground {
         Some((lane, at, Point::new(-along.y, along.x)))
     }
 
-    /// True if a disc leaves the ends of all robots free; `apart_m` is the smallest distance of an
-    /// end from the disc's centre.
+    /// True if a disc leaves the stops of all robots free; `apart_m` returns the smallest
+    /// distance of a stop from the disc's centre.
     fn leave_ends(&self, radius_m: f64, apart_m: impl Fn(Point) -> f64) -> bool {
         self.lanes.iter().all(|lane| lane.leaves_ends(radius_m, &apart_m))
     }

@@ -8,24 +8,24 @@ use serde::{Deserialize, Serialize};
 /// `keyway.navigate/4`: the run of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobotReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub schema: &'static str,
     /// Outcome of the episode.
     pub outcome: EpisodeOutcome,
-    /// Reason why the goal was not reached, for people.
+    /// Reason why the goal was not reached, for human readers.
     pub reason: Option<String>,
     /// The first route as planned, or the reason why there is none.
     pub plan: PlanPart,
     /// The first route, smoothed; `None` without a route, here and below.
     pub smoothed: Option<SmoothedPart>,
-    /// The points that the guide hands out along the first route \[m\].
+    /// The points to which the guide directs the robot along the first route \[m\].
     pub key_points_m: Option<Vec<Point>>,
-    /// Place on the first route where the footprint does not fit; `None` where it fits, or without
-    /// a route.
+    /// Position on the first route where the footprint does not fit; `None` if it fits, or
+    /// without a route.
     pub misfit: Option<Misfit>,
-    /// Contradictions that the navigator noticed while it drove
-    /// ([`Navigator::doubts`](keyway::navigate::Navigator::doubts)), each kind once with its last
-    /// words, for people; `None` without a run.
+    /// Contradictions that the navigator noticed during the run
+    /// ([`Navigator::doubts`](keyway::navigate::Navigator::doubts)), one message of each kind,
+    /// the last one, for human readers; `None` without a run.
     pub noticed: Option<Vec<String>>,
     /// Metrics of the run.
     pub run: Option<RunPart>,
@@ -54,7 +54,7 @@ pub enum EpisodeOutcome {
 }
 
 impl RobotReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub const SCHEMA: &'static str = "keyway.navigate/4";
 }
 
@@ -74,27 +74,27 @@ impl EpisodeOutcome {
 /// `keyway.team/1`: the runs of all robots in one world.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EpisodeReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub schema: &'static str,
     /// Outcome of each robot's run, in the order of the robots.
     pub outcomes: Vec<EpisodeOutcome>,
     /// Time at which the last robot reached its goal \[s\]; `None` unless all did.
     pub makespan_s: Option<f64>,
-    /// Smallest distance between two footprints while at least one of the two robots was under way
-    /// \[m\]; `None` for a single robot, or without any route.
+    /// Smallest distance between two footprints while the run of at least one of the two robots
+    /// continues \[m\]; `None` for a single robot, or without any route.
     pub min_robot_clearance_m: Option<f64>,
     /// Report of each robot, as if it had driven alone; one or more.
     pub robots: Vec<RobotReport>,
 }
 
 impl EpisodeReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub const SCHEMA: &'static str = "keyway.team/1";
 
-    /// Returns the report of the first robot: the only one, or that of index 0.
+    /// Returns the report of the first robot.
     ///
     /// # Panics
-    /// Without robots; an episode always has some.
+    /// Panics without robots; an episode always has at least one.
     pub fn first(mut self) -> RobotReport {
         self.robots.swap_remove(0)
     }

@@ -6,7 +6,7 @@ use keyway::geometry::Point;
 use keyway::navigate::{Goal, Stack};
 use keyway::robot::Robot;
 
-/// A robot of an [`Episode`](super::Episode): what it is, how it drives, and where to.
+/// A robot of an [`Episode`](super::Episode): its description, its stack, its start and its goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EpisodeRobot {
     /// The robot.
@@ -27,7 +27,7 @@ pub struct EpisodeRobot {
 }
 
 impl EpisodeRobot {
-    /// Creates an ideal robot with the usual stack for it. It starts facing along its path.
+    /// Creates an ideal robot with its default stack. It starts facing along its path.
     pub fn new(robot: Robot, start: Point, goal: impl Into<Goal>) -> Self {
         Self {
             stack: Stack::keyway(&robot),

@@ -7,18 +7,18 @@ use crate::sim::{Arrival, ReachedBy, RunRules};
 pub struct EpisodeRules {
     /// Goal tolerance \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
     pub goal_tolerance_m: Option<f64>,
-    /// Arrival rule: whether the robot has to stop at the goal, with the goal's heading, or may
-    /// pass.
+    /// Arrival rule: `Standing` requires the robot to stop at the goal, with the goal's heading;
+    /// `Passing` does not.
     pub arrival: Arrival,
-    /// Pose by which the goal is reached.
+    /// Pose that decides about reaching the goal.
     pub reached_by: ReachedBy,
     /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at top
     /// speed.
     pub time_limit_s: Option<f64>,
     /// See [`RunRules::stuck_window_s`] \[s\].
     pub stuck_window_s: f64,
-    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: what its controller takes for
-    /// progress in that time ([`WayProgress::step_m`](keyway::navigate::WayProgress::step_m)).
+    /// See [`RunRules::stuck_progress_m`] \[m\]; `None`: the progress that the controller expects
+    /// in that time ([`WayProgress::step_m`](keyway::navigate::WayProgress::step_m)).
     pub stuck_progress_m: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! From an episode to its report.
+//! Runs of an episode.
 
 use super::driver::{Ended, Entry, run_all};
 use super::task::Task;
@@ -6,23 +6,23 @@ use super::{Episode, EpisodeError, EpisodeObserver, EpisodeReport};
 use crate::report::Clock;
 use keyway::navigate::FittedStack;
 
-/// Options of a run that are no part of its episode.
+/// Options of a run that are not part of its episode.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
     /// Clock that measures times; `None`: times are not measured.
     pub clock: Clock<'a>,
-    /// Number of threads over which the decisions of a cycle are spread; the reports are the same
+    /// Number of threads over which the decisions of a cycle are spread. The reports are the same
     /// for any number.
     pub threads: usize,
-    /// Exchanges parts of a robot's stack for parts of the caller's own
-    /// ([`FittedStack::with_local`], [`FittedStack::with_guide`]), by the robot's index. The report
-    /// does not name them: its `inputs` contain the stack, and
+    /// Replaces parts of a robot's stack by the caller's own ([`FittedStack::with_local`],
+    /// [`FittedStack::with_guide`]), by the robot's index. The report does not name them: its
+    /// `inputs` contain the stack, and
     /// [`EpisodeRobot::stack_name`](super::EpisodeRobot::stack_name).
     pub exchange: Option<&'a dyn Fn(usize, FittedStack) -> FittedStack>,
 }
 
 impl Default for RunOptions<'_> {
-    /// No clock, one thread, the stacks as they are.
+    /// No clock, one thread, the stacks without replacements.
     fn default() -> Self {
         Self { clock: None, threads: 1, exchange: None }
     }
@@ -31,7 +31,8 @@ impl Default for RunOptions<'_> {
 /// Runs an episode. Equal episodes give equal reports; times are not measured.
 ///
 /// # Errors
-/// When the episode cannot be run. No route, a collision or a timeout are results.
+/// Returns an error if the episode cannot be run. A missing route, a collision and a timeout are
+/// results.
 pub fn run_episode(episode: &Episode) -> Result<EpisodeReport, EpisodeError> {
     watch_episode(episode, RunOptions::default(), &mut [(); 0])
 }
@@ -40,7 +41,7 @@ pub fn run_episode(episode: &Episode) -> Result<EpisodeReport, EpisodeError> {
 /// are not observed.
 ///
 /// # Errors
-/// As for [`run_episode`].
+/// Those of [`run_episode`].
 pub fn watch_episode<O: EpisodeObserver>(
     episode: &Episode,
     options: RunOptions<'_>,

@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "Vec<f64>", extend("minItems" = 2, "maxItems" = 3)))]
 pub struct Start {
-    /// Where \[m\].
+    /// Position \[m\].
     pub position: Point,
     /// Heading \[rad\], counter-clockwise from the x axis; `None`: along the planned path, or as
-    /// nearly so as the robot has room.
+    /// close to it as clearance allows.
     pub heading_rad: Option<f64>,
 }
 
@@ -22,8 +22,8 @@ impl Start {
     /// Step between two headings that are tried \[deg\].
     const STEP_DEG: u32 = 5;
 
-    /// Returns the pose at the beginning of a route. Without a heading the robot faces along its
-    /// path, or as nearly so as it has room.
+    /// Returns the pose at the beginning of a route. Without a given heading the robot faces
+    /// along its path, or as close to it as clearance allows.
     pub(super) fn pose(&self, route: &Route, has_room: impl Fn(Pose) -> bool) -> Pose {
         let Point { x, y } = self.position;
         if let Some(heading_rad) = self.heading_rad {

@@ -8,12 +8,12 @@ use keyway::ConfigError;
 use keyway::geometry::Pose;
 
 impl Episode {
-    /// Returns the episode's robot at the start in its world, to be driven from outside. The stack
-    /// plans the first route, which determines the start heading and the time limit, and drives
-    /// nothing.
+    /// Returns the episode's robot at the start in its world, for an external controller. The
+    /// stack plans the first route, which determines the start heading and the time limit, and
+    /// does not drive.
     ///
     /// # Errors
-    /// When the episode cannot be run, has no route, or has several robots.
+    /// Returns an error if the episode cannot be run, has no route, or has several robots.
     pub fn stepper(&self) -> Result<Stepper, EpisodeError> {
         let EpisodeRobot { robot, disturbances, start, via, goal, .. } = self.check()?;
         if self.robots.len() > 1 {
@@ -46,7 +46,7 @@ mod tests {
     use keyway::robot::Robot;
     use keyway::sense::Observation;
 
-    /// Manual driving with the episode's own navigator gives the episode's own run.
+    /// Checks that external control by the episode's own navigator gives the episode's own run.
     #[test]
     fn it_is_the_world_of_the_episode() {
         let map = OccupancyGrid::from_ascii(&["........", "........", "........", "........"]);

@@ -18,7 +18,7 @@ use keyway::search::{Query, SearchStatistics, Workspace};
 pub(super) struct Task<'a> {
     pub(super) episode: &'a Episode,
     pub(super) robot: &'a EpisodeRobot,
-    /// Its index, where there are several.
+    /// Index of the robot if there are several.
     index: Option<usize>,
 }
 
@@ -29,20 +29,20 @@ impl<'a> Task<'a> {
         Self { episode, robot: &episode.robots[index], index: (!is_alone).then_some(index) }
     }
 
-    /// Blames an error on the robot.
+    /// Attributes an error to the robot.
     pub(super) fn blame(&self, why: impl Into<RunError>) -> EpisodeError {
         EpisodeError::of_robot(self.index, why)
     }
 }
 
 impl Task<'_> {
-    /// Its stack, built for its robot.
+    /// Builds the robot's stack.
     pub(super) fn fit(&self) -> Result<FittedStack, EpisodeError> {
         let fitted = self.robot.stack.fit(&self.robot.robot);
         fitted.map_err(|error| self.blame(NavigateError::from(error)))
     }
 
-    /// Cells that the robot knows to be obstacles, under its policy for unknown cells.
+    /// Cells that are obstacles on the robot's map, under its policy for unknown cells.
     pub(super) fn known_squares(&self) -> BitGrid {
         let mut squares = self.episode.known.occupied().clone();
         if self.robot.stack.map.unknown == UnknownPolicy::Blocked {
@@ -54,8 +54,8 @@ impl Task<'_> {
     /// Returns the robot's pose at the beginning of a route.
     ///
     /// # Errors
-    /// When the robot touches a known obstacle there. Unknown obstacles are met while driving or
-    /// standing.
+    /// Returns an error if the robot touches a known obstacle there. Contact with an unknown
+    /// obstacle ends the simulated run instead.
     pub(super) fn start_pose(&self, world: &World, route: &Route) -> Result<Pose, NavigateError> {
         let footprint = &self.robot.robot.footprint;
         let at_start = world.at(0.0);
@@ -107,7 +107,8 @@ impl Task<'_> {
         SearchMap::new(&self.episode.known, config).map_err(|error| error.within("map"))
     }
 
-    /// Reports the first route; its query is repeated on prepared layers, only to measure its time.
+    /// Reports the first route. Its query is repeated on prepared layers only to measure its
+    /// time.
     pub(super) fn plan_part(&self, route: &Route, map: &SearchMap, clock: Clock<'_>) -> PlanPart {
         let planner = &self.robot.stack.planner;
         let time_s = self.search_time_s(route, map, clock);
@@ -124,10 +125,10 @@ impl Task<'_> {
         timed(clock, || planner.plan_into(map, &query, &mut workspace, None, &mut plan)).1
     }
 
-    /// Report of a start without a route; `None` for every other error, which is bad input.
+    /// Report of a robot without a route; `None` for every other error, which is invalid input.
     pub(super) fn without_route(&self, error: &NavigateError) -> Option<RobotReport> {
         let planner = self.robot.stack.planner.name();
-        // For a way-point that cannot be reached, the cause of that.
+        // The cause of an unreachable way-point.
         let cause = match error {
             NavigateError::WayPoint { why, .. } => why,
             error => error,
@@ -156,7 +157,7 @@ impl Task<'_> {
         })
     }
 
-    /// True if the run follows from the seed of the disturbances, too.
+    /// True if the run depends on the seed of the disturbances.
     fn has_random_numbers(&self) -> bool {
         let is_glimpsed = |it: &ElusiveObstacle| !matches!(it.presence().seen, 0.0 | 1.0);
         !self.robot.disturbances.is_none() || self.episode.elusive.iter().any(is_glimpsed)

@@ -1,25 +1,25 @@
-//! The jerk of commands.
+//! Jerk of commands.
 
 use keyway::geometry::Velocity;
 
-/// The largest jerk of commands that are given one by one, a cycle apart, to a robot at rest.
+/// Largest jerk of a sequence of commands, one per cycle, to a robot that is initially at rest.
 #[derive(Clone, Copy, Debug)]
 pub struct CommandJerk {
     cycle_s: f64,
     last: Velocity,
-    /// Change from the command before it to the last one.
+    /// Change of the velocity from the previous command to the last one.
     change: Velocity,
     most: Velocity,
 }
 
 impl CommandJerk {
-    /// No command yet.
+    /// Creates the metric without commands.
     pub const fn new(cycle_s: f64) -> Self {
         let (last, change, most) = (Velocity::ZERO, Velocity::ZERO, Velocity::ZERO);
         Self { cycle_s, last, change, most }
     }
 
-    /// Takes in the command of the next cycle.
+    /// Adds the command of the next cycle.
     pub fn note(&mut self, command: Velocity) {
         let change = difference(self.last, command);
         let Velocity { v, omega, .. } = difference(self.change, change);
@@ -27,12 +27,13 @@ impl CommandJerk {
         (self.last, self.change) = (command, change);
     }
 
-    /// The largest change of the acceleration from cycle to cycle, per time \[m/s³\].
+    /// Returns the largest change of the acceleration from cycle to cycle, per time \[m/s³\].
     pub fn max_mps3(&self) -> f64 {
         self.most.v / (self.cycle_s * self.cycle_s)
     }
 
-    /// The same of the turn rate \[rad/s³\].
+    /// Returns the largest change of the angular acceleration from cycle to cycle, per time
+    /// \[rad/s³\].
     pub fn max_radps3(&self) -> f64 {
         self.most.omega / (self.cycle_s * self.cycle_s)
     }

@@ -1,4 +1,4 @@
-//! Measures of MRPB, a benchmark of local planners.
+//! Metrics of MRPB, a benchmark of local planners.
 //!
 //! # Source
 //! \[Wen2021\], and the program published by its authors.
@@ -13,9 +13,9 @@
 //! The times of MRPB, T and C, are [`RunMetrics::time_s`](super::RunMetrics::time_s) and the mean
 //! time of a decision, which needs a clock.
 //!
-//! # Where this differs
-//! The published program ignores a stretch near obstacles that lasts until the end of a run; here
-//! it counts.
+//! # Difference from the paper
+//! The published program ignores an interval near obstacles that lasts until the end of a run;
+//! here it counts.
 //!
 //! # Cost
 //! One distance to the nearest obstacle for every sample of the run. Allocates nothing.
@@ -44,8 +44,8 @@ pub struct Mrpb {
 }
 
 impl Mrpb {
-    /// Returns the safe distance of a robot, which the benchmark leaves to its user: 0.1 m beyond
-    /// the circumscribed circle of its footprint \[m\].
+    /// Returns the safe distance of a robot, which the benchmark leaves to its user: 0.1 m more
+    /// than the circumscribed radius of its footprint \[m\].
     pub fn safe_distance_m(robot: &Robot) -> f64 {
         robot.footprint.circumscribed_radius_m() + 0.1
     }
@@ -75,7 +75,7 @@ impl Mrpb {
     }
 }
 
-/// Distance from the robot's centre to the nearest obstacle \[m\]; `reach_m` where none is nearer.
+/// Distance from the robot's centre to the nearest obstacle \[m\]; `reach_m` if none is nearer.
 fn distance_m(world: &World, sample: &TrajectoryPoint, reach_m: f64) -> f64 {
     world.at(sample.t_s).distance(&Footprint::POINT, sample.pose, reach_m)
 }
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn measures_by_hand() {
-        // Its edge is 0.5 m from the positions 2.5 and 4.5.
+        // The disc's edge is 0.5 m from the positions 2.5 and 4.5.
         let post = Disc::new(Point::new(3.5, 2.5), 0.5);
         let world = world(vec![post]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &world, 0.6);
@@ -148,7 +148,7 @@ mod tests {
         assert_eq!((far.min_distance_m, far.share_near), (Some(1.5), Some(0.0)));
     }
 
-    /// A moving obstacle comes near the standing robot at one instant of the run only.
+    /// A moving obstacle comes near the stationary robot at only one instant of the run.
     #[test]
     fn movers_are_where_they_are_then() {
         let frame = |t_s, x, y| KeyFrame { t_s, position: Point::new(x, y) };
@@ -160,7 +160,7 @@ mod tests {
         assert!((mrpb.min_distance_m.unwrap() - 0.25).abs() < 1e-12);
         // One sample has no duration.
         assert_eq!(mrpb.share_near, Some(0.0));
-        // An obstacle that gave way, as the run records, gives the same.
+        // The recorded path of an obstacle that gave way gives the same result.
         let course = WayPoints::around(vec![Point::new(9.0, 0.5), Point::new(9.0, 4.5)], 1.0);
         let movers = vec![MoverWay { index: 0, key_frames: frames }];
         let run = Run { movers, ..run(&DRIVEN) };

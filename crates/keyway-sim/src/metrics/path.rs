@@ -4,9 +4,9 @@ use keyway::geometry::{Path, PathPiece, PathSample, Polyline, wrap_angle};
 use keyway::map::Clearance;
 use serde::{Deserialize, Serialize};
 
-/// Distance between two samples of a curve \[m\] ...
+/// Distance between two samples of a curve \[m\].
 pub(super) const SAMPLE_M: f64 = 0.01;
-/// ... and the heading change between two samples above which the heading jumps \[deg\].
+/// Heading change between two samples above which the heading jumps \[deg\].
 pub(super) const JUMP_DEG: f64 = 5.0;
 /// Tolerance of a curve's distance to obstacles \[m\]; the distance of lines is exact.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
@@ -21,9 +21,9 @@ pub struct PathMetrics {
     /// Points of the path as planned, before collinear ones are merged; for a path of cells, its
     /// cells; for a path with curves, the ends of its pieces.
     pub points: usize,
-    /// Redundant points among them: repeated points, and points inside a straight stretch.
+    /// Redundant points among them: repeated points, and points inside a straight section.
     pub redundant_points: usize,
-    /// Interior points at which the heading changes; on a curve, each stretch that bends to one
+    /// Interior points at which the heading changes. On a curve, each section that bends to one
     /// side counts once.
     pub turns: usize,
     /// Sum of the absolute heading changes \[deg\].
@@ -31,7 +31,7 @@ pub struct PathMetrics {
     /// Points at which the heading jumps: every turn between straight segments; on a path with
     /// curves, changes of more than 5 degrees between samples 1 cm apart.
     pub non_smooth_turns: usize,
-    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 where it touches one;
+    /// Smallest distance from the line to an obstacle cell's square \[m\], 0 if it touches one;
     /// for a curve, a certified lower bound within 0.1 mm. `None` without obstacles or without
     /// points.
     pub min_clearance_m: Option<f64>,
@@ -101,8 +101,8 @@ fn heading_change(pair: &[PathSample]) -> f64 {
     wrap_angle(pair[1].heading_rad - pair[0].heading_rad)
 }
 
-/// Number of stretches of samples that turn to the same side. The two samples at a joint of pieces
-/// have no distance between them: if the heading does not jump there, the bend continues.
+/// Number of sections of samples that turn to the same side. The two samples at a joint of pieces
+/// coincide: if the heading does not jump there, the bend continues.
 fn count_bends(samples: &[PathSample]) -> usize {
     let is_driven_or_jump = |pair: &&[PathSample]| {
         pair[1].s_m > pair[0].s_m || heading_change(pair).abs() > STRAIGHT_RAD
@@ -148,8 +148,8 @@ mod tests {
 
     #[test]
     fn a_path_of_cells_by_hand() {
-        // Two steps to the right, two diagonal ones, one up; the line touches the obstacle's corner
-        // (2, 1).
+        // Two steps to the right, two diagonal ones, one up; the line touches the obstacle's
+        // corner (3, 1).
         let cells = [[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 2.5], [4.5, 3.5]];
         let metrics = measure(&cells, &[".....", ".....", "..#..", "....."]);
         assert!((metrics.length_m - (3.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn a_path_with_curves_by_hand() {
         let (quarter, twelfth) = (FRAC_PI_2, FRAC_PI_2 / 3.0);
-        // Two pieces, which form one turn.
+        // Two pieces that form one turn.
         let left = |from| Arc::new(Point::new(2.0, 2.0), 1.0, from, 0.5 * quarter);
         let right = Arc::new(Point::new(4.0, 2.0), 1.0, std::f64::consts::PI, -twelfth);
         let end = right.end();

@@ -5,7 +5,7 @@ use crate::sim::{Outcome, Run};
 use keyway::geometry::wrap_angle;
 use serde::{Deserialize, Serialize};
 
-/// Turn rates up to this are rounding errors, without a sign \[rad/s\].
+/// Turn rates up to this are rounding errors and have no sign \[rad/s\].
 const STRAIGHT_RADPS: f64 = 1e-9;
 
 /// Metrics of a run.
@@ -13,8 +13,8 @@ const STRAIGHT_RADPS: f64 = 1e-9;
 pub struct RunMetrics {
     /// Outcome of the run.
     pub outcome: Outcome,
-    /// Simulated time from the start to the end \[s\]; for a run that reached its goal, until the
-    /// tolerance was met.
+    /// Simulated time from the start to the end \[s\]; for a run that reached its goal, until it
+    /// was within the tolerance.
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
@@ -26,8 +26,8 @@ pub struct RunMetrics {
     pub min_standing_clearance_m: Option<f64>,
     /// The footprint's smallest clearance from moving obstacles \[m\].
     pub min_mover_clearance_m: Option<f64>,
-    /// Sign changes of the turn rate per metre driven \[1/m\] (stretches with a turn rate of 0 in
-    /// between are skipped); `None` when nothing was driven.
+    /// Sign changes of the turn rate per metre driven \[1/m\], ignoring intervals with a turn
+    /// rate of 0; `None` without driven distance.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed: sum of its absolute changes from cycle to cycle \[m/s\].
     pub v_variation_mps: f64,
@@ -67,10 +67,10 @@ fn count_sign_changes(omegas: impl Iterator<Item = f64>) -> usize {
     changes
 }
 
-/// Number of points at which the heading of a run jumps, as on a curve: changes of more than 5
-/// degrees between points of the driven path 1 cm apart, such as a turn on the spot. Turns before
-/// the first and after the last of these points do not count. Costs a few operations per sample and
-/// per centimetre.
+/// Returns the number of points at which the heading of a run jumps, as on a curve: changes of
+/// more than 5 degrees between points of the driven path 1 cm apart, such as a turn on the spot.
+/// Turns before the first and after the last of these points do not count. Costs a few operations
+/// per sample and per centimetre.
 pub fn count_run_heading_jumps(run: &Run) -> usize {
     let (mut s_m, mut jumps, mut before_rad) = (0.0, 0, None);
     let mut next_m = 0.0;
@@ -145,8 +145,7 @@ mod tests {
         assert_eq!(metrics.v_variation_mps, 0.0);
     }
 
-    /// The velocity within a cycle is interpolated between its ends, and the heading is that of the
-    /// pose.
+    /// The velocity within a cycle is interpolated linearly, and the heading is that of the pose.
     #[test]
     fn a_turn_on_the_spot_is_a_jump_and_a_bend_is_none() {
         let count = |states: &[(f64, f64)]| {
@@ -158,7 +157,7 @@ mod tests {
             let samples = states.iter().enumerate().map(sample).collect();
             count_run_heading_jumps(&Run { samples, ..run(&[(0.0, 0.0)], 0.0) })
         };
-        // 10 degrees over 25 cm; on the spot; within 1.25 cm; over the end of the circle.
+        // 10 degrees over 25 cm; on the spot; within 1.25 cm; across +/-180 degrees.
         assert_eq!(count(&[(0.5, 0.0), (0.5, 10.0), (0.5, 10.0)]), 0);
         let spot = [(0.5, 0.0), (0.0, 0.0), (0.0, 10.0), (0.0, 20.0), (0.5, 20.0)];
         assert_eq!(count(&spot), 1);

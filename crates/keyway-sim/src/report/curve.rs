@@ -5,10 +5,10 @@ use keyway::geometry::Path;
 use keyway::smooth::{SpeedProfile, SpeedProfileConfig, SpeedSample};
 use serde::Serialize;
 
-/// `keyway.curve/3`.
+/// `keyway.curve/3`: a path with speeds along it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CurveReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub schema: &'static str,
     /// Arc length of the path \[m\].
     pub length_m: f64,
@@ -35,7 +35,7 @@ pub struct CurveSample {
 }
 
 impl CurveReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub const SCHEMA: &'static str = "keyway.curve/3";
 
     /// Returns the report of a speed profile along `path`, computed with `config`.

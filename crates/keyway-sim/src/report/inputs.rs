@@ -28,14 +28,14 @@ pub struct Inputs {
     pub stack: Option<String>,
     /// All parameters.
     pub config: Parameters,
-    /// `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\].
+    /// Start, `[x, y]`, or `[x, y, yaw_deg]` with a given yaw \[m, m, deg\].
     pub start: Vec<f64>,
-    /// Goal, `[x, y]`, or `[x, y, yaw_deg]` where a yaw was given \[m, m, deg\]; of several goals,
-    /// the first.
+    /// Goal, `[x, y]`, or `[x, y, yaw_deg]` with a given yaw \[m, m, deg\]; of several goals, the
+    /// first.
     pub goal: Vec<f64>,
-    /// All goals, where there are several \[m\].
+    /// All goals, if there are several \[m\].
     pub goals: Option<Vec<Point>>,
-    /// Way-points, where there are any \[m\].
+    /// Way-points, if there are any \[m\].
     pub via: Option<Vec<Point>>,
     /// True if the nearest reachable cell replaces an unreachable goal; `None` for a run.
     pub nearest_reachable: Option<bool>,
@@ -45,19 +45,19 @@ pub struct Inputs {
     pub polygons: Vec<StandingPolygon>,
     /// Occupied cells that the map does not show.
     pub hidden_cells: Vec<Cell>,
-    /// Cells that the map shows as occupied although nothing is there.
+    /// Cells that the map shows as occupied although they are free.
     pub absent_cells: Vec<Cell>,
-    /// Obstacles that stand for a time only, or that sensors miss.
+    /// Obstacles that are present for a limited time, or that sensors miss.
     pub elusive: Vec<ElusiveObstacle>,
     /// Moving obstacles.
     pub moving: Vec<MovingObstacle>,
-    /// Number of random obstacles; `None` where none was requested.
+    /// Number of random obstacles; `None` if none was requested.
     pub random: Option<Placed>,
     /// Disturbances of the robot; `None` without any, and for a route.
     pub disturbances: Option<Disturbances>,
-    /// Goal tolerance \[m\], where it was not `controller.goal_tolerance_m`.
+    /// Goal tolerance \[m\], if it was not `controller.goal_tolerance_m`.
     pub goal_tolerance_m: Option<f64>,
-    /// Arrival rule: whether the robot had to stop at its goal; `None` for a route.
+    /// Arrival rule, passing or standing; `None` for a route.
     pub arrival: Option<Arrival>,
     /// Pose by which the goal was reached; `None` for a route.
     pub reached_by: Option<ReachedBy>,
@@ -79,7 +79,7 @@ pub struct Placed {
     pub unknown_placed: u32,
     /// Requested moving discs.
     pub moving_asked: u32,
-    /// Placed moving discs: the last ones of the episode's movers.
+    /// Placed moving discs: the last ones of the episode's `movers`.
     pub moving_placed: u32,
 }
 
@@ -91,7 +91,7 @@ impl Placed {
 }
 
 impl Inputs {
-    /// The version of this library.
+    /// Version of this library.
     pub const VERSION: &'static str = env!("CARGO_PKG_VERSION");
 }
 
@@ -116,7 +116,7 @@ pub enum Parameters {
 /// Identification of a map in reports.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapSource {
-    /// Its name, such as the path of its file.
+    /// Name of the map, such as the path of its file.
     pub name: String,
     /// [`keyway::map::formats::digest`] of the map.
     pub digest: String,

@@ -1,10 +1,10 @@
-//! Reports of routes and runs, as types that serde writes: the JSON of the program, for every other
-//! caller as well. `docs/reference/json.md` lists all fields with their units.
+//! Reports of routes and runs, as types that serde serializes: the JSON of the program, also for
+//! other callers. `docs/reference/json.md` lists all fields with their units.
 //!
 //! [`RouteReport`] is `keyway.plan/3`, [`CurveReport`] `keyway.curve/3`,
-//! [`crate::episode::RobotReport`] `keyway.navigate/4`. Figures are computed in
-//! [`crate::metrics`]; times are measured only if the caller has a [`Clock`], since the library
-//! reads none. Within a version of a schema, members are only ever added.
+//! [`crate::episode::RobotReport`] `keyway.navigate/4`. Metrics are computed in
+//! [`crate::metrics`]. Times are measured only if the caller provides a [`Clock`], because the
+//! library reads none. Within a version of a schema, members are only ever added.
 
 mod curve;
 mod inputs;
@@ -20,10 +20,10 @@ pub use route::{GoalPart, ReachedGoal, RouteAnswer, RouteFailure, RouteReport, R
 pub use run::{ContactPart, Controlled, RunPart, WayPointPart, trajectory_row};
 pub use smoothed::SmoothedPart;
 
-/// Seconds since any fixed moment, by the caller's clock; without a clock, no time is measured.
+/// Seconds since a fixed instant, by the caller's clock; without a clock, no time is measured.
 pub type Clock<'a> = Option<&'a (dyn Fn() -> f64 + Sync)>;
 
-/// Runs a piece of work, and returns its result and its duration \[s\].
+/// Runs a function, and returns its result and its duration \[s\].
 pub fn timed<R>(clock: Clock<'_>, work: impl FnOnce() -> R) -> (R, Option<f64>) {
     let begin_s = clock.map(|now_s| now_s());
     let result = work();

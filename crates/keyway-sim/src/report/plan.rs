@@ -17,21 +17,21 @@ pub enum PlanOutcome {
     Found,
     /// No path exists.
     NoPath,
-    /// The budget of expanded nodes is used up.
+    /// The budget of expanded nodes is exhausted.
     BudgetExhausted,
     /// A path exists, but the planner did not find it.
     Missed,
     /// The goal is in an obstacle: only for one of several goals; otherwise it is an error.
     Blocked,
-    /// The goal is outside the map, as above.
+    /// The goal is outside the map: only for one of several goals; otherwise it is an error.
     OutsideMap,
-    /// The planner cannot plan on such a map; this is an error.
+    /// The planner does not support the map; this is an error.
     Refused,
 }
 
 impl PlanOutcome {
-    /// Returns the outcome for an error, with the statistics of the search; they are empty without
-    /// a search.
+    /// Returns the outcome of an error, with the statistics of the search, which are empty
+    /// without a search.
     pub fn of(error: &PlanError) -> (Self, SearchStatistics) {
         let none = SearchStatistics::default();
         match error {
@@ -44,7 +44,7 @@ impl PlanOutcome {
         }
     }
 
-    /// Text for people.
+    /// Text for human readers.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Found => "found",
@@ -73,26 +73,26 @@ pub struct PlanPart {
     pub expanded: u64,
     /// Nodes added to the open list, or improved there.
     pub generated: u64,
-    /// Statistics of the two sides separately.
+    /// Statistics of the search, separately for its two sides.
     pub search: SearchStatistics,
     /// Reason why the search stopped.
     pub stopped: Option<Stop>,
     /// Cell where the two sides met.
     pub meeting: Option<Cell>,
-    /// Reason why there is no path, for people.
+    /// Reason why there is no path, for human readers.
     pub why: Option<String>,
     /// The largest clearance with which a path exists \[m\].
     pub largest_clearance_m: Option<f64>,
-    /// If a narrow place limits this clearance: its first and last cell, whose centres have the
-    /// clearance.
+    /// First and last cell of the narrow passage that limits this clearance, if any; their
+    /// centres have the clearance.
     pub narrowest_cells: Option<[Cell; 2]>,
-    /// The planner's constraint, where it was lowered to leave a path.
+    /// The planner's constraint, if it was relaxed to leave a path.
     pub relaxed: Option<Relaxed>,
     /// Cost of the cheapest path of straight and diagonal steps \[cells\].
     pub optimum_cells: Option<f64>,
-    /// Relative excess cost of the path; negative where it uses other directions.
+    /// Relative excess cost of the path; negative if it uses other directions.
     pub excess: Option<f64>,
-    /// Wall clock time of the query on prepared layers \[s\].
+    /// Wall-clock time of the query on prepared layers \[s\].
     pub time_s: Option<f64>,
     /// Interior waypoints at which the heading changes.
     pub turns: Option<usize>,
@@ -100,7 +100,7 @@ pub struct PlanPart {
     pub turning_angle_deg: Option<f64>,
     /// Smallest distance from the line to an obstacle's square \[m\].
     pub min_clearance_m: Option<f64>,
-    /// Certified clearance of the line, where it is less than the requested clearance \[m\].
+    /// Certified clearance of the line if it is less than the requested clearance \[m\].
     pub shortfall_m: Option<f64>,
     /// The line: begins and ends at the given positions, collinear points merged \[m\].
     pub waypoints_m: Option<Polyline>,
@@ -118,7 +118,7 @@ impl PlanPart {
         time_s: Option<f64>,
     ) -> Self {
         let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
-        // A cell's centre may keep the clearance where a position in the cell does not.
+        // A cell's centre may have the clearance while another position in the cell does not.
         let clearance_m = map.config().clearance_m;
         let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
         Self {
@@ -140,7 +140,7 @@ impl PlanPart {
         }
     }
 
-    /// The constraint that the planner's note says it has lowered.
+    /// Constraint that the planner relaxed, according to its note.
     fn lowered(plan: &Plan) -> Option<Relaxed> {
         match plan.note? {
             PlanNote::Relaxed(relaxed) => Some(relaxed),
@@ -150,7 +150,7 @@ impl PlanPart {
 
     /// Adds the cost of the cheapest path of straight and diagonal steps.
     pub(super) fn beside_optimum(self, optimum_cells: f64) -> Self {
-        // Paths of length 0 have no excess. Step costs are exact, so no rounding shows.
+        // Paths of length 0 have no excess. Step costs are exact, so rounding does not show.
         let excess =
             |cost: f64| if cost == optimum_cells { 0.0 } else { cost / optimum_cells - 1.0 };
         let excess = self.cost_cells.map(excess);
@@ -170,7 +170,7 @@ impl PlanPart {
         })
     }
 
-    /// Adds the separation of two ends that no path connects.
+    /// Adds the separation of a start and a goal that no path connects.
     pub(crate) fn separated_by(self, separation: &Separation, why: String) -> Self {
         let (largest_clearance_m, narrowest_cells) = match *separation {
             Separation::TooNarrow { widest_m, narrowest, .. } => (Some(widest_m), Some(narrowest)),

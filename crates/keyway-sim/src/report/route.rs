@@ -30,7 +30,7 @@ pub struct RouteRequest<'a> {
     pub goals: &'a [Point],
     /// Limit of expanded nodes for each search.
     pub budget: Option<u64>,
-    /// Behaviour when no path leads to the goal; none of several goals is replaced by another cell.
+    /// Behaviour if no path leads to the goal. It does not apply to several goals.
     pub if_unreachable: IfUnreachable,
     /// True if the path is compared with the cheapest path of straight and diagonal steps.
     pub with_optimum: bool,
@@ -39,12 +39,12 @@ pub struct RouteRequest<'a> {
 /// Report of a route without its inputs, and the route itself.
 #[derive(Clone, Debug)]
 pub struct RouteAnswer {
-    /// Goal of the route, as an index into the list; without a route, the goal that [`Self::plan`]
+    /// Index of the route's goal in the list; without a route, of the goal that [`Self::plan`]
     /// describes.
     pub goal: usize,
     /// Route to this goal.
     pub route: Option<Route>,
-    /// Reason why there is no route, where a search showed it.
+    /// Reason why there is no route, if known from a search.
     pub failure: Option<RouteFailure>,
     /// Report of the plan.
     pub plan: PlanPart,
@@ -56,7 +56,7 @@ pub struct RouteAnswer {
     pub smoothed: Option<SmoothedPart>,
 }
 
-/// Reason why there is no route.
+/// Reason why a route does not exist.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RouteFailure {
@@ -69,7 +69,7 @@ pub enum RouteFailure {
 /// `keyway.plan/3`: the answer to a request, and all its inputs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RouteReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub schema: &'static str,
     /// The path, or the reason why there is none.
     #[serde(flatten)]
@@ -112,8 +112,8 @@ pub struct GoalPart {
     pub expanded: u64,
     /// Nodes added to the open list, or improved there.
     pub generated: u64,
-    /// Wall clock time until this goal's place in the order was known, including the searches for
-    /// other goals \[s\].
+    /// Wall-clock time until this goal's rank was known, including the searches for other goals
+    /// \[s\].
     pub time_s: Option<f64>,
 }
 
@@ -148,9 +148,9 @@ impl RouteRequest<'_> {
     /// ```
     ///
     /// # Errors
-    /// When no search could begin: a start or a goal in an obstacle or outside the map (of several
-    /// goals, only the start counts), a planner that cannot plan on such a map, or no goal at all.
-    /// A search without a path is an answer.
+    /// Returns an error if no search can begin: a start or a goal in an obstacle or outside the
+    /// map (of several goals, only the start counts), a planner that does not support the map, or
+    /// an empty list of goals. A search without a path is an answer.
     pub fn answer(
         &self,
         clock: Clock<'_>,
@@ -261,7 +261,7 @@ impl RouteRequest<'_> {
             Err(error) if concerns_all_goals(error) => return Err(error.clone()),
             Err(error) => {
                 let name = self.planner.name();
-                // A goal without room for the robot is a goal without a path.
+                // A goal without clearance for the robot counts as a goal without a path.
                 let without = || PlanPart::without_path(name, PlanOutcome::NoPath, *time_s);
                 let failed = PlanPart::failed(name, error, *time_s);
                 let failure = failed.as_ref().map(|_| error.clone());
@@ -324,8 +324,8 @@ impl RouteRequest<'_> {
         RouteAnswer { plan, failure: Some(RouteFailure::Separated(why)), ..answer }
     }
 
-    /// Cost of the cheapest path of straight and diagonal steps between the ends of a found path
-    /// \[cells\], by A* under the corner rule of the planner.
+    /// Cost of the cheapest path of straight and diagonal steps between the first and last cell
+    /// of a found path \[cells\], by A* under the corner rule of the planner.
     fn optimum_cells(&self, path: &[Cell]) -> Option<f64> {
         let corners = match self.planner.connectivity() {
             Connectivity::Four => CornerRule::Forbid,
@@ -339,7 +339,7 @@ impl RouteRequest<'_> {
     }
 }
 
-/// True if an error is not about a single one of several goals.
+/// True if an error concerns all goals, not a single one of several.
 fn concerns_all_goals(error: &PlanError) -> bool {
     match *error {
         PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. } => end == PathEnd::Start,
@@ -368,11 +368,11 @@ impl RouteAnswer {
 }
 
 impl RouteReport {
-    /// Name and version of this form.
+    /// Name and version of this format.
     pub const SCHEMA: &'static str = "keyway.plan/3";
 }
 
-/// Times of the stages of a route, by the caller's clock.
+/// Wall-clock times of the stages of a route, by the caller's clock.
 struct StageTimes<'a> {
     clock: Clock<'a>,
     begin_s: Option<f64>,

@@ -14,9 +14,9 @@ pub struct RunPart {
     pub time_s: f64,
     /// Distance driven \[m\].
     pub length_m: f64,
-    /// Distance over time \[m/s\]; `None` where no time passed.
+    /// Distance over time \[m/s\]; `None` for a run of zero duration.
     pub mean_speed_mps: Option<f64>,
-    /// Smallest distance from the footprint to any real obstacle \[m\]; `None` without obstacles.
+    /// Smallest distance from the footprint to any true obstacle \[m\]; `None` without obstacles.
     pub min_clearance_m: Option<f64>,
     /// Smallest distance from the footprint to static obstacles \[m\]; `None` without any.
     pub min_standing_clearance_m: Option<f64>,
@@ -26,34 +26,34 @@ pub struct RunPart {
     pub contact: Option<ContactPart>,
     /// Control cycles driven.
     pub cycles: u64,
-    /// Mean wall clock time of a decision \[us\]; `None` without a clock, or without a decision.
+    /// Mean wall-clock time of a decision \[us\]; `None` without a clock, or without a decision.
     pub mean_cycle_us: Option<f64>,
-    /// Searches for a route, including searches that found none or the same route again: the first
-    /// one; one each time a scan shows something on the route, or no point of the route is in
-    /// sight; one at each way-point; one after each wait without a route; and the searches of the
-    /// recoveries.
+    /// Searches for a route, including searches that found none or the same route again: the
+    /// first one; one each time a scan shows an obstacle on the route, or no point of the route
+    /// is in sight; one at each way-point; one after each wait without a route; and the searches
+    /// of the recoveries.
     pub routes_planned: u32,
-    /// Recoveries that were tried when the robot made no progress.
+    /// Recoveries that were tried because the robot made no progress.
     pub recoveries: RecoveryCounts,
-    /// Commands that the stop rule changed; `None` without one.
+    /// Commands that the stop rule changed; `None` without a stop rule.
     pub unsafe_commands: Option<RefusalCounts>,
     /// Each way-point with the time at which it was passed; `None` without way-points.
     pub way_points: Option<Vec<WayPointPart>>,
-    /// Positions of the obstacles that give way; not written where none does.
+    /// Positions of the obstacles that give way; omitted if none does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gave_way: Vec<MoverWay>,
-    /// Changes of the turning direction per metre driven \[1/m\]; `None` where nothing was driven.
+    /// Sign changes of the turn rate per metre driven \[1/m\]; `None` without driven distance.
     pub omega_sign_changes_per_m: Option<f64>,
     /// Total variation of the speed \[m/s\].
     pub v_variation_mps: f64,
     /// Total variation of the turn rate \[rad/s\].
     pub omega_variation_radps: f64,
-    /// Largest change of the acceleration of the commands, from cycle to cycle and per time
-    /// \[m/s³\].
+    /// Largest jerk of the commands: the change of their acceleration from cycle to cycle, per
+    /// time \[m/s³\].
     pub max_jerk_mps3: f64,
-    /// The same of the turn rate \[rad/s³\].
+    /// Largest angular jerk of the commands \[rad/s³\].
     pub max_angular_jerk_radps3: f64,
-    /// Measures of MRPB.
+    /// MRPB metrics.
     pub mrpb: Mrpb,
 }
 
@@ -62,29 +62,29 @@ pub struct RunPart {
 pub struct WayPointPart {
     /// Position \[m\].
     pub position: Point,
-    /// Time at which the robot passed it \[s\]; `None` if it never did.
+    /// Time at which the robot passed it \[s\]; `None` if it did not.
     pub passed_s: Option<f64>,
 }
 
-/// Figures of a controller in a run.
+/// Metrics of a controller in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Controlled {
-    /// Searches for a route, including searches that found none or the same route again: the first
-    /// one; one each time a scan shows something on the route, or no point of the route is in
-    /// sight; one at each way-point; one after each wait without a route; and the searches of the
-    /// recoveries.
+    /// Searches for a route, including searches that found none or the same route again: the
+    /// first one; one each time a scan shows an obstacle on the route, or no point of the route
+    /// is in sight; one at each way-point; one after each wait without a route; and the searches
+    /// of the recoveries.
     pub routes_planned: u32,
-    /// Recoveries that were tried when the robot made no progress.
+    /// Recoveries that were tried because the robot made no progress.
     pub recoveries: RecoveryCounts,
-    /// Commands that the stop rule changed; `None` without one.
+    /// Commands that the stop rule changed; `None` without a stop rule.
     pub unsafe_commands: Option<RefusalCounts>,
     /// The way-points.
     pub way_points: Vec<WayPointPart>,
-    /// Mean wall clock time of a decision \[us\].
+    /// Mean wall-clock time of a decision \[us\].
     pub mean_cycle_us: Option<f64>,
-    /// Largest change of the acceleration of the commands \[m/s³\].
+    /// Largest jerk of the commands \[m/s³\].
     pub max_jerk_mps3: f64,
-    /// The same of the turn rate \[rad/s³\].
+    /// Largest angular jerk of the commands \[rad/s³\].
     pub max_angular_jerk_radps3: f64,
 }
 
@@ -97,10 +97,10 @@ pub struct ContactPart {
     pub at: Point,
     /// Obstacle that was touched.
     pub with: Obstacle,
-    /// True if the robot stood still or, as a disc, turned on the spot: it was run into, or began
-    /// in contact.
+    /// True if the robot was stationary or, as a disc, turned on the spot: the obstacle ran into
+    /// it, or the run began in contact.
     pub robot_stood: bool,
-    /// True if the obstacle had jumped there within the last cycle, unforeseeably.
+    /// True if the obstacle had jumped there within the last cycle, unpredictably.
     pub jumped_onto: bool,
     /// Speed of the obstacle at the contact \[m/s\]; `None` if it was not a moving obstacle.
     pub mover_speed_mps: Option<f64>,

@@ -12,7 +12,7 @@ use serde::Serialize;
 pub struct SmoothedPart {
     /// Length \[m\].
     pub length_m: f64,
-    /// Interior points at which the heading changes; on a curve, each stretch that bends to one
+    /// Interior points at which the heading changes. On a curve, each section that bends to one
     /// side counts once.
     pub turns: usize,
     /// Sum of the absolute heading changes \[deg\].
@@ -21,7 +21,7 @@ pub struct SmoothedPart {
     pub non_smooth_turns: usize,
     /// Smallest distance to an obstacle's square \[m\]; for curves, a certified lower bound.
     pub min_clearance_m: Option<f64>,
-    /// Certified clearance, where it is less than the requested one \[m\].
+    /// Certified clearance if it is less than the requested one \[m\].
     pub shortfall_m: Option<f64>,
     /// Points of the planned line that the path skips.
     pub removed_points: usize,
@@ -31,7 +31,7 @@ pub struct SmoothedPart {
     pub sharp_corners: Vec<SharpCorner>,
     /// Corners, and points along the curves \[m\].
     pub waypoints_m: Polyline,
-    /// Wall clock time of smoothing, if measured \[s\].
+    /// Wall-clock time of smoothing, if measured \[s\].
     pub time_s: Option<f64>,
 }
 

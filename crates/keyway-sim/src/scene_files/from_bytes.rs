@@ -7,12 +7,12 @@ use keyway::files::{ConfigFileError, MAX_TOML_BYTES, TextFileError, file_text, f
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Reason why a scene file, or a file that it names, cannot be used.
+/// Reason why a scene file, or a file that it names, is invalid.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SceneFileError {
     /// A file cannot be read or is not TOML, or a file of a robot, a stack or disturbances is
-    /// wrong.
+    /// invalid.
     #[error(transparent)]
     Config(#[from] ConfigFileError),
     /// A file is not a scene.
@@ -32,8 +32,8 @@ impl From<TextFileError> for SceneFileError {
 }
 
 impl SceneFileError {
-    /// Path of the field that is to blame; empty if the error concerns the file, its name, or the
-    /// whole scene.
+    /// Path of the invalid field; empty if the error concerns the file, its name, or the whole
+    /// scene.
     pub fn field(&self) -> &str {
         match self {
             Self::Config(error) => error.field(),
@@ -42,22 +42,22 @@ impl SceneFileError {
     }
 }
 
-/// Reads and checks a scene from memory; errors call the file `name`.
+/// Reads and checks a scene from memory. Errors refer to the file as `name`.
 ///
 /// # Errors
-/// If the content holds more than [`MAX_TOML_BYTES`], or is not a scene.
+/// Returns an error if the content is larger than [`MAX_TOML_BYTES`], or is not a scene.
 pub fn scene_from_bytes(name: &Path, bytes: &[u8]) -> Result<SceneFile, SceneFileError> {
     SceneFile::from_toml(file_text(name, bytes, MAX_TOML_BYTES)?)
         .map_err(|reason| SceneFileError::Scene { path: name.to_owned(), reason })
 }
 
-/// Reads and checks disturbances, the fields of `[disturbances]` of a scene, from memory; errors
-/// call the file `name`. The random numbers are those of seed 0 until the caller gives another
-/// seed.
+/// Reads and checks disturbances, the fields of `[disturbances]` of a scene, from memory. Errors
+/// refer to the file as `name`. The random numbers follow from seed 0 until the caller sets
+/// another seed.
 ///
 /// # Errors
-/// If the content holds more than [`MAX_TOML_BYTES`], does not contain disturbances, or names a
-/// seed.
+/// Returns an error if the content is larger than [`MAX_TOML_BYTES`], does not contain
+/// disturbances, or sets a seed.
 pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances, SceneFileError> {
     let path = || name.to_owned();
     let disturbances: Disturbances = from_toml(file_text(name, bytes, MAX_TOML_BYTES)?)

@@ -1,4 +1,4 @@
-//! Scene files: which robot drives where, in which world, as one small text file.
+//! Scene files: a robot, its start and goal, and its world, as one small text file.
 //!
 //! [`scene_from_bytes`] and [`disturbances_from_bytes`] read from memory. With the feature `files`,
 //! `read_scene` and `read_disturbances` do the same with files.

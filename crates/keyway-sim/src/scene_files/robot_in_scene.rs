@@ -1,10 +1,10 @@
-//! The robot of a scene: its name, or a table in its place.
+//! The robot of a scene: a name or a table.
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use toml::Value;
 
-/// A name as it is; a table as the text that [`keyway::files::robot_in_place`] reads.
+/// Reads a name as it is, and a table as the text that [`keyway::files::robot_in_place`] reads.
 pub(super) fn name_or_table<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     match Value::deserialize(from)? {
         Value::String(name) => Ok(name),
@@ -16,14 +16,14 @@ pub(super) fn name_or_table<'de, D: Deserializer<'de>>(from: D) -> Result<String
     }
 }
 
-/// The same where there may be none.
+/// Reads an optional robot, as `name_or_table` does.
 pub(super) fn some_name_or_table<'de, D: Deserializer<'de>>(
     from: D,
 ) -> Result<Option<String>, D::Error> {
     name_or_table(from).map(Some)
 }
 
-/// Both in a schema.
+/// Schema of both forms.
 #[cfg(feature = "schema")]
 pub(super) fn robot_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
     let file = generator.subschema_for::<keyway::files::RobotFile>();

@@ -21,8 +21,8 @@ use keyway::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on
-/// the map.
+/// Description of a run: map, robot, start, goal, and the static and moving obstacles that are
+/// not on the map.
 ///
 /// ```
 /// use keyway_sim::scene_files::SceneFile;
@@ -56,63 +56,63 @@ use std::path::PathBuf;
 ])))]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Version of the format: 2; files of version 1, which have no `world`, `seed`, `safe`,
-    /// `rules`, `disturbances`, `robots`, `absent` and `random`, are read, too.
+    /// Version of the format: 2. Files of version 1, which have no `world`, `seed`, `safe`,
+    /// `rules`, `disturbances`, `robots`, `absent` and `random`, are accepted, too.
     #[cfg_attr(feature = "schema", schemars(range(min = 1, max = VERSION)))]
     pub version: u32,
-    /// What the scene shows, for people.
+    /// Description of the scene, for human readers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// Map file, absolute or relative to the folder of the scene file; `None` where there is a
+    /// Map file, absolute or relative to the folder of the scene file; `None` if there is a
     /// `world`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<PathBuf>,
-    /// A map that is made from the seed.
+    /// A map that is generated from the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<GeneratedMap>,
-    /// Of all that is random.
+    /// Seed of everything random.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub seed: u64,
     /// Name of a bundled robot, or a robot file, absolute or relative to the folder of the scene
-    /// file; or a table with the fields of a robot file, which is kept as its text.
+    /// file; or a table with the fields of a robot file, which is stored as its text.
     #[serde(default = "default_robot", deserialize_with = "name_or_table")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "robot_schema"))]
     pub robot: String,
     /// Name of a stack, or a stack file, absolute or relative to the folder of the scene file.
     #[serde(default = "default_stack")]
     pub stack: String,
-    /// Issue only commands after which a robot can still stop before it touches anything, whatever
-    /// its stack wants: for all robots of the scene.
+    /// Issue only commands after which a robot can still stop before a collision, whatever its
+    /// stack requests. Applies to all robots of the scene.
     #[serde(default, skip_serializing_if = "is_not")]
     pub safe: bool,
-    /// Where the robot stands; `None` where there are `robots`.
+    /// Start pose of the robot; `None` if there are `robots`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
-    /// By way of which points, in their order \[m\].
+    /// Way-points of the robot, in this order \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<Point>,
-    /// Where it is to go; `None` where there are `robots`.
+    /// Goal of the robot; `None` if there are `robots`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Goal>,
-    /// What keeps the robot from being ideal; its random numbers are those of the scene's `seed`.
+    /// Disturbances of the robot; its random numbers follow from the scene's `seed`.
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
-    /// When a run ends.
+    /// Rules that end a run.
     #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
     pub rules: SceneRules,
-    /// Robots that drive at the same time, in the place of `start`, `via` and `goal`.
+    /// Robots that drive at the same time, instead of `start`, `via` and `goal`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<SceneRobot>,
-    /// Obstacles that stand and are not on the map.
+    /// Static obstacles that are not on the map.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<UnknownObstacle>,
-    /// Ground that the map shows as occupied although nothing is there, such as an open door.
+    /// Areas that the map shows as occupied although they are free, such as an open door.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub absent: Vec<GroundShape>,
-    /// Obstacles that move.
+    /// Moving obstacles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub moving: Vec<MovingObstacle>,
-    /// Obstacles near the ways of the robots that are drawn by the seed.
+    /// Random obstacles near the paths of the robots, drawn from the seed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub random: Option<RandomObstacles>,
 }
@@ -152,7 +152,7 @@ impl SceneFile {
     /// Version of the format that is written.
     pub const VERSION: u32 = VERSION;
 
-    /// Creates a scene with only these ends; it still needs a map or a world.
+    /// Creates a scene with only a start and a goal; it still needs a map or a world.
     pub fn new(start: Start, goal: Goal) -> Self {
         Self {
             version: Self::VERSION,
@@ -179,7 +179,7 @@ impl SceneFile {
     /// Reads and checks a scene.
     ///
     /// # Errors
-    /// When the text is not a scene of this version, or a value cannot be used.
+    /// Returns an error if the text is not a scene of this version, or a value is invalid.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let versioned: Versioned = from_toml(text)?;
         let Some(version) = &versioned.version else {
@@ -202,18 +202,19 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Moving obstacles, with the seed of the scene where they need one.
+    /// Moving obstacles, with the seed of the scene if they need one.
     fn seeded_movers(&self) -> Vec<MovingObstacle> {
         (0..).zip(&self.moving).map(|(i, mover)| mover.clone().seeded(self.seed, i)).collect()
     }
 
-    /// Returns the run that the scene describes, on its map. `find` reads a robot and its stack by
-    /// their names, which may be files (see [`keyway::files::find_robot`] and
+    /// Returns the run that the scene describes, on its map. `find` reads a robot and its stack
+    /// by their names, which may be files (see [`keyway::files::find_robot`] and
     /// [`keyway::files::find_stack`]).
     ///
     /// # Errors
-    /// Those of `find`; when the scene was not read from a file and has neither a start and a goal
-    /// nor robots, when an obstacle is not on the map, or a random one cannot be drawn.
+    /// Those of `find`. Also fails if the scene was not read from a file and has neither a start
+    /// and a goal nor robots, if an obstacle is not on the map, or if a random one cannot be
+    /// drawn.
     pub fn episode<E: From<SceneError>>(
         &self,
         map: impl Into<SceneMap>,
@@ -242,10 +243,10 @@ impl SceneFile {
         Ok(episode)
     }
 
-    /// Returns the same with this robot and this stack, whatever the scene calls them.
+    /// Returns the same with this robot and this stack, whatever the scene names.
     ///
     /// # Errors
-    /// When an obstacle is not on the map, or a random one cannot be drawn.
+    /// Returns an error if an obstacle is not on the map, or a random one cannot be drawn.
     pub fn episode_with(
         &self,
         map: impl Into<SceneMap>,
@@ -308,11 +309,12 @@ impl SceneFile {
         is_generated || takes_seed || self.random.is_some() || disturbed || glimpses
     }
 
-    /// Returns the map that is generated from the seed, with room around start, way-points and
-    /// goal; `None` if the map is a file.
+    /// Returns the map that is generated from the seed, with free space around start, way-points
+    /// and goal; `None` if the map is a file.
     ///
     /// # Errors
-    /// When the scene was not read from a file, and a value of its `world` cannot be used.
+    /// Returns an error if the scene was not read from a file and a value of its `world` is
+    /// invalid.
     pub fn generated_map(&self) -> Option<Result<SceneMap, SceneError>> {
         let world = self.world.as_ref()?;
         let ends: Vec<Point> = self.ways().iter().flat_map(SceneRobot::places).collect();
@@ -330,7 +332,7 @@ impl SceneFile {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), SceneError> {
         if self.map.is_some() == self.world.is_some() {
             return Err(SceneError::MapOrWorld { both: self.map.is_some() });

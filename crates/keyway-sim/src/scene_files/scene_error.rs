@@ -6,14 +6,14 @@ use keyway::files::TomlError;
 use keyway::given::Given;
 use thiserror::Error;
 
-/// Reason why a scene cannot be used.
+/// Reason why a scene is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// The text is not TOML, or not a scene.
     #[error(transparent)]
     Toml(#[from] TomlError),
-    /// The file is another one, such as a stack or a robot.
+    /// The file is of another kind, such as a stack or a robot.
     #[error("this is no scene: it has no `version`, no `start`, no `goal` and no `[[robots]]`")]
     NoScene,
     /// The scene has no version.
@@ -25,7 +25,7 @@ pub enum SceneError {
         /// Version in the file.
         found: String,
     },
-    /// The scene uses a field that files of version 1 do not have.
+    /// The scene uses a field that version 1 does not have.
     #[error("`{field}` needs `version = {}`", VERSION)]
     NeedsVersion {
         /// The field.
@@ -46,25 +46,25 @@ pub enum SceneError {
     /// The scene has several robots where one was expected.
     #[error("a scene with `[[robots]]` is no run of one robot")]
     SeveralRobots,
-    /// The disturbances have a seed of their own.
+    /// The disturbances have their own seed.
     #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
     SeedOfDisturbances,
-    /// A value of the rules cannot be used.
+    /// A value of the rules is invalid.
     #[error("`rules.{}` {}", .0.path, .0.reason)]
     Rules(ConfigError),
-    /// A value of the disturbances cannot be used.
+    /// A value of the disturbances is invalid.
     #[error("`disturbances.{}` {}", .0.path, .0.reason)]
     Disturbances(ConfigError),
-    /// A value of the random obstacles cannot be used.
+    /// A value of the random obstacles is invalid.
     #[error("`random.{}` {}", .0.path, .0.reason)]
     Random(ConfigError),
-    /// A value of a generated map cannot be used.
+    /// A value of a generated map is invalid.
     #[error("`world.{}` {}", .0.path, .0.reason)]
     World(ConfigError),
-    /// An obstacle cannot be used; the path is one such as `unknown[0].radius_m`.
+    /// An obstacle is invalid; the path has the form `unknown[0].radius_m`.
     #[error("`{}` {}", .0.path, .0.reason)]
     Obstacle(ConfigError),
-    /// A value cannot be used.
+    /// A value is invalid.
     #[error("`{field}` must be {expected}, got {}", Given(*.value))]
     Value {
         /// The field, as a path such as `unknown[0].radius_m`.

@@ -13,26 +13,26 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SceneRobot {
-    /// Where it stands.
+    /// Start pose of the robot.
     pub start: Start,
-    /// By way of which points, in their order \[m\].
+    /// Way-points, in this order \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via: Vec<Point>,
-    /// Where it is to go.
+    /// Goal of the robot.
     pub goal: Goal,
-    /// Name of a bundled robot, or a robot file, or a table with the fields of one; `None`: that of
-    /// the scene.
+    /// Name of a bundled robot, or a robot file, or a table with the fields of one; `None`: the
+    /// robot of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[serde(deserialize_with = "some_name_or_table")]
     #[cfg_attr(feature = "schema", schemars(schema_with = "robot_schema"))]
     pub robot: Option<String>,
-    /// Name of a stack, or a stack file; `None`: that of the scene.
+    /// Name of a stack, or a stack file; `None`: the stack of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stack: Option<String>,
 }
 
 impl SceneRobot {
-    /// Returns the first number of the robot's positions that is not finite, with its field.
+    /// Returns the first coordinate of the robot's positions that is not finite, with its field.
     pub(super) fn not_finite(&self) -> Option<(String, f64)> {
         let Self { start, via, goal, .. } = self;
         let pose = |name: &str, Point { x, y }: Point, heading_rad: Option<f64>| {

@@ -5,30 +5,29 @@ use crate::sim::{Arrival, ReachedBy};
 use keyway::ConfigError;
 use serde::{Deserialize, Serialize};
 
-/// When a run ends, and what it is measured by.
+/// Rules that end a run, and reference values for its metrics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct SceneRules {
-    /// How near to the goal is near enough \[m\]; `None`: `controller.goal_tolerance_m` of the
-    /// stack.
+    /// Goal tolerance \[m\]; `None`: `controller.goal_tolerance_m` of the stack.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal_tolerance_m: Option<f64>,
-    /// True if the robot has to stand at its goal; `None`: it has to.
+    /// Arrival rule, standing or passing the goal; `None`: standing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrival: Option<Arrival>,
-    /// Pose by which the goal is reached; `None`: the true one.
+    /// Pose that decides about reaching the goal; `None`: the true one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reached_by: Option<ReachedBy>,
-    /// Limit of the simulated time \[s\]; `None`: 60 s and four times what the route takes at top
-    /// speed.
+    /// Limit of the simulated time \[s\]; `None`: 60 s plus four times the route's duration at
+    /// top speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
-    /// Time without progress on the remaining way after which the robot is stuck \[s\]; `None`: 20
-    /// s.
+    /// Time without progress along the remaining path after which the robot is stuck \[s\];
+    /// `None`: 20 s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stuck_window_s: Option<f64>,
-    /// What the time of a run is compared with, such as the best time that is known \[s\].
+    /// Reference for the duration of a run, such as the best known time \[s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_time_s: Option<f64>,
 }
@@ -54,7 +53,7 @@ impl SceneRules {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let fields = [
             ("goal_tolerance_m", self.goal_tolerance_m),

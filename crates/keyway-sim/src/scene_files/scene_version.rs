@@ -5,8 +5,8 @@ use serde::Deserialize;
 /// Version of the format that is written.
 pub(super) const VERSION: u32 = 2;
 
-/// The version, and the fields that files of version 1 do not have; the rest of a later format may
-/// be anything.
+/// The version, and the fields that version 1 does not have. The rest of a later format may be
+/// anything.
 #[derive(Deserialize)]
 pub(super) struct Versioned {
     pub(super) version: Option<toml::Value>,

@@ -1,4 +1,4 @@
-//! Obstacles of a scene that stand and are not on its map, and what its map shows but is not there.
+//! Static obstacles of a scene that are not on its map, and mapped obstacles that do not exist.
 
 use crate::sim::{ElusiveObstacle, ElusiveShape, Presence, StandingPolygon};
 use keyway::ConfigError;
@@ -6,26 +6,26 @@ use keyway::geometry::{Disc, Point};
 use keyway::map::{Cell, GridFrame, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 
-/// An obstacle that no map shows. In files it is a table with the fields of its shape, of the time
-/// in which it stands, and of how well it is seen.
+/// An unmapped obstacle. In files it is a table with the fields of its shape, of the time for
+/// which it is present, and of its visibility.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnknownTable", into = "UnknownTable")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "UnknownTable"))]
 pub struct UnknownObstacle {
-    /// Its shape.
+    /// Shape of the obstacle.
     pub shape: GroundShape,
-    /// Time in which it stands, and how well it is seen.
+    /// Time for which it is present, and its visibility.
     pub presence: Presence,
 }
 
-/// Ground on a map. In files it is a table with `position` and `radius_m`, or with `vertices_m`, or
+/// Area of a map. In files it is a table with `position` and `radius_m`, or with `vertices_m`, or
 /// with `cells`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UnknownTable", into = "UnknownTable")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "GroundTable"))]
 #[non_exhaustive]
 pub enum GroundShape {
-    /// A round one.
+    /// A disc.
     Disc(UnknownDisc),
     /// A polygon of any shape.
     Polygon(StandingPolygon),
@@ -33,17 +33,17 @@ pub enum GroundShape {
     Cells(Vec<Cell>),
 }
 
-/// A round obstacle that no map shows.
+/// An unmapped disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnknownDisc {
-    /// Its centre \[m\].
+    /// Centre \[m\].
     pub position: Point,
-    /// Its radius \[m\].
+    /// Radius \[m\].
     pub radius_m: f64,
 }
 
-/// An obstacle that no map shows: a table with `position` and `radius_m`, or with `vertices_m`, or
-/// with `cells`.
+/// An unmapped obstacle: a table with `position` and `radius_m`, or with `vertices_m`, or with
+/// `cells`.
 #[derive(Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "UnknownObstacle", extend("oneOf" = [
@@ -56,34 +56,35 @@ pub struct UnknownDisc {
 ])))]
 #[serde(deny_unknown_fields)]
 struct UnknownTable {
-    /// The centre of a round one \[m\].
+    /// Centre of a disc \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     position: Option<Point>,
-    /// The radius of a round one \[m\], at least 0.
+    /// Radius of a disc \[m\], at least 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     radius_m: Option<f64>,
-    /// The 3 to 100 vertices of a polygon of any shape \[m\]; the last one is joined to the first.
+    /// The 3 to 100 vertices of a polygon of any shape \[m\]; the last one is joined to the
+    /// first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 3, max = 100)))]
     vertices_m: Option<Vec<Point>>,
-    /// Cells of the map that are occupied although it does not show it: `[column, row]` each, `[0,
+    /// Cells that are occupied although the map shows them as free: `[column, row]` each, `[0,
     /// 0]` at the lower left.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     cells: Option<Vec<Cell>>,
-    /// Time at which it appears \[s\]; without it, it is there from the beginning.
+    /// Time at which the obstacle appears \[s\]; by default, it is there from the beginning.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     from_s: Option<f64>,
-    /// Time at which it goes \[s\]; without it, it stays.
+    /// Time at which the obstacle disappears \[s\]; by default, it stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     until_s: Option<f64>,
-    /// Share of the beams on it that see it, from 0 to 1; without it, all do.
+    /// Share of the beams on the obstacle that detect it, from 0 to 1; by default, all do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(range(min = 0, max = 1)))]
     seen: Option<f64>,
 }
 
-/// Ground that the map shows as occupied although nothing is there: a table with `position` and
+/// Area that the map shows as occupied although it is free: a table with `position` and
 /// `radius_m`, or with `vertices_m`, or with `cells`.
 #[cfg(feature = "schema")]
 #[derive(schemars::JsonSchema)]
@@ -94,11 +95,11 @@ struct UnknownTable {
 ]))]
 #[expect(dead_code, reason = "only its schema counts")]
 struct GroundTable {
-    /// The centre of a disc \[m\]: all cells whose centres it covers are free.
+    /// Centre of a disc \[m\]: all cells with their centres in it are free.
     position: Option<Point>,
-    /// The radius of a disc \[m\], at least 0.
+    /// Radius of a disc \[m\], at least 0.
     radius_m: Option<f64>,
-    /// The 3 to 100 vertices of a polygon \[m\]: all cells whose centres it covers are free.
+    /// The 3 to 100 vertices of a polygon \[m\]: all cells with their centres in it are free.
     #[schemars(length(min = 3, max = 100))]
     vertices_m: Option<Vec<Point>>,
     /// Cells, `[column, row]` each, `[0, 0]` at the lower left.
@@ -107,7 +108,7 @@ struct GroundTable {
 }
 
 impl UnknownObstacle {
-    /// An obstacle that always stands and is seen.
+    /// An obstacle that is always present and visible.
     pub const fn new(shape: GroundShape) -> Self {
         Self { shape, presence: Presence::ALWAYS }
     }
@@ -154,7 +155,7 @@ impl UnknownObstacle {
 }
 
 impl GroundShape {
-    /// Checks every value; polygons are checked when they are made, and cells when there is a map.
+    /// Checks every value. Polygons are checked at construction, and cells against the map.
     fn validate(&self) -> Result<(), ConfigError> {
         let Self::Disc(UnknownDisc { position, radius_m }) = self else { return Ok(()) };
         for (field, value) in [("position[0]", position.x), ("position[1]", position.y)] {
@@ -168,7 +169,7 @@ impl GroundShape {
         Err(ConfigError::must_be("radius_m", "a length of at least 0", *radius_m))
     }
 
-    /// The same ground as obstacles that need not always be there: a square for each cell.
+    /// Returns the same area as obstacles of limited presence: a square for each cell.
     fn elusive(&self, frame: &GridFrame) -> Result<Vec<ElusiveShape>, ConfigError> {
         match self {
             Self::Disc(disc) => Ok(vec![ElusiveShape::Disc((*disc).into())]),
@@ -188,8 +189,7 @@ impl GroundShape {
         }
     }
 
-    /// Cells of a map that it shows as occupied, or of which it knows nothing, and whose centres
-    /// this ground covers.
+    /// Cells that a map shows as occupied or unknown, and whose centres lie in this area.
     fn cells_on(&self, map: &OccupancyGrid) -> Result<Vec<Cell>, ConfigError> {
         let frame = map.frame();
         let is_blocked = |cell: &Cell| map.occupied().get(*cell) || map.unknown().get(*cell);
@@ -228,7 +228,7 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// Collects the obstacles on a map; refuses cells that are not on it.
+    /// Collects the obstacles on a map; returns an error for cells outside it.
     pub(super) fn of(unknown: &[UnknownObstacle], frame: &GridFrame) -> Result<Self, ConfigError> {
         let mut standing = Self::default();
         for (i, obstacle) in unknown.iter().enumerate() {
@@ -240,15 +240,15 @@ impl Standing {
     }
 }
 
-/// Checks every value of all ground that a map shows as occupied although nothing is there.
+/// Checks every value of all mapped obstacles that do not exist.
 pub(super) fn validate_absent(absent: &[GroundShape]) -> Result<(), ConfigError> {
     absent.iter().enumerate().try_for_each(|(i, shape)| {
         shape.validate().map_err(|error| error.within(&format!("absent[{i}]")))
     })
 }
 
-/// Cells of a map that are free although it shows them as occupied or unknown; refuses cells that
-/// are not on it.
+/// Cells that are free although a map shows them as occupied or unknown; returns an error for
+/// cells outside the map.
 pub(super) fn absent_cells(
     absent: &[GroundShape],
     map: &OccupancyGrid,

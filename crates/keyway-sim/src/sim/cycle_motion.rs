@@ -7,8 +7,8 @@ use keyway::robot::Footprint;
 const ARCS: usize = Pose::RAMP_ARCS as usize;
 
 /// Motion of one cycle as the arcs of [`Pose::after_ramp`]. The velocity changes linearly, or
-/// linearly before and after one instant. Places on the motion are given in arcs, from 0 to
-/// [`Self::END`], so a place is the same instant for all robots.
+/// linearly before and after one instant. A place on the motion is measured in arcs, from 0 to
+/// [`Self::END`], so equal places are the same instant for all robots.
 #[derive(Clone, Debug)]
 pub(super) struct CycleMotion {
     from: Velocity,
@@ -33,7 +33,7 @@ pub(super) struct Knee {
 struct Arc {
     start: Pose,
     velocity: Velocity,
-    /// Length driven before it \[m\].
+    /// Distance driven before it \[m\].
     driven_m: f64,
     /// Angle turned before it, summed over both directions \[rad\].
     turned_rad: f64,
@@ -81,12 +81,12 @@ impl CycleMotion {
         Self { from, knee, to, duration_s, arcs, stop: Self::END }
     }
 
-    /// A robot that stands at a pose for the whole cycle.
+    /// Returns the motion of a robot that is stationary at a pose for the whole cycle.
     pub(super) fn standing(pose: Pose, duration_s: f64) -> Self {
         Self::new(pose, Velocity::ZERO, Velocity::ZERO, duration_s)
     }
 
-    /// Stops the robot at a place for the rest of the cycle.
+    /// Stops the robot at a place, for the rest of the cycle.
     pub(super) fn stop_at(&mut self, place: f64) {
         self.stop = place;
     }
@@ -109,8 +109,8 @@ impl CycleMotion {
         }
     }
 
-    /// True if the covered ground does not change on the arc of a place: the robot stands, or turns
-    /// on the spot as a disc.
+    /// True if the covered area does not change on the arc of a place: the robot is stationary,
+    /// or is a disc that turns on the spot.
     pub(super) fn keeps_ground_at(&self, place: f64, footprint: &Footprint) -> bool {
         let (Arc { velocity: Velocity { v, omega, .. }, .. }, _) = self.arc(place);
         let is_zero = |rate: &f64| rate.abs() <= Self::ROUNDING;
@@ -118,10 +118,10 @@ impl CycleMotion {
     }
 
     /// Largest velocity that rounding leaves after braking to a stop \[m/s, rad/s\]: at most a
-    /// tenth of a micrometre in a second.
+    /// tenth of a micrometre per second.
     const ROUNDING: f64 = 1e-7;
 
-    /// Length driven up to a place \[m\].
+    /// Distance driven up to a place \[m\].
     pub(super) fn driven_m(&self, place: f64) -> f64 {
         let (arc, since_s) = self.arc(place);
         arc.driven_m + arc.velocity.v.abs() * since_s
@@ -148,7 +148,7 @@ impl CycleMotion {
         self.duration_s
     }
 
-    /// The arc of a place, and the time driven since its beginning \[s\].
+    /// Arc of a place, and the time since its beginning \[s\].
     fn arc(&self, place: f64) -> (&Arc, f64) {
         let place = place.min(self.stop);
         let i = (place as usize).min(ARCS - 1);
@@ -157,7 +157,7 @@ impl CycleMotion {
 }
 
 impl Knee {
-    /// The velocity at a place of a motion with this knee.
+    /// Velocity at a place of a motion with this knee.
     fn velocity_at(&self, from: Velocity, to: Velocity, place: f64) -> Velocity {
         if place <= self.place {
             return from.lerp(self.velocity, place / self.place);
@@ -165,7 +165,7 @@ impl Knee {
         self.velocity.lerp(to, (place - self.place) / (CycleMotion::END - self.place))
     }
 
-    /// The mean velocity on the arc that begins at a place.
+    /// Mean velocity on the arc that begins at a place.
     fn mean_velocity(&self, from: Velocity, to: Velocity, start: f64) -> Velocity {
         let after = start + 1.0 - self.place;
         let middle = |a: f64, b: f64| self.velocity_at(from, to, 0.5 * (a + b));
@@ -229,7 +229,7 @@ mod tests {
                 assert!(!motion(from, to).keeps_ground_at(place, &disc), "{from:?} {to:?} {place}");
             }
         }
-        // Stands for the second half of the cycle.
+        // Stationary in the second half of the cycle.
         let knee = Knee { place: 2.0, velocity: Velocity::ZERO };
         let brakes = CycleMotion::with_knee(Pose::default(), v(0.1), knee, v(0.0), 0.1);
         let keeps =

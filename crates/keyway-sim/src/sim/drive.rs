@@ -1,4 +1,4 @@
-//! Controllers drive robots through a world until they arrive, collide or give up.
+//! Simulation of robots and their controllers in a world until they arrive, collide or give up.
 
 use super::fleet::{Entrant, Fleet};
 use super::participant::{Action, Control, Participant};
@@ -11,16 +11,16 @@ use keyway::sense::Observation;
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// Reason that a run could not be simulated.
+/// Reason why a simulation failed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// A value of a robot, its rules, its start or its goal cannot be used; the path begins with
-    /// the name of this argument. With several participants it begins with the participant:
+    /// A value of a robot, its rules, its start or its goal is invalid. The path begins with the
+    /// name of this argument; with several participants, with the participant:
     /// `participants[1].start.x`.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A controller asked for a velocity that is not a number.
+    /// A controller commanded a velocity that is not a number.
     #[error("the command of cycle {cycle} for robot {robot} is not a number: v = {} m/s, omega = {} rad/s; \
         its controller must answer with numbers", command.v, command.omega)]
     Command {
@@ -39,25 +39,25 @@ pub enum SimError {
     },
 }
 
-/// Drives robots in the same world at the same time, each from rest at its start towards its goal,
-/// until each has an outcome. Returns the runs in the order of the participants. A single robot is
-/// a slice of one.
+/// Drives robots in the same world at the same time, each from rest at its start towards its
+/// goal, until each has an outcome. Returns the runs in the order of the participants. A single
+/// robot is a slice of one.
 ///
-/// All robots have the same cycle. At the start and at the end of every cycle, for each robot, the
-/// goal is tested ([`Arrival::Passing`](super::Arrival)), then the time limit. Then its controller
+/// All robots have the same cycle. At the start and at the end of every cycle, each robot's goal
+/// is tested ([`Arrival::Passing`](super::Arrival)), then its time limit. Then its controller
 /// gets the pose, the velocity and the scans of its sensors, as changed by its
-/// [`Disturbances`](super::Disturbances), and answers. Then its arrival
+/// [`Disturbances`](super::Disturbances), and returns its decision. Then its arrival
 /// ([`Arrival::Standing`](super::Arrival)) and progress are tested. The controllers are called in
-/// the order of the participants, but all decide on the state at the beginning of the cycle. During
-/// the cycle the velocities change linearly towards the commands within the robots' limits, and
-/// contact is tested along the whole swept motions.
+/// the order of the participants, but all decide on the state at the beginning of the cycle.
+/// During the cycle the velocities change linearly towards the commands within the robots'
+/// limits, and contact is tested along the whole swept motions.
 ///
-/// Robots see each other, have a clearance from each other ([`Run::min_clearance_m`]) and may
-/// touch. A contact between two robots ends both runs
-/// ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended for any reason stands
-/// from that instant on and is an obstacle for the others; later contacts do not change its run.
-/// Contacts at the same instant are handled in this order: with stationary obstacles, with moving
-/// obstacles, then between the robots with the lowest indices.
+/// Robots sense each other, have a clearance from each other ([`Run::min_clearance_m`]) and may
+/// collide. A contact between two robots ends both runs
+/// ([`Obstacle::Robot`](super::Obstacle::Robot)). A robot whose run has ended for any reason is
+/// stationary from that instant on and is an obstacle for the others; later contacts do not
+/// change its run. Contacts at the same instant are handled in this order: with static obstacles,
+/// with moving obstacles, then between the robots with the lowest indices.
 ///
 /// Deterministic: equal arguments give equal bytes.
 ///
@@ -66,16 +66,17 @@ pub enum SimError {
 /// the two cannot meet in that cycle, and a few more per pair of their edges if they can.
 ///
 /// # Errors
-/// When an argument cannot be used, the robots have different cycles, or a controller commands NaN.
+/// Returns an error if an argument is invalid, the robots have different cycles, or a controller
+/// commands NaN.
 pub fn simulate(world: &World, participants: &mut [Participant<'_>]) -> Result<Vec<Run>, SimError> {
     simulate_on(1, world, participants)
 }
 
 /// Returns the runs of [`simulate`], with the decisions of a cycle spread over this many threads.
-/// Controllers of different robots are then called in any order and at the same time.
+/// Controllers of different robots are then called concurrently and in any order.
 ///
 /// # Errors
-/// As for [`simulate`].
+/// Those of [`simulate`].
 pub fn simulate_on(
     threads: usize,
     world: &World,
@@ -106,7 +107,7 @@ pub fn simulate_on(
     Ok(fleet.into_runs())
 }
 
-/// A robot whose controller is asked in a cycle, and its answer.
+/// A robot with a decision due in a cycle, and its decision.
 struct Asked<'a, 'p> {
     index: usize,
     participant: &'a mut Participant<'p>,
@@ -159,7 +160,7 @@ fn check_cycle(cycle_s: f64, first_cycle_s: f64) -> Result<(), ConfigError> {
     Err(ConfigError::must_be("robot.cycle_s", &expected, cycle_s))
 }
 
-/// The velocity that an action asks for.
+/// Velocity that an action commands.
 pub(super) fn command(action: Action, robot: usize, cycle: u64) -> Result<Velocity, SimError> {
     match action {
         Action::Drive(command) if command.v.is_nan() || command.omega.is_nan() => {

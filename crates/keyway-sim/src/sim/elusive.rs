@@ -1,4 +1,4 @@
-//! Obstacles that stand for a time only, or that sensors miss.
+//! Obstacles that are present for a limited time, or that sensors miss.
 
 use super::StandingPolygon;
 use super::world::{to_circle, to_polygon};
@@ -7,11 +7,11 @@ use keyway::geometry::{Disc, Point, Pose};
 use keyway::robot::Footprint;
 use serde::Serialize;
 
-/// An obstacle that stands for a time only, or that sensors miss: a parcel that is put down, a door
-/// that opens, a pane of glass, a low rail.
+/// An obstacle that is present for a limited time, or that sensors miss: a parcel, a door that
+/// opens, a pane of glass, a low rail.
 ///
-/// Contact is as with any other obstacle while it stands. It appears and goes at the beginning of
-/// the first cycle that is not before its time.
+/// While it is present, contact is the same as with any other obstacle. It appears and disappears
+/// at the beginning of the first cycle that is not before its time.
 ///
 /// ```
 /// use keyway::geometry::{Disc, Point};
@@ -34,21 +34,21 @@ pub struct ElusiveObstacle {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ElusiveShape {
-    /// A round one.
+    /// A disc.
     Disc(Disc),
     /// A polygon.
     Polygon(StandingPolygon),
 }
 
-/// Time in which an obstacle stands, and how well sensors see it.
+/// Time for which an obstacle is present, and its visibility to sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Presence {
     /// Time at which it appears \[s\].
     pub from_s: f64,
-    /// Time at which it goes \[s\]; `None`: never.
+    /// Time at which it disappears \[s\]; `None`: never.
     pub until_s: Option<f64>,
-    /// Share of the beams on it that see it, from 0 to 1, chosen independently for every beam and
-    /// scan; the others pass through it. 0: something low or of glass.
+    /// Share of the beams on it that detect it, from 0 to 1, chosen independently for each beam
+    /// and scan; the others pass through it. 0 for a low obstacle, or one of glass.
     pub seen: f64,
 }
 
@@ -67,13 +67,13 @@ struct ElusiveRow {
 }
 
 impl Presence {
-    /// That of an obstacle that always stands and is seen by every beam.
+    /// Presence of an obstacle that is always there and is detected by every beam.
     pub const ALWAYS: Self = Self { from_s: 0.0, until_s: None, seen: 1.0 };
 
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let Self { from_s, until_s, seen } = *self;
         if !(0.0..=1e9).contains(&from_s) {
@@ -89,7 +89,7 @@ impl Presence {
     }
 
     fn includes(self, t_s: f64) -> bool {
-        // A cycle that begins at a time begins there, rounded or not.
+        // A cycle that begins at a time includes it, despite rounding.
         const ROUNDING_S: f64 = 1e-9;
         let t_s = t_s + ROUNDING_S;
         t_s >= self.from_s && self.until_s.is_none_or(|until_s| t_s < until_s)
@@ -97,11 +97,11 @@ impl Presence {
 }
 
 impl ElusiveObstacle {
-    /// An obstacle of this shape.
+    /// Creates an obstacle of this shape.
     ///
     /// # Errors
-    /// If a value of the presence cannot be used, or the disc's centre or radius is not finite or
-    /// its radius negative.
+    /// Returns an error if a value of the presence is invalid, or the disc's centre or radius is
+    /// not finite or its radius negative.
     pub fn new(shape: ElusiveShape, presence: Presence) -> Result<Self, ConfigError> {
         presence.validate()?;
         if let ElusiveShape::Disc(disc) = &shape
@@ -113,22 +113,22 @@ impl ElusiveObstacle {
         Ok(Self { shape, presence })
     }
 
-    /// Its shape.
+    /// Shape of the obstacle.
     pub const fn shape(&self) -> &ElusiveShape {
         &self.shape
     }
 
-    /// Time in which it stands, and how well it is seen.
+    /// Time for which it is present, and its visibility.
     pub const fn presence(&self) -> Presence {
         self.presence
     }
 
-    /// True if it stands at a time.
+    /// True if the obstacle is present at a time.
     pub fn stands_at(&self, t_s: f64) -> bool {
         self.presence.includes(t_s)
     }
 
-    /// Distance from a footprint at a pose \[m\]: 0 if they meet, `reach_m` if they are at least
+    /// Distance from a footprint at a pose \[m\]: 0 if they touch, `reach_m` if they are at least
     /// that far apart.
     pub(super) fn distance_m(&self, footprint: &Footprint, pose: Pose, reach_m: f64) -> f64 {
         match &self.shape {

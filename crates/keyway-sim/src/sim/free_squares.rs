@@ -5,9 +5,9 @@ use keyway::map::{BitGrid, Cell};
 /// Largest square of free cells around every cell, which a ray may skip.
 ///
 /// Stores the distance to the nearest obstacle cell in steps to any of the 8 neighbours (the
-/// chessboard distance): all cells fewer steps away are free. Cells outside the grid do not count.
-/// Takes one byte per cell, and two passes over the grid, each with the four neighbours that it has
-/// already passed.
+/// Chebyshev distance): all cells fewer steps away are free. Cells outside the grid do not count.
+/// Takes one byte per cell, and two passes over the grid, each with the four neighbours that it
+/// has already visited.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FreeSquares {
     width: usize,
@@ -15,7 +15,7 @@ pub(super) struct FreeSquares {
 }
 
 impl FreeSquares {
-    /// Free squares of a grid of obstacles.
+    /// Returns the free squares of a grid of obstacles.
     pub(super) fn around(obstacles: &BitGrid) -> Self {
         let (width, height) = (obstacles.width() as usize, obstacles.height() as usize);
         let mut steps = vec![u8::MAX; width * height];
@@ -37,13 +37,13 @@ impl FreeSquares {
         Self { width, steps }
     }
 
-    /// Steps from a cell of the grid to the nearest obstacle cell, at most 255.
+    /// Returns the steps from a cell of the grid to the nearest obstacle cell, at most 255.
     pub(super) fn steps(&self, cell: Cell) -> i32 {
         i32::from(self.steps[cell.y as usize * self.width + cell.x as usize])
     }
 }
 
-/// Lowers each cell of a row to at most one more than its neighbours in the row before and the
+/// Reduces each cell of a row to at most one more than its neighbours in the previous row and the
 /// previous cell of the row in the given order.
 fn lower_row(row: &mut [u8], before: Option<&[u8]>, order: impl Fn(usize) -> usize) {
     let last = row.len() - 1;

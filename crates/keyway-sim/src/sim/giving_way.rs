@@ -5,13 +5,14 @@ use super::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints, Wo
 use keyway::geometry::{Disc, Point};
 use std::borrow::Cow;
 
-/// An obstacle that gives way, between two cycles. In the simulated world its mover follows key
-/// frames, so scans and contacts need not know that it decides.
+/// An obstacle that gives way, between two cycles. In the simulated world it follows key frames,
+/// so scans and contacts do not depend on its decisions.
 pub(super) struct GivingWay {
     /// Index among the moving obstacles.
     index: usize,
     course: WayPoints,
-    /// Index of the current target way-point, and the direction in which it continues from there.
+    /// Index of the current target way-point, and the direction in which the obstacle continues
+    /// from there.
     towards: usize,
     is_going_back: bool,
     body: Body,
@@ -22,7 +23,7 @@ impl GivingWay {
     /// turns when it covers the way-point.
     const NEAR_M: f64 = 0.2;
 
-    /// All obstacles of a world that give way, at rest at their first places.
+    /// Returns all obstacles of a world that give way, at rest at their first positions.
     pub(super) fn begin(world: &mut Cow<'_, World>) -> Vec<Self> {
         let giving_way = |(index, mover): (usize, &MovingObstacle)| {
             let Motion::GivesWay(course) = mover.motion() else { return None };
@@ -40,8 +41,8 @@ impl GivingWay {
         all
     }
 
-    /// Moves all of them along straight lines to the end of a cycle at `end_s`. All decide on the
-    /// state at the beginning of the cycle.
+    /// Moves all of them straight to the end of a cycle at `end_s`. All decide on the state at
+    /// the beginning of the cycle.
     pub(super) fn advance_all(
         all: &mut [Self],
         world: &mut Cow<'_, World>,
@@ -69,7 +70,7 @@ impl GivingWay {
         }
     }
 
-    /// Places of all of them so far.
+    /// Returns the positions of all of them so far.
     pub(super) fn ways(all: &[Self], world: &World) -> Vec<MoverWay> {
         let way = |one: &Self| match world.movers()[one.index].motion() {
             Motion::KeyFrames(frames) => {
@@ -90,7 +91,7 @@ impl GivingWay {
         self.body.drive(self.goal(), self.course.speed_mps())
     }
 
-    /// Moves straight on for a cycle, under the force at its beginning \[m/s²\].
+    /// Moves straight for a cycle, under the force at its beginning \[m/s²\].
     fn advance(&mut self, force: Point, cycle_s: f64) {
         let velocity_mps = self.body.next_velocity(force, self.course.speed_mps(), cycle_s);
         self.body.velocity_mps = velocity_mps;
@@ -116,8 +117,8 @@ impl GivingWay {
     }
 }
 
-/// An obstacle at a time, with its mean velocity over the cycle before; at rest if it has just
-/// jumped.
+/// Returns an obstacle at a time, with its mean velocity over the previous cycle; at rest if it
+/// has just jumped.
 fn body_of(mover: &MovingObstacle, t_s: f64, cycle_s: f64) -> Body {
     let Disc { centre, radius_m } = mover.at(t_s);
     let before_s = t_s - cycle_s;

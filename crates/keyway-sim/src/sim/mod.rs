@@ -1,17 +1,17 @@
-//! A simulated world with robots and their lidars. Controllers are closures; nothing here depends
-//! on how they decide.
+//! A simulated world with robots and their lidars. Controllers are closures, and the simulation
+//! does not depend on their decision logic.
 //!
-//! [`simulate`] drives one or several robots in the same world at the same time. They see each
-//! other and may touch. A scan does not say what moves, so each controller interprets the robots
-//! that it sees. A [`keyway::navigate::Navigator`] tracks what moves if its stack has
-//! `controller.movers`. Without it, the controller decides as if everything stood still: it does
-//! not run into a standing robot, but two robots that drive towards each other may collide.
+//! [`simulate`] drives one or several robots in the same world at the same time. They sense each
+//! other and may collide. A scan does not show which objects move, so each controller interprets
+//! the other robots itself. A [`keyway::navigate::Navigator`] tracks moving objects if its stack
+//! has `controller.movers`. Otherwise the controller treats everything as static: it does not run
+//! into a stationary robot, but two robots that drive towards each other may collide.
 //!
-//! Moving obstacles follow their own course, or give way to robots and to each other
+//! Moving obstacles follow their own path, or give way to robots and to each other
 //! ([`Motion::GivesWay`]).
 //!
-//! A participant may be disturbed ([`Disturbances`]): bad scans, late, weak or inexact motors,
-//! errors of its localisation. The record shows the true motion.
+//! A participant may be disturbed ([`Disturbances`]): faulty scans, delayed, weak or inexact
+//! motors, and localisation errors. The record shows the true motion.
 //!
 //! ```
 //! use keyway::geometry::{Disc, Point, Pose, Velocity};

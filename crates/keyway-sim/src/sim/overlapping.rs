@@ -2,10 +2,11 @@
 
 use keyway::geometry::Disc;
 
-/// For each disc, the later discs in the list that it overlaps or touches, in their order.
+/// Returns for each disc the later discs in the list that it overlaps or touches, in their order.
 ///
-/// The discs are sorted by where they begin along the x axis. Each is compared only with discs that
-/// begin before it ends. So the cost grows with the discs that share a strip and with the overlaps.
+/// The discs are sorted by their left ends on the x axis. Each is compared only with discs that
+/// begin before it ends. So the cost grows with the discs that share a strip and with the
+/// overlaps.
 pub(super) fn overlapping(discs: &[Disc]) -> Vec<Vec<usize>> {
     let begins = |(disc, index): (&Disc, usize)| (disc.centre.x - disc.radius_m, index, *disc);
     let mut along: Vec<(f64, usize, Disc)> = discs.iter().zip(0..).map(begins).collect();

@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 pub struct RunRules {
     /// Distance of the robot's centre from the goal within which the goal is reached \[m\].
     pub goal_tolerance_m: f64,
-    /// Further condition of reaching the goal.
+    /// Additional condition for reaching the goal.
     pub arrival: Arrival,
-    /// Pose by which the goal is reached.
+    /// Pose that decides about reaching the goal.
     pub reached_by: ReachedBy,
-    /// Simulated time after which a run is given up \[s\].
+    /// Simulated time after which a run is terminated \[s\].
     pub time_limit_s: f64,
-    /// Time \[s\] after which the robot is stuck if the remaining path has not become
-    /// [`Self::stuck_progress_m`] shorter, after a longer new route shorter than that route, nor the
-    /// robot has turned towards it by 0.1 rad ([`Control::turn_left_rad`]).
+    /// Time without progress after which the robot is stuck \[s\]. Progress is a remaining path
+    /// that is [`Self::stuck_progress_m`] shorter (after a longer new route, shorter than that
+    /// route), or a turn towards it by 0.1 rad ([`Control::turn_left_rad`]).
     pub stuck_window_s: f64,
     /// Decrease of the remaining path that counts as progress \[m\].
     pub stuck_progress_m: f64,
@@ -30,14 +30,14 @@ pub struct RunRules {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Arrival {
-    /// At once, however fast it drives.
+    /// Immediately, at any speed.
     #[default]
     Passing,
-    /// Once it stands and its controller says that it has arrived.
+    /// After the robot has stopped and its controller has reported arrival.
     Standing,
 }
 
-/// Pose of a robot by which its goal is reached. Contact is always judged by the true one.
+/// Pose that decides about reaching the goal. Contact is always tested with the true pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -45,15 +45,15 @@ pub enum ReachedBy {
     /// The true pose.
     #[default]
     Truth,
-    /// The pose that the robot was last told: it cannot know better.
+    /// The pose that was last reported to the robot, which is its best knowledge.
     Belief,
 }
 
 impl ReachedBy {
-    /// Names of both, as in files.
+    /// Names of the variants in files.
     pub const NAMES: [&'static str; 2] = ["truth", "belief"];
 
-    /// The one of a name.
+    /// Returns the variant of a name.
     pub fn by_name(name: &str) -> Option<Self> {
         [Self::Truth, Self::Belief]
             .into_iter()
@@ -80,7 +80,7 @@ impl RunRules {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_not_negative("goal_tolerance_m", self.goal_tolerance_m)?;
         ConfigError::unless_positive("time_limit_s", self.time_limit_s)?;
@@ -95,12 +95,12 @@ pub(super) fn cycles_within(duration_s: f64, cycle_s: f64) -> u64 {
     (duration_s / cycle_s * (1.0 - 1e-9)).ceil() as u64
 }
 
-/// Watches whether a robot gets on.
+/// Detects robots without progress.
 pub(super) struct StuckWatch {
     step_m: f64,
     window_cycles: u64,
     progress: WayProgress,
-    /// The cycle of the last progress.
+    /// Cycle of the last progress.
     since_cycle: u64,
     route: Option<u32>,
 }
@@ -116,7 +116,7 @@ impl StuckWatch {
         }
     }
 
-    /// True if a robot with this answer is stuck.
+    /// True if a robot with this decision is stuck.
     pub(super) fn is_stuck(&mut self, control: &Control, cycle: u64) -> bool {
         let &Control { remaining_m, turn_left_rad, route, .. } = control;
         if remaining_m.is_finite() {

@@ -10,7 +10,8 @@ use std::borrow::Cow;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The centre came within the goal tolerance, and the further conditions of the rules hold.
+    /// The centre came within the goal tolerance, and the additional conditions of the rules
+    /// hold.
     Reached,
     /// The footprint touched something.
     Collided {
@@ -18,14 +19,15 @@ pub enum Outcome {
         pose: Pose,
         /// Object that it touched.
         with: Obstacle,
-        /// True if the covered ground did not change at the contact, because the robot stood or, as
-        /// a disc, turned on the spot: a moving object ran into it, or the run began in contact.
+        /// True if the covered area did not change at the contact, because the robot was
+        /// stationary or, as a disc, turned on the spot: a moving object ran into it, or the run
+        /// began in contact.
         robot_stood: bool,
-        /// True if the touched obstacle had jumped within the last cycle: the robot could not have
-        /// known ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
+        /// True if the touched obstacle had jumped within the last cycle, so that the robot could
+        /// not have known ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
         jumped_onto: bool,
         /// Speed of a touched moving obstacle at the contact \[m/s\]; a speed above
-        /// [`MovingObstacle::DART_MPS`](super::MovingObstacle::DART_MPS) is a dart.
+        /// [`MovingObstacle::DART_MPS`](super::MovingObstacle::DART_MPS) counts as darting.
         mover_speed_mps: Option<f64>,
     },
     /// The time limit passed.
@@ -57,7 +59,7 @@ pub struct RobotState {
 }
 
 impl Run {
-    /// The world of the run, with the obstacles that give way on their recorded ways.
+    /// Returns the world of the run, with the obstacles that give way on their recorded paths.
     pub fn world<'a>(&self, given: &'a World) -> Cow<'a, World> {
         let mut world = Cow::Borrowed(given);
         for way in &self.movers {
@@ -69,24 +71,24 @@ impl Run {
     }
 }
 
-/// Recorded way of an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay))
+/// Recorded path of an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay))
 /// during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MoverWay {
-    /// Its index in [`World::movers`](super::World::movers).
+    /// Index in [`World::movers`](super::World::movers).
     pub index: usize,
-    /// Its places at the beginning and at the end of every cycle. In between it moved in a straight
-    /// line.
+    /// Positions at the beginning and at the end of every cycle. In between the obstacle moved in
+    /// a straight line.
     pub key_frames: Vec<KeyFrame>,
 }
 
 impl MoverWay {
-    /// The obstacle on this way, without giving way.
+    /// Returns the obstacle on this path, without giving way.
     pub fn mover(&self, of: &MovingObstacle) -> MovingObstacle {
         of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
     }
 
-    /// The part of the way up to the end of a cycle.
+    /// Returns the part of the path up to the end of a cycle.
     pub(super) fn until(&self, cycles: u64) -> Self {
         let Self { index, key_frames } = self;
         let count = key_frames.len().min(cycles as usize + 1);
@@ -103,18 +105,19 @@ pub struct Run {
     pub samples: Vec<TrajectoryPoint>,
     /// Arc length driven \[m\].
     pub length_m: f64,
-    /// Smallest clearance of the footprint from an obstacle or another robot over the whole motion,
-    /// to 0.1 mm \[m\]; 0 after a contact with one, `None` for a robot alone in a world without
+    /// Smallest clearance of the footprint from an obstacle or another robot over the whole
+    /// motion, to 0.1 mm \[m\]; 0 after a contact, `None` for a single robot in a world without
     /// obstacles.
     pub min_clearance_m: Option<f64>,
-    /// Smallest clearance from stationary obstacles \[m\]; `None` without any.
+    /// Smallest clearance from static obstacles \[m\]; `None` without any.
     pub min_standing_clearance_m: Option<f64>,
     /// Smallest clearance from moving obstacles ([`World::movers`](super::World::movers)) \[m\];
     /// `None` without any.
     pub min_mover_clearance_m: Option<f64>,
     /// Smallest clearance from other robots \[m\]; `None` without any.
     pub min_robot_clearance_m: Option<f64>,
-    /// Recorded ways of the obstacles that give way; obstacles with other motions are not listed.
+    /// Recorded paths of the obstacles that give way; obstacles with other motions are not
+    /// listed.
     pub movers: Vec<MoverWay>,
     /// Number of cycles begun.
     pub cycles: u64,

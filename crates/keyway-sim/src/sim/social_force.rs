@@ -1,7 +1,8 @@
-//! Social force model: how a body on the way to a place gives way to others.
+//! Social force model: motion of a body that approaches a goal and gives way to others.
 //!
-//! Source: [Helbing1995] (the drive towards a goal, and the highest speed), with the interaction of
-//! [Moussaid2009]. It was measured between pairs of people, who turn aside as well as brake:
+//! Source: [Helbing1995] (the drive towards a goal, and the highest speed), with the interaction
+//! of [Moussaid2009], which was measured between pairs of pedestrians. They turn aside as well as
+//! brake:
 //!
 //! ```text
 //! dv/dt = (v0 e - v) / tau + sum over others of f
@@ -19,15 +20,17 @@
 //! | K | its sign |
 //! | n | t turned to the left |
 //!
-//! The model differs from the sources in four points. d is the gap between two outlines, not the
-//! distance between two centres: robots and obstacles have all sizes. A body straight ahead counts
-//! as slightly to the left, so that two bodies that meet both turn to their right ([Moussaid2009]
-//! has this bias, too, without a side). Walls exert no force: the bodies do not see any. A term of
-//! the force whose exponents together are below minus [`FARTHEST`] counts as zero: it would be 1.51
-//! mm/s² at most. So a body farther away than [`FARTHEST`] B exerts no force.
+//! The model differs from the sources in four points:
+//! - d is the gap between two outlines, not the distance between two centres, because robots and
+//!   obstacles have all sizes.
+//! - A body straight ahead counts as slightly to the left, so that two bodies that meet both turn
+//!   to their right ([Moussaid2009] has this bias, too, without a side).
+//! - Walls exert no force.
+//! - A term of the force with a total exponent below minus [`FARTHEST`] counts as zero: it would
+//!   be 1.51 mm/s² at most. So a body farther away than [`FARTHEST`] B exerts no force.
 //!
-//! The model does not forbid contact. It costs a few operations for each two bodies near each
-//! other; the angle and the exponentials are computed only for terms that count.
+//! The model does not prevent contact. It costs a few operations for each pair of bodies near
+//! each other; the angle and the exponentials are computed only for terms that count.
 
 use super::overlapping::overlapping;
 use keyway::geometry::{Disc, Point};
@@ -42,7 +45,7 @@ const STRENGTH_MPS2: f64 = 4.5;
 /// Range of the force per length of D \[m\].
 const GAMMA: f64 = 0.35;
 /// Largest gap across which a body exerts a force, in ranges of the force. A term of the force
-/// counts when it is at least A exp(-8).
+/// counts if it is at least A exp(-8).
 const FARTHEST: f64 = 8.0;
 /// Weight of the relative velocity in D \[s/m\].
 const LAMBDA: f64 = 2.0;
@@ -61,8 +64,8 @@ pub(super) struct Body {
     pub(super) velocity_mps: Point,
 }
 
-/// Adds the forces that all bodies exert on each other \[m/s²\], for each body in the order of the
-/// others. A body without a force does not give way and feels none.
+/// Adds the forces that all bodies exert on each other \[m/s²\], in the order of the bodies. A
+/// body whose force is `None` does not give way.
 pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
     let reaches: Vec<Disc> = bodies.iter().map(Body::reach).collect();
     for (one, others) in overlapping(&reaches).into_iter().enumerate() {
@@ -72,20 +75,20 @@ pub(super) fn add_forces(bodies: &[Body], forces: &mut [Option<Point>]) {
             }
             let force = bodies[one].force_of(&bodies[other]);
             forces[one] = forces[one].map(|sum| sum + force);
-            // The other body feels the opposite, to the last bit.
+            // The reaction on the other body is the exact opposite, to the last bit.
             forces[other] = forces[other].map(|sum| sum - force);
         }
     }
 }
 
 impl Body {
-    /// Force that draws it to a goal at a desired speed \[m/s²\].
+    /// Returns the force that draws the body to a goal at a desired speed \[m/s²\].
     pub(super) fn drive(&self, goal: Point, speed_mps: f64) -> Point {
         let wanted_mps = unit(goal - self.centre) * speed_mps;
         (wanted_mps - self.velocity_mps) * RELAXATION_S.recip()
     }
 
-    /// Its velocity after a time under a force \[m/s\].
+    /// Returns the velocity after a time under a force \[m/s\].
     pub(super) fn next_velocity(&self, force: Point, speed_mps: f64, dt_s: f64) -> Point {
         // A long step must not overshoot.
         let velocity_mps = self.velocity_mps + force * dt_s.min(RELAXATION_S);
@@ -93,20 +96,20 @@ impl Body {
         velocity_mps * (fastest_mps / velocity_mps.norm().max(fastest_mps))
     }
 
-    /// Disc of influence: two bodies exert forces on each other only if their discs overlap. |D| is
-    /// at most the sum of what the two bodies add to it.
+    /// Disc of influence: two bodies exert forces on each other only if their discs overlap. |D|
+    /// is at most the sum of the contributions of the two bodies.
     fn reach(&self) -> Disc {
         let range_m = GAMMA * (LAMBDA * self.velocity_mps.norm() + 0.5);
-        // Rounding must not make it smaller.
+        // Rounding must not shrink the disc.
         let radius_m = (self.radius_m + FARTHEST * range_m) * (1.0 + 1e-9);
         Disc { centre: self.centre, radius_m }
     }
 
-    /// Force that another body exerts on this one \[m/s²\].
+    /// Returns the force that another body exerts on this one \[m/s²\].
     fn force_of(&self, other: &Self) -> Point {
         let apart = other.centre - self.centre;
         let ahead = unit(apart);
-        // Computed in the same way from both sides.
+        // Computed in the same order from both sides.
         let gap_m = (apart.norm() - (self.radius_m + other.radius_m)).max(0.0);
         let interaction = (self.velocity_mps - other.velocity_mps) * LAMBDA + ahead;
         let towards = unit(interaction);
@@ -214,7 +217,7 @@ mod tests {
     }
 
     proptest! {
-        /// No term that is left out is above A exp(-8), 1.51 mm/s².
+        /// Checks that no omitted term is above A exp(-8), 1.51 mm/s².
         #[test]
         fn what_is_left_out_of_a_force_is_small(
             (x, y) in (0.1..12.0f64, -12.0..12.0f64), (vx, vy) in (-3.0..3.0f64, -3.0..3.0f64),

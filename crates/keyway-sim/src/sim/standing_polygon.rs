@@ -1,12 +1,12 @@
-//! Stationary polygons.
+//! Static polygons.
 
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use keyway::robot::{Footprint, FootprintError};
 use serde::{Deserialize, Serialize};
 
-/// A stationary polygon of any shape with 3 to 100 vertices; the last one is joined to the first.
-/// In files and reports it is the list of its vertices, `[x, y]` each \[m\].
+/// A static polygon of any shape with 3 to 100 vertices; the last one is joined to the first. In
+/// files and reports it is the list of its vertices, `[x, y]` each \[m\].
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -28,12 +28,12 @@ pub struct StandingPolygon {
 }
 
 impl StandingPolygon {
-    /// The polygon with these vertices in the world's frame \[m\].
+    /// Creates the polygon with these vertices in the world frame \[m\].
     ///
     /// # Errors
-    /// When there are fewer than 3 or more than 100 vertices, one is not finite or is farther than
-    /// a kilometre from the middle, two consecutive vertices coincide, edges meet, or no ground is
-    /// covered. Paths begin with `vertices_m`.
+    /// Returns an error if there are fewer than 3 or more than 100 vertices, one is not finite or
+    /// is farther than a kilometre from the middle, two consecutive vertices coincide, edges
+    /// meet, or the area is empty. Error paths begin with `vertices_m`.
     pub fn new(vertices: Vec<Point>) -> Result<Self, ConfigError> {
         for (i, vertex) in vertices.iter().enumerate() {
             for (axis, value) in [vertex.x, vertex.y].into_iter().enumerate() {
@@ -52,12 +52,12 @@ impl StandingPolygon {
         Ok(Self { vertices, footprint, middle: Pose::new(middle.x, middle.y, 0.0) })
     }
 
-    /// Its vertices in the world's frame \[m\].
+    /// Vertices in the world frame \[m\].
     pub fn vertices(&self) -> &[Point] {
         &self.vertices
     }
 
-    /// True if a point lies on its ground, or on its edge.
+    /// True if a point lies in the polygon or on its edge.
     pub fn covers(&self, point: Point) -> bool {
         let (core, _) = self.footprint.core();
         core.distance_to_m(self.middle, point) <= 0.0
@@ -87,7 +87,7 @@ fn in_words_of_polygons(error: &FootprintError) -> ConfigError {
         FootprintError::SelfIntersecting(one, other) => {
             all(format!("must not meet itself, the edges from [{one}] and [{other}] do"))
         }
-        // Errors of discs and rectangles.
+        // Errors that concern only discs and rectangles.
         error => all(error.to_string()),
     }
 }
@@ -120,8 +120,8 @@ mod tests {
     }
 
     proptest! {
-        /// Checks that a robot and its sensor cannot tell boxes around cells from the cells
-        /// themselves, whether the boxes are polygons or hidden cells of the map.
+        /// Checks that polygons around cells and hidden cells of the map are equivalent for a
+        /// robot and its sensor.
         #[test]
         fn boxes_are_like_the_cells_that_they_cover(
             boxes in prop::collection::vec((0..28i32, 0..18i32, 1..5i32, 1..5i32), 1..4), yaw in -3.1..3.1f64,

@@ -1,4 +1,4 @@
-//! A run that the caller drives, cycle by cycle.
+//! A run that the caller advances cycle by cycle.
 
 use super::drive::{check, command};
 use super::fleet::{Entrant, Fleet};
@@ -10,9 +10,9 @@ use keyway::robot::Robot;
 use keyway::sense::{Observation, Scan, SensorScan};
 use std::borrow::Cow;
 
-/// One robot in a world, for a caller that cannot provide a closure, such as a learning agent that
-/// asks for one step at a time. The same answers make the same run as with
-/// [`simulate`](super::simulate), to the last digit.
+/// One robot in a world, for a caller that cannot provide a closure, such as a learning agent
+/// that requests one step at a time. The same decisions give bitwise the same run as
+/// [`simulate`](super::simulate).
 ///
 /// ```
 /// use keyway::geometry::{Point, Pose, Velocity};
@@ -38,11 +38,11 @@ pub struct Stepper {
 }
 
 impl Stepper {
-    /// A robot at rest at its start with its first scan. In contact or at its goal, its run has
-    /// already ended.
+    /// Creates a robot at rest at its start with its first scan. If it starts in contact or at
+    /// its goal, its run has already ended.
     ///
     /// # Errors
-    /// When an argument cannot be used.
+    /// Returns an error if an argument is invalid.
     pub fn new(
         world: World,
         robot: Robot,
@@ -67,24 +67,22 @@ impl Stepper {
         Ok(Self { fleet })
     }
 
-    /// Outcome of the run; `None` while it goes on.
+    /// Outcome of the run; `None` while it continues.
     pub fn outcome(&self) -> Option<Outcome> {
         self.fleet.outcome(0)
     }
 
-    /// Scans of this cycle, as a controller gets them; once the run has ended, those of its last
-    /// decision.
+    /// Scans that the controller gets in this cycle; after the run, those of its last decision.
     pub fn scans(&self) -> Vec<SensorScan<'_>> {
         self.fleet.scans(0)
     }
 
-    /// The last scan of the first sensor; once the run has ended, the scan of its last decision.
+    /// Last scan of the first sensor; after the run, the scan of its last decision.
     pub fn scan(&self) -> &Scan {
         self.fleet.scan(0)
     }
 
-    /// Pose and velocity that the robot was told; once the run has ended, the true ones, as it is
-    /// not told any more.
+    /// Pose and velocity that were reported to the robot; after the run, the true ones.
     pub fn told(&self) -> RobotState {
         if self.outcome().is_some() { self.state() } else { self.fleet.told(0) }
     }
@@ -94,10 +92,11 @@ impl Stepper {
         self.fleet.state(0)
     }
 
-    /// Drives one cycle. Does nothing once the run has ended.
+    /// Drives one cycle. Does nothing after the run has ended.
     ///
     /// # Errors
-    /// When a velocity is not a number, or the run is given up; nothing changes then.
+    /// Returns an error if a velocity is not a number, or the run is given up. Nothing changes
+    /// then.
     pub fn step(&mut self, control: &Control) -> Result<Option<Outcome>, SimError> {
         if self.outcome().is_none() {
             let cycle = self.fleet.cycle(0);
@@ -111,7 +110,7 @@ impl Stepper {
         Ok(self.outcome())
     }
 
-    /// The run; `None` while it goes on.
+    /// Returns the run; `None` while it continues.
     pub fn into_run(self) -> Option<Run> {
         self.fleet.into_runs().pop()
     }
@@ -124,7 +123,7 @@ mod tests {
     use keyway::geometry::{Disc, Velocity};
     use keyway::map::OccupancyGrid;
 
-    /// Drives in the direction of the longest range; its answers depend on all its inputs.
+    /// Drives towards the longest range. The decisions depend on all inputs.
     fn wander(observation: &Observation<'_>) -> Control {
         let Observation { pose, velocity, scans, .. } = *observation;
         let scan = scans[0].scan;

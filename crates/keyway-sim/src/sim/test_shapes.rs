@@ -3,7 +3,7 @@
 use keyway::geometry::Point;
 use keyway::map::{CellState, GridFrame, OccupancyGrid};
 
-/// Vertices of a star around a point, at each radius in turn and at evenly spaced angles.
+/// Vertices of a star around a point: each radius in turn, at equal angles.
 pub(super) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
     let step_rad = std::f64::consts::TAU / radii.len() as f64;
     let vertex = |(i, &radius): (usize, &f64)| {

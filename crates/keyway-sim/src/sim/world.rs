@@ -9,13 +9,13 @@ use keyway::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The true obstacles: squares of a grid, stationary discs and polygons that no map has, and
-/// moving obstacles.
+/// The true obstacles: squares of a grid, unmapped static discs and polygons, and moving
+/// obstacles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     frame: GridFrame,
     squares: BitGrid,
-    /// Squares that no map has, if any.
+    /// Squares that are not on the map, if any.
     hidden: Option<BitGrid>,
     free: FreeSquares,
     discs: Vec<Disc>,
@@ -31,7 +31,7 @@ pub struct World {
 pub enum Obstacle {
     /// An obstacle cell's square.
     Square,
-    /// The square of a cell that no map has ([`World::with_hidden`]).
+    /// The square of a cell that is not on the map ([`World::with_hidden`]).
     HiddenSquare,
     /// The circle of this index in [`World::discs`].
     Circle(usize),
@@ -54,7 +54,7 @@ pub struct WorldAt<'a> {
     t_s: f64,
 }
 
-/// Reason that a world cannot be made.
+/// Reason why a world is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -99,11 +99,11 @@ pub enum WorldError {
 
 impl World {
     /// A world with the squares of the set cells of `squares` (a grid of `frame`'s size) and
-    /// discs. Costs a few operations per cell, and keeps a byte for each, which lets a sensor's
+    /// discs. Costs a few operations per cell, and stores a byte for each, with which a sensor's
     /// beams skip free cells.
     ///
     /// # Errors
-    /// When the grid has a different size, or a circle is not valid.
+    /// Returns an error if the grid has a different size, or a circle is not valid.
     pub fn new(frame: GridFrame, squares: BitGrid, discs: Vec<Disc>) -> Result<Self, WorldError> {
         check_size(&frame, &squares)?;
         if let Some(index) = discs.iter().position(|circle| !circle.is_valid()) {
@@ -115,11 +115,11 @@ impl World {
         Ok(Self { frame, squares, hidden: None, free, discs, polygons, elusive, movers })
     }
 
-    /// A world in which a known map is right: its occupied cells (unknown cells are free), and
-    /// discs that the map does not have.
+    /// A world in which a known map is correct: its occupied cells (unknown cells are free), and
+    /// unmapped discs.
     ///
     /// # Errors
-    /// When a circle is not valid.
+    /// Returns an error if a circle is not valid.
     pub fn from_known(known: &OccupancyGrid, discs: Vec<Disc>) -> Result<Self, WorldError> {
         Self::new(*known.frame(), known.occupied().clone(), discs)
     }
@@ -127,7 +127,7 @@ impl World {
     /// Adds the set cells of `hidden` as further obstacles.
     ///
     /// # Errors
-    /// When the grid does not have the size of the map.
+    /// Returns an error if the grid does not have the size of the map.
     pub fn with_hidden(mut self, hidden: &BitGrid) -> Result<Self, WorldError> {
         check_size(&self.frame, hidden)?;
         let (width, height) = (hidden.width(), hidden.height());
@@ -149,7 +149,7 @@ impl World {
         self
     }
 
-    /// Adds obstacles that stand for a time only, or that sensors miss.
+    /// Adds obstacles that are present for a limited time, or that sensors miss.
     #[must_use]
     pub fn with_elusive(mut self, elusive: Vec<ElusiveObstacle>) -> Self {
         self.elusive.extend(elusive);
@@ -191,7 +191,7 @@ impl World {
         &self.polygons
     }
 
-    /// Obstacles that stand for a time only, or that sensors miss.
+    /// Obstacles that are present for a limited time, or that sensors miss.
     pub fn elusive(&self) -> &[ElusiveObstacle] {
         &self.elusive
     }
@@ -210,8 +210,8 @@ impl World {
         WorldAt { world: self, t_s }
     }
 
-    /// Exact distance from a footprint at a pose to the nearest obstacle that stands at a time
-    /// \[m\]: 0 if it touches one, `reach_m` if none is nearer than that.
+    /// Exact distance from a footprint at a pose to the nearest static obstacle that is present
+    /// at a time \[m\]: 0 if it touches one, `reach_m` if none is nearer than that.
     pub(super) fn distance_to_standing(
         &self,
         footprint: &Footprint,
@@ -226,7 +226,7 @@ impl World {
         let nearer = |known_m, it: &ElusiveObstacle| it.distance_m(footprint, pose, known_m);
         let nearest_m = self.elusive_at(t_s).fold(nearest_m, nearer);
         let (core, radius_m) = footprint.core();
-        // The swing and the radius bound how far the footprint reaches from its centre of rotation.
+        // The swing and the radius bound the reach of the footprint from its centre of rotation.
         if self.free_around_m(pose.point()) - core.swing_m() - radius_m >= nearest_m {
             return nearest_m;
         }
@@ -236,19 +236,19 @@ impl World {
     /// Lower bound of the distance from a point to any obstacle square \[m\].
     fn free_around_m(&self, point: Point) -> f64 {
         let cell = self.frame.cell_from_world(point);
-        // The nearest obstacle cell begins beyond the free ones. Rounding may put the point beside
-        // its cell.
+        // The nearest obstacle cell begins beyond the free ones. By rounding the point may lie
+        // just outside its cell.
         let free = cell.map_or(0.0, |cell| f64::from(self.free.steps(cell) - 1) - 1e-6);
         free * self.frame.resolution_m()
     }
 
-    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the
+    /// Distance from a footprint at a pose to the map's border \[m\], negative if it leaves the
     /// map.
     pub(super) fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
         footprint.to_border_m(pose, &self.clearance())
     }
 
-    /// True if an obstacle that does not stand before a cycle stands in it, on ground of a
+    /// True if an obstacle that is absent before a cycle is present in it and overlaps a
     /// footprint at a pose.
     pub(super) fn appears_onto(
         &self,
@@ -260,9 +260,9 @@ impl World {
         appeared.any(|it| it.distance_m(footprint, pose, TOLERANCE_M) < TOLERANCE_M)
     }
 
-    /// Stationary obstacle nearest to a footprint, including the map's border. Ties go to the
-    /// border, then squares that no map has, then other squares, then the circle, the polygon and
-    /// the elusive one of the lowest index.
+    /// Static obstacle nearest to a footprint, including the map's border. Ties go to the border,
+    /// then to unmapped squares, then to other squares, then to the circle, the polygon and the
+    /// elusive obstacle of the lowest index.
     pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose, t_s: f64) -> Obstacle {
         let mut nearest = (self.border_distance(footprint, pose), Obstacle::Border);
         let squares_m = footprint.distance_m(pose, &self.clearance(), f64::INFINITY);
@@ -300,7 +300,7 @@ impl World {
 }
 
 impl<'a> WorldAt<'a> {
-    /// Obstacles that stand for a time only, or that sensors miss, and that stand now.
+    /// Obstacles of limited presence or visibility that are present now.
     pub fn elusive(&self) -> impl Iterator<Item = &'a ElusiveObstacle> {
         self.world.elusive_at(self.t_s)
     }
@@ -317,7 +317,7 @@ impl<'a> WorldAt<'a> {
         discs.iter().copied().chain(movers.iter().map(move |mover| mover.at(t_s)))
     }
 
-    /// Stationary obstacle nearest to a footprint, including the map's border.
+    /// Static obstacle nearest to a footprint, including the map's border.
     pub(super) fn nearest_standing(&self, footprint: &Footprint, pose: Pose) -> Obstacle {
         self.world.nearest_standing(footprint, pose, self.t_s)
     }
@@ -330,7 +330,7 @@ impl<'a> WorldAt<'a> {
         self.world.distance_to_standing(footprint, pose, self.t_s, nearest_m)
     }
 
-    /// Distance from a footprint at a pose to the map's border \[m\], negative when it leaves the
+    /// Distance from a footprint at a pose to the map's border \[m\], negative if it leaves the
     /// map.
     pub fn border_distance(&self, footprint: &Footprint, pose: Pose) -> f64 {
         self.world.border_distance(footprint, pose)
@@ -355,8 +355,8 @@ impl<'a> WorldAt<'a> {
     }
 }
 
-/// Distance from a footprint at a pose to a circle: 0 if they meet, `reach_m` if they are at least
-/// that far apart.
+/// Distance from a footprint at a pose to a circle: 0 if they touch, `reach_m` if they are at
+/// least that far apart.
 pub(super) fn to_circle(footprint: &Footprint, pose: Pose, circle: &Disc, reach_m: f64) -> f64 {
     let (core, radius_m) = footprint.core();
     let radii_m = circle.radius_m + radius_m;

@@ -1,4 +1,4 @@
-//! Randomly placed blocks of whole cells, as in the maps of papers.
+//! Randomly placed blocks of whole cells, as in published benchmark maps.
 
 use super::canvas::Canvas;
 use super::clutter::unless_share;
@@ -7,14 +7,14 @@ use keyway::map::Cell;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Rectangles of whole cells at random places, added until they cover a share of the map. They may
-/// overlap and lie side by side.
+/// Rectangles of whole cells at random positions, added until they cover a share of the map. They
+/// may overlap and lie side by side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Blocks {
-    /// Share of the map that is covered at least, from 0 to 1; cells that are then freed around the
-    /// ends of ways are not replaced.
+    /// Minimum share of the map that is covered, from 0 to 1. Cells that are then freed around
+    /// starts, way-points and goals are not replaced.
     pub share: f64,
     /// Smallest and largest width and height \[m\], each rounded to a whole number of cells and at
     /// least one.
@@ -29,7 +29,7 @@ impl Blocks {
 
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
         let [columns, rows] = canvas.size_cells();
-        // A block reaches no farther than the map, however long it is.
+        // A block is at most as long as the map.
         let longest = f64::from(columns.max(rows));
         let cell_m = canvas.cell_m();
         let [least, most] = self.side_m.map(|m| (m / cell_m).round().clamp(1.0, longest) as u32);

@@ -1,20 +1,20 @@
-//! Boxes at given places, turned together.
+//! Boxes at given positions, rotated together.
 
 use super::canvas::Canvas;
 use keyway::ConfigError;
 use keyway::geometry::{Point, Pose};
 use serde::{Deserialize, Serialize};
 
-/// Boxes at given places, whatever the seed. They may lie across one another, and reach beyond the
+/// Boxes at given positions, independent of the seed. They may overlap, and extend beyond the
 /// map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Boxes {
-    /// `[x, y]` of the lower left and of the upper right corner of each in the world's frame, four
-    /// numbers \[m\], before they are turned.
+    /// Lower left and upper right corner of each box before the rotation, in the world frame:
+    /// `[x, y, x, y]` \[m\].
     pub boxes: Vec<[f64; 4]>,
-    /// Angle by which all of them are turned about the middle of the map \[deg\],
+    /// Angle by which all boxes are rotated about the middle of the map \[deg\],
     /// counter-clockwise.
     #[serde(default)]
     pub turned_deg: f64,

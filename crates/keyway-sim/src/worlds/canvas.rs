@@ -35,8 +35,8 @@ impl Canvas {
         self.set_cells(low, high, false, |_| true);
     }
 
-    /// Occupies a rectangle of cells, given by its lower left cell; returns how many were free.
-    /// Cells outside the map are ignored.
+    /// Occupies a rectangle of cells, given by its lower left cell; returns the number of cells
+    /// that were free. Cells outside the map are ignored.
     pub(super) fn fill_cells(&mut self, low: Cell, width: i32, height: i32) -> u64 {
         let right = (low.x + width).min(self.frame.width() as i32);
         let top = (low.y + height).min(self.frame.height() as i32);
@@ -59,7 +59,7 @@ impl Canvas {
         self.set_disc(centre, radius_m, true);
     }
 
-    /// Frees the cells that come nearer than a radius to a place.
+    /// Frees the cells that are closer than a radius to a position.
     pub(super) fn clear_disc(&mut self, centre: Point, radius_m: f64) {
         let half_diagonal_m = std::f64::consts::FRAC_1_SQRT_2 * self.cell_m();
         self.set_disc(centre, radius_m + half_diagonal_m, false);

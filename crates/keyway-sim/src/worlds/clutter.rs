@@ -7,7 +7,7 @@ use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Discs of random sizes at random places, which may overlap.
+/// Discs of random sizes at random positions, which may overlap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -20,7 +20,7 @@ pub struct Clutter {
 }
 
 impl Clutter {
-    /// Largest sensible number of discs.
+    /// Largest supported number of discs.
     const MOST: f64 = 1e7;
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {

@@ -6,10 +6,10 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Corridors from left to right, one above the other, as many as fit, with a row of rooms on both
-/// sides of each. Every room has a door to its corridor, at a random place in the wall. Between two
-/// corridors the rows of rooms lie back to back. A passage through both rows, as wide as a
-/// corridor, joins the two corridors.
+/// Corridors from left to right, as many as fit, with a row of rooms on both sides of each. Every
+/// room has a door to its corridor, at a random position in the wall. Between two corridors the
+/// rows of rooms lie back to back. A passage through both rows, as wide as a corridor, joins the
+/// two corridors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -50,7 +50,7 @@ impl Corridors {
     pub(super) fn draw(&self, canvas: &mut Canvas, random: &mut Random) {
         let [width_m, height_m] = canvas.size_m();
         let count = (height_m / self.pitch_m() + 1e-9).floor() as i32;
-        // The rest is too narrow for one more corridor.
+        // The remaining height is too small for another corridor.
         let rest = Point::new(0.0, f64::from(count) * self.pitch_m());
         canvas.fill_box(rest, Point::new(width_m, height_m));
         for corridor in 0..count {

@@ -1,11 +1,11 @@
-//! Discs at given places.
+//! Discs at given positions.
 
 use super::canvas::Canvas;
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// Discs in the world's frame, `[x, y, radius]` each \[m\]; parts of them outside the map are
+/// Discs in the world frame, `[x, y, radius]` each \[m\]; parts of them outside the map are
 /// ignored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -8,8 +8,8 @@ use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A room-and-pillar mine: roadways that cross each other around pillars of rock. The sides of the
-/// pillars are rough, and some of the roadways between two crossings have fallen in.
+/// A room-and-pillar mine: roadways that cross each other around pillars of rock. The sides of
+/// the pillars are rough, and some of the roadways between two crossings have collapsed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -20,8 +20,8 @@ pub struct Mine {
     pub pillar_m: f64,
     /// Largest deviation of the sides from straight lines \[m\].
     pub roughness_m: f64,
-    /// Share of the stretches between two crossings that have fallen in, from 0 to 1. The leftmost
-    /// vertical stretches and all horizontal stretches stay open, so every crossing can be reached.
+    /// Share of the sections between two crossings that have collapsed, from 0 to 1. The leftmost
+    /// vertical sections and all horizontal sections stay open, so every crossing is reachable.
     #[serde(default)]
     pub fallen_in: f64,
 }
@@ -61,7 +61,7 @@ impl Mine {
                     let low = [column, row].map(|n| f64::from(n) * pitch_m);
                     let low = Point::new(low[0], low[1] + self.roadway_m + 0.25 * self.pillar_m);
                     let high = low + Point::new(self.roadway_m, 0.5 * self.pillar_m);
-                    // The box extends into the rock on both sides, however rough they are.
+                    // The box extends into the rock on both sides, regardless of their roughness.
                     let into = Point::new(self.roughness_m, 0.0);
                     canvas.fill_box(low - into, high + into);
                 }
@@ -69,8 +69,8 @@ impl Mine {
         }
     }
 
-    /// Deviation of a pillar's side near a place \[m\], at most `roughness_m`: the sum of waves,
-    /// each given by its direction and its phase.
+    /// Deviation of a pillar's side near a position \[m\], at most `roughness_m`: the sum of
+    /// waves, each given by its direction and its phase.
     fn rough_m(&self, at: Point, waves: &[[f64; 2]]) -> f64 {
         let (mut sum, mut wave_m) = (0.0, self.pillar_m.max(self.roadway_m));
         for &[direction_rad, phase_rad] in waves {

@@ -1,9 +1,9 @@
-//! Maps generated from a seed: any number of worlds of one kind, the same for everybody.
+//! Maps generated from a seed: reproducible worlds of one kind, in any number.
 //!
 //! A [`GeneratedMap`] gives the size of a map and its obstacles; with a seed it generates an
 //! [`OccupancyGrid`]. Positions are metres from the map's lower left corner, except those of
-//! [`Discs`] and [`Boxes`], which are in the world frame. Obstacles are drawn by the centres of
-//! cells.
+//! [`Discs`] and [`Boxes`], which are in the world frame. A cell is occupied if its centre lies
+//! in an obstacle.
 //!
 //! ```
 //! use keyway::geometry::Point;
@@ -22,7 +22,7 @@
 //!
 //! # Errors / cost
 //! [`ConfigError`] with the field. Linear in the cells, and for [`Clutter`] in the area of its
-//! discs. [`Blocks`] that are to cover nearly all of a map are drawn many times over.
+//! discs. [`Blocks`] that cover nearly all of a map need many draws.
 
 mod blocks;
 mod boxes;
@@ -66,7 +66,7 @@ pub struct GeneratedMap {
     /// Lower left corner, `[x, y]` \[m\].
     #[serde(default)]
     pub origin: Point,
-    /// Distance from a start, a goal and a way-point within which nothing stands \[m\].
+    /// Radius of the free space around each start, goal and way-point \[m\].
     #[serde(default = "usual_free_ends_m")]
     pub free_ends_m: f64,
     /// Obstacles on the map.
@@ -83,9 +83,9 @@ pub enum Pattern {
     /// Nothing.
     #[default]
     None,
-    /// Discs at given places.
+    /// Discs at given positions.
     Discs(Discs),
-    /// Boxes at given places.
+    /// Boxes at given positions.
     Boxes(Boxes),
     /// Randomly placed discs.
     Clutter(Clutter),
@@ -122,7 +122,7 @@ impl GeneratedMap {
     /// Default of [`Self::free_ends_m`] in a scene \[m\].
     pub const USUAL_FREE_ENDS_M: f64 = 0.5;
 
-    /// Largest sensible map \[cells\].
+    /// Largest supported map \[cells\].
     const MOST_CELLS: f64 = 1e9;
 
     /// An empty map with its lower left corner at (0, 0).
@@ -137,11 +137,11 @@ impl GeneratedMap {
         }
     }
 
-    /// Generates the map of a seed, with free space around the `ends` of ways (in the world's
-    /// frame).
+    /// Generates the map of a seed, with free space around `ends`: starts, way-points and goals
+    /// in the world frame.
     ///
     /// # Errors
-    /// When a value cannot be used; the error names the field.
+    /// Returns an error that names the invalid field.
     pub fn generate(&self, seed: u64, ends: &[Point]) -> Result<OccupancyGrid, ConfigError> {
         self.validate()?;
         let cells = |length_m: f64| (length_m / self.resolution_m - 1e-9).ceil() as u64;
@@ -172,7 +172,7 @@ impl GeneratedMap {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("width_m", self.width_m)?;
         ConfigError::unless_positive("height_m", self.height_m)?;
@@ -190,7 +190,7 @@ impl GeneratedMap {
         }
         let (name, valid) = match &self.obstacles {
             Pattern::None => return Ok(()),
-            // Its errors name the disc.
+            // The errors name the disc.
             Pattern::Discs(discs) => {
                 return discs.validate().map_err(|error| error.within("obstacles"));
             }

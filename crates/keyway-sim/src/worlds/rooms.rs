@@ -7,9 +7,9 @@ use keyway::geometry::Point;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// Square rooms side by side. Each has a door to a neighbour on the way to the first one, so all
-/// are connected. Some of the other walls also have a door. A door is at a random place in its
-/// wall.
+/// Square rooms side by side. Each has a door to a neighbour that is closer to the first one, so
+/// all are connected. Some of the other walls also have a door. A door is at a random position in
+/// its wall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -52,7 +52,7 @@ impl Rooms {
             let y = f64::from(row) * self.room_m;
             canvas.fill_box(Point::new(0.0, y - half_m), Point::new(width_m, y + half_m));
         }
-        // A binary tree: every room but the first has a door to the left or downwards.
+        // A binary tree: every room except the first has a door to the left or downwards.
         for row in 0..rows {
             for column in 0..columns {
                 let (can_left, can_down) = (column > 0, row > 0);
@@ -73,7 +73,7 @@ impl Rooms {
         let half_m = 0.5 * self.wall_m;
         let [x, y] = room.map(|n| f64::from(n) * self.room_m);
         let sizes_m = canvas.size_m();
-        // The last room of a row may be cut off.
+        // The last room of a row may be cut off by the map's border.
         let (begin, size_m) = if is_left { (y, sizes_m[1]) } else { (x, sizes_m[0]) };
         let end_m = (begin + self.room_m - half_m).min(size_m) - self.door_m;
         let from_m = random.between([begin + half_m, end_m.max(begin + half_m)]);

@@ -29,7 +29,7 @@ fn share(map: &OccupancyGrid) -> f64 {
     map.occupied().count_ones() as f64 / map.frame().cell_count() as f64
 }
 
-/// Number of free cells that can be reached from the first one, and of all free cells.
+/// Number of free cells that are reachable from the first one, and of all free cells.
 fn flooded(map: &OccupancyGrid) -> (usize, usize) {
     let is_free = |cell: Cell| map.frame().contains(cell) && !map.occupied().get(cell);
     let free: Vec<Cell> = map.frame().cells().filter(|&cell| is_free(cell)).collect();
@@ -78,7 +78,7 @@ fn where_there_are_ways_they_lead_everywhere() {
                 Pattern::None | Pattern::Rooms(_) | Pattern::Maze(_) | Pattern::Corridors(_) => {
                     assert_eq!(reached, free, "{:?} {seed}", map.obstacles);
                 }
-                // At most, the pockets of a rough side are cut off.
+                // At most the pockets of a rough side are unreachable.
                 Pattern::Mine(_) => assert!(reached * 100 >= free * 99, "{reached} of {free}"),
                 Pattern::Discs(_)
                 | Pattern::Boxes(_)
@@ -96,13 +96,13 @@ fn sizes_are_those_that_were_asked_for() {
         let map = GeneratedMap { obstacles: obstacles.clone(), ..all()[0].clone() };
         map.generate(5, &[]).unwrap()
     };
-    // Discs at random places with a total area of S cover 1 - exp(-S), less the part outside the
-    // map.
+    // Discs at random positions with a total area of S cover 1 - exp(-S), minus the part outside
+    // the map.
     let clutter = |share_m| of(&Pattern::Clutter(Clutter { share: share_m, radius_m: [0.1, 0.2] }));
     assert!((share(&clutter(0.3)) - (1.0 - (-0.3_f64).exp())).abs() < 0.02);
     assert_eq!(share(&clutter(0.0)), 0.0);
-    // Blocks are added until at least that share is covered; the last block has at most 16 of the
-    // 48,000 cells.
+    // Blocks are added until at least the requested share is covered; the last block has at most
+    // 16 of the 48,000 cells.
     let blocks = share(&of(&Pattern::Blocks(Blocks { share: 0.3, side_m: [0.1, 0.2] })));
     assert!((0.3..0.3 + 16.0 / 48_000.0).contains(&blocks), "{blocks}");
     let full = Blocks { share: 1.0, side_m: [9.0, 90.0] };
@@ -137,8 +137,8 @@ fn discs_are_the_cells_whose_centres_they_hold() {
     }
 }
 
-/// A box turned by 90 degrees about the middle of the map, which is at (0, 5.5): x becomes y - 5.5
-/// with the other sign, and y - 5.5 becomes x.
+/// A box rotated by 90 degrees about the middle of the map, which is at (0, 5.5): x becomes
+/// -(y - 5.5), and y - 5.5 becomes x.
 #[test]
 fn boxes_are_turned_together() {
     let boxes = vec![[1.0, 4.0, 9.0, 5.0], [-2.0, 5.0, -1.0, 7.0]];
@@ -189,7 +189,7 @@ fn bad_values_are_named() {
     assert_eq!(of(Pattern::Mine(mine)), "obstacles.mine.roughness_m");
 }
 
-/// A single block of one to three cells of 1 m has sides of such lengths.
+/// A single block of one to three cells of 1 m has sides of these lengths.
 #[test]
 fn blocks_have_the_sides_that_were_asked_for() {
     let blocks = Blocks { share: 1e-9, side_m: [1.0, 3.0] };

@@ -20,7 +20,7 @@ pub struct UTraps {
 }
 
 impl UTraps {
-    /// Largest sensible number of obstacles.
+    /// Largest supported number of obstacles.
     const MOST: u32 = 1_000_000;
 
     pub(super) fn validate(&self) -> Result<(), ConfigError> {

@@ -1,4 +1,4 @@
-//! Single acts.
+//! Single acts: turns and straight drives.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose, wrap_angle};
@@ -30,7 +30,7 @@ fn it_turns_drives_and_backs_up() {
     assert_eq!(life.cycle(), Step::Idle);
 }
 
-/// Out of a drive it brakes first.
+/// From motion, it brakes first.
 #[test]
 fn an_act_takes_the_place_of_a_goal() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -55,7 +55,7 @@ fn an_act_without_room_waits_until_its_time_is_over() {
     let step = life.cycle();
     assert!(matches!(step, Step::Blocked { why: Blocked::OutOfTime, .. }), "{step:?}");
     assert_eq!(life.pose.point(), Point::new(5.0, 4.0));
-    // Somebody goes out of the way in time.
+    // The obstacle moves away in time.
     life.posts = vec![Disc::new(Point::new(4.0, 4.0), 0.3)];
     life.navigator.spin(PI, 30.0).unwrap();
     life.arrive();

@@ -1,4 +1,4 @@
-//! The map, the place and what is allowed change.
+//! Changes of the map, the pose and the masks.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose};
@@ -6,14 +6,14 @@ use keyway::map::{Cell, CellState, Edit, GridFrame, OccupancyGrid};
 use keyway::navigate::{Blocked, Masks, SpeedMask, Step};
 use std::sync::Arc;
 
-/// Ways through the lower and the upper door of the wall.
+/// True if the route leads through the door of the wall at this height \[m\].
 fn leads_through(life: &RobotInAWorld, door_m: f64) -> bool {
     let route = &life.navigator.route().unwrap().smoothed;
     let door = Point::new(6.0, door_m);
     route.segments().any(|leg| leg.distance_sq_to_point(door) < 0.25)
 }
 
-/// The edits that make the cells of a map those of another one.
+/// Edits that turn one map into another one.
 fn edits(from: &OccupancyGrid, to: &OccupancyGrid) -> Vec<Edit> {
     let edit = |cell| Edit { cell, state: to.state(cell).unwrap() };
     let differs = |cell: &Cell| from.state(*cell) != to.state(*cell);
@@ -37,13 +37,13 @@ fn a_door_that_closes_and_one_that_opens() {
     life.arrive();
 }
 
-/// Cell by cell or as a whole, and whatever was sensed, it is the same map afterwards.
+/// The resulting map is the same, edited cell by cell or replaced, whatever was sensed.
 #[test]
 fn edits_are_as_good_as_another_map() {
     let (both, upper) = (hall(wall_with_doors(&[2.0, 6.5])), hall(wall_with_doors(&[6.5])));
     let drive = |change: fn(&mut RobotInAWorld, &OccupancyGrid, &OccupancyGrid)| {
         let mut life = RobotInAWorld::new(&both, Pose::new(4.0, 2.5, 0.0));
-        // It stands in the door, and is sensed there before the map has it.
+        // The obstacle is in the door, and is sensed there before the map has it.
         life.posts = vec![Disc::new(Point::new(6.0, 2.0), 0.3)];
         life.navigator.set_goal(Point::new(10.0, 3.0)).unwrap();
         life.drive_for(1.5);
@@ -58,7 +58,7 @@ fn edits_are_as_good_as_another_map() {
     assert_eq!((edited, sensed), (whole, also));
 }
 
-/// A map that grows: its origin moves, and the goal is on what is new.
+/// A growing map: its origin moves, and the goal is in the new part.
 #[test]
 fn a_map_that_grows() {
     let small = hall(|_| false);
@@ -76,7 +76,7 @@ fn a_map_that_grows() {
     assert!(life.navigator.set_goal(far).is_err());
     let sensed = life.navigator.sensed().count_ones();
     life.navigator.set_map(&grown).unwrap();
-    // The post is where it was: each of its cells is 120 and 80 cells farther from the corner.
+    // The post keeps its position: each of its cells is 120 and 80 cells farther from the corner.
     let here = life.navigator.sensed().count_ones();
     assert!(sensed > 3 && here.abs_diff(sensed) <= 2, "{sensed} {here}");
     assert_eq!(life.navigator.goal().unwrap().position, Point::new(10.0, 4.0));
@@ -85,12 +85,13 @@ fn a_map_that_grows() {
     life.arrive();
 }
 
-/// The localisation is corrected by 0.3 m and 10 degrees: a post keeps its place beside the robot.
+/// The localisation is corrected by 0.3 m and 10 degrees: a post keeps its position relative to
+/// the robot.
 #[test]
 fn what_was_sensed_keeps_its_place_beside_the_robot() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
     life.posts = vec![Disc::new(Point::new(5.0, 4.0), 0.2)];
-    // It takes itself to be elsewhere.
+    // The estimated pose is wrong.
     life.told = |pose| Pose::new(pose.x - 0.25, pose.y + 0.2, pose.theta + 0.17);
     life.drive_for(0.5);
     let middle = |life: &RobotInAWorld| {
@@ -100,7 +101,7 @@ fn what_was_sensed_keeps_its_place_beside_the_robot() {
             .cells()
             .filter(|&cell| sensed.get(cell))
             .map(|cell| frame.world_from_cell(cell))
-            // The walls of the hall are seen beside those of the map.
+            // The walls of the hall are sensed beside those of the map.
             .filter(|place| place.distance(Point::new(5.0, 4.0)) < 1.0)
             .collect();
         let sum = cells.iter().fold(Point::default(), |sum, &place| sum + place);
@@ -111,7 +112,7 @@ fn what_was_sensed_keeps_its_place_beside_the_robot() {
     life.told = |pose| pose;
     life.navigator.relocate(life.pose);
     let (right, count) = middle(&life);
-    // The face of the post that it sees.
+    // The visible face of the post.
     assert!(count >= 3 && right.distance(Point::new(4.8, 4.0)) < 0.06, "{right:?} {count}");
 }
 
@@ -137,7 +138,7 @@ fn a_speed_limit_holds_at_any_time() {
     life.navigator.set_speed_limit(None).unwrap();
     life.drive_for(2.0);
     assert!(life.velocity.v > 0.45);
-    // Turns and acts keep it, too.
+    // The limit also applies to turns and acts.
     life.navigator.set_speed_limit(Some(0.05)).unwrap();
     life.navigator.drive_on_heading(0.3, 20.0).unwrap();
     life.drive_for(2.0);
@@ -150,7 +151,7 @@ fn masks_keep_it_out_and_slow_it_down() {
     let mut life = RobotInAWorld::new(&map, Pose::new(2.0, 3.0, 0.0));
     life.navigator.set_goal(Point::new(10.0, 3.0)).unwrap();
     assert!(leads_through(&life, 2.0));
-    // In cells of half a metre, with an origin of their own.
+    // In cells of half a metre, with a separate origin.
     let frame = GridFrame::new(4, 4, 0.5, Pose::new(5.0, 1.0, 0.0)).unwrap();
     let keep_out = Some(Arc::new(OccupancyGrid::from_fn(frame, |_| CellState::Occupied)));
     let slow = GridFrame::new(2, 2, 2.0, Pose::new(4.0, 4.5, 0.0)).unwrap();
@@ -163,7 +164,7 @@ fn masks_keep_it_out_and_slow_it_down() {
         let Point { x, y } = life.pose.point();
         let is_out = !(5.0..7.0).contains(&x) || !(1.0..3.0).contains(&y);
         assert!(is_out, "{:?}", life.pose);
-        // Somewhat inside it has slowed down.
+        // A little way inside, the robot has slowed down.
         if (4.4..7.8).contains(&x) && y > 4.9 {
             assert!(life.velocity.v <= 0.15 + 1e-9, "{:?} {:?}", life.pose, life.velocity);
             was_slow = true;
@@ -177,7 +178,7 @@ fn masks_keep_it_out_and_slow_it_down() {
     life.arrive();
 }
 
-/// A mask that covers the way while it is under way: it stops before it.
+/// A mask that covers the route during the run: the robot stops before it.
 #[test]
 fn ground_to_keep_out_of_is_not_entered() {
     let mut life = RobotInAWorld::new(&hall(wall_with_doors(&[4.0])), Pose::new(2.0, 4.0, 0.0));

@@ -1,4 +1,4 @@
-//! Stamps: clocks that began long ago, late and doubled cycles, late scans.
+//! Stamps: clocks with any origin, late and repeated cycles, late scans.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
@@ -18,7 +18,7 @@ fn poses(mut life: RobotInAWorld, mut cycle: impl FnMut(&mut RobotInAWorld)) -> 
     (0..150).map(|_| (cycle(&mut life), life.pose).1).collect()
 }
 
-/// To the last bit.
+/// The runs are bitwise the same.
 #[test]
 fn it_does_not_matter_when_the_clock_began() {
     let drive = |stamp_s| poses(begun(stamp_s), |life| drop(life.cycle()));
@@ -27,7 +27,7 @@ fn it_does_not_matter_when_the_clock_began() {
     assert_eq!(drive(-7.3), expected);
 }
 
-/// A step that is asked for twice counts once.
+/// A step that is requested twice counts once.
 #[test]
 fn a_doubled_cycle_changes_nothing() {
     let once = poses(begun(0.0), |life| drop(life.cycle()));
@@ -41,7 +41,7 @@ fn a_doubled_cycle_changes_nothing() {
     assert_eq!(once, twice);
 }
 
-/// An observation in pieces, as topics arrive, is the same as one of all.
+/// An observation in pieces, as from separate topics, is equivalent to a complete one.
 #[test]
 fn observations_may_come_in_pieces() {
     let whole = poses(begun(0.0), |life| drop(life.cycle()));
@@ -54,7 +54,7 @@ fn observations_may_come_in_pieces() {
     assert_eq!(whole, in_pieces);
 }
 
-/// Cycles of twice and thrice the time that the robot is made for, in turn.
+/// Cycles of alternately two and three times the robot's cycle time.
 #[test]
 fn late_cycles_drive_as_far() {
     let mut life = begun(0.0);
@@ -86,10 +86,10 @@ fn time_does_not_run_back() {
         "{why}"
     );
     life.obey(Velocity::ZERO);
-    // As if nothing had been, when the clock is right again.
+    // When the clock is correct again, the robot continues as before.
     life.stamp_s = before + 0.2;
     assert!(matches!(life.cycle(), Step::Drive(_)));
-    // A clock that begins anew is said so.
+    // A clock restart is announced.
     life.navigator.restart_clock();
     life.stamp_s = 0.0;
     assert!(matches!(life.cycle(), Step::Drive(_)));
@@ -99,8 +99,8 @@ fn time_does_not_run_back() {
     assert_eq!(step, Step::Blocked { command: Velocity::ZERO, why: Blocked::BadInput("stamp_s") });
 }
 
-/// No observation any more, while somebody still asks for commands; or scans, but no pose; or the
-/// last observation again and again.
+/// No more observations while commands are still requested; or scans, but no pose; or the last
+/// observation repeatedly.
 #[test]
 fn a_robot_that_is_not_told_where_it_is_stops() {
     for told in ["nothing", "scans", "the same again"] {
@@ -131,7 +131,7 @@ fn a_robot_that_is_not_told_where_it_is_stops() {
     }
 }
 
-/// A time that is told at the step makes the pose older; one that says nothing new changes nothing.
+/// A time at the step makes the pose older; a time without new information changes nothing.
 #[test]
 fn the_time_may_be_told_at_the_step() {
     let expected = poses(begun(0.0), |life| drop(life.cycle()));
@@ -154,7 +154,8 @@ fn the_time_may_be_told_at_the_step() {
     assert!((age_s - 0.6).abs() < 1e-6, "{age_s}");
 }
 
-/// A scan that is 0.2 s late, made while the robot turned, is put where the robot was.
+/// A scan that is 0.2 s late, taken while the robot turned, is placed by the robot's pose at that
+/// time.
 #[test]
 fn a_late_scan_is_put_where_it_was_made() {
     let sensed = |late_cycles: usize| {

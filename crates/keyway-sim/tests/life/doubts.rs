@@ -1,4 +1,4 @@
-//! Inputs that contradict each other are noticed, and true ones are not.
+//! Contradictory inputs are noticed, and true ones cause no doubts.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
@@ -14,7 +14,7 @@ fn driving() -> RobotInAWorld {
     life
 }
 
-/// The cycles until something is doubted, of a robot that is told and driven in a way of its own.
+/// Number of cycles until the first doubt, with given reported poses and velocities.
 fn noticed(
     life: &mut RobotInAWorld,
     told: impl Fn(&RobotInAWorld, u32) -> (Pose, Velocity),
@@ -44,7 +44,7 @@ fn what_is_true_is_not_doubted() {
         life.cycle();
         assert_eq!(life.navigator.doubts(), [], "{:?}", life.pose);
     }
-    // Braking, standing, turning and starting again.
+    // Braking, stopping, turning and starting again.
     life.navigator.cancel();
     life.drive_for(4.0);
     life.navigator.spin(3.0, 30.0).unwrap();
@@ -97,7 +97,7 @@ fn a_scan_that_is_given_again_is_noticed() {
         let expected: &[Doubt] =
             if cycle == 0 { &[] } else { &[Doubt::ScanRepeated { sensor: 0 }] };
         assert_eq!(life.navigator.doubts(), expected, "{cycle}");
-        // The post stays where it was seen.
+        // The post keeps its position.
         let seen = life.navigator.sensed().clone();
         assert_eq!(*sensed.get_or_insert(seen), *life.navigator.sensed(), "{cycle}");
         life.navigator.step();
@@ -107,8 +107,8 @@ fn a_scan_that_is_given_again_is_noticed() {
     assert_eq!(life.navigator.doubts(), [], "it is over");
 }
 
-/// Between two walls that go on for ever, a scan without noise is the same everywhere: that is no
-/// silence.
+/// Between two endless parallel walls, a scan without noise is the same everywhere: the sensor is
+/// not silent.
 #[test]
 fn a_corridor_that_is_all_alike_is_driven_through() {
     let map = hall(|place| !(3.5..4.5).contains(&place.y));
@@ -126,8 +126,8 @@ fn a_corridor_that_is_all_alike_is_driven_through() {
     assert!(life.pose.x > 6.0, "{:?}", life.pose);
 }
 
-/// The localisation jumps by 0.3 m and 10 degrees: that is named, and the post stays beside the
-/// robot.
+/// The localisation jumps by 0.3 m and 10 degrees: the jump is reported, and the post keeps its
+/// position relative to the robot.
 #[test]
 fn a_jump_is_noticed_and_what_was_sensed_goes_with_it() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
@@ -141,14 +141,14 @@ fn a_jump_is_noticed_and_what_was_sensed_goes_with_it() {
     let face = Point::new(4.8, 4.0);
     assert!(sensed_there(&life, face) >= 3);
     life.told = |pose| Pose::new(pose.x - 0.2, pose.y + 0.22, pose.theta + 0.17);
-    // Without a scan, so that all that is sensed there is what was sensed before.
+    // Without a scan, so that all cells sensed there are from before.
     let (stamp_s, velocity, pose) = (life.stamp_s, life.velocity, (life.told)(life.pose));
     life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &[]));
     let [Doubt::PoseJumped { by_m, by_rad }] = life.navigator.doubts() else { panic!() };
     assert!((by_m - 0.297).abs() < 0.01 && (by_rad - 0.17).abs() < 1e-9, "{by_m} {by_rad}");
     let moved = pose.world_from_body(life.pose.body_from_world(face));
     assert!(sensed_there(&life, moved) >= 3 && sensed_there(&life, face) == 0);
-    // And right again.
+    // Back to the correct pose.
     life.told = |pose| pose;
     life.cycle();
     assert!(sensed_there(&life, face) >= 3);

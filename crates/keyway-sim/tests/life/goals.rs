@@ -1,4 +1,4 @@
-//! Goals come and go.
+//! Goals change and are cancelled.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
@@ -25,7 +25,8 @@ fn a_goal_needs_a_place() {
     assert_eq!(step, Step::Blocked { command: Velocity::ZERO, why: Blocked::NothingObserved });
 }
 
-/// A goal that changes every 3 s, five times: the rest takes about as long as from a stand there.
+/// A goal that changes every 3 s, five times: the last one takes about as long as from rest
+/// there.
 #[test]
 fn goals_may_change_on_the_way() {
     let map = hall(wall_with_doors(&[2.0, 6.0]));
@@ -45,7 +46,7 @@ fn goals_may_change_on_the_way() {
     assert!(changed_s <= 1.1 * fresh_s, "{changed_s} {fresh_s}");
 }
 
-/// The next goal finds known what was sensed on the way to the last one.
+/// Obstacles sensed on the route to the last goal are known for the next one.
 #[test]
 fn what_was_sensed_lives_on() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -56,7 +57,7 @@ fn what_was_sensed_lives_on() {
     assert!(sensed > 3);
     life.navigator.set_goal(Point::new(9.0, 4.0)).unwrap();
     assert_eq!(life.navigator.sensed().count_ones(), sensed);
-    // The very first route leads around the post.
+    // The first route already leads around the post.
     let route = life.navigator.route().unwrap().smoothed.clone();
     let nearest_sq = route.segments().map(|leg| leg.distance_sq_to_point(Point::new(4.0, 4.0)));
     assert!(nearest_sq.fold(f64::INFINITY, f64::min) > 0.16);
@@ -77,7 +78,7 @@ fn a_goal_that_is_refused_changes_nothing() {
     life.arrive();
 }
 
-/// Somebody stands on the goal when it is given: the robot sets out all the same.
+/// An obstacle is on the goal when it is set: the robot starts nevertheless.
 #[test]
 fn a_goal_on_which_something_stands_is_kept() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -102,7 +103,7 @@ fn cancel_brakes_and_a_later_goal_is_driven_to() {
     while life.cycle() != Step::Idle {
         cycles += 1;
     }
-    // As fast as its brakes are, and no faster.
+    // As fast as the robot's brakes allow.
     let needed = v / (life.robot.limits.deceleration_mps2 * life.robot.cycle_s);
     assert!((f64::from(cycles) - needed).abs() <= 1.5, "{cycles} {needed}");
     life.navigator.set_goal(Point::new(2.0, 4.0)).unwrap();
@@ -123,7 +124,7 @@ fn way_points_are_passed_in_order() {
     assert!(passed.len() == 2 && passed.iter().zip(via).all(|(at, to)| at.distance(to) < 0.3));
 }
 
-/// The search as a value gives what the search at once gives, whatever was done meanwhile.
+/// The deferred search gives the same result as the immediate one, whatever is done in between.
 #[test]
 fn a_route_may_be_searched_while_it_drives() {
     let map = hall(wall_with_doors(&[2.0, 6.0]));
@@ -144,7 +145,7 @@ fn a_route_may_be_searched_while_it_drives() {
     later.navigator.accept(planned).unwrap();
     assert_eq!(at_once.navigator.route(), later.navigator.route());
     assert_eq!(at_once.arrive(), later.arrive());
-    // The robot drives on while somebody searches, and then from where it is.
+    // The robot continues during a search; the route then begins at its current pose.
     let mut driving = begin();
     let job = driving.navigator.plan_job(&[], goal).unwrap();
     driving.drive_for(2.0);
@@ -152,7 +153,7 @@ fn a_route_may_be_searched_while_it_drives() {
     let start = driving.navigator.route().unwrap().smoothed.points()[0];
     assert!(start.distance(driving.pose.point()) < 0.1, "{start:?}");
     driving.arrive();
-    // A search that fails leaves the goal as it is.
+    // A failed search leaves the goal unchanged.
     let mut refused = begin();
     let job = refused.navigator.plan_job(&[], Point::new(6.0, 4.0)).unwrap();
     assert!(refused.navigator.accept(job.run()).is_err());
@@ -171,7 +172,7 @@ fn a_path_from_elsewhere_is_followed() {
     }
     assert!(nearest_m < 1.0, "not the straight way: {nearest_m}");
     assert!(life.pose.point().distance(Point::new(10.0, 4.0)) < 0.2);
-    // Something on the path is driven around.
+    // An obstacle on the path is avoided.
     let mut blocked = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
     blocked.posts = vec![Disc::new(Point::new(5.0, 6.25), 0.4)];
     blocked.navigator.follow(path).unwrap();

@@ -1,4 +1,4 @@
-//! A robot with limits of jerk, whatever it is asked.
+//! A robot with jerk limits in all situations.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Point, Pose, Velocity, wrap_angle};
@@ -7,7 +7,7 @@ use keyway::robot::Robot;
 use keyway::sense::Observation;
 use keyway_sim::metrics::CommandJerk;
 
-/// The small robot, which averages ten commands and is 0.45 s late.
+/// The small robot, which averages ten commands and has a lag of 0.45 s.
 fn gentle() -> Robot {
     let mut robot = Robot::small();
     robot.limits.v_min_mps = -0.3;
@@ -28,7 +28,7 @@ impl Gentle {
         Self { life: RobotInAWorld::of(robot, &hall(wall_with_doors(&[4.0])), pose), jerk }
     }
 
-    /// One cycle, in which its limits are kept.
+    /// Runs one cycle and checks the limits.
     fn cycle(&mut self) -> Step {
         let step = self.life.cycle();
         self.check(step.command());
@@ -41,7 +41,7 @@ impl Gentle {
         assert!(self.jerk.max_radps3() <= 6.0 + 1e-9, "{command:?} {}", self.jerk.max_radps3());
     }
 
-    /// Drives until a step is given; how many cycles that took.
+    /// Drives until a given step; returns the number of cycles.
     fn until(&mut self, wanted: &Step) -> u32 {
         let mut cycles = 0;
         while self.cycle() != *wanted {
@@ -73,7 +73,7 @@ fn it_turns_drives_and_backs_up_exactly() {
     assert!(robot.life.pose.point().distance(turned.point()) < 0.02, "{:?}", robot.life.pose);
 }
 
-/// Goals change and end on the way, and the robot arrives where it stands.
+/// Goals change and are cancelled during the run, and the robot is stationary when it arrives.
 #[test]
 fn goals_change_and_end_on_the_way() {
     let mut robot = Gentle::new(Pose::new(2.0, 4.0, 0.0));
@@ -89,7 +89,7 @@ fn goals_change_and_end_on_the_way() {
     assert!(robot.life.pose.point().distance(Point::new(10.0, 5.0)) < 0.2);
 }
 
-/// Without knowledge it goes on with the motion that was found to touch nothing.
+/// Without observations it continues the motion that was found free of collisions.
 #[test]
 fn it_stops_within_its_limits_where_nothing_is_known() {
     let mut robot = Gentle::new(Pose::new(2.0, 4.0, 0.0));
@@ -110,9 +110,9 @@ fn it_stops_within_its_limits_where_nothing_is_known() {
         cycles += 1;
         assert!(cycles < 40);
     }
-    // Ten cycles of braking, and nine that are averaged.
+    // Ten cycles of braking, and nine of averaging.
     assert_eq!(cycles, 19);
-    // Nor is a pose that is long ago a reason to jerk.
+    // An old pose does not cause jerk either.
     robot.until(&Step::Arrived);
 }
 
@@ -129,7 +129,7 @@ fn a_pose_that_gets_old_is_no_reason_to_jerk() {
     assert_eq!(robot.life.velocity, Velocity::ZERO);
 }
 
-/// Somebody stops the robot, and lets it go again: it begins at rest, and keeps its limits.
+/// The robot is stopped externally and released: it begins at rest, and keeps its limits.
 #[test]
 fn a_robot_that_was_stopped_begins_at_rest() {
     let mut robot = Gentle::new(Pose::new(2.0, 4.0, 0.0));
@@ -149,7 +149,7 @@ fn a_robot_that_was_stopped_begins_at_rest() {
     robot.until(&Step::Arrived);
 }
 
-/// It can be stored while it drives, and gives the same commands.
+/// The navigator can be stored during the run, and gives the same commands.
 #[test]
 fn what_is_averaged_is_stored() {
     let mut robot = Gentle::new(Pose::new(2.0, 4.0, 0.0));
@@ -160,7 +160,7 @@ fn what_is_averaged_is_stored() {
     let mut other = Navigator::restore(ciborium::from_reader(&bytes[..]).unwrap()).unwrap();
     std::mem::swap(&mut robot.life.navigator, &mut other);
     let again: Vec<Velocity> = (0..40).map(|_| robot.cycle().command()).collect();
-    // The other one drives the same way.
+    // The other one drives the same commands.
     let mut twin = Gentle::new(Pose::new(2.0, 4.0, 0.0));
     twin.life.navigator.set_goal(Point::new(10.0, 5.0)).unwrap();
     twin.drive(15);

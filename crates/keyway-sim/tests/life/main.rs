@@ -1,4 +1,4 @@
-//! The life of a navigator: goals, maps, limits and clocks change while the robot drives.
+//! Navigators in continuous use: goals, maps, limits and clocks change while the robot drives.
 #![allow(clippy::unwrap_used)]
 
 mod acts;

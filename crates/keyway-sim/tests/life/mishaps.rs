@@ -1,4 +1,4 @@
-//! Gaps, foreign clocks, corrections at bad moments: what happens to robots that live long.
+//! Time gaps, foreign clocks and corrections at bad moments in long-running navigators.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity, wrap_angle};
@@ -9,14 +9,14 @@ use keyway::sense::{Observation, Scan, SensorScan};
 use keyway_sim::sim::{MovingObstacle, World};
 use std::sync::Arc;
 
-/// Cells that are sensed near a place.
+/// Counts the sensed cells near a position.
 fn sensed_near(life: &RobotInAWorld, place: Point, within_m: f64) -> usize {
     let (frame, sensed) = (*life.navigator.map().frame(), life.navigator.sensed());
     let cells = frame.cells().filter(|&cell| sensed.get(cell));
     cells.filter(|&cell| frame.world_from_cell(cell).distance(place) < within_m).count()
 }
 
-/// The robot has stopped while nobody said anything: what it had sensed stays.
+/// The robot has stopped during a gap in the observations: what it had sensed stays.
 #[test]
 fn a_gap_is_no_jump() {
     for gap_s in [0.5, 1.0, 10.0] {
@@ -36,7 +36,8 @@ fn a_gap_is_no_jump() {
     }
 }
 
-/// A low lidar meets a box over which the high one looks; their stamps differ, and in either order.
+/// A low lidar detects a box below the beams of the high one; their stamps differ, in either
+/// order.
 #[test]
 fn one_lidar_does_not_erase_what_the_other_meets() {
     let mut robot = Robot::small();
@@ -63,7 +64,7 @@ fn one_lidar_does_not_erase_what_the_other_meets() {
             let sensed = navigator.sensed().count_ones();
             assert!(cycle == 0 || sensed > 2, "{high_is_first} {cycle} {sensed}");
         }
-        // The box is taken away: the low one sees that.
+        // The box is removed, and the low lidar detects that.
         for cycle in 10..13 {
             let stamp_s = 0.1 * f64::from(cycle);
             let scans = [0, 1].map(|sensor| SensorScan::of(&robot, sensor, stamp_s, &high));
@@ -78,8 +79,8 @@ fn keep_out(x: f64, y: f64, side_m: f64) -> Arc<OccupancyGrid> {
     Arc::new(OccupancyGrid::from_fn(frame, |_| CellState::Occupied))
 }
 
-/// A box and a walker on ground to keep out of are seen, and the box still is there when the ground
-/// is allowed again.
+/// A box and a pedestrian in a keep-out zone are sensed, and the box is still mapped after the
+/// zone is removed.
 #[test]
 fn ground_to_keep_out_of_hides_nobody() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -106,7 +107,7 @@ fn ground_to_keep_out_of_hides_nobody() {
     assert!(!life.navigator.is_path_valid(&path));
 }
 
-/// The lidar's driver stamps by another clock.
+/// The lidar's driver uses another clock for its stamps.
 #[test]
 fn scans_from_the_future_are_none() {
     for ahead_s in [1.7e9, 3600.0, 0.6] {
@@ -128,7 +129,7 @@ fn scans_from_the_future_are_none() {
     }
 }
 
-/// A correction is no motion of an act: what is left of it stays.
+/// A correction of the pose is not motion of an act: the rest of the act stays.
 #[test]
 fn a_correction_does_not_shorten_an_act() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
@@ -152,12 +153,12 @@ fn a_correction_does_not_shorten_an_act() {
     life.arrive();
     let more_rad = wrap_angle(life.pose.theta - again_rad);
     assert!((turned_rad + more_rad - 2.0).abs() < 0.02, "{turned_rad} {more_rad}");
-    // Nor does a pose that is none.
+    // An invalid pose does not count either.
     life.navigator.relocate(Pose { x: f64::NAN, ..life.pose });
     assert_eq!(life.cycle(), Step::Arrived);
 }
 
-/// Nobody has asked for a step for a while: an act has all of its time.
+/// Without steps for a while, an act still has all of its time.
 #[test]
 fn idle_time_is_not_that_of_an_act() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
@@ -168,7 +169,7 @@ fn idle_time_is_not_that_of_an_act() {
     life.arrive();
 }
 
-/// Parked and observing for a long time, it does not grow.
+/// The size of a parked navigator that only observes does not grow.
 #[test]
 fn who_only_observes_does_not_grow() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 4.0, 0.0));
@@ -192,7 +193,7 @@ fn who_only_observes_does_not_grow() {
             sizes.push(bytes(&life.navigator));
         }
     }
-    // A list of all that has ever changed would be of several megabytes.
+    // A list of all changes would take several megabytes.
     assert!(sizes.iter().all(|&size| size < 500_000), "{sizes:?}");
 }
 
@@ -204,7 +205,7 @@ fn a_path_is_kept_where_nothing_is_in_the_way() {
     let mut life = RobotInAWorld::new(&map, Pose::new(2.0, 4.0, 0.8));
     life.navigator.follow(path.clone()).unwrap();
     life.drive_for(3.0);
-    // Something changes far away, and the localisation is corrected by a little.
+    // A cell changes far away, and the localisation is corrected slightly.
     let far = map.frame().cell_near(Point::new(6.0, 1.0));
     life.navigator.edit_map(&[Edit { cell: far, state: CellState::Occupied }]);
     life.pose = Pose::new(life.pose.x + 0.05, life.pose.y, life.pose.theta);
@@ -214,7 +215,7 @@ fn a_path_is_kept_where_nothing_is_in_the_way() {
         route.segments().any(|leg| leg.distance_sq_to_point(Point::from(place)) < 0.01)
     };
     assert!(passes(&life, [6.0, 6.5]) && passes(&life, [8.0, 6.5]));
-    // A wall across it: the rest is another way.
+    // A wall across the path: the rest is replanned.
     let wall: Vec<Edit> = (100..159)
         .map(|y| Edit { cell: keyway::map::Cell::new(140, y), state: CellState::Occupied })
         .collect();
@@ -225,7 +226,7 @@ fn a_path_is_kept_where_nothing_is_in_the_way() {
     life.arrive();
 }
 
-/// A loop ends after the loop, and a path far away is refused.
+/// A closed path ends after the whole loop, and a path far away is refused.
 #[test]
 fn a_loop_is_driven_before_it_ends() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(3.0, 2.0, 0.0));
@@ -235,14 +236,14 @@ fn a_loop_is_driven_before_it_ends() {
     };
     life.navigator.follow(path(&corners)).unwrap();
     let took_s = life.arrive();
-    // 20 m, less what is cut at the corners, at 0.5 m/s.
+    // 20 m at 0.5 m/s, minus the parts cut at the corners.
     assert!(took_s > 25.0, "{took_s}");
     let refused = life.navigator.follow(path(&[[9.0, 6.0], [3.0, 6.0]])).unwrap_err();
     assert!(matches!(refused, NavigateError::PathFarAway { .. }), "{refused}");
     assert!(refused.to_string().contains("drive to its beginning first"), "{refused}");
 }
 
-/// A door closes while the route is searched.
+/// A door closes during the search for a route.
 #[test]
 fn a_route_of_another_map_is_not_taken() {
     let (both, upper) = (hall(wall_with_doors(&[2.0, 6.5])), hall(wall_with_doors(&[6.5])));
@@ -273,7 +274,7 @@ fn an_explanation_is_of_the_speed_limit() {
     assert!(life.navigator.explain().candidates.is_empty(), "something has changed since");
 }
 
-/// On open ground it leads straight on, as fast as the robot drives.
+/// On open ground the trajectory leads straight on at the robot's full speed.
 #[test]
 fn a_course_is_that_of_the_last_decision() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -291,7 +292,7 @@ fn a_course_is_that_of_the_last_decision() {
     assert!(life.navigator.course().is_empty(), "something has changed since");
 }
 
-/// A clock that begins anew has no doubts of before, and a route from where the robot then is.
+/// A restarted clock clears earlier doubts and replans the route from the current pose.
 #[test]
 fn a_clock_that_begins_anew_begins_anew() {
     let mut life =
@@ -325,7 +326,7 @@ fn a_place_that_is_none_moves_nothing() {
     assert!(Navigator::restore(life.navigator.snapshot()).is_ok());
 }
 
-/// A navigator that has refused an observation says the same after it was restored.
+/// A navigator that has refused an observation gives the same refusal after it is restored.
 #[test]
 fn a_refusal_is_restored() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
@@ -344,7 +345,7 @@ fn a_refusal_is_restored() {
     }
 }
 
-/// Ground to keep out of is no wall: what was sensed on it is known when it is open again.
+/// A keep-out zone is not a wall: cells sensed in it are known when it is open again.
 #[test]
 fn what_was_sensed_on_forbidden_ground_is_restored() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));

@@ -23,7 +23,7 @@ fn a_robot_drives_around_what_only_its_camera_sees() {
     assert!(took_s < 18.0, "{took_s}");
 }
 
-/// So the other test tests something.
+/// Checks that the other test is effective.
 #[test]
 #[should_panic(expected = "Pose {")]
 fn without_its_camera_it_would_touch_that() {
@@ -32,7 +32,7 @@ fn without_its_camera_it_would_touch_that() {
     life.arrive();
 }
 
-/// Its lidar looks over the post, and the camera sees it gone.
+/// The lidar's beams pass over the post, and the camera detects that it is gone.
 #[test]
 fn the_camera_alone_clears_what_it_has_met() {
     let mut life = with_a_low_post();
@@ -45,7 +45,7 @@ fn the_camera_alone_clears_what_it_has_met() {
     assert!(met > 5, "{met}");
     let look = |life: &mut RobotInAWorld, turned_rad: f64, camera| {
         (life.pose.theta, life.camera) = (turned_rad, camera);
-        // It has had time to turn.
+        // The robot has had time to turn.
         life.stamp_s += 2.0;
         for _ in 0..5 {
             life.observe();
@@ -63,7 +63,7 @@ fn the_camera_alone_clears_what_it_has_met() {
     assert_eq!(look(&mut life, 0.0, Some(VIEW)), 0);
 }
 
-/// A bumper only marks; somebody has to say that what it met is gone.
+/// A bumper only marks; its marks stay until they are cleared by a call.
 #[test]
 fn what_a_bumper_has_met_stays_until_it_is_forgotten() {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(4.0, 4.0, 0.0));
@@ -119,7 +119,7 @@ fn points_are_put_where_the_robot_was_and_live_in_snapshots() {
     }
     assert_eq!(restored.unwrap().step(), Step::Arrived);
 
-    // Late ones, of a robot that has driven on.
+    // Late points, of a robot that has driven on.
     let mut life = with_a_low_post();
     life.navigator.set_goal(Point::new(9.0, 6.0)).unwrap();
     life.drive_for(2.0);

@@ -1,4 +1,4 @@
-//! All calls in any order.
+//! Random sequences of all calls.
 
 use super::robot_in_a_world::RobotInAWorld;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
@@ -8,7 +8,7 @@ use keyway::sense::{FieldOfView, Observation, Scan, SensorPoints, SensorScan};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// A call with some numbers: which, and two that it makes of them what it needs.
+/// A call: its number, and two numbers for its arguments.
 type Call = (u8, f64, f64);
 
 /// A room of 6 m x 4 m with a pillar, in cells of 10 cm.
@@ -21,7 +21,8 @@ fn room() -> OccupancyGrid {
     })
 }
 
-/// The same somewhere else, larger, and with another pillar: the robot sees what it really is.
+/// A different map, at another origin, larger, and with another pillar; the robot still senses
+/// the true room.
 fn other_room(x: f64, y: f64) -> OccupancyGrid {
     let frame = GridFrame::new(80, 60, 0.1, Pose::new(-1.0, -1.0, 0.0)).unwrap();
     OccupancyGrid::from_fn(frame, |cell| {
@@ -33,7 +34,7 @@ fn other_room(x: f64, y: f64) -> OccupancyGrid {
 fn call(life: &mut RobotInAWorld, (which, x, y): Call) {
     let place = Point::new(6.0 * x, 4.0 * y);
     let navigator = &mut life.navigator;
-    // Whatever is refused changes nothing.
+    // A refused call changes nothing.
     match which % 18 {
         0..=2 => drop(navigator.set_goal(place)),
         3 => drop(navigator.set_goals(&[Point::new(4.0 * y, 4.0 * x)], place)),
@@ -82,7 +83,7 @@ fn posts() -> impl Strategy<Value = Vec<Disc>> {
     let discs = prop::collection::vec(post, 0..4);
     discs.prop_map(|posts| {
         let disc = |(x, y, radius_m)| Disc::new(Point::new(x, y), radius_m);
-        // None stands where the robot begins.
+        // No post is at the robot's start.
         let away = |post: &Disc| post.centre.distance(Point::new(1.0, 1.0)) > post.radius_m + 0.3;
         posts.into_iter().map(disc).filter(away).collect()
     })
@@ -91,7 +92,7 @@ fn posts() -> impl Strategy<Value = Vec<Disc>> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
 
-    /// While poses and scans are true nothing is touched, whatever the map says.
+    /// With true poses and scans there is no contact, for any map.
     #[test]
     fn nothing_is_touched_whatever_is_called(calls in calls(), posts in posts()) {
         let mut life = RobotInAWorld::new(&room(), Pose::new(1.0, 1.0, 0.5));
@@ -106,7 +107,7 @@ proptest! {
         }
     }
 
-    /// Whatever is told, there is an answer within the limits.
+    /// For any inputs, there is a decision within the limits.
     #[test]
     fn false_values_never_panic_and_commands_keep_the_limits(
         calls in calls(),
@@ -118,7 +119,7 @@ proptest! {
         let mut stamp_s = 0.0;
         for (((one, cycles), &(x, y, v, theta, range_m)), ahead_s) in calls.into_iter().zip(&told).zip(ahead_s) {
             call(&mut life, one);
-            // Mostly onwards.
+            // Time mostly increases.
             stamp_s += if cycles == 7 { ahead_s } else { 0.3 };
             for cycle in 0..cycles.min(8) {
                 let ranges_m = vec![if cycle % 2 == 0 { range_m } else { f64::INFINITY }; 90];
@@ -153,7 +154,7 @@ proptest! {
     }
 }
 
-/// Mostly one that may be true.
+/// Mostly a plausible number.
 fn any_number(most: f64) -> impl Strategy<Value = f64> {
     prop_oneof![6 => 0.0..most, 1 => any::<f64>(), 1 => Just(f64::NAN), 1 => Just(f64::INFINITY)]
 }

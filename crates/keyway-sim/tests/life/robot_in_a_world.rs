@@ -7,7 +7,7 @@ use keyway::robot::Robot;
 use keyway::sense::{FieldOfView, Observation, SensorPoints, SensorScan};
 use keyway_sim::sim::World;
 
-/// A hall of 12 m x 8 m in cells of 5 cm, with walls around and some more cells.
+/// A hall of 12 m x 8 m in cells of 5 cm, with walls around it and further occupied cells.
 pub(crate) fn hall(is_wall: impl Fn(Point) -> bool) -> OccupancyGrid {
     let frame = GridFrame::new(240, 160, 0.05, Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |cell| {
@@ -25,7 +25,7 @@ pub(crate) fn wall_with_doors(doors_m: &'static [f64]) -> impl Fn(Point) -> bool
     }
 }
 
-/// Place of a camera: at its front, looking ahead.
+/// Mount of a camera: at the robot's front, pointing ahead.
 pub(crate) const CAMERA: Pose = Pose { x: 0.15, y: 0.0, theta: 0.0 };
 
 pub(crate) struct RobotInAWorld {
@@ -37,10 +37,10 @@ pub(crate) struct RobotInAWorld {
     /// The true map.
     pub(crate) truth: OccupancyGrid,
     pub(crate) posts: Vec<Disc>,
-    /// Posts that only its camera sees, if it has one.
+    /// Posts that only the camera detects, if there is one.
     pub(crate) low_posts: Vec<Disc>,
     pub(crate) camera: Option<FieldOfView>,
-    /// The pose that it is told, from the true one.
+    /// The reported pose as a function of the true one.
     pub(crate) told: fn(Pose) -> Pose,
 }
 
@@ -50,7 +50,7 @@ impl RobotInAWorld {
         Self::of(Robot::small(), map, pose)
     }
 
-    /// Another robot.
+    /// Another robot with the default stack, at rest.
     pub(crate) fn of(robot: Robot, map: &OccupancyGrid, pose: Pose) -> Self {
         let stack = Stack::keyway(&robot).fit(&robot).unwrap();
         let mut navigator = Navigator::new(map, &stack).unwrap();
@@ -61,7 +61,7 @@ impl RobotInAWorld {
         Self { robot, navigator, pose, velocity, stamp_s, truth, posts, low_posts, camera, told }
     }
 
-    /// Measures, and tells the navigator.
+    /// Measures, and passes the observation to the navigator.
     pub(crate) fn observe(&mut self) {
         let world = World::from_known(&self.truth, self.posts.clone()).unwrap();
         let scan = world.at(0.0).cast(self.pose, &self.robot.sensors[0]);
@@ -80,7 +80,7 @@ impl RobotInAWorld {
         self.navigator.observe(&observation.with_points(points.as_slice()));
     }
 
-    /// Points of the low posts that the camera sees, in its frame.
+    /// Points of the low posts that the camera detects, in its frame.
     pub(crate) fn seen_by_camera(&self) -> Vec<Point> {
         let camera = self.pose.compose(CAMERA);
         let Some(view) = self.camera else { return Vec::new() };
@@ -106,7 +106,7 @@ impl RobotInAWorld {
         near.map(|place| camera.body_from_world(place)).filter(in_view).collect()
     }
 
-    /// It drives for a cycle, and touches nothing.
+    /// Drives for a cycle, and checks that there is no contact.
     pub(crate) fn obey(&mut self, command: Velocity) {
         let Robot { limits, cycle_s, footprint, .. } = &self.robot;
         let reached = limits.reached(self.velocity, command, *cycle_s);
@@ -133,7 +133,7 @@ impl RobotInAWorld {
         (0..(duration_s / self.robot.cycle_s).round() as u32).for_each(|_| drop(self.cycle()));
     }
 
-    /// Drives until it has arrived; how long it took \[s\].
+    /// Drives until arrival; returns the time \[s\].
     pub(crate) fn arrive(&mut self) -> f64 {
         let begin_s = self.stamp_s;
         while self.cycle() != Step::Arrived {

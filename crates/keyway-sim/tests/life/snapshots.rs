@@ -1,4 +1,4 @@
-//! A navigator is stored and taken up again.
+//! Navigators are stored and restored.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use ciborium::Value;
@@ -12,7 +12,7 @@ use keyway_sim::sim::{
     simulate,
 };
 
-/// The same navigator from the bytes of another one.
+/// Restores a navigator from the bytes of another one.
 fn taken_up(navigator: &Navigator) -> Navigator {
     let mut bytes = Vec::new();
     ciborium::into_writer(&navigator.snapshot(), &mut bytes).unwrap();
@@ -27,7 +27,7 @@ struct Case {
     goal: Point,
 }
 
-/// Something is in the way in every case: posts that nobody has mapped, walkers, a door.
+/// Drives with obstacles on the route in every case: unmapped posts, walkers, a door.
 fn drive(case: &Case, map: &OccupancyGrid, is_stored: bool) -> Run {
     let Case { robot, stack, disturbances, goal } = case;
     let walker = |from: [f64; 2], velocity: [f64; 2]| {
@@ -64,7 +64,7 @@ fn drive(case: &Case, map: &OccupancyGrid, is_stored: bool) -> Run {
     simulate(&world, &mut [participant]).unwrap().remove(0)
 }
 
-/// Stored and taken up in every cycle, twenty runs are the same to the last bit.
+/// Stored and restored in every cycle, twenty runs are bitwise the same.
 #[test]
 fn a_run_that_is_stored_in_every_cycle_is_the_same() {
     let map = hall(wall_with_doors(&[2.0, 6.0]));
@@ -87,7 +87,7 @@ fn a_run_that_is_stored_in_every_cycle_is_the_same() {
         for name in ["keyway", "key-point-fusion", "s4-guided"] {
             let usual = Stack::by_name(name, &robot).unwrap();
             for disturbances in [Disturbances::default(), noisy.clone()] {
-                // The last one behind the stop rule.
+                // The last stack has the stop rule.
                 let stack = if name == "s4-guided" {
                     usual.clone().with_stop_rule(&robot)
                 } else {
@@ -105,7 +105,7 @@ fn a_run_that_is_stored_in_every_cycle_is_the_same() {
     assert!(runs >= 20 && reached > 0, "{runs} {reached}");
 }
 
-/// Acts, limits, masks and waiting are stored, too.
+/// Acts, limits, masks and waiting are also stored.
 #[test]
 fn whatever_it_does_goes_on() {
     let map = hall(wall_with_doors(&[2.0]));
@@ -175,7 +175,7 @@ fn what_is_no_snapshot_is_refused() {
     assert!(restored("world.map.occupied.runs", runs).is_err());
 }
 
-/// The part of a stored value at a path of names.
+/// Returns the part of a stored value at a path of names.
 fn part_of<'a>(value: &'a mut Value, path: &str) -> &'a mut Value {
     path.split('.').fold(value, |value, name| {
         let entries = value.as_map_mut().unwrap();

@@ -1,10 +1,10 @@
-//! Way-points that cannot be reached.
+//! Unreachable way-points.
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose};
 use keyway::navigate::{Blocked, IfWayPointBlocked, Navigator, Stack, Step};
 
-/// A post stands on the first of two way-points.
+/// A post on the first of two way-points.
 fn with(if_blocked: IfWayPointBlocked) -> RobotInAWorld {
     let mut life = RobotInAWorld::new(&hall(|_| false), Pose::new(2.0, 4.0, 0.0));
     let mut stack = Stack::keyway(&life.robot);
@@ -18,7 +18,7 @@ fn with(if_blocked: IfWayPointBlocked) -> RobotInAWorld {
     life
 }
 
-/// Drives there; its least distances from the two way-points.
+/// Drives to the goal; returns the smallest distances from the two way-points.
 fn nearest_m(life: &mut RobotInAWorld) -> [f64; 2] {
     let mut nearest_m = [f64::INFINITY; 2];
     while life.cycle() != Step::Arrived {
@@ -34,7 +34,7 @@ fn nearest_m(life: &mut RobotInAWorld) -> [f64; 2] {
 fn it_passes_near_by() {
     let mut life = with(IfWayPointBlocked::PassNear);
     let [first_m, second_m] = nearest_m(&mut life);
-    // As near as the post and its own size let it.
+    // As near as the post and the robot's size allow.
     assert!(first_m < 0.3 + 0.18 + 0.35 && second_m < 0.2, "{first_m} {second_m}");
     assert_eq!(
         (life.navigator.way_points_passed(), life.navigator.way_points_skipped()),
@@ -64,7 +64,7 @@ fn it_waits() {
     nearest_m(&mut life);
 }
 
-/// A way-point behind a door that has closed is skipped: near by there is no way either.
+/// A way-point behind a closed door is skipped, because positions near it are unreachable, too.
 #[test]
 fn what_is_not_near_by_is_skipped() {
     let open = hall(wall_with_doors(&[4.0]));

@@ -1,4 +1,4 @@
-//! Writing a file so that a reader sees the old content or the new, never a part.
+//! Atomic writing: a reader sees the old content or the new content, never a part.
 
 use crate::file_error::WriteError;
 use std::ffi::OsString;
@@ -6,30 +6,30 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Temporary files that one file may have at once: one for each program that is writing it.
+/// Maximum number of temporary files of one file: one for each program that is writing it.
 const TEMPORARY_FILES: u32 = 16;
 
-/// Writes `bytes` to a temporary file in the same folder and renames it to `path`, replacing what
-/// was there (its permissions are kept; a symbolic link is replaced, not followed). What is neither
-/// a file nor a folder (a device, a pipe) is written to, as it cannot be replaced.
+/// Writes `bytes` to a temporary file in the same folder and renames it to `path`, replacing the
+/// previous file (its permissions are kept; a symbolic link is replaced, not followed). A device
+/// or a pipe cannot be replaced, so it is written to directly.
 ///
-/// Temporary files of `path` that a killed program has left are removed.
+/// Temporary files of `path` that a killed program left behind are removed.
 ///
 /// # Errors
-/// When the folder does not exist or cannot be written, or `path` is a folder. The temporary file
-/// is removed.
+/// Returns [`WriteError`] if the folder does not exist or cannot be written, or if `path` is a
+/// folder. The temporary file is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     Staged::new(path, bytes)?.commit()
 }
 
-/// A content that is complete on the disk, and has yet to get its name. Until then, dropping it
+/// Content that is complete on the disk, but does not have its name yet. Dropping it until then
 /// leaves everything as it was.
 #[derive(Debug)]
 pub(crate) struct Staged<'a> {
     path: &'a Path,
     bytes: &'a [u8],
     /// `None` for a device, which is written to when the others are renamed. The file stays open,
-    /// and so locked, until it has its name.
+    /// and therefore locked, until it has its name.
     temporary: Option<(PathBuf, File)>,
 }
 
@@ -60,17 +60,17 @@ impl<'a> Staged<'a> {
 impl Drop for Staged<'_> {
     fn drop(&mut self) {
         if let Some((temporary, _)) = &self.temporary {
-            // The first failure is the one to report; a left-over file is the lesser evil.
+            // The first failure is the one to report; a leftover file is the lesser evil.
             let _ = fs::remove_file(temporary);
         }
     }
 }
 
-/// Checks whether [`write_atomically`] could write `path`, and leaves everything as it is. To be
-/// called before a long computation, so that its result is not lost.
+/// Checks that [`write_atomically`] could write `path`, and leaves everything as it is. Call it
+/// before a long computation, so that the result is not lost.
 ///
 /// # Errors
-/// As for [`write_atomically`]. That the disk may be full is found only when the file is written.
+/// As for [`write_atomically`]. A full disk is detected only when the file is written.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let failed = |reason| WriteError { path: path.to_owned(), reason };
     if is_device(path) {
@@ -84,7 +84,7 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     fs::remove_file(temporary).map_err(failed)
 }
 
-/// Removes the temporary files of `path` that a killed program has left. Those that a running
+/// Removes the temporary files of `path` that a killed program left behind. Files that a running
 /// program is writing are locked, and stay.
 pub fn remove_leftovers(path: &Path) {
     for temporary in (0..TEMPORARY_FILES).filter_map(|number| temporary_path(path, number)) {
@@ -93,13 +93,13 @@ pub fn remove_leftovers(path: &Path) {
         }
         let Ok(left) = OpenOptions::new().write(true).open(&temporary) else { continue };
         if left.try_lock().is_ok() {
-            // One that cannot be removed is passed over by writers.
+            // Writers skip a file that cannot be removed.
             let _ = fs::remove_file(&temporary);
         }
     }
 }
 
-/// What is neither a file nor a folder.
+/// True for an existing path that is neither a file nor a folder.
 fn is_device(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|stands| !stands.is_file() && !stands.is_dir())
 }
@@ -112,7 +112,7 @@ fn fill(file: &mut File, bytes: &[u8], path: &Path) -> io::Result<()> {
         }
         file.set_permissions(replaced.permissions())?;
     }
-    // Without this a power cut may leave the new name with no content.
+    // Without this, a power cut may leave the new name without content.
     file.sync_all()
 }
 
@@ -128,8 +128,8 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
             Err(taken) if taken.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
             Ok(file) => {
-                // Some file systems have no locks. Before the lock another program may have taken
-                // the file for a leftover.
+                // Some file systems have no locks. Before the file was locked, another program may
+                // have mistaken it for a leftover.
                 let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
                 if !is_taken && temporary.exists() {
                     return Ok((temporary, file));
@@ -141,7 +141,7 @@ fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     Err(io::Error::new(io::ErrorKind::AlreadyExists, message))
 }
 
-/// `.NAME.keyway-NUMBER.tmp` in the folder of NAME; `None` where the path does not end in a name.
+/// `.NAME.keyway-NUMBER.tmp` in the folder of NAME; `None` if the path does not end in a name.
 fn temporary_path(path: &Path, number: u32) -> Option<PathBuf> {
     let mut hidden = OsString::from(".");
     hidden.push(path.file_name()?);
@@ -193,7 +193,7 @@ mod tests {
         for name in [".a.txt.keyway-0.tmp", ".a.txt.keyway-7.tmp", ".b.txt.keyway-0.tmp"] {
             fs::write(folder.path(name), "left").unwrap();
         }
-        // Neither those of another file nor somebody else's.
+        // Neither temporary files of another file nor those of another program.
         fs::write(folder.path(".a.txt.0.tmp"), "foreign").unwrap();
         write_atomically(&folder.path("a.txt"), b"new").unwrap();
         assert_eq!(folder.names(), [".a.txt.0.tmp", ".b.txt.keyway-0.tmp", "a.txt"]);

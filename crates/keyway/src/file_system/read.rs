@@ -1,27 +1,26 @@
-//! Reading a file, but no more of it than it can sensibly hold.
+//! Reading a file up to a size limit.
 
 use crate::file_error::ReadError;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The most that is read from a pipe or a device, which say nothing about their size and may never
-/// end.
+/// Maximum size read from a pipe or a device, whose size is unknown and which may never end.
 const STREAM_BYTES: u64 = 256 << 20;
 
 /// Reads a whole file of at most `limit_bytes`. Pipes and devices are read as well, but never more
 /// than 256 MiB of them.
 ///
 /// # Errors
-/// When the file cannot be read, is a folder, or holds more.
+/// Returns [`ReadError`] if the file cannot be read, is a folder, or holds more.
 pub fn read_file(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ReadError> {
     read_file_if(path, limit_bytes, |_| Ok(()))
 }
 
-/// The beginning of a file, by which it is judged whether the rest is wanted \[bytes\].
+/// Length of the beginning of a file that decides if the rest is read \[bytes\].
 const HEAD_BYTES: u64 = 1 << 16;
 
-/// The same, if `check` allows it after a look at the beginning. Memory is taken only then.
+/// As [`read_file`], if `check` accepts the beginning. Memory for the rest is allocated only then.
 pub(crate) fn read_file_if<E: From<ReadError>>(
     path: &Path,
     limit_bytes: u64,

@@ -1,4 +1,4 @@
-//! Errors of files of robots, stacks and parameters.
+//! Errors of robot, stack and parameter files.
 
 use super::did_you_mean;
 use super::{TextFileError, TomlError};
@@ -8,14 +8,14 @@ use crate::robot::Robot;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Error of a robot or stack file: the file, and the fault.
+/// Error of a robot, stack or parameter file: the file, and the fault.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConfigFileError {
-    /// It cannot be read, or is no text.
+    /// The file cannot be read, or is not text.
     #[error(transparent)]
     File(#[from] TextFileError),
-    /// Not the description of a robot, or not a stack.
+    /// Not TOML, or not a description of a robot or a stack.
     #[error("{}: {reason}", path.display())]
     Toml {
         /// The file.
@@ -23,7 +23,7 @@ pub enum ConfigFileError {
         /// The fault.
         reason: TomlError,
     },
-    /// Neither the name of a bundled robot nor that of a file.
+    /// Neither a bundled robot nor a file.
     #[error(
         "there is no robot `{name}`, expected one of {}, or a file{}",
         Robot::NAMES.join(", "), did_you_mean(name, Robot::NAMES)
@@ -32,7 +32,7 @@ pub enum ConfigFileError {
         /// The name.
         name: String,
     },
-    /// Neither the name of a stack nor that of a file.
+    /// Neither a stack's name nor a file.
     #[error(
         "there is no stack `{name}`, expected one of {}, or a file{}",
         Stack::NAMES.join(", "), did_you_mean(name, Stack::NAMES)
@@ -41,7 +41,7 @@ pub enum ConfigFileError {
         /// The name.
         name: String,
     },
-    /// A value that cannot be used, or not with the robot.
+    /// An invalid value, or one that does not fit the robot.
     #[error("{}: {reason}", path.display())]
     Value {
         /// The file.
@@ -52,7 +52,7 @@ pub enum ConfigFileError {
 }
 
 impl ConfigFileError {
-    /// Path of the field that is to blame; empty where it is the file, or its name.
+    /// Path of the offending field; empty if it is the file, or its name.
     pub fn field(&self) -> &str {
         match self {
             Self::Toml { reason, .. } => &reason.field,

@@ -1,7 +1,7 @@
-//! Which name somebody may have meant who wrote another one.
+//! Suggestions for misspelt names.
 
-/// A question to end a message with that refuses a name: `; did you mean ...?` with the nearest of
-/// the names that there are. Nothing where none is near. Upper and lower case are alike.
+/// A suggestion to end an error message with that refuses a name: `; did you mean ...?` with the
+/// nearest of the existing names. Empty if none is near. Case is ignored.
 ///
 /// ```
 /// use keyway::files::did_you_mean;
@@ -10,7 +10,7 @@
 /// ```
 pub fn did_you_mean<'a>(given: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let given = given.to_lowercase();
-    // A letter in three may be wrong.
+    // A third of the letters may be wrong.
     let most = given.chars().count() / 3;
     let distance = |name: &str| strsim::osa_distance(&given, &name.to_lowercase());
     let near = names.into_iter().map(|name| (distance(name), name));

@@ -1,11 +1,11 @@
-//! Fields that a table does not give.
+//! Fields that are missing in a table.
 
 use toml::{Table, Value};
 
-/// Values that a robot file need not have.
+/// Field that a robot file may leave out.
 const OPTIONAL: &str = "actuation_delay_s";
 
-/// The fields of a whole table that another one does not give, as paths.
+/// The fields of a complete table that another table lacks, as paths.
 pub(super) fn missing_fields(whole: &Table, given: &Table) -> Vec<String> {
     fn walk(whole: &Table, given: Option<&Table>, path: &str, missing: &mut Vec<String>) {
         for (key, value) in whole {

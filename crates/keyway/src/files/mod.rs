@@ -1,8 +1,8 @@
-//! Robots, stacks and parameters as TOML that says where it is wrong.
+//! Robots, stacks and parameters as TOML, with errors that name the line and the field.
 //!
 //! [`robot_from_bytes`], [`stack_from_bytes`] and [`parameters_from_bytes`] read from memory. With
-//! the feature `files`, `read_robot`, `read_stack` and `read_parameters` do the same with files.
-//! Limits and errors are equal.
+//! the feature `files`, `read_robot`, `read_stack` and `read_parameters` read from files, with the
+//! same limits and errors.
 
 mod config_file_error;
 mod meant;

@@ -1,4 +1,4 @@
-//! Changes laid over a value: from a file, or one by one.
+//! Changes applied to a value: from a file, or one by one.
 
 use super::{did_you_mean, in_plain_words};
 use serde::Serialize;
@@ -7,19 +7,20 @@ use std::marker::PhantomData;
 use thiserror::Error;
 use toml::{Table, Value};
 
-/// The key that says which of several alternatives a table holds.
+/// The key that selects one of several alternatives in a table.
 const NAME: &str = "name";
 
-/// The default of a named alternative: from the path of a table and a name to the table, or to the
-/// names that there are.
+/// The default of a named alternative: maps the path of a table and a name to the table, or to the
+/// names that exist.
 pub type NamedDefault<'a> = &'a dyn Fn(&str, &str) -> Result<Table, Vec<&'static str>>;
 
-/// A value of type `T` as a tree, in which fields can be changed by their path, such as
+/// A value of type `T` as a tree. Its fields can be changed by their path, such as
 /// `limits.v_max_mps`, or `sensors[0].range_m` in an item of a list.
 ///
-/// A change may only replace what is there, or give a value to a field that has none. Every change
-/// is tried at once, so that an error names its field. A table with a `name` is one of several
-/// alternatives: when its name changes, the whole table becomes the default of the new name.
+/// A change may only replace an existing value, or set an optional field that has none. Every
+/// change is tried at once, so that an error names its field. A table with a `name` is one of
+/// several alternatives: a change of its name replaces the whole table by the default of the new
+/// name.
 pub struct Overlay<'a, T> {
     tree: Table,
     named: NamedDefault<'a>,
@@ -39,7 +40,7 @@ pub enum OverlayError {
     Unknown {
         /// The path.
         path: String,
-        /// The table in which it would be; empty for the whole.
+        /// The table that would contain it; empty for the root.
         parent: String,
         /// The fields of that table.
         names: Vec<String>,
@@ -52,23 +53,23 @@ pub enum OverlayError {
     Name {
         /// The field.
         path: String,
-        /// The names that there are.
+        /// The names that exist.
         names: Vec<&'static str>,
-        /// The one that was given.
+        /// The name that was given.
         got: String,
     },
-    /// The value cannot be one of this field.
+    /// The value is invalid for this field.
     #[error("`{path}`: {reason}")]
     Rejected {
         /// The field.
         path: String,
-        /// Why not.
+        /// Reason for the rejection.
         reason: String,
     },
 }
 
 impl OverlayError {
-    /// The field that is to blame, as a path.
+    /// Path of the offending field.
     pub fn path(&self) -> &str {
         match self {
             Self::Unknown { path, .. } | Self::Name { path, .. } | Self::Rejected { path, .. } => {
@@ -87,7 +88,7 @@ fn beside_text(parent: &str, names: &[String]) -> String {
     }
 }
 
-/// Which field of a table may have been meant by a path to another one.
+/// Suggests a field of a table for a path to a field that does not exist.
 fn field_meant(path: &str, names: &[String]) -> String {
     let given = path.rsplit('.').next().unwrap_or(path);
     did_you_mean(given, names.iter().map(String::as_str))
@@ -97,16 +98,16 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     /// The tree of a value.
     ///
     /// # Errors
-    /// When the value cannot be written as TOML.
+    /// Returns [`OverlayError`] if the value cannot be written as TOML.
     pub fn of(value: &T, named: NamedDefault<'a>) -> Result<Self, OverlayError> {
         let tree = Table::try_from(value).map_err(|error| rejected("", &error.to_string()))?;
         Ok(Self { tree, named, kind: PhantomData })
     }
 
-    /// Lays a tree over this one: names first, as they decide which fields there are.
+    /// Applies a tree of changes: names first, because they determine the fields.
     ///
     /// # Errors
-    /// Names the first field that cannot be changed so.
+    /// Names the first field that cannot be changed like this.
     pub fn merge(&mut self, changes: &Table) -> Result<(), OverlayError> {
         self.merge_at("", changes)
     }
@@ -122,13 +123,13 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     /// Changes one field, or all the fields that a table gives.
     ///
     /// # Errors
-    /// Names the field that cannot be changed so.
+    /// Names the field that cannot be changed like this.
     pub fn set(&mut self, path: &str, value: Value) -> Result<(), OverlayError> {
         let (parent_path, key) = path.rsplit_once('.').unwrap_or(("", path));
         if let Err(OverlayError::Unknown { path: absent, .. }) =
             table_at(&mut self.tree, parent_path)
         {
-            // A table that has no value gets one as a whole.
+            // A table without a value is set as a whole.
             let below = path[absent.len() + 1..].rsplit('.');
             let whole = below.fold(value, |inner, key| {
                 Value::Table(Table::from_iter([(key.to_owned(), inner)]))
@@ -152,7 +153,7 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
         self.value().map(drop).map_err(|reason| rejected(path, &reason))
     }
 
-    /// A field that is not there may be one that has no value: those are left out.
+    /// Adds an absent field, which may be an optional one without a value: those are left out.
     fn add(
         &mut self,
         path: &str,
@@ -195,7 +196,7 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
         T::deserialize(tree).map_err(|error: toml::de::Error| in_plain_words(error.message()))
     }
 
-    /// Which of several alternatives the table of a key holds.
+    /// The alternative that the table of a key holds.
     pub fn name_at(&self, key: &str) -> Option<&str> {
         self.tree.get(key)?.get(NAME)?.as_str()
     }
@@ -203,14 +204,13 @@ impl<'a, T: Serialize + DeserializeOwned> Overlay<'a, T> {
     /// The changed value.
     ///
     /// # Errors
-    /// When the whole is no such value, which the changes one by one have not shown.
+    /// Returns [`OverlayError`] if the whole is invalid although every single change was accepted.
     pub fn finish(self) -> Result<T, OverlayError> {
         self.value().map_err(|reason| rejected("", &reason))
     }
 }
 
-/// The value that a text on the command line means: TOML where it is TOML, otherwise the text
-/// itself.
+/// The value of a text on the command line: TOML if it parses as such, otherwise the text itself.
 pub fn value_from_text(text: &str) -> Value {
     let table = format!("value = {text}").parse::<Table>().unwrap_or_default();
     let is_one = table.len() == 1;
@@ -253,7 +253,7 @@ fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, Overla
     Ok(table)
 }
 
-/// A key, and which of its items is meant, as in `sensors[0]`.
+/// A key, and the index of its item, as in `sensors[0]`.
 fn item(key: &str) -> (&str, Option<usize>) {
     let parts = key.strip_suffix(']').and_then(|key| key.split_once('['));
     let numbered = parts.and_then(|(name, index)| Some((name, index.parse().ok()?)));

@@ -84,7 +84,7 @@ fn what_has_no_value_can_be_given_one() {
     assert!(text.starts_with("`garden.fence`: ") && text.contains("low"), "{text}");
     let text = error("garden.fence={ width_m = 1.0 }");
     assert!(text.starts_with("`garden.fence`") || text.contains("no field"), "{text}");
-    // Field by field, once nothing that it must have is missing.
+    // Field by field, once no required field is missing.
     let fenced = changed(&["garden.fence.height_m=1.0", "garden.fence.gate_m=2"]).unwrap();
     assert_eq!(fenced.garden.fence, Some(Fence { height_m: 1.0, gate_m: Some(2.0) }));
     let text = error("garden.fence.gate_m=2");

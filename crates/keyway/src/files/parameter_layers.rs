@@ -15,8 +15,7 @@ use toml::{Table, Value};
 /// Parameters in layers, each over the one before: a file, single fields, assignments.
 ///
 /// A path may begin with the name of a planner, a smoother or a local planner, such as
-/// `hsta.if_no_path`. Then the parameter belongs to this one only. Such parameters come after all
-/// others.
+/// `hsta.if_no_path`. Such a parameter belongs only to its owner, and is applied after all others.
 ///
 /// ```
 /// use keyway::files::{FieldValue, ParameterLayers, StackBase};
@@ -58,8 +57,7 @@ pub struct ParameterFile {
     pub table: Table,
 }
 
-/// Value for one field of a stack that a caller asks for under a name of its own, such as
-/// `planner`.
+/// Value for one field of a stack that a caller offers under a name of its own, such as `planner`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldValue {
     /// Name of the caller's field, for errors.
@@ -76,7 +74,7 @@ impl FieldValue {
         Self { field, path, value: value.into() }
     }
 
-    /// The same for an optional value.
+    /// As [`Self::new`], for an optional value.
     pub fn if_given(
         field: &'static str,
         path: &'static str,
@@ -114,21 +112,21 @@ impl FromStr for Assignment {
 }
 
 impl fmt::Display for Assignment {
-    /// Text from which the same assignment is read.
+    /// Formats it as text that parses to the same assignment.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", self.path, self.value)
     }
 }
 
 impl Assignment {
-    /// The same assignment by its path in a robot file, where it is one of the robot's
+    /// The same assignment with its path in a robot file, if it is one of the robot's
     /// (`robot.limits.v_max_mps=0.3`).
     pub fn of_robot(&self) -> Option<Self> {
         let path = self.path.strip_prefix("robot.")?.to_owned();
         Some(Self { path, value: self.value.clone() })
     }
 
-    /// Assignments of all values in a table and in its tables, in their order.
+    /// Assignments of all values in a table and in its subtables, in their order.
     pub fn all_of(table: &Table) -> Vec<Self> {
         fn walk(table: &Table, path: &str, out: &mut Vec<Assignment>) {
             for (key, value) in table {
@@ -157,12 +155,12 @@ pub enum ParameterLayer {
     Assignment,
 }
 
-/// Parameter of a layer that cannot be used.
+/// An invalid parameter of a layer.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}{fault}", layer_text(.layer.as_ref()))]
 #[non_exhaustive]
 pub struct LayerError {
-    /// Layer with the parameter; `None` where the fault shows in the result of all layers.
+    /// Layer with the parameter; `None` if the fault only shows in the result of all layers.
     pub layer: Option<ParameterLayer>,
     /// Path of the parameter; empty for the whole stack.
     pub path: String,
@@ -174,10 +172,10 @@ pub struct LayerError {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum LayerFault {
-    /// No such field, or another kind of value.
+    /// No such field, or a value of another type.
     #[error(transparent)]
     Overlay(OverlayError),
-    /// The same, of a parameter that names its owner.
+    /// As [`LayerFault::Overlay`], for a parameter that names its owner.
     #[error("{owner}: {error}")]
     OwnOverlay {
         /// Name of the planner, smoother or local planner.
@@ -185,7 +183,7 @@ pub enum LayerFault {
         /// Error with the path in the stack.
         error: OverlayError,
     },
-    /// A parameter of something that the stack does not use.
+    /// A parameter of a component that the stack does not use.
     #[error("{path}: {owner} is not used here; {used} is")]
     NotUsed {
         /// Path as given.
@@ -195,13 +193,13 @@ pub enum LayerFault {
         /// Name of the one in use.
         used: String,
     },
-    /// A name in the parameters of something that is chosen by its name.
+    /// A `name` among the parameters of a component that is itself selected by its name.
     #[error("the name of {owner} cannot be set")]
     Renamed {
         /// Name of the planner, smoother or local planner.
         owner: String,
     },
-    /// A value that the stack cannot use.
+    /// A value that is invalid for the stack.
     #[error(transparent)]
     Config(ConfigError),
 }
@@ -218,10 +216,10 @@ fn layer_text(layer: Option<&ParameterLayer>) -> String {
 impl ParameterLayers {
     /// The stack with all layers; every value is checked.
     ///
-    /// Parameters of one of `others`, which a caller uses beside this stack, are passed over.
+    /// Parameters of components in `others`, which a caller uses beside this stack, are ignored.
     ///
     /// # Errors
-    /// Names the layer and the path of the first parameter that cannot be used.
+    /// Names the layer and the path of the first invalid parameter.
     pub fn over(&self, base: StackBase<'_>, others: &[String]) -> Result<Stack, LayerError> {
         let stack =
             if self.is_empty() { base.stack().clone() } else { self.laid_over(base, others)? };
@@ -238,7 +236,7 @@ impl ParameterLayers {
         self.file.is_none() && self.fields.is_empty() && self.assignments.is_empty()
     }
 
-    /// The stack with all layers, whose values are not checked.
+    /// The stack with all layers, without checks of the values.
     fn laid_over(&self, base: StackBase<'_>, others: &[String]) -> Result<Stack, LayerError> {
         let named: NamedDefault<'_> = &|path, name| base.part(path, name);
         let mut overlay = Overlay::of(base.stack(), named).map_err(whole)?;
@@ -264,7 +262,8 @@ impl ParameterLayers {
 }
 
 impl ParameterFile {
-    /// Lays the general part of a file over a stack; gives the rest.
+    /// Applies the general part of a file to a stack; returns the parameters that name their
+    /// owner.
     fn lay_over(&self, overlay: &mut Overlay<'_, Stack>) -> Result<Vec<Own<'_>>, LayerError> {
         let layer = || ParameterLayer::File(self.name.clone());
         let is_own = |(key, _): &(&String, &Value)| is_owner(key);
@@ -293,7 +292,7 @@ fn is_owner(name: &str) -> bool {
     part_of(name).is_some()
 }
 
-/// The part of a stack that holds something of this name.
+/// The part of a stack that holds a component of this name.
 fn part_of(name: &str) -> Option<&'static str> {
     let parts: [(&str, &[&str]); 3] = [
         ("planner", &PlannerConfig::NAMES),
@@ -303,7 +302,7 @@ fn part_of(name: &str) -> Option<&'static str> {
     parts.into_iter().find(|(_, names)| names.contains(&name)).map(|(part, _)| part)
 }
 
-/// A parameter that names its owner, such as `hsta.if_no_path`; or a table of them, `hsta`.
+/// A parameter that names its owner, such as `hsta.if_no_path`, or a table of them, `hsta`.
 struct Own<'a> {
     layer: ParameterLayer,
     path: &'a str,

@@ -1,4 +1,4 @@
-//! Parameters from memory.
+//! Reading parameters from memory.
 
 use super::{ConfigFileError, MAX_TOML_BYTES, ParameterFile, file_text, from_toml};
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::path::Path;
 /// ([`ParameterLayers::over`](super::ParameterLayers::over)).
 ///
 /// # Errors
-/// If the content holds more than [`MAX_TOML_BYTES`], or is not TOML.
+/// Returns [`ConfigFileError`] if the content holds more than [`MAX_TOML_BYTES`], or is not TOML.
 pub fn parameters_from_bytes(name: &Path, bytes: &[u8]) -> Result<ParameterFile, ConfigFileError> {
     let table = from_toml(file_text(name, bytes, MAX_TOML_BYTES)?)
         .map_err(|reason| ConfigFileError::Toml { path: name.to_owned(), reason })?;

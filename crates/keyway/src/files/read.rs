@@ -1,4 +1,4 @@
-//! Files of robots, stacks and parameters, and other text files.
+//! Reading files of robots, stacks and parameters, and other text files.
 
 use super::{ConfigFileError, MAX_TOML_BYTES, ParameterFile, TextFileError};
 use super::{file_text, parameters_from_bytes, robot_from_bytes, robot_in_place, stack_from_bytes};
@@ -7,11 +7,11 @@ use crate::navigate::Stack;
 use crate::robot::Robot;
 use std::path::{Path, PathBuf};
 
-/// A bundled robot, one from a file (anything that looks like one) relative to `folder`, or one
-/// that is described in place of a name, as in a robot file: `{ like = "jackal", cycle_s = 0.1 }`.
+/// A bundled robot, or one from a file (if the name looks like one) relative to `folder`, or one
+/// that is described inline, as in a robot file: `{ like = "jackal", cycle_s = 0.1 }`.
 ///
 /// # Errors
-/// When there is no such robot; as for [`read_robot`].
+/// Returns [`ConfigFileError`] if there is no such robot; otherwise as for [`read_robot`].
 pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, ConfigFileError> {
     if let Some(robot) = Robot::by_name(name) {
         return Ok(robot);
@@ -25,11 +25,11 @@ pub fn find_robot(name: &str, folder: &Path) -> Result<Robot, ConfigFileError> {
     }
 }
 
-/// A stack by its name, with the parameters for a robot; or one from a file (anything that looks
-/// like one), relative to `folder`, with the parameters that it has there.
+/// A stack by its name, with the parameters for a robot; or one from a file (if the name looks
+/// like one), relative to `folder`, with the parameters of the file.
 ///
 /// # Errors
-/// If there is no such stack; as for [`read_stack`].
+/// Returns [`ConfigFileError`] if there is no such stack; otherwise as for [`read_stack`].
 pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     if let Some(stack) = Stack::by_name(name, robot) {
         return Ok(stack);
@@ -40,7 +40,7 @@ pub fn find_stack(name: &str, folder: &Path, robot: &Robot) -> Result<Stack, Con
     }
 }
 
-/// The path that a name stands for, where it looks like that of a file.
+/// The path that a name stands for, if it looks like a file.
 fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
     let path = folder.join(name);
     let looks_like_file = path.extension().is_some() || name.contains('/') || path.is_file();
@@ -50,7 +50,7 @@ fn file_of(name: &str, folder: &Path) -> Option<PathBuf> {
 /// Reads and checks a robot file.
 ///
 /// # Errors
-/// When the file cannot be read, or does not describe a robot that can be.
+/// Returns [`ConfigFileError`] if the file cannot be read, or does not describe a valid robot.
 pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
     robot_from_bytes(path, &read_toml(path)?)
 }
@@ -58,7 +58,8 @@ pub fn read_robot(path: &Path) -> Result<Robot, ConfigFileError> {
 /// Reads a stack file, all of a [`Stack`] as TOML, and checks it for a robot.
 ///
 /// # Errors
-/// If the file cannot be read, or does not hold a stack that the robot can be driven with.
+/// Returns [`ConfigFileError`] if the file cannot be read, or does not hold a stack that suits the
+/// robot.
 pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> {
     stack_from_bytes(path, &read_toml(path)?, robot)
 }
@@ -67,12 +68,12 @@ pub fn read_stack(path: &Path, robot: &Robot) -> Result<Stack, ConfigFileError> 
 /// a stack ([`ParameterLayers::over`](super::ParameterLayers::over)).
 ///
 /// # Errors
-/// When the file cannot be read, or is not TOML.
+/// Returns [`ConfigFileError`] if the file cannot be read, or is not TOML.
 pub fn read_parameters(path: &Path) -> Result<ParameterFile, ConfigFileError> {
     parameters_from_bytes(path, &read_toml(path)?)
 }
 
-/// The content of a file of TOML.
+/// The content of a TOML file.
 fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
     Ok(read_file(path, MAX_TOML_BYTES)?)
 }
@@ -80,7 +81,7 @@ fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
 /// Reads the text of a file of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
-/// If the file cannot be read, holds more, or is not UTF-8.
+/// Returns [`TextFileError`] if the file cannot be read, holds more, or is not UTF-8.
 pub fn read_text(path: &Path, limit_bytes: u64) -> Result<String, TextFileError> {
     file_text(path, &read_file(path, limit_bytes)?, limit_bytes).map(str::to_owned)
 }

@@ -1,4 +1,4 @@
-//! Robots from memory.
+//! Reading robots from memory.
 
 use super::{ConfigFileError, MAX_TOML_BYTES, RobotFile, TomlError, file_text, from_toml};
 use crate::robot::Robot;
@@ -15,7 +15,8 @@ use std::path::Path;
 /// ```
 ///
 /// # Errors
-/// If the content holds more than [`MAX_TOML_BYTES`], or does not describe a robot that can be.
+/// Returns [`ConfigFileError`] if the content holds more than [`MAX_TOML_BYTES`], or does not
+/// describe a valid robot.
 pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileError> {
     let text = file_text(name, bytes, MAX_TOML_BYTES)?;
     let path = || name.to_owned();
@@ -24,11 +25,11 @@ pub fn robot_from_bytes(name: &Path, bytes: &[u8]) -> Result<Robot, ConfigFileEr
     file.robot().map_err(|reason| ConfigFileError::Value { path: path(), reason })
 }
 
-/// Reads and checks a robot that is described in place of a name: an inline table of TOML with the
-/// fields of a robot file.
+/// Reads and checks a robot that is described inline, in place of a name: an inline TOML table
+/// with the fields of a robot file.
 ///
 /// # Errors
-/// If the text does not describe a robot that can be.
+/// Returns [`ConfigFileError`] if the text does not describe a valid robot.
 pub fn robot_in_place(text: &str) -> Result<Robot, ConfigFileError> {
     #[derive(Deserialize)]
     struct InPlace {
@@ -36,7 +37,7 @@ pub fn robot_in_place(text: &str) -> Result<Robot, ConfigFileError> {
     }
     let path = || "robot".into();
     let InPlace { robot } = from_toml(&format!("robot = {text}")).map_err(|error| {
-        // Columns would count what was put before the text.
+        // Columns would count the prefix.
         let field = error.field.strip_prefix("robot").unwrap_or(&error.field);
         let field = field.trim_start_matches('.').to_owned();
         let reason = TomlError { line: None, column: None, field, ..error };

@@ -1,4 +1,4 @@
-//! A robot file: all of a robot, or what differs from another one.
+//! A robot file: a complete robot, or its differences from another one.
 
 use super::{Assignment, Overlay, OverlayError};
 use crate::ConfigError;
@@ -6,19 +6,19 @@ use crate::robot::{Footprint, Limits, RangeSensor, Robot};
 use serde::Deserialize;
 use thiserror::Error;
 
-/// A robot as a file describes it. What a file leaves out is that of the robot it is `like`, or
-/// follows from its size and its top speed ([`Robot::derived`]).
+/// A robot as described by a file. Missing values are those of the robot it is `like`, or are
+/// derived from its size and its top speed ([`Robot::derived`]).
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct RobotFile {
-    /// Name of the bundled robot that it is like.
+    /// Name of the bundled robot that it is based on.
     pub like: Option<String>,
-    /// Radius of a round one \[m\], in the place of `footprint`.
+    /// Radius of a round robot \[m\], instead of `footprint`.
     pub radius_m: Option<f64>,
-    /// Largest forward speed \[m/s\], in the place of `limits.v_max_mps`.
+    /// Largest forward speed \[m/s\], instead of `limits.v_max_mps`.
     pub v_max_mps: Option<f64>,
-    /// The ground that it covers.
+    /// The ground area that it covers.
     pub footprint: Option<Footprint>,
     /// Control cycle \[s\].
     pub cycle_s: Option<f64>,
@@ -26,9 +26,9 @@ pub struct RobotFile {
     pub actuation_delay_s: Option<f64>,
     /// Distance kept from obstacles in addition to the footprint \[m\].
     pub safety_margin_m: Option<f64>,
-    /// Those of the velocity and acceleration limits that are known.
+    /// The velocity and acceleration limits that are known.
     pub limits: LimitsPart,
-    /// The range sensors, in the place of all others.
+    /// The range sensors; they replace all others.
     pub sensors: Option<Vec<RangeSensor>>,
 }
 
@@ -58,11 +58,12 @@ pub struct LimitsPart {
 }
 
 impl RobotFile {
-    /// The robot, checked.
+    /// The robot, validated.
     ///
     /// # Errors
-    /// If there is no bundled robot of the name in `like`; if without one the size or the top
-    /// speed is missing; if one of them is given twice; if a value cannot be used.
+    /// Returns [`ConfigError`] if there is no bundled robot of the name in `like`; if the size or
+    /// the top speed is missing and `like` is, too; if one of them is given twice; or if a value
+    /// is invalid.
     pub fn robot(self) -> Result<Robot, ConfigError> {
         let footprint = self.own_footprint()?;
         let v_max_mps =
@@ -104,7 +105,7 @@ impl RobotFile {
 }
 
 impl LimitsPart {
-    /// These limits in the place of others, but for the top speed.
+    /// These limits over those of a base, except for the top speed.
     fn over(&self, base: &Limits) -> Limits {
         Limits {
             v_min_mps: self.v_min_mps.unwrap_or(base.v_min_mps),
@@ -128,7 +129,7 @@ impl LimitsPart {
 /// `limits.v_max_mps`.
 ///
 /// # Errors
-/// Names the value that there is not, or that cannot be used.
+/// Names the value that does not exist, or that is invalid.
 pub fn robot_with(robot: &Robot, changes: &[Assignment]) -> Result<Robot, RobotChangeError> {
     let no_parts = |_: &str, _: &str| Err(Vec::new());
     let mut overlay = Overlay::of(robot, &no_parts)?;
@@ -144,10 +145,10 @@ pub fn robot_with(robot: &Robot, changes: &[Assignment]) -> Result<Robot, RobotC
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RobotChangeError {
-    /// No such value, or one of another kind.
+    /// No such field, or a value of another type.
     #[error(transparent)]
     Overlay(#[from] OverlayError),
-    /// A value that a robot cannot have.
+    /// An invalid value for a robot.
     #[error(transparent)]
     Config(#[from] ConfigError),
 }
@@ -155,7 +156,7 @@ pub enum RobotChangeError {
 const SIZE: &str = "`footprint`, or the `radius_m` of a round robot";
 const SPEED: &str = "`v_max_mps`, the top speed";
 
-/// The one of two ways to say the same that is given.
+/// The given one of two alternative fields for the same value.
 fn either<T>(
     (short, one): (&str, Option<T>),
     (long, other): (&str, Option<T>),
@@ -210,7 +211,7 @@ mod tests {
         assert_eq!(seeing, Robot { sensors: vec![RangeSensor::new(9, 90.0, 3.0)], ..jackal });
     }
 
-    /// A robot that is written to a file is read back.
+    /// A robot that is written to a file is read back unchanged.
     #[test]
     fn a_whole_robot_is_itself() {
         for name in Robot::NAMES {

@@ -1,4 +1,4 @@
-//! The size of the robot that paths are for, and what follows from it.
+//! The size of the robot that paths are planned for, and the values derived from it.
 
 use super::parameter_layers::{FieldValue, LayerError, ParameterLayers};
 use super::stack_base::StackBase;
@@ -8,8 +8,8 @@ use crate::navigate::Stack;
 use crate::robot::{Footprint, FootprintError, Robot};
 use thiserror::Error;
 
-/// Size of the robot that paths are for: a robot, a radius, or a robot with another radius. Without
-/// both, paths are for a point.
+/// Size of the robot that paths are planned for: a robot, a radius, or a robot with another
+/// radius. Without either, paths are for a point.
 ///
 /// ```
 /// use keyway::files::{ParameterLayers, RobotSize, StartingValues};
@@ -27,7 +27,7 @@ pub struct RobotSize {
     radius_m: Option<f64>,
 }
 
-/// Values with which a planner or smoother that is chosen by its name begins.
+/// Initial values of a planner or smoother that is selected by its name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StartingValues {
     /// Distances for the size of the robot.
@@ -38,17 +38,18 @@ pub enum StartingValues {
 }
 
 impl StartingValues {
-    /// The values of papers if they are asked for, otherwise those for the size.
+    /// The values of papers if requested, otherwise those for the size.
     pub const fn published_if(is_asked: bool) -> Self {
         if is_asked { Self::AsPublished } else { Self::ForSize }
     }
 }
 
 impl RobotSize {
-    /// Size of a robot, which becomes a disc where a radius \[m\] is given; or of a radius only.
+    /// Size of a robot, or of a radius \[m\] only. With both, the robot becomes a disc of that
+    /// radius.
     ///
     /// # Errors
-    /// When no robot can have the radius.
+    /// Returns [`FootprintError`] if no robot can have the radius.
     pub fn new(robot: Option<Robot>, radius_m: Option<f64>) -> Result<Self, FootprintError> {
         if let Some(radius_m) = radius_m.filter(|it| !it.is_finite() || *it < 0.0) {
             return Err(FootprintError::Radius(radius_m));
@@ -60,18 +61,18 @@ impl RobotSize {
         Ok(Self { robot: robot.map(resized).transpose()?, radius_m })
     }
 
-    /// The robot with its radius; `None` where only a radius is known, or nothing.
+    /// The robot with its radius; `None` if only a radius is known, or nothing.
     pub const fn robot(&self) -> Option<&Robot> {
         self.robot.as_ref()
     }
 
-    /// The robot that parameters are checked for: where none is known, `small`.
+    /// The robot that parameters are checked for; `small` if none is known.
     pub fn robot_or_small(&self) -> Robot {
         self.robot.clone().unwrap_or_else(Robot::small)
     }
 
-    /// Clearance that the size asks for, as a field of a stack; it is named after `radius` or
-    /// `robot`, whichever it follows from.
+    /// Clearance required by the size, as a field of a stack. The field is called `radius` or
+    /// `robot`, after its source.
     pub fn clearance(&self) -> Option<FieldValue> {
         let of_robot = || self.robot().map(|robot| robot.footprint.inscribed_radius_m());
         let field = if self.radius_m.is_some() { "radius" } else { "robot" };
@@ -79,10 +80,10 @@ impl RobotSize {
         Some(FieldValue::new(field, "map.clearance_m", radius_m))
     }
 
-    /// The stack for plans with this clearance and all layers ([`ParameterLayers::over`]).
+    /// The stack for planning with this clearance and all layers ([`ParameterLayers::over`]).
     ///
     /// # Errors
-    /// Names the layer and the path of the first parameter that cannot be used.
+    /// Names the layer and the path of the first invalid parameter.
     pub fn plan_stack(
         &self,
         values: StartingValues,
@@ -104,7 +105,8 @@ impl RobotSize {
     /// Layers of a map for paths of this size.
     ///
     /// # Errors
-    /// When a radius leaves no cell free, or a number of the config cannot be used.
+    /// Returns [`RobotLayersError`] if a radius leaves no cell free, or if a value of the config
+    /// is invalid.
     pub fn layers(
         &self,
         grid: &OccupancyGrid,
@@ -121,7 +123,7 @@ impl RobotSize {
     }
 }
 
-/// Reason why a map has no layers for a size.
+/// Reason why a map has no layers for a robot size.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RobotLayersError {
@@ -131,7 +133,7 @@ pub enum RobotLayersError {
     /// The clearance of the config is too large.
     #[error(transparent)]
     Clearance(RadiusBeyondMap),
-    /// A number of the config cannot be used.
+    /// A value of the config is invalid.
     #[error(transparent)]
     Config(ConfigError),
 }
@@ -154,10 +156,10 @@ pub struct RadiusBeyondMap {
 }
 
 impl RadiusBeyondMap {
-    /// Refuses a radius \[m\] for which no cell can be free.
+    /// Refuses a radius \[m\] that leaves no cell free.
     ///
     /// # Errors
-    /// When the disc is larger than the map.
+    /// Returns [`RadiusBeyondMap`] if the disc is larger than the map.
     pub fn check(radius_m: f64, frame: &GridFrame) -> Result<(), Self> {
         let [width_m, height_m] =
             [frame.width(), frame.height()].map(|cells| f64::from(cells) * frame.resolution_m());

@@ -1,4 +1,4 @@
-//! Stacks from memory: all of a stack as TOML.
+//! Reading stacks from memory: a complete stack as TOML.
 
 use super::missing::missing_fields;
 use super::overlay::{NamedDefault, Overlay, OverlayError};
@@ -9,12 +9,12 @@ use crate::robot::Robot;
 use std::path::Path;
 use toml::Table;
 
-/// Reads a stack from memory, all of a [`Stack`] as TOML, and checks it for a robot; errors call
-/// the file `name`.
+/// Reads a complete [`Stack`] from memory, as TOML, and checks it for a robot; errors call the
+/// file `name`.
 ///
 /// # Errors
-/// If the content holds more than [`MAX_TOML_BYTES`], or is not a stack that the robot can be
-/// driven with.
+/// Returns [`ConfigFileError`] if the content holds more than [`MAX_TOML_BYTES`], or is not a
+/// stack that suits the robot.
 pub fn stack_from_bytes(
     name: &Path,
     bytes: &[u8],
@@ -32,8 +32,8 @@ pub fn stack_from_bytes(
     }
 }
 
-/// What is wrong within a part that has a name: the parser knows no more of it than where the part
-/// begins. Laid over a sound part field by field, it shows which one cannot be used.
+/// Locates a fault within a named part: the parser only knows the position at which the part
+/// begins. Applying the part to a valid one, field by field, shows the invalid field.
 fn in_part(text: &str, error: &TomlError, robot: &Robot) -> Option<TomlError> {
     let tree: Table = text.parse().ok()?;
     let part = tree.get(&error.field)?.as_table()?;

@@ -1,4 +1,4 @@
-//! Parameters laid over a stack, as a file of them, `--set` and every other caller give them.
+//! Parameters applied to a stack, as given by a file, by `--set` and by every other caller.
 
 use super::overlay::{NamedDefault, Overlay, OverlayError};
 use crate::ConfigError;
@@ -12,19 +12,19 @@ use serde::Serialize;
 use thiserror::Error;
 use toml::Table;
 
-/// Why parameters cannot be laid over a stack.
+/// Reason why parameters cannot be applied to a stack.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ParameterError {
-    /// There is no such field, or it holds another kind of value.
+    /// There is no such field, or its value has another type.
     #[error(transparent)]
     Overlay(#[from] OverlayError),
-    /// The value cannot be used.
+    /// The value is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
 }
 
-/// A stack that parameters are laid over.
+/// A stack that parameters are applied to.
 ///
 /// ```
 /// use keyway::files::{StackBase, from_toml};
@@ -53,43 +53,43 @@ pub struct StackBase<'a> {
     presets: Presets,
 }
 
-/// With which values a planner or smoother that is chosen by its name begins.
+/// Initial values of a planner or smoother that is selected by its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Presets {
-    /// With distances for the robot.
+    /// Distances for the robot.
     Robot,
-    /// With this as the safe distance \[m\].
+    /// This safe distance \[m\].
     Keeping(f64),
-    /// With the usual ones.
+    /// Default values.
     Usual,
-    /// With those of its paper.
+    /// Values of its paper.
     Published,
 }
 
 impl<'a> StackBase<'a> {
-    /// A stack for a robot: a part that is chosen by its name begins with the parameters for the
+    /// A stack for a robot: a part that is selected by its name starts with the parameters for the
     /// robot.
     pub const fn for_robot(stack: &'a Stack, robot: &'a Robot) -> Self {
         Self { stack, robot, presets: Presets::Robot }
     }
 
-    /// A stack for paths that keep this radius \[m\], of a robot of which no more is known: a
-    /// smoother with a safe distance of its own begins with the radius. Without one (`None`) it
-    /// begins with its usual value.
+    /// A stack for paths that keep this radius \[m\], if nothing else is known of the robot. A
+    /// smoother with a safe distance of its own starts with the radius, or with its default value
+    /// if there is none (`None`).
     pub fn for_radius(stack: &'a Stack, robot: &'a Robot, radius_m: Option<f64>) -> Self {
         Self { stack, robot, presets: radius_m.map_or(Presets::Usual, Presets::Keeping) }
     }
 
-    /// A stack as published: a part that is chosen by its name begins with the values of its paper,
-    /// where it has one.
+    /// A stack as published: a part that is selected by its name starts with the values of its
+    /// paper, if it has one.
     pub const fn as_published(stack: &'a Stack, robot: &'a Robot) -> Self {
         Self { stack, robot, presets: Presets::Published }
     }
 
-    /// The stack with these changes, a part of a stack as TOML; every value is checked.
+    /// The stack with these changes, given as a part of a stack in TOML; every value is checked.
     ///
     /// # Errors
-    /// Names the first field that cannot be changed so, or whose value cannot be used.
+    /// Names the first field that cannot be changed like this, or whose value is invalid.
     pub fn with(&self, changes: &Table) -> Result<Stack, ParameterError> {
         let stack = if changes.is_empty() { self.stack.clone() } else { self.laid_over(changes)? };
         stack.check_parameters(self.robot)?;
@@ -108,15 +108,15 @@ impl<'a> StackBase<'a> {
         self.robot
     }
 
-    /// The stack as it is without changes.
+    /// The stack without changes.
     pub const fn stack(&self) -> &'a Stack {
         self.stack
     }
 
-    /// The parameters with which a part of a stack begins.
+    /// The initial parameters of a part of a stack.
     ///
     /// # Errors
-    /// The names that there are where there is no such name.
+    /// Returns the names that exist if there is no such name.
     pub fn part(&self, path: &str, name: &str) -> Result<Table, Vec<&'static str>> {
         match path {
             "planner" => {
@@ -145,7 +145,7 @@ impl<'a> StackBase<'a> {
         }
     }
 
-    /// The safe distance of the robot, where one is known \[m\].
+    /// The safe distance of the robot \[m\], if one is known.
     fn safe_m(&self) -> Option<f64> {
         match self.presets {
             Presets::Robot => Some(self.robot.preferred_clearance_m()),

@@ -1,11 +1,11 @@
-//! Texts of files, within limits.
+//! Reading text files, within limits.
 
 use crate::file_error::{ReadError, check_length};
 use crate::map::formats::{TextError, text_from_bytes};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// More than any scene, robot, stack or file of parameters holds \[bytes\].
+/// Maximum size of a scene, robot, stack or parameter file \[bytes\].
 pub const MAX_TOML_BYTES: u64 = 16 << 20;
 
 /// Error of a text file.
@@ -20,7 +20,7 @@ pub enum TextFileError {
     Text {
         /// The file.
         path: PathBuf,
-        /// Place of the first byte that is not part of a character.
+        /// Position of the first byte that is not part of a character.
         reason: TextError,
     },
 }
@@ -28,7 +28,7 @@ pub enum TextFileError {
 /// Text of a file of this name and of at most `limit_bytes`, without a byte order mark.
 ///
 /// # Errors
-/// If it holds more, or is not UTF-8.
+/// Returns [`TextFileError`] if it holds more, or is not UTF-8.
 pub fn file_text<'a>(
     name: &Path,
     bytes: &'a [u8],

@@ -1,15 +1,16 @@
-//! The messages of the reader of TOML, without names of Rust's types.
+//! The messages of the TOML parser, without names of Rust types.
 
 use super::did_you_mean;
 use crate::map::formats::shown;
 
-/// Letters of a kind with its value that are shown, and of a message, which may list all fields.
+/// Maximum length of a type with its value, and of a message, which may list all fields
+/// \[letters\].
 const VALUE_LETTERS: usize = 60;
 const MESSAGE_LETTERS: usize = 500;
-/// No whole number that TOML can hold has more letters.
+/// Every integer that TOML can hold has at most this many letters.
 const MOST_DIGITS: usize = 20;
 
-/// The message of an error of the reader, with the kinds of values that TOML has.
+/// The message of a parser error, in terms of TOML's value types.
 pub(super) fn in_plain_words(message: &str) -> String {
     let message = message.trim();
     if message.contains("recurs") {
@@ -21,12 +22,12 @@ pub(super) fn in_plain_words(message: &str) -> String {
     let Some((got, expected)) = message.rsplit_once(", expected ") else {
         return shown(message, MESSAGE_LETTERS);
     };
-    // Behind a number its type may follow.
+    // A number may be followed by its type.
     let got = got.trim_end_matches(" as i128").trim_end_matches(" as u128");
     let got = match got {
         "invalid type: map" => "invalid type: table".to_owned(),
         "invalid type: sequence" => "invalid type: array".to_owned(),
-        // What it says of a choice between names that is no text.
+        // The parser's message if a choice between names is not text.
         "invalid type: unit variant" => "invalid type".to_owned(),
         _ => {
             shown(&few_digits(got), VALUE_LETTERS).replacen("unknown variant ", "unknown value ", 1)
@@ -35,7 +36,7 @@ pub(super) fn in_plain_words(message: &str) -> String {
     format!("{got}, expected {}{}", kind(expected), name_meant(message))
 }
 
-/// The same with a long number as a power of ten, which has all its digits otherwise.
+/// Shortens a long number to a power of ten; other numbers keep all digits.
 fn few_digits(got: &str) -> String {
     let number = got.strip_suffix('`').and_then(|got| got.split_once('`'));
     let number = number.filter(|(_, number)| number.len() > MOST_DIGITS);
@@ -43,8 +44,7 @@ fn few_digits(got: &str) -> String {
     parsed.map_or_else(|| got.to_owned(), |(before, number)| format!("{before}`{number:e}`"))
 }
 
-/// The name that may have been meant, of a message such as "unknown field `gaol`, expected `start`
-/// or `goal`".
+/// The suggested name for a message such as "unknown field `gaol`, expected `start` or `goal`".
 fn name_meant(message: &str) -> String {
     if !message.starts_with("unknown") {
         return String::new();
@@ -53,7 +53,7 @@ fn name_meant(message: &str) -> String {
     names.next().map_or_else(String::new, |given| did_you_mean(given, names))
 }
 
-/// A kind of value as `serde` names it.
+/// A value type as `serde` names it.
 fn kind(expected: &str) -> String {
     let whole = |least: i64, most: i64| format!("a whole number from {least} to {most}");
     let count: String = expected.chars().filter(char::is_ascii_digit).collect();
@@ -62,7 +62,7 @@ fn kind(expected: &str) -> String {
         "u16" => whole(0, i64::from(u16::MAX)),
         "u32" => whole(0, i64::from(u32::MAX)),
         "u64" | "usize" => whole(0, i64::MAX),
-        // The only value that is none is a whole number of more bits.
+        // Only an integer of more bits is not one.
         "i64" | "any valid TOML value" => whole(i64::MIN, i64::MAX),
         "f64" => "a number".to_owned(),
         "a sequence" => "an array".to_owned(),

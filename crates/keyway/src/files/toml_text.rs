@@ -1,4 +1,4 @@
-//! TOML -> a value, with errors that say where.
+//! TOML -> a value, with errors that name the position.
 
 use super::toml_messages::in_plain_words;
 use crate::map::formats::shown;
@@ -6,27 +6,28 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
-/// Letters of a field's path that are shown.
+/// Maximum length of a field's path in messages \[letters\].
 const FIELD_LETTERS: usize = 120;
 
-/// What is wrong with a TOML text.
+/// An error in a TOML text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}{}{reason}", place_text(*.line, *.column), field_text(.field))]
 pub struct TomlError {
-    /// Line, from 1; `None` where the mistake has no place, such as a missing field.
+    /// Line, from 1; `None` if the error has no position, such as a missing field.
     pub line: Option<usize>,
     /// Column, from 1.
     pub column: Option<usize>,
     /// The field, as a path such as `limits.v_max_mps`; empty for the whole text.
     pub field: String,
-    /// What is wrong there.
+    /// Description of the error.
     pub reason: String,
 }
 
 /// Reads a value from a TOML text.
 ///
 /// # Errors
-/// When the text is not TOML or does not hold such a value; the error names line and field.
+/// Returns [`TomlError`] if the text is not TOML or does not hold such a value; it names line and
+/// field.
 ///
 /// ```
 /// use keyway::robot::Robot;
@@ -53,7 +54,7 @@ pub fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, TomlError> {
 }
 
 /// Line and column, both from 1, of the value of a field, given as a path such as
-/// `limits.v_max_mps`; of a missing field, of the table where it belongs.
+/// `limits.v_max_mps`. For a missing field, those of the table that it belongs to.
 pub(super) fn place_of_field(text: &str, path: &str) -> Option<(usize, usize)> {
     let document = DeTable::parse(text).ok()?;
     let (mut table, mut begin) = (document.get_ref(), None);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// The same direction in (-pi, pi] \[rad\].
+/// Wraps an angle to (-pi, pi] \[rad\].
 ///
 /// ```
 /// use keyway::geometry::wrap_angle;
@@ -18,9 +18,8 @@ pub fn wrap_angle(angle_rad: f64) -> f64 {
     if turned <= -PI { turned + TAU } else { turned }
 }
 
-/// An angle in degrees, for files and messages: as short as reads as the same radians, so that what
-/// was written as 30 degrees is written as 30 again. Where no degrees read as the same radians, the
-/// nearest.
+/// Converts an angle to degrees for files and messages. Returns the shortest number that reads
+/// back as the same radians, so that 30 degrees stay 30; if no number does, the nearest.
 pub fn degrees(angle_rad: f64) -> f64 {
     let nearest = angle_rad.to_degrees();
     let short = (nearest * 1e9).round() / 1e9;

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const AXES: [Point; 4] =
     [Point::new(1.0, 0.0), Point::new(0.0, 1.0), Point::new(-1.0, 0.0), Point::new(0.0, -1.0)];
 
-/// A part of a circle, up to a whole turn; a single point when radius or sweep is 0.
+/// A circular arc of up to a full turn; a single point if radius or sweep is 0.
 ///
 /// ```
 /// use keyway::geometry::{Arc, Point};
@@ -29,7 +29,7 @@ pub struct Arc {
     /// Direction from the centre to the first point \[rad\].
     pub start_rad: f64,
     /// Angle from the first to the last point, seen from the centre \[rad\]: positive
-    /// counter-clockwise, at most a whole turn.
+    /// counter-clockwise, at most a full turn.
     pub sweep_rad: f64,
 }
 
@@ -44,7 +44,7 @@ impl Arc {
         self.radius * self.sweep_rad.abs()
     }
 
-    /// The point `fraction` of the way along (0 the first, 1 the last).
+    /// The point at a `fraction` of the length (0 the first, 1 the last).
     pub fn at(&self, fraction: f64) -> Point {
         let (sin, cos) = libm::sincos(self.start_rad + self.sweep_rad * fraction);
         self.centre + Point::new(cos, sin) * self.radius
@@ -60,7 +60,7 @@ impl Arc {
         self.at(1.0)
     }
 
-    /// Direction of travel `fraction` of the way along, in (-pi, pi] \[rad\].
+    /// Direction of travel at a `fraction` of the length, in (-pi, pi] \[rad\].
     pub fn heading_at(&self, fraction: f64) -> f64 {
         let radial = self.start_rad + self.sweep_rad * fraction;
         wrap_angle(radial + FRAC_PI_2.copysign(self.sweep_rad))
@@ -71,32 +71,32 @@ impl Arc {
         (1.0 / self.radius).copysign(self.sweep_rad)
     }
 
-    /// The part between two fractions of the way.
+    /// The part between two fractions of the length.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let start_rad = self.start_rad + self.sweep_rad * from;
         Self { start_rad, sweep_rad: self.sweep_rad * (to - from), ..*self }
     }
 
-    /// The same arc, driven from its last point to its first.
+    /// The same arc in the opposite direction of travel.
     #[must_use]
     pub fn reversed(&self) -> Self {
         self.part(1.0, 0.0)
     }
 
-    /// Largest distance from the arc to its chord; the radius or more from half a turn on.
+    /// Largest distance from the arc to its chord; at least the radius from half a turn on.
     pub(crate) fn sagitta(&self) -> f64 {
         self.radius * (1.0 - libm::cos(0.5 * self.sweep_rad))
     }
 
-    /// True when the arc has a point in this direction from the centre.
+    /// True if the arc has a point in this direction from the centre.
     pub fn covers(&self, direction: Point) -> bool {
         let ahead = (direction.heading() - self.start_rad) * 1f64.copysign(self.sweep_rad);
         ahead - TAU * (ahead / TAU).floor() <= self.sweep_rad.abs()
     }
 
-    /// The ends, and the points at which the arc is parallel to an axis: its smallest and largest x
-    /// and y are among them.
+    /// The ends, and the points at which the arc is parallel to an axis; its smallest and largest
+    /// x and y are among them.
     pub(crate) fn extremes(&self) -> impl Iterator<Item = Point> {
         let arc = *self;
         let axes = AXES.into_iter().filter(move |&axis| arc.covers(axis));
@@ -112,10 +112,10 @@ impl Arc {
         point.distance(self.start()).min(point.distance(self.end()))
     }
 
-    /// Distance to a square; 0 when the arc touches or enters it. Exact up to rounding, that is,
+    /// Distance to a square; 0 if the arc touches or enters it. Exact up to rounding, which is
     /// about 1e-15 of the radius and the coordinates.
     ///
-    /// Where the two do not meet, the nearest points are a corner of the square, or an end of the
+    /// If the two do not meet, the nearest points are a corner of the square, or an end of the
     /// arc, or a point of the arc at which it is parallel to one of the square's edges.
     pub(crate) fn distance_to_square(&self, square: Square) -> f64 {
         if self.meets(square) {
@@ -126,19 +126,19 @@ impl Arc {
         from_corners.into_iter().fold(from_arc.fold(f64::INFINITY, f64::min).sqrt(), f64::min)
     }
 
-    /// True when the arc touches or enters the closed square.
+    /// True if the arc touches or enters the closed square.
     pub(crate) fn meets(&self, square: Square) -> bool {
         let begins_inside = square.distance_sq_to_point(self.start()) == 0.0;
         begins_inside || self.crosses_border(square)
     }
 
-    /// True when a point of the arc lies on the square's border.
+    /// True if a point of the arc lies on the square's border.
     fn crosses_border(&self, square: Square) -> bool {
         let Point { x, y } = square.corner - self.centre;
         let on_edge = |along: f64, low: f64, point: &dyn Fn(f64, f64) -> Point| {
             let half_chord = (self.radius * self.radius - along * along).sqrt();
             [-half_chord, half_chord].into_iter().any(|across| {
-                // NaN, where the circle does not reach the line of the edge, is not inside.
+                // NaN, if the circle does not reach the line of the edge, is not inside.
                 across >= low && across <= low + 1.0 && self.covers(point(along, across))
             })
         };

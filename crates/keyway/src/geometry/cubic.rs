@@ -3,31 +3,31 @@
 use super::{Point, Segment};
 use serde::{Deserialize, Serialize};
 
-/// Lengths are accurate to this share of the control polygon's length: a tenth of what is promised,
-/// so that sums and differences of several lengths keep the promise, too.
+/// Relative accuracy of lengths, as a share of the control polygon's length: a tenth of the
+/// promised one, so that sums and differences of several lengths keep the promise, too.
 const LENGTH_TOLERANCE: f64 = 1e-11;
 
-/// Two directions whose angle has a smaller sine than this are parallel; the rest is rounding.
+/// Sine of an angle below which two directions count as parallel; the rest is rounding.
 const PARALLEL_TOLERANCE: f64 = 1e-12;
 
-/// Halvings of the curve after which it counts as not certain that its curvature keeps a limit.
+/// Number of halvings after which a curvature limit counts as not certified.
 const CURVATURE_HALVINGS: u32 = 20;
 
-/// A derivative shorter than this share of the control polygon is a standstill (a cusp, or an end
-/// with repeated control points).
+/// Share of the control polygon below which a derivative counts as a standstill (a cusp, or an
+/// end with repeated control points).
 const STANDSTILL_TOLERANCE: f64 = 1e-9;
 
 /// A cubic curve from u = 0 to u = 1, kept as its first point and the three legs of its Bézier
 /// control polygon. It lies in the convex hull of that polygon's four corners.
 ///
-/// Legs rather than corners, because repeated control points then leave legs of exactly 0, and the
-/// headings at such ends are exact.
+/// Legs are stored rather than corners because repeated control points then leave legs of exactly
+/// 0, and the headings at such ends are exact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cubic {
     /// The point at u = 0.
     pub start: Point,
-    /// From each corner of the control polygon to the next.
+    /// Vectors from each corner of the control polygon to the next.
     pub legs: [Point; 3],
 }
 
@@ -63,21 +63,21 @@ impl Cubic {
         self.start + (a + b + c)
     }
 
-    /// First derivative by `u`.
+    /// First derivative with respect to `u`.
     pub fn derivative(&self, u: f64) -> Point {
         let [a, b, c] = self.legs;
         let w = 1.0 - u;
         (a * (w * w) + b * (2.0 * u * w) + c * (u * u)) * 3.0
     }
 
-    /// Second derivative by `u`.
+    /// Second derivative with respect to `u`.
     pub fn second_derivative(&self, u: f64) -> Point {
         let [a, b, c] = self.legs;
         (b - a).lerp(c - b, u) * 6.0
     }
 
-    /// Direction of travel at `u`, in (-pi, pi] \[rad\]. Where the curve stands still it is the
-    /// direction of leaving (first half) or arriving (second half); 0 for a single point.
+    /// Direction of travel at `u`, in (-pi, pi] \[rad\]. At a standstill it is the direction of
+    /// leaving (first half) or arriving (second half); 0 for a single point.
     pub fn heading_at(&self, u: f64) -> f64 {
         let [a, b, c] = self.legs;
         let standstill = STANDSTILL_TOLERANCE * self.polygon_length();
@@ -92,8 +92,7 @@ impl Cubic {
         (a - b - b + c).heading()
     }
 
-    /// Curvature at `u`, positive to the left; 0 where the curve stands still (its heading may jump
-    /// there).
+    /// Curvature at `u`, positive to the left; 0 at a standstill (the heading may jump there).
     pub fn curvature_at(&self, u: f64) -> f64 {
         let (first, second) = (self.derivative(u), self.second_derivative(u));
         let speed = first.norm();
@@ -104,9 +103,9 @@ impl Cubic {
         cross / (speed * speed * speed)
     }
 
-    /// True if the curvature is nowhere larger than `limit`, to either side; `true` is certain.
-    /// Also false where it comes within a millionth of the limit, and where the curve stands still
-    /// in a bend.
+    /// True if the curvature exceeds `limit` nowhere, to either side; `true` is certain. Also
+    /// false if it comes within a millionth of the limit, or if the curve has a standstill in a
+    /// bend.
     pub(crate) fn is_curvature_at_most(&self, limit: f64) -> bool {
         self.is_certainly_within(limit, CURVATURE_HALVINGS)
     }
@@ -144,22 +143,23 @@ impl Cubic {
         [before, after]
     }
 
-    /// The straight line between the ends.
+    /// The straight line from the first to the last point.
     pub fn chord(&self) -> Segment {
         Segment::new(self.start, self.end())
     }
 
-    /// A distance that no point of the curve exceeds from the chord, and no point of the chord from
-    /// the curve.
+    /// Upper bound of the distance of any point of the curve from the chord, and of any point of
+    /// the chord from the curve.
     ///
-    /// The distance from a segment is a convex function, so over the hull of the control polygon it
-    /// is largest at a corner; and on its way along the curve the nearest point of the chord passes
-    /// over all of it.
+    /// The distance from a segment is a convex function, so over the hull of the control polygon
+    /// it is largest at a corner. As a point moves along the curve, its nearest point on the
+    /// chord passes over all of it.
     pub(crate) fn deviation(&self) -> f64 {
         let [a, b, c] = self.legs;
         let (second, chord) = (a + b, a + b + c);
         let length_sq = chord.norm_sq();
-        // Of a chord so short that the squares below are rounded to nothing, the start will do.
+        // For a chord so short that the squares below underflow, the distance from the start is
+        // enough.
         if length_sq < 1e-100 {
             return a.norm_sq().max(second.norm_sq()).sqrt();
         }
@@ -177,13 +177,13 @@ impl Cubic {
         (scaled_sq(a).max(scaled_sq(second)) / length_sq).sqrt()
     }
 
-    /// Length of the control polygon: the curve is not longer.
+    /// Length of the control polygon, an upper bound of the curve's length.
     pub fn polygon_length(&self) -> f64 {
         self.legs.iter().fold(0.0, |sum, leg| sum + leg.norm())
     }
 
-    /// Length, with a certified error of at most 1e-10 of the control polygon's length, however
-    /// sharp the bends (10 to 1,600 evaluations of the speed).
+    /// Length, with a certified error of at most 1e-10 of the control polygon's length, even for
+    /// sharp bends (10 to 1,600 evaluations of the speed).
     pub fn length(&self) -> f64 {
         self.length_between(0.0, 1.0)
     }
@@ -198,8 +198,8 @@ impl Cubic {
         )
     }
 
-    /// The parameter at which the curve is `length` long; 0 or 1 beyond the ends. Newton's method,
-    /// kept within bounds by bisection.
+    /// The parameter at which the curve has reached `length`; 0 or 1 beyond the ends. Newton's
+    /// method, bracketed by bisection.
     pub(crate) fn parameter_at(&self, length: f64) -> f64 {
         let polygon = self.polygon_length();
         let (mut low, mut high) = (0.0, 1.0);
@@ -234,7 +234,7 @@ mod tests {
         control.map(Point::from)
     }
 
-    /// The curve by the matrix of the B-spline, coefficient by coefficient.
+    /// The curve from the matrix of the B-spline, coefficient by coefficient.
     fn by_matrix([a, b, c, d]: [Point; 4], u: f64) -> Point {
         (a + b * 4.0 + c) * (1.0 / 6.0)
             + (c - a) * (u * 3.0 / 6.0)
@@ -242,7 +242,8 @@ mod tests {
             + (b * 3.0 - a - c * 3.0 + d) * (u * u * u / 6.0)
     }
 
-    /// Certified: every chord is shorter than its part of the curve, every control polygon longer.
+    /// Certified bounds: every chord is shorter than its part of the curve, every control polygon
+    /// longer.
     fn length_bounds(cubic: &Cubic, halvings: u32) -> (f64, f64) {
         if halvings == 0 {
             return (cubic.chord().length(), cubic.polygon_length());
@@ -280,7 +281,7 @@ mod tests {
                 assert_eq!(piece.curvature_at(u), 0.0, "{u}");
             }
         }
-        // From p to (5 p + q) / 6: a sixth of the way, 1.5 m long.
+        // From p to (5 p + q) / 6: a sixth of the distance, 1.5 m long.
         assert!((begin.length() - 0.25).abs() < 1e-12);
     }
 
@@ -303,7 +304,7 @@ mod tests {
             (0.0, 0.0, 0.0)
         );
         assert_eq!((point.parameter_at(1.0), point.deviation()), (0.0, 0.0));
-        // A loop that all but ends where it began.
+        // A loop that almost closes.
         let legs = [[1.0, 2e-162], [0.2, 0.0], [-1.2, 0.0]].map(Point::from);
         let closed = Cubic { start: Point::new(0.0, 0.0), legs };
         assert!(closed.deviation() >= 1.2);
@@ -333,7 +334,7 @@ mod tests {
             let largest = (0..=2000).map(|i| cubic.curvature_at(f64::from(i) / 2000.0).abs()).fold(0.0, f64::max);
             let is_within = cubic.is_curvature_at_most(limit);
             prop_assert!(!is_within || largest <= limit, "certified, but {largest}");
-            // Samples miss a peak by little where it is not sharp.
+            // Samples miss a peak by little unless it is sharp.
             prop_assert!(is_within || largest > 0.9 * limit || largest > 50.0 || limit > 5.0, "refused, {largest}");
             prop_assert!(largest > 50.0 || cubic.is_curvature_at_most(1.1 * largest + 1e-6), "{largest}");
         }

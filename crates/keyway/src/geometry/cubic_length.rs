@@ -1,31 +1,31 @@
-//! Arc length of a cubic: Gauss's formula on parts on which its error is certain to be small.
+//! Arc length of a cubic: Gaussian quadrature on parts whose error is certified to be small.
 //!
 //! The length of the part from u = m - h to m + h is h times the integral of |D(z)| over z = -1..1,
 //! where the derivative D(z) = d0 + d1 z + d2 z² has vectors as coefficients.
 //!
-//! # Why the error is certain
-//! Read as complex numbers, |D(z)|² is D(z) times its conjugate. Neither has a zero where
-//! |d1| |z| + |d2| |z|² < |d0|, that is, in a disc of some radius R around the middle, and there |D(z)| has
-//! an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1, the disc
-//! holds the ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which rho = R +
-//! sqrt(R² - 1). So the coefficients of f in Chebyshev polynomials are `a_k` <= 2 (2 |d0|) rho^-k
-//! (Trefethen, Approximation Theory and Approximation Practice, theorem 8.1). Gauss's formula with
-//! N points is exact up to degree 2 N - 1 and for odd degrees, and its error for a Chebyshev
-//! polynomial is at most 2 + 2 / (k² - 1) < 2.5. Sum:
+//! # Proof of the error bound
+//! Read as complex numbers, |D(z)|² is D(z) times its conjugate. Neither has a zero in the region
+//! |d1| |z| + |d2| |z|² < |d0|, that is, in a disc of some radius R around the middle. There
+//! |D(z)| has an analytic continuation f with |f| <= |d0| + |d1| R + |d2| R² = 2 |d0|. If R > 1,
+//! the disc contains the ellipse with foci -1, 1 and half-axes R and sqrt(R² - 1), for which
+//! rho = R + sqrt(R² - 1). So the coefficients of f in Chebyshev polynomials are
+//! `a_k` <= 2 (2 |d0|) rho^-k (Trefethen, Approximation Theory and Approximation Practice,
+//! theorem 8.1). Gauss's formula with N points is exact up to degree 2 N - 1 and for odd degrees,
+//! and its error for a Chebyshev polynomial is at most 2 + 2 / (k² - 1) < 2.5. Sum:
 //!
 //! error <= 2.5 (4 |d0|) (rho^-2N + rho^-(2N + 2) + ..) = 10 |d0| rho^-2N / (1 - rho^-2).
 //!
-//! Halving makes d1 and d2 smaller, so R grows, except beside a place at which the curve stands
-//! still (a cusp) or nearly does (a sharp bend). There the length itself is soon less than the
-//! error allowed.
+//! Halving makes d1 and d2 smaller, so R grows, except next to a standstill of the curve (a cusp)
+//! or a near-standstill (a sharp bend). There the length itself soon drops below the allowed
+//! error.
 
 use super::{Cubic, Point};
 
-/// Halvings after which a part is taken as it is. The tolerance stops far earlier, at 36 halvings
-/// or so; this ends the recursion for coordinates that are not finite.
+/// Number of halvings after which a part is accepted without a bound. The tolerance stops far
+/// earlier, at 36 halvings or so; this ends the recursion for coordinates that are not finite.
 const MAX_HALVINGS: u32 = 64;
 
-/// Points of the formula.
+/// Number of points of the formula.
 const POINTS: i32 = 10;
 
 /// Nodes z > 0 of Gauss's formula with ten points, and their weights.
@@ -75,9 +75,9 @@ impl Part {
     /// A certified upper bound of the error of [`Self::gauss_length`].
     fn largest_error(&self) -> f64 {
         let [d0, d1, d2] = self.d.map(Point::norm);
-        // Both the length and what the formula makes of it are at most this.
+        // Upper bound of both the length and the formula's result.
         let longest = 2.0 * self.half * (d0 + d1 + d2);
-        // The radius at which d1 R + d2 R² = d0; infinite where the speed is constant.
+        // The radius at which d1 R + d2 R² = d0; infinite for a constant speed.
         let radius = 2.0 * d0 / (d1 + (d1 * d1 + 4.0 * d0 * d2).sqrt());
         if radius.is_nan() || radius <= 1.0 {
             return longest;
@@ -112,14 +112,14 @@ mod tests {
         Cubic::bezier([a, a.lerp(b, 2.0 * third), c.lerp(b, 2.0 * third), c])
     }
 
-    /// The same in closed form: with t = 2 q (u - at), the integral of sqrt(1 + t²) is
-    /// (t sqrt(1 + t²) + asinh t) / 2.
+    /// Length of the parabola in closed form: with t = 2 q (u - at), the integral of sqrt(1 + t²)
+    /// is (t sqrt(1 + t²) + asinh t) / 2.
     fn parabola_length(at: f64, q: f64) -> f64 {
         let integral = |t: f64| 0.5 * (t * t.hypot(1.0) + t.asinh());
         (integral(2.0 * q * (1.0 - at)) - integral(-2.0 * q * at)) / (2.0 * q)
     }
 
-    /// Evaluations of the formula that a whole curve needs.
+    /// Number of evaluations of the formula for a whole curve.
     fn parts(cubic: &Cubic, from: f64, to: f64, tolerance: f64) -> u32 {
         if Part::new(cubic, from, to).largest_error() <= tolerance {
             return 1;

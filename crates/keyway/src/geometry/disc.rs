@@ -3,13 +3,13 @@
 use super::Point;
 use serde::{Deserialize, Serialize};
 
-/// A disc, such as a round obstacle, or the ground that a mover may cover.
+/// A disc, such as a round obstacle, or the area that a moving obstacle may cover.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
-    /// Its centre \[m\].
+    /// Centre of the disc \[m\].
     pub centre: Point,
-    /// Its radius \[m\].
+    /// Radius of the disc \[m\].
     pub radius_m: f64,
 }
 
@@ -24,29 +24,29 @@ impl Disc {
         (self.centre.distance(point) - self.radius_m).max(0.0)
     }
 
-    /// True if its numbers are finite and its radius is not negative.
+    /// True if all numbers are finite and the radius is not negative.
     pub fn is_valid(&self) -> bool {
         self.radius_m >= 0.0 && self.radius_m.is_finite() && self.centre.is_finite()
     }
 
-    /// The smallest disc that holds what two discs share; the smaller of the two when they share
-    /// nothing.
+    /// The smallest disc that contains the intersection of two discs; the smaller of the two if
+    /// they do not intersect.
     pub(crate) fn shared_with(&self, other: &Self) -> Self {
         let (small, large) =
             if self.radius_m <= other.radius_m { (self, other) } else { (other, self) };
         let apart = large.centre - small.centre;
         let apart_m = apart.norm();
-        // Both circles cross in a chord, which lies this far from the smaller one's centre.
+        // The circles intersect in a chord at this distance from the smaller one's centre.
         let to_chord_m = 0.5
             * (apart_m
                 - (large.radius_m - small.radius_m) * (large.radius_m + small.radius_m) / apart_m);
         let half_chord_sq = (small.radius_m - to_chord_m) * (small.radius_m + to_chord_m);
-        // Also when they have one centre, where the way to the chord is no number.
+        // Also for concentric discs, for which the distance to the chord is not a number.
         if !(to_chord_m > 0.0 && half_chord_sq > 0.0) {
             return *small;
         }
-        // Each part beyond the chord is less than half of its disc, so the chord is the widest
-        // line.
+        // Each part beyond the chord is less than half of its disc, so the chord is its widest
+        // extent.
         let middle = small.centre + apart * (to_chord_m / apart_m);
         Self { centre: middle, radius_m: half_chord_sq.sqrt() }
     }

@@ -1,5 +1,5 @@
-//! Points, poses, angles, segments, arcs, discs, cubic curves, and the paths they make in the
-//! plane. Depends on nothing else here.
+//! Geometry in the plane: points, poses, angles, segments, arcs, discs, cubic curves, and paths
+//! composed of them. Has no dependencies within this crate.
 
 mod angle;
 mod arc;

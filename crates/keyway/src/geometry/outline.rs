@@ -2,7 +2,7 @@
 
 use super::{Point, Segment};
 
-/// The edges of a polygon, the one that closes it last.
+/// The edges of a polygon; the closing one comes last.
 pub fn outline<V>(vertices: V) -> impl Iterator<Item = Segment>
 where
     V: Iterator<Item = Point> + Clone,
@@ -11,7 +11,8 @@ where
     vertices.zip(next).map(|(a, b)| Segment::new(a, b))
 }
 
-/// True for a point inside a polygon: a ray to the right crosses its edges an odd number of times.
+/// True if a polygon contains a point: a ray to the right crosses its edges an odd number of
+/// times.
 pub fn holds_point(edges: impl Iterator<Item = Segment>, point: Point) -> bool {
     let crossings = edges.filter(|edge| {
         let (above_a, above_b) = (edge.a.y > point.y, edge.b.y > point.y);

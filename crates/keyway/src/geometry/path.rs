@@ -4,22 +4,22 @@ use super::{Arc, Cubic, PathSample, Point, Polyline, Segment, wrap_angle};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Pieces whose ends are farther apart than this \[m\] do not join.
+/// Largest gap between pieces that still join \[m\].
 const JOIN_TOLERANCE_M: f64 = 1e-6;
 
-/// Heading jumps up to this \[rad\] are rounding: a larger one is a corner.
+/// Largest heading jump \[rad\] that counts as rounding; a larger one is a corner.
 const CORNER_RAD: f64 = 1e-6;
 
-/// A path is never divided into more samples than this.
+/// Largest number of samples of a path.
 const MAX_SAMPLES: f64 = 1e7;
 
 /// One piece of a [`Path`] \[m, world frame\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PathPiece {
-    /// Straight.
+    /// A straight segment.
     Segment(Segment),
-    /// A part of a circle.
+    /// A circular arc.
     Arc(Arc),
     /// A cubic curve: a Bézier curve or a piece of a B-spline.
     Cubic(Cubic),
@@ -53,7 +53,7 @@ impl PathPiece {
         }
     }
 
-    /// Position, heading and curvature `s_m` along the piece; clamped to its ends.
+    /// Position, heading and curvature at arc length `s_m` along the piece, clamped to its ends.
     pub fn at_length(&self, s_m: f64) -> PathSample {
         let fraction =
             |length: f64| if length > 0.0 { (s_m / length).clamp(0.0, 1.0) } else { 0.0 };
@@ -87,13 +87,13 @@ impl PathPiece {
     }
 
     fn is_overwound(&self) -> bool {
-        // A whole turn may come out larger by a rounding error.
+        // A full turn may exceed 2 pi by a rounding error.
         let whole_turn = std::f64::consts::TAU * (1.0 + 1e-12);
         matches!(self, Self::Arc(arc) if arc.radius < 0.0 || arc.sweep_rad.abs() > whole_turn)
     }
 }
 
-/// Why pieces do not make a path.
+/// Error of pieces that do not form a path.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PathError {
@@ -111,7 +111,7 @@ pub enum PathError {
         /// The piece, counted from 0.
         piece: usize,
     },
-    /// A piece does not begin where the one before ends.
+    /// A piece does not begin at the end of the one before.
     #[error("piece {piece} of the path begins {gap_m} m from the end of the piece before it")]
     Gap {
         /// The later piece, counted from 0.
@@ -147,7 +147,7 @@ pub struct Path {
     pieces: Vec<PathPiece>,
 }
 
-/// True if the joints of the pieces are samples too.
+/// Treatment of the joints between pieces: passed, or sampled themselves.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Joints {
     Passed,
@@ -158,8 +158,8 @@ impl Path {
     /// The path over these pieces, in order.
     ///
     /// # Errors
-    /// When a piece has an unusable number, or does not begin within 1 µm of the end of the one
-    /// before.
+    /// Returns [`PathError`] if a piece has an unusable number, or does not begin within 1 µm of
+    /// the end of the one before.
     pub fn new(pieces: Vec<PathPiece>) -> Result<Self, PathError> {
         for (piece, one) in pieces.iter().enumerate() {
             if !one.numbers_are_finite() {
@@ -198,8 +198,8 @@ impl Path {
         headings.windows(2).map(|pair| wrap_angle(pair[1][0] - pair[0][1])).collect()
     }
 
-    /// A line along the path whose chords are nowhere farther from it than `deviation_m`; segments
-    /// stay as they are. A deviation that is not positive gives the ends of the pieces.
+    /// A polyline along the path that deviates from it by at most `deviation_m`; segments are
+    /// kept. A deviation that is not positive returns the ends of the pieces.
     pub fn flattened(&self, deviation_m: f64) -> Polyline {
         let mut points: Vec<Point> =
             self.pieces.first().map(PathPiece::start).into_iter().collect();
@@ -216,20 +216,20 @@ impl Path {
         Polyline::new(points)
     }
 
-    /// The path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end. A joint
-    /// takes heading and curvature of the piece that begins there.
+    /// Samples of the path at the arc lengths 0, `spacing_m`, 2 `spacing_m`, ..., and at its end.
+    /// A joint takes the heading and curvature of the piece that begins there.
     ///
-    /// A path of no length (or one too long for a number) is one sample, an empty path none. A
-    /// spacing that is not a positive number gives the two ends; no spacing gives more than ten
-    /// million samples.
+    /// A path of zero length (or one too long for a number) returns one sample, an empty path
+    /// none. A spacing that is not a positive number returns the two ends; no spacing returns
+    /// more than ten million samples.
     pub fn samples(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Passed)
     }
 
     /// Like [`Self::samples`], plus the joints of the pieces: between two samples the path is a
-    /// single piece. The arc length grows from each sample to the next, except at a
-    /// corner, where the heading jumps by more than 1e-6 rad: it is sampled twice, as the end of
-    /// one piece and as the beginning of the next, and a robot turns on the spot in between.
+    /// single piece. The arc length increases from each sample to the next, except at a corner (a
+    /// heading jump of more than 1e-6 rad). A corner is sampled twice, as the end of one piece
+    /// and as the beginning of the next; in between, a robot turns on the spot.
     pub fn samples_and_joints(&self, spacing_m: f64) -> Vec<PathSample> {
         let mut samples: Vec<PathSample> = Vec::new();
         for sample in self.samples_of_pieces(spacing_m) {
@@ -243,8 +243,8 @@ impl Path {
         samples
     }
 
-    /// Like [`Self::samples`], plus two samples at every joint, with the heading and curvature of
-    /// either piece.
+    /// Like [`Self::samples`], plus two samples at every joint: one with the heading and
+    /// curvature of each piece.
     pub fn samples_of_pieces(&self, spacing_m: f64) -> Vec<PathSample> {
         self.sampled(spacing_m, Joints::Sampled)
     }
@@ -257,7 +257,7 @@ impl Path {
         }
         let spacing_m = if spacing_m > 0.0 { spacing_m } else { total_m };
         let spacing_m = spacing_m.clamp(total_m / MAX_SAMPLES, total_m);
-        // Nearer than this to a joint, a sample counts as the joint's.
+        // A sample nearer than this to a joint counts as the joint's sample.
         let slack = 1e-9 * spacing_m;
         let mut samples = Vec::new();
         let (mut begin, mut index) = (0.0, 0.0);
@@ -291,12 +291,12 @@ impl Path {
     }
 }
 
-/// A piece is never divided into more chords than this.
+/// Largest number of chords of a piece.
 const MAX_CHORDS: u32 = 1 << MAX_HALVINGS;
 const MAX_HALVINGS: u32 = 12;
 
-/// Into how many equal parts an arc is divided for chords this near: a part's sagitta is
-/// r (1 - cos(sweep / 2)) < r sweep^2 / 8.
+/// Number of equal parts into which an arc is split to keep its chords within the deviation: a
+/// part's sagitta is r (1 - cos(sweep / 2)) < r sweep^2 / 8.
 fn parts_of_arc(arc: &Arc, deviation_m: f64) -> u32 {
     if deviation_m.is_nan() || deviation_m <= 0.0 {
         return 1;
@@ -305,7 +305,7 @@ fn parts_of_arc(arc: &Arc, deviation_m: f64) -> u32 {
     (parts.ceil() as u32).clamp(1, MAX_CHORDS)
 }
 
-/// Appends the ends of chords, by halving until they are near enough.
+/// Appends the ends of chords, halving the curve until they are close enough.
 fn flatten(cubic: &Cubic, deviation_m: f64, halvings: u32, points: &mut Vec<Point>) {
     if cubic.deviation() <= deviation_m
         || halvings == MAX_HALVINGS
@@ -333,8 +333,8 @@ impl From<Path> for Vec<PathPiece> {
     }
 }
 
-/// The segments of the line, repeated points dropped; a line of a single point is a path of no
-/// length. Points that are not finite are left out.
+/// The segments of the line, without repeated points; a line of a single point becomes a path of
+/// zero length. Non-finite points are left out.
 impl From<&Polyline> for Path {
     fn from(line: &Polyline) -> Self {
         let mut points: Vec<Point> = line.points().to_vec();
@@ -389,7 +389,7 @@ mod tests {
         };
         let of_pieces = path.samples_of_pieces(1.0);
         assert_eq!(curvatures(of_pieces), [0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
-        // At 0, 1, 2, 2.57, 3 and 3.57 m: no corner, so no place is sampled twice.
+        // At 0, 1, 2, 2.57, 3 and 3.57 m: without corners, no position is sampled twice.
         assert_eq!(curvatures(path.samples_and_joints(1.0)), [0.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
     }
 
@@ -447,7 +447,7 @@ mod tests {
         // A joint that lies a rounding error from a sample.
         let thirds = line(&[[0., 0.], [0.1 + 0.2, 0.], [1., 0.]]);
         assert_eq!(thirds.samples_and_joints(0.1).len(), 11);
-        // Pieces of no length anywhere.
+        // Pieces of zero length anywhere.
         let point = segment([2., 2.], [2., 2.]);
         let pieces = [vec![segment([0., 0.], [0., 0.])], left_turn().pieces, vec![point]].concat();
         let padded = Path::new(pieces).unwrap();

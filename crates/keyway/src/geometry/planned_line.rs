@@ -3,7 +3,7 @@
 use super::{Point, Polyline};
 use serde::{Deserialize, Serialize};
 
-/// A line through the waypoints of a planned path, and which of them are jump points: the points
+/// A line through the waypoints of a planned path, with a flag for each jump point: the points
 /// that a jump point search would have on it.
 ///
 /// The first point, the last one and every point at which the line turns must be jump points, so
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlannedLine {
     polyline: Polyline,
-    /// For each point of the line.
+    /// One flag for each point of the line.
     is_jump_point: Vec<bool>,
 }
 
@@ -21,7 +21,7 @@ impl PlannedLine {
         &self.polyline
     }
 
-    /// The same, without the rest.
+    /// The line through all waypoints, without the flags.
     pub fn into_polyline(self) -> Polyline {
         self.polyline
     }
@@ -31,13 +31,13 @@ impl PlannedLine {
         self.waypoints().filter(|(_, is_jump_point)| *is_jump_point).map(|(point, _)| point)
     }
 
-    /// All waypoints in order, and whether each is a jump point.
+    /// All waypoints in order, each with a flag for jump points.
     pub fn waypoints(&self) -> impl Iterator<Item = (Point, bool)> + '_ {
         self.polyline.points().iter().copied().zip(self.is_jump_point.iter().copied())
     }
 }
 
-/// Waypoints in order, and whether each is a jump point.
+/// Builds the line from waypoints in order, each with a flag for jump points.
 impl FromIterator<(Point, bool)> for PlannedLine {
     fn from_iter<T: IntoIterator<Item = (Point, bool)>>(waypoints: T) -> Self {
         let (points, is_jump_point) = waypoints.into_iter().unzip();
@@ -45,7 +45,7 @@ impl FromIterator<(Point, bool)> for PlannedLine {
     }
 }
 
-/// A line that no planner has made: every point counts as a jump point.
+/// A line that does not come from a planner: every point counts as a jump point.
 impl From<Polyline> for PlannedLine {
     fn from(polyline: Polyline) -> Self {
         let is_jump_point = vec![true; polyline.points().len()];

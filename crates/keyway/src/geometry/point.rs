@@ -40,7 +40,7 @@ impl Point {
         self.x * other.x + self.y * other.y
     }
 
-    /// Cross product's z: positive when `other` lies counter-clockwise of `self`.
+    /// Cross product's z: positive if `other` lies counter-clockwise of `self`.
     pub fn cross(self, other: Self) -> f64 {
         self.x * other.y - self.y * other.x
     }
@@ -50,13 +50,13 @@ impl Point {
         libm::atan2(self.y, self.x)
     }
 
-    /// The point `fraction` of the way to `other` (0 here, 1 there).
+    /// Linear interpolation to `other` (`fraction` 0: this point, 1: the other).
     #[must_use]
     pub fn lerp(self, other: Self, fraction: f64) -> Self {
         self + (other - self) * fraction
     }
 
-    /// True when neither coordinate is NaN or infinite.
+    /// True if both coordinates are finite.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }

@@ -3,7 +3,7 @@
 use super::{Point, Segment, wrap_angle};
 use serde::{Deserialize, Serialize};
 
-/// Heading changes below this angle \[rad\] are rounding, not turns.
+/// Angle \[rad\] below which a heading change is rounding, not a turn.
 const COLLINEAR_TOLERANCE_RAD: f64 = 1e-9;
 
 /// A chain of straight segments through its points \[m\]. May be empty or a single point.
@@ -58,10 +58,10 @@ impl Polyline {
         self.merged().points.windows(3).map(|p| turn_between(p[1] - p[0], p[2] - p[1])).collect()
     }
 
-    /// The arc length of the point that is nearest to `position`, among those from arc length
-    /// `from_m` on and at most `window_m` farther. So a robot that follows a line never goes back
-    /// along it, and does not leap where the line comes near itself. `from_m` for a line without
-    /// segments.
+    /// Arc length of the point nearest to `position`, among those from arc length `from_m` on and
+    /// at most `window_m` farther; `from_m` for a line without segments. With this window, a
+    /// robot that follows a line never goes back along it, and does not jump where the line comes
+    /// near itself.
     pub(crate) fn nearest_along(&self, position: Point, from_m: f64, window_m: f64) -> f64 {
         let (mut begin_m, mut best_m, mut best_sq) = (0.0, from_m, f64::INFINITY);
         for segment in self.segments() {
@@ -85,7 +85,8 @@ impl Polyline {
         best_m
     }
 
-    /// The point at arc length `s_m` from the beginning; clamped to the ends. `None` when empty.
+    /// The point at arc length `s_m` from the beginning, clamped to the ends; `None` for an empty
+    /// line.
     pub fn at_length(&self, s_m: f64) -> Option<Point> {
         let mut left = s_m.max(0.0);
         for segment in self.segments() {
@@ -102,7 +103,7 @@ impl Polyline {
 /// True if the heading changes by rounding only.
 fn is_straight_on(before: Point, after: Point) -> bool {
     let (sine, limit) = (before.cross(after).abs(), COLLINEAR_TOLERANCE_RAD * before.dot(after));
-    // Nearly all angles are decided without trigonometry.
+    // Decides nearly all angles without trigonometry.
     if sine > 2.0 * limit {
         return false;
     }

@@ -25,38 +25,39 @@ impl Pose {
         Point::new(self.x, self.y)
     }
 
-    /// A pose given in this pose's own frame (x ahead, y left), in the world frame.
+    /// Transforms a pose from this pose's own frame (x ahead, y left) to the world frame.
     #[must_use]
     pub fn compose(&self, body: Self) -> Self {
         let Point { x, y } = self.world_from_body(body.point());
         Self::new(x, y, self.theta + body.theta)
     }
 
-    /// A point given in this pose's own frame (x ahead, y left), in the world frame.
+    /// Transforms a point from this pose's own frame (x ahead, y left) to the world frame.
     pub fn world_from_body(&self, body: Point) -> Point {
         let (sin, cos) = libm::sincos(self.theta);
         Point::new(self.x + cos * body.x - sin * body.y, self.y + sin * body.x + cos * body.y)
     }
 
-    /// A world point in the robot's frame \[m\].
+    /// Transforms a world point to this pose's own frame \[m\].
     pub fn body_from_world(&self, world: Point) -> Point {
         let off = world - self.point();
         let (sin, cos) = libm::sincos(self.theta);
         Point::new(off.x * cos + off.y * sin, off.y * cos - off.x * sin)
     }
 
-    /// Bearing of a world point as seen from here: 0 straight ahead, positive to the left
-    /// \[rad, (-pi, pi\]\].
+    /// Bearing of a world point from this pose: 0 straight ahead, positive to the left \[rad,
+    /// (-pi, pi\]\].
     pub fn bearing_to(&self, target: Point) -> f64 {
         wrap_angle((target - self.point()).heading() - self.theta)
     }
 
-    /// Where the pose is after driving with a constant velocity for `duration_s`: an exact circular
-    /// arc (a straight line for omega = 0).
+    /// The pose after driving with a constant velocity for `duration_s`: an exact circular arc (a
+    /// straight line for omega = 0).
     #[must_use]
     pub fn after_arc(&self, velocity: Velocity, duration_s: f64) -> Self {
         let turned = velocity.omega * duration_s;
-        // The chord of the arc: length s sinc(turned / 2), half-way between the two headings.
+        // The chord of the arc: length s sinc(turned / 2), with a direction half-way between the
+        // two headings.
         let half = 0.5 * turned;
         let sinc = if half.abs() < 1e-6 { 1.0 - half * half / 6.0 } else { libm::sin(half) / half };
         let chord = velocity.v * duration_s * sinc;
@@ -64,9 +65,9 @@ impl Pose {
         Self::new(self.x + chord * cos, self.y + chord * sin, self.theta + turned)
     }
 
-    /// Where the pose is after driving for `duration_s` while the velocity changes linearly from
-    /// `from` to `to`. The motion has no closed form; it is composed of [`Self::RAMP_ARCS`] arcs at
-    /// their mean velocities.
+    /// The pose after driving for `duration_s` while the velocity changes linearly from `from` to
+    /// `to`. The motion has no closed form; it is composed of [`Self::RAMP_ARCS`] arcs at their
+    /// mean velocities.
     #[must_use]
     pub fn after_ramp(&self, from: Velocity, to: Velocity, duration_s: f64) -> Self {
         let arc_s = duration_s / f64::from(Self::RAMP_ARCS);
@@ -74,38 +75,38 @@ impl Pose {
         arcs.fold(*self, |pose, velocity| pose.after_arc(velocity, arc_s))
     }
 
-    /// The velocities of the arcs that make up a linear change: all last equally long.
+    /// The velocities of the arcs that approximate a linear change; all have the same duration.
     pub(crate) fn ramp_arcs(from: Velocity, to: Velocity) -> impl Iterator<Item = Velocity> {
         let count = f64::from(Self::RAMP_ARCS);
         (0..Self::RAMP_ARCS).map(move |i| from.lerp(to, (f64::from(i) + 0.5) / count))
     }
 
-    /// Arcs that make up a linear change of velocity: the position is then accurate to ten
-    /// micrometres for a cycle of 0.1 s.
+    /// Number of arcs that approximate a linear change of velocity: the position is then accurate
+    /// to ten micrometres for a cycle of 0.1 s.
     pub const RAMP_ARCS: u32 = 4;
 }
 
-/// Body velocity of a wheeled robot. Made by [`Self::new`]; a drive that moves sideways will add a
-/// part.
+/// Body velocity of a wheeled robot. Created by [`Self::new`]; a drive that moves sideways will
+/// add a component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Velocity {
-    /// Forward \[m/s\].
+    /// Forward speed \[m/s\].
     pub v: f64,
     /// Turn rate, counter-clockwise \[rad/s\].
     pub omega: f64,
 }
 
 impl Velocity {
-    /// Standing still.
+    /// Zero velocity.
     pub const ZERO: Self = Self { v: 0.0, omega: 0.0 };
 
-    /// Forward speed \[m/s\] and turn rate \[rad/s\].
+    /// Creates a velocity from forward speed \[m/s\] and turn rate \[rad/s\].
     pub const fn new(v: f64, omega: f64) -> Self {
         Self { v, omega }
     }
 
-    /// The velocity `fraction` of the way to `other` (0 this one, 1 the other).
+    /// Linear interpolation to `other` (`fraction` 0: this velocity, 1: the other).
     #[must_use]
     pub fn lerp(self, other: Self, fraction: f64) -> Self {
         Self::new(

@@ -3,7 +3,7 @@
 use super::Point;
 use serde::{Deserialize, Serialize};
 
-/// A path at one arc length. The fields' names are the keys of the JSON form.
+/// A sample of a path at one arc length. The fields' names are the keys of the JSON form.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct PathSample {
@@ -24,7 +24,7 @@ impl PathSample {
         Self { s_m, x_m: at.x, y_m: at.y, heading_rad, curvature_per_m }
     }
 
-    /// The same place, at another arc length.
+    /// The same position at another arc length.
     pub(super) const fn moved_to(self, s_m: f64) -> Self {
         Self { s_m, ..self }
     }

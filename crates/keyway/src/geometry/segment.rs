@@ -3,7 +3,7 @@
 use super::Point;
 use serde::{Deserialize, Serialize};
 
-/// The straight line from `a` to `b`; a single point when they are equal.
+/// The straight line from `a` to `b`; a single point if they are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Segment {
@@ -21,13 +21,13 @@ pub(crate) struct Square {
     pub(crate) corner: Point,
 }
 
-/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike
+/// The larger of two numbers, the second one if the first is NaN: one instruction, unlike
 /// [`f64::max`].
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers, the second one where the first is NaN.
+/// The smaller of two numbers, the second one if the first is NaN.
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -40,7 +40,7 @@ impl Square {
         dx * dx + dy * dy
     }
 
-    /// Its point that is nearest to a point: the point itself where that lies inside.
+    /// The point of the square nearest to a point: the point itself if it lies inside.
     pub(crate) fn nearest_to(self, point: Point) -> Point {
         let Point { x, y } = self.corner;
         Point::new(point.x.clamp(x, x + 1.0), point.y.clamp(y, y + 1.0))
@@ -69,7 +69,7 @@ impl Segment {
         self.a.distance(self.b)
     }
 
-    /// The fraction of the way from `a` to `b` at which the segment is nearest to `point`.
+    /// Fraction from `a` to `b` at which the segment is nearest to `point`.
     pub(crate) fn nearest_fraction(&self, point: Point) -> f64 {
         let along = self.b - self.a;
         let length_sq = along.norm_sq();
@@ -84,22 +84,22 @@ impl Segment {
         (self.a.lerp(self.b, self.nearest_fraction(point)) - point).norm_sq()
     }
 
-    /// Squared distance to a square; 0 when the segment touches or enters it.
+    /// Squared distance to a square; 0 if the segment touches or enters it.
     ///
     /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the
     /// square's corners this can only be the one nearest to the segment's line. Takes one division.
     pub(crate) fn distance_sq_to_square(&self, square: Square) -> f64 {
         let along = self.b - self.a;
         let low = square.corner - self.a;
-        // Not from `low`, which may have been rounded.
+        // Not computed from `low`, which may have been rounded.
         let high = square.corner + Point::new(1.0, 1.0) - self.a;
         let is_left = along.cross(low + Point::new(0.5, 0.5)) >= 0.0;
         let corner = Point::new(
             if (along.y > 0.0) == is_left { high.x } else { low.x },
             if (along.x > 0.0) == is_left { low.y } else { high.y },
         );
-        // How far it is from the line, times the segment's length; at most 0 where the line meets
-        // the square.
+        // Distance of the corner from the line, times the segment's length; at most 0 if the line
+        // meets the square.
         let off = if is_left { along.cross(corner) } else { -along.cross(corner) };
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
         if off > 0.0 && ahead > 0.0 && ahead < length_sq {
@@ -117,12 +117,12 @@ impl Segment {
         meet(self.a.x, self.b.x, square.corner.x) && meet(self.a.y, self.b.y, square.corner.y)
     }
 
-    /// True when the segment touches or enters the closed square.
+    /// True if the segment touches or enters the closed square.
     pub(crate) fn meets(&self, square: Square) -> bool {
         self.inside_span(square).is_some_and(|(enter, leave)| enter <= leave)
     }
 
-    /// True when the segment passes through the square's interior (touching its border is not
+    /// True if the segment passes through the square's interior (touching its border is not
     /// enough).
     #[cfg(test)]
     pub(crate) fn crosses(&self, square: Square) -> bool {
@@ -140,7 +140,8 @@ impl Segment {
         }
     }
 
-    /// The interval of fractions inside the closed square (slab method), unless a slab is missed.
+    /// The interval of fractions inside the closed square (slab method); `None` if a slab is
+    /// missed.
     fn inside_span(&self, square: Square) -> Option<(f64, f64)> {
         let along = self.b - self.a;
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -179,7 +180,7 @@ mod tests {
         assert!((past.distance_sq_to_square(UNIT) - 0.5).abs() < 1e-12);
         let point = Segment::new(Point::new(4.0, 5.0), Point::new(4.0, 5.0));
         assert_eq!(point.distance_sq_to_square(UNIT), 25.0);
-        // Nearer to the edge x = 0 than a number near 1 can resolve.
+        // Nearer to the edge x = 0 than the precision of a number near 1.
         let beside = Segment::new(Point::new(1e-16, -3.0), Point::new(1e-16, 3.0));
         let left = Square { corner: Point::new(-1.0, 0.0) };
         assert!(beside.distance_sq_to_square(left) <= 1e-31);

@@ -1,8 +1,8 @@
-//! Corrections of where a robot is.
+//! Corrections of a robot's estimated pose.
 
 use super::{Point, Pose, wrap_angle};
 
-/// The shift and turn of all ground that takes one pose to another.
+/// The rigid transform (translation and rotation) that takes one pose to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shift {
     from: Pose,
@@ -14,18 +14,18 @@ impl Shift {
         Self { from, to }
     }
 
-    /// The place to which a point comes.
+    /// Transforms a point.
     pub(crate) fn point(&self, point: Point) -> Point {
         self.to.world_from_body(self.from.body_from_world(point))
     }
 
-    /// The vector to which another one is turned.
+    /// Rotates a vector.
     pub(crate) fn vector(&self, vector: Point) -> Point {
         let (sin, cos) = libm::sincos(self.turn_rad());
         Point::new(vector.x * cos - vector.y * sin, vector.x * sin + vector.y * cos)
     }
 
-    /// The pose to which another one comes.
+    /// Transforms a pose.
     pub(crate) fn pose(&self, pose: Pose) -> Pose {
         let Point { x, y } = self.point(pose.point());
         Pose::new(x, y, pose.theta + self.turn_rad())
@@ -44,7 +44,8 @@ mod tests {
     #[test]
     fn all_keeps_its_place_beside_the_robot() {
         let shift = Shift::new(Pose::new(1.0, 2.0, 0.0), Pose::new(5.0, 5.0, FRAC_PI_2));
-        // What was 1 m ahead still is, and what went to the left of the robot does.
+        // A point 1 m ahead stays 1 m ahead, and a motion to the left of the robot stays one to
+        // its left.
         assert!(shift.point(Point::new(2.0, 2.0)).distance(Point::new(5.0, 6.0)) < 1e-12);
         assert!(shift.vector(Point::new(0.0, 1.0)).distance(Point::new(-1.0, 0.0)) < 1e-12);
         let pose = shift.pose(Pose::new(1.0, 3.0, 3.0));

@@ -1,7 +1,7 @@
-//! Carrot: the point of the route a look-ahead distance farther on than the robot has come.
+//! Carrot: the point of the route a look-ahead distance ahead of the robot's progress.
 //!
 //! It moves along with the robot, so the robot follows the route itself and not only its corners.
-//! How far it has come is the nearest point of the route, which never goes back.
+//! Progress is the arc length of the nearest point of the route and never decreases.
 //!
 //! # Source
 //! The carrot of [`crate::local::Follower`], \[Coulter1992\], for any local planner.
@@ -21,20 +21,20 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct CarrotConfig {
-    /// How far ahead along the route the carrot is \[m\].
+    /// Look-ahead distance along the route \[m\].
     pub look_ahead_m: f64,
 }
 
 impl CarrotConfig {
-    /// On cells of 1 m, for the paths of \[ZhuYin2024\]: one cell. The paper does not say how its
-    /// robot follows a path.
+    /// One cell of 1 m, for the paths of \[ZhuYin2024\]. The paper does not say how its robot
+    /// follows a path.
     pub const PAPER: Self = Self { look_ahead_m: 1.0 };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
 
-    /// The look-ahead distance is what the robot drives at full speed in a cycle and twice the time
-    /// it needs to stop.
+    /// Look-ahead distance: the distance covered at full speed in one cycle plus twice the
+    /// stopping time.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
         Self { look_ahead_m: robot.limits.v_max_mps * horizon_s }
@@ -51,18 +51,18 @@ impl Carrot {
     /// Its name in stacks and reports.
     pub const NAME: &'static str = "carrot";
 
-    /// The guide with these parameters.
+    /// Creates the guide.
     ///
     /// # Errors
-    /// When the look-ahead distance is not a positive number.
+    /// Returns [`ConfigError`] if the look-ahead distance is not a positive number.
     pub fn new(config: CarrotConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("look_ahead_m", config.look_ahead_m)?;
         Ok(Self { config })
     }
 }
 
-/// The place of the route that is so far beyond where the robot has come, and the way from there to
-/// the end \[m\].
+/// The point of the route `ahead_m` beyond the robot's progress, and the remaining length from
+/// there to the end \[m\].
 pub(super) fn ahead(
     view: &GuideView<'_>,
     memory: &mut GuideMemory,

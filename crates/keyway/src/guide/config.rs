@@ -1,4 +1,4 @@
-//! All guides by name: the one place where a new one is entered.
+//! Registry of all guides by name; a new one is entered here.
 
 use super::parameters::GuideParameters;
 use super::{
@@ -12,21 +12,21 @@ use crate::robot::Robot;
 registry! {
     /// A guide and its parameters, as data.
     GuideConfig by GuideParameters for Robot;
-    /// The turning points of the smoothed route, one after the other.
+    /// Turning points of the smoothed route, one after the other.
     KeyPoints(KeyPointsConfig) => KeyPoints;
-    /// The point of the route a look-ahead distance farther on.
+    /// Point of the route a look-ahead distance ahead.
     Carrot(CarrotConfig) => Carrot;
     /// Points of the smoothed route at a fixed spacing, one after the other.
     LocalGoals(LocalGoalsConfig) => LocalGoals;
-    /// The end of the route, from the beginning on.
+    /// End of the route, from the beginning on.
     Goal(GoalConfig) => GoalGuide;
 }
 
 impl GuideConfig {
-    /// The guide.
+    /// Builds the guide.
     ///
     /// # Errors
-    /// When a parameter cannot be used, which the error names.
+    /// Returns [`ConfigError`] if a parameter cannot be used; the error names it.
     pub fn build(&self) -> Result<Box<dyn Guide + Send + Sync>, ConfigError> {
         self.parameters().build()
     }

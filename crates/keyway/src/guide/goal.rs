@@ -1,7 +1,7 @@
 //! The goal alone: a smoothed path -> its end, from the beginning on.
 //!
-//! This is what the dynamic window approach drives to when no route guides it \[Fox1997\]: the
-//! baseline of fused planners.
+//! Without a route to guide it, the dynamic window approach drives straight to the goal
+//! \[Fox1997\]: the baseline of fused planners.
 
 use super::parameters::{BoxedGuide, GuideParameters};
 use super::{Guidance, Guide, GuideMemory, GuideView};

@@ -1,10 +1,10 @@
 //! Key points \[You2021\]: a smoothed path -> the point that the local planner drives towards.
 //!
 //! The key points are the turning points of the smoothed path and its goal. The local planner is
-//! sent to one after the other. The next one is taken when the robot has come near enough to the
-//! last; with [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight way to it is
-//! free, and not before. With a look-ahead distance the point moves on along the route before that:
-//! a robot that drives towards a point next to it has to creep.
+//! sent to one after the other. The next one is taken when the robot has come close enough to the
+//! current one; with [`KeyPointsConfig::passed_when`] = `in-sight`, as soon as the straight line
+//! to the next one is free, and not before. With a look-ahead distance, the point moves on along
+//! the route earlier, because a robot that drives towards a nearby point has to creep.
 //!
 //! # Source
 //! \[You2021\]: section 3, steps (3) and (6), table 3.
@@ -15,9 +15,9 @@
 //!
 //! # Where this differs from the paper
 //! - `in-sight` and `look_ahead_m` are not in the paper, whose maps have cells of 1 m. On a fine
-//!   map, a key point beyond which the way is already in sight would only slow the robot down; and
-//!   one that is dropped while the next one is still behind a corner would leave the robot in front
-//!   of that corner.
+//!   map, driving up to a key point would only slow the robot down when the route beyond it is
+//!   already in sight. And if a key point is dropped while the next one is still behind a corner,
+//!   the robot gets stuck in front of that corner.
 
 use super::carrot::ahead;
 use super::parameters::{BoxedGuide, GuideParameters};
@@ -32,26 +32,28 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointsConfig {
-    /// R2: a key point is passed within this distance \[m\]. With `in-sight`: from so near the
-    /// robot stands in for the key point.
+    /// R2: a key point is passed within this distance \[m\]. With `in-sight`: within this
+    /// distance, the line of sight from the key point itself counts as the robot's.
     pub reach_m: f64,
-    /// When the next key point is taken: `within-reach` or `in-sight`.
+    /// Condition for taking the next key point: `within-reach` or `in-sight`.
     pub passed_when: PassedWhen,
-    /// The guide point is at least this far ahead along the route, up to the goal: a key point, or
-    /// from so near the place of the route that is so far on \[m\]. 0 for key points alone.
+    /// Minimum distance of the guide point ahead along the route, up to the goal \[m\]. The guide
+    /// point is the key point, or the point of the route at this distance if the key point is
+    /// closer. 0 for key points alone.
     pub look_ahead_m: f64,
 }
 
-/// When a key point counts as passed.
+/// Condition for a key point to count as passed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum PassedWhen {
-    /// Within the reach, whatever is in sight from there \[You2021\].
+    /// Within the reach, regardless of line of sight \[You2021\].
     WithinReach,
-    /// When the straight way to the next one keeps the clearance. Within the reach, it is enough
-    /// that nothing is on the way from the key point itself, which may be narrower than that.
+    /// The straight line to the next key point keeps the clearance. Within the reach, it is
+    /// enough that the line from the key point itself is free of obstacles; it need not keep the
+    /// clearance.
     InSight,
 }
 
@@ -60,9 +62,9 @@ impl KeyPointsConfig {
     pub const PAPER: Self =
         Self { reach_m: 1.5, passed_when: PassedWhen::WithinReach, look_ahead_m: 0.0 };
 
-    /// In sight; the reach is one cycle of driving at full speed, because no robot hits a point
-    /// more exactly than that without slowing down for it. The look-ahead distance is what the
-    /// robot needs to stand from full speed, the cycle in which it is told included.
+    /// In sight. The reach is the distance covered in one cycle at full speed, because no robot
+    /// hits a point more exactly than that without slowing down. The look-ahead distance is the
+    /// stopping distance from full speed, including one cycle of reaction.
     pub fn for_robot(robot: &Robot) -> Self {
         let reach_m = robot.limits.v_max_mps * robot.cycle_s;
         let look_ahead_m = reach_m + robot.limits.stop_m();
@@ -80,10 +82,11 @@ impl KeyPoints {
     /// Its name in stacks and reports.
     pub const NAME: &'static str = "key-points";
 
-    /// The guide with these parameters.
+    /// Creates the guide.
     ///
     /// # Errors
-    /// When the reach is not a positive number, or the look-ahead distance is negative.
+    /// Returns [`ConfigError`] if the reach is not a positive number, or if the look-ahead
+    /// distance is negative.
     pub fn new(config: KeyPointsConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("reach_m", config.reach_m)?;
         ConfigError::unless_not_negative("look_ahead_m", config.look_ahead_m)?;
@@ -100,7 +103,7 @@ fn key_points(path: &Polyline) -> &[Point] {
 }
 
 impl KeyPoints {
-    /// True if the robot has passed a key point, as the next one shows.
+    /// True if the robot has passed the key point `current`, given the one that follows.
     fn is_passed(&self, view: &GuideView<'_>, current: Point, following: Point) -> bool {
         let is_within_reach = view.position.distance(current) <= self.config.reach_m;
         let is_free =
@@ -166,7 +169,7 @@ mod tests {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
     }
 
-    /// Where to drive from a place in a hall of 9 x 9 m with walls in the given cells.
+    /// The guidance at a position in a hall of 9 x 9 m with walls in the given cells.
     fn guidance(
         config: &KeyPointsConfig,
         memory: &mut GuideMemory,
@@ -206,7 +209,7 @@ mod tests {
             guidance(&config, &mut GuideMemory::default(), (1.0, 0.0), walls).point
         };
         assert_eq!(at(&[]), Point::new(4.0, 3.0));
-        // The cell from (2.5, 1.5) to (3.5, 2.5) is in the way.
+        // The cell from (2.5, 1.5) to (3.5, 2.5) blocks the line.
         assert_eq!(at(&[Cell::new(5, 4)]), Point::new(4.0, 0.0));
     }
 
@@ -214,8 +217,8 @@ mod tests {
     fn a_point_is_driven_to_where_the_next_one_is_hidden() {
         let config =
             KeyPointsConfig { reach_m: 0.1, passed_when: PassedWhen::InSight, look_ahead_m: 0.0 };
-        // The cell from (2.5, 1.5) to (3.5, 2.5) hides the next point until the robot is nearly at
-        // this one.
+        // The cell from (2.5, 1.5) to (3.5, 2.5) occludes the next point until the robot is nearly
+        // at this one.
         let behind = |at: (f64, f64), walls: &[Cell]| {
             guidance(&config, &mut GuideMemory::default(), at, walls).point
         };

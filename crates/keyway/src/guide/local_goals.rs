@@ -10,7 +10,8 @@
 //! | reached within | `reach_m` | m | not given; read as 0.5 |
 //!
 //! # Where this differs from the paper
-//! - The paper says neither how far apart the local goals are nor when one is reached.
+//! - The paper gives neither the spacing of the local goals nor the distance at which one counts as
+//!   reached.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. Linear in the segments of the route.
@@ -27,22 +28,22 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LocalGoalsConfig {
-    /// Way along the route from one local goal to the next \[m\].
+    /// Spacing of the local goals along the route \[m\].
     pub spacing_m: f64,
-    /// The next one is taken within this distance \[m\].
+    /// Distance within which the next one is taken \[m\].
     pub reach_m: f64,
 }
 
 impl LocalGoalsConfig {
-    /// As published; both values are readings.
+    /// As published; both values are interpretations.
     pub const PAPER: Self = Self { spacing_m: 2.0, reach_m: 0.5 };
 
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["spacing_m", "reach_m"];
 
-    /// The spacing is what the robot drives at full speed in a cycle and twice the time it needs to
-    /// stop. The reach is half of that: so a robot on its route always has at least as much before
-    /// it, and does not slow down for a local goal.
+    /// Spacing: the distance covered at full speed in one cycle plus twice the stopping time. The
+    /// reach is half of that, so a robot on its route always has at least as much ahead of it and
+    /// does not slow down for a local goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let horizon_s = robot.cycle_s + 2.0 * robot.limits.stop_s();
         let spacing_m = robot.limits.v_max_mps * horizon_s;
@@ -60,27 +61,27 @@ impl LocalGoals {
     /// Its name in stacks and reports.
     pub const NAME: &'static str = "local-goals";
 
-    /// More local goals than this on a route are a mistake in the config.
+    /// Upper limit on the local goals of a route; more indicate a mistake in the config.
     const MOST: f64 = 1e6;
 
-    /// The guide with these parameters.
+    /// Creates the guide.
     ///
     /// # Errors
-    /// When the spacing or the reach is not a positive number.
+    /// Returns [`ConfigError`] if the spacing or the reach is not a positive number.
     pub fn new(config: LocalGoalsConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_positive("spacing_m", config.spacing_m)?;
         ConfigError::unless_positive("reach_m", config.reach_m)?;
         Ok(Self { config })
     }
 
-    /// How many local goals a path of a length has: one after each whole spacing that ends before
-    /// the goal, and the goal. Rounding makes none of its own.
+    /// Number of local goals of a path of this length: one after each whole spacing that ends
+    /// before the goal, and the goal. Rounding adds none.
     fn count(&self, length_m: f64) -> usize {
         let whole = (length_m / self.config.spacing_m * (1.0 - 1e-9)).floor();
         whole.min(Self::MOST) as usize + 1
     }
 
-    /// Arc length of a local goal from the beginning of the path; the last one is at its end.
+    /// Arc length of a local goal from the start of the path; the last one is at its end.
     fn along_m(&self, index: usize, count: usize, length_m: f64) -> f64 {
         if index + 1 >= count { length_m } else { (index as f64 + 1.0) * self.config.spacing_m }
     }

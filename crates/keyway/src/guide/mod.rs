@@ -1,4 +1,4 @@
-//! Where the local planner is to drive: a smoothed route -> the point to go to in this cycle.
+//! Guides of the local planner: a smoothed route -> the point to drive towards in this cycle.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};
@@ -38,7 +38,7 @@ use std::fmt::Debug;
 
 /// Chooses the point that the local planner drives towards.
 ///
-/// A guide is an immutable configuration; what it remembers of a route is [`GuideMemory`].
+/// A guide is an immutable configuration; its state along a route is [`GuideMemory`].
 ///
 /// ```
 /// use keyway::geometry::{Point, Polyline};
@@ -78,42 +78,42 @@ use std::fmt::Debug;
 /// assert_eq!(guidance, Some(Guidance { point: Point::new(2.5, 0.5), remaining_m: 4.0 }));
 /// ```
 pub trait Guide: Debug {
-    /// Where to drive now; `None` for a path without points.
+    /// The guidance of this cycle; `None` for a path without points.
     fn guide(&self, view: &GuideView<'_>, memory: &mut GuideMemory) -> Option<Guidance>;
 
-    /// The points of a path that the guide hands out one after the other, the goal last. Just the
-    /// goal where the point moves along.
+    /// The guide points of a path in order, the goal last. Only the goal for a guide whose point
+    /// moves along.
     fn points(&self, path: &Polyline) -> Vec<Point>;
 }
 
-/// What a guide looks at; built by the caller.
+/// Input of a guide, built by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct GuideView<'a> {
     /// The smoothed route.
     pub path: &'a Polyline,
-    /// Where the robot is \[m\].
+    /// Position of the robot \[m\].
     pub position: Point,
     /// Distances to all obstacles, known and sensed.
     pub obstacles: Clearance<'a>,
-    /// What a straight way to a point must keep to count as free \[m\].
+    /// Clearance of a straight line that counts as free \[m\].
     pub clearance_m: f64,
 }
 
-/// What a guide remembers from one cycle to the next. Begins anew with every route.
+/// State of a guide from one cycle to the next. Reset for every route.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuideMemory {
-    /// Points of [`Guide::points`] that were passed.
+    /// Number of points of [`Guide::points`] that were passed.
     pub passed: usize,
-    /// How far along the route the robot has come: arc length from its beginning \[m\].
+    /// Progress of the robot: arc length from the start of the route \[m\].
     pub covered_m: f64,
 }
 
-/// Where to drive in one cycle.
+/// Output of a guide in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guidance {
     /// The guide point \[m\].
     pub point: Point,
-    /// Length of the remaining way: to the guide point and on along the route \[m\].
+    /// Remaining path length: to the guide point and on along the route \[m\].
     pub remaining_m: f64,
 }

@@ -1,4 +1,4 @@
-//! What every guide says of itself by its parameters.
+//! The interface that every guide's parameters implement.
 
 use super::Guide;
 use crate::ConfigError;
@@ -7,14 +7,14 @@ use crate::robot::Robot;
 /// A guide chosen by name.
 pub(super) type BoxedGuide = Box<dyn Guide + Send + Sync>;
 
-/// What is known of a guide by its parameters.
+/// Properties of a guide that follow from its parameters.
 pub(super) trait GuideParameters {
     /// The parameters for a robot.
     fn for_robot(robot: &Robot) -> Self
     where
         Self: Sized;
 
-    /// The guide with these parameters.
+    /// Builds the guide.
     fn build(&self) -> Result<BoxedGuide, ConfigError>;
 
     /// The values of the guide's paper.

@@ -13,18 +13,19 @@
 //! | dist* = max(dist - R, R) | [`AdaptiveDwa::factors`] | m | |
 //! | alpha, beta, gamma | `weights` | | not given; those of \[You2021\], table 3 |
 //!
-//! G = sigma((a + (1 - a) dist* / R) alpha heading + beta dist + (a + R / dist*) gamma vel), where
-//! sigma divides each term by its sum over the candidates.
+//! G = sigma((a + (1 - a) dist* / R) alpha heading + beta dist + (a + R / dist*) gamma vel),
+//! where sigma divides each term by its sum over the candidates.
 //!
 //! # Where this differs from the paper
-//! - heading, dist and vel are divided by their sums first and multiplied by their factors then.
+//! - heading, dist and vel are first divided by their sums and then multiplied by their factors.
 //!   dist* is in metres.
-//! - The factors are as printed: near obstacles that of speed is a + 1, and far away it falls to a.
-//!   So speed counts *more* near obstacles, the opposite of what the text announces. In the open
-//!   the factors can make standing still, with the local goal straight ahead, the best of all.
-//! - dist is never capped near 2 R, as in the MATLAB sample behind much of this literature: dist*
-//!   would always be R, and the weights constant.
-//! - The paper gives no limits of its robot: those of [`Robot::paper`] are read.
+//! - The factors are as printed: near obstacles that of speed is a + 1, and far away it falls to
+//!   a. So speed counts *more* near obstacles, the opposite of what the text announces. On open
+//!   ground the factors can make standstill the best candidate, with the local goal straight
+//!   ahead.
+//! - dist is never capped near 2 R, unlike in the MATLAB sample behind much of this literature:
+//!   dist* would always be R, and the weights constant.
+//! - The paper gives no limits of its robot: those of [`Robot::paper`] are used.
 //!
 //! # Errors / cost
 //! See [`WindowConfig`].
@@ -47,19 +48,19 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct AdaptiveDwaConfig {
-    /// Which velocities are tried, and which of them are refused.
+    /// Candidate velocities, and the rules that refuse them.
     pub window: WindowConfig,
     /// Weights of the evaluation, before they are multiplied by the factors.
     pub weights: Weights,
     /// a: the part of the factors that does not depend on the distance; above 0, below 1.
     pub a: f64,
-    /// R: within twice this distance of an obstacle the factors stay as they are there \[m\].
+    /// R: within twice this distance of an obstacle the factors are constant \[m\].
     pub safe_radius_m: f64,
 }
 
 impl AdaptiveDwaConfig {
-    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2
-    /// and 3, where it has them.
+    /// As published. The paper gives no numbers: all are readings, from tables 2 and 3 of
+    /// \[You2021\] if they are given there.
     pub const PAPER: Self = Self {
         window: WindowConfig::AT_THE_END,
         weights: Weights { heading: 0.08, distance: 0.2, speed: 0.1 },
@@ -84,12 +85,12 @@ impl AdaptiveDwaConfig {
         "safe_radius_m",
     ];
 
-    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the distance
-    /// and the heading at the end, as its local goals are farther ahead. The safe radius is half
-    /// the way to stop at full speed, so within that way of an obstacle the factors stay as they
-    /// are there; distances count up to twice that way. The factor of heading is then at most 2:
-    /// with the paper's 5, and more, standing still with the local goal straight ahead scores best
-    /// in the open.
+    /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`] with the
+    /// distance and the heading at the end, as its local goals are farther ahead. The safe radius
+    /// is half the stopping distance at full speed, so within the stopping distance of an
+    /// obstacle the factors are constant; distances are capped at twice the stopping distance.
+    /// The factor of heading is then at most 2: with the paper's 5, and more, standstill with the
+    /// local goal straight ahead scores best on open ground.
     pub fn for_robot(robot: &Robot) -> Self {
         let stop_m = robot.limits.stop_m();
         let window = WindowConfig::for_robot(robot);
@@ -117,17 +118,17 @@ pub struct AdaptiveDwa {
 }
 
 impl AdaptiveDwa {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "adaptive-dwa";
 
-    /// The name of dist in an evaluation.
+    /// Name of dist in an evaluation.
     const END_DISTANCE: &'static str = "end-distance";
 
-    /// A planner for a robot.
+    /// Creates a planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
-    /// error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together; the error names the field.
     pub fn new(
         config: AdaptiveDwaConfig,
         robot: impl Into<Arc<Robot>>,
@@ -151,12 +152,12 @@ impl AdaptiveDwa {
         Ok(Self { window, weighing, a, safe_radius_m })
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
-    /// By which the weights of heading and of speed are multiplied at a distance \[m\].
+    /// Factors of the weights of heading and of speed at a distance \[m\].
     fn factors(&self, dist_m: f64) -> (f64, f64) {
         let (a, radius_m) = (self.a, self.safe_radius_m);
         let beyond_m = (dist_m - radius_m).max(radius_m);

@@ -1,4 +1,4 @@
-//! All local planners by name: the one place where a new one is entered.
+//! All local planners by name: the only place at which a new one is registered.
 
 use super::parameters::LocalParameters;
 use super::{
@@ -15,30 +15,31 @@ registry! {
     LocalConfig by LocalParameters for Robot;
     /// The classic dynamic window approach.
     Dwa(DwaConfig) => Dwa;
-    /// Dynamic window approach towards key points; the weight of speed falls where obstacles stand
-    /// ahead.
+    /// Dynamic window approach towards key points; the weight of speed falls with the number of
+    /// obstacles ahead.
     KeyPointDwa(KeyPointDwaConfig) => KeyPointDwa;
     /// Dynamic window approach whose weights depend on the distance at a trajectory's end.
     AdaptiveDwa(AdaptiveDwaConfig) => AdaptiveDwa;
-    /// Follows the route, and goes around what is unknown by guide points and a dynamic window
+    /// Follows the route, and avoids unknown obstacles by guide points and a dynamic window
     /// approach.
     GuidedDwa(GuidedDwaConfig) => GuidedDwa;
-    /// Looks for the course through space and time that ends soonest.
+    /// Searches for the space-time trajectory that ends soonest.
     SpaceTime(SpaceTimeConfig) => SpaceTime;
     /// Pure pursuit: drives along the route and avoids nothing.
     Follower(FollowerConfig) => Follower;
 }
 
 impl LocalConfig {
-    /// The local planner for a robot.
+    /// Builds the local planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used; the error names it.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid; the error
+    /// names it.
     pub fn build(&self, robot: &Robot) -> Result<Box<dyn LocalPlanner + Send + Sync>, ConfigError> {
         self.build_for(&Arc::new(robot.clone()))
     }
 
-    /// The same for a robot that others use, too.
+    /// The same for a shared robot.
     pub(crate) fn build_for(
         &self,
         robot: &Arc<Robot>,
@@ -46,7 +47,7 @@ impl LocalConfig {
         self.parameters().build(robot)
     }
 
-    /// True if it asks which ground ahead has been seen.
+    /// True if the planner uses the observed space ahead.
     pub(crate) fn stops_within_sight(&self) -> bool {
         self.parameters().stops_within_sight()
     }

@@ -1,4 +1,4 @@
-//! The command of one cycle, and the evidence for it.
+//! The command of one cycle, and the evaluation behind it.
 
 use crate::geometry::Velocity;
 use arrayvec::ArrayVec;
@@ -7,53 +7,53 @@ use std::borrow::Cow;
 use std::fmt::{Display, Formatter};
 use thiserror::Error;
 
-/// What a local planner decided.
+/// The decision of a local planner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
-    /// The velocity to drive with until the next cycle.
+    /// The velocity command until the next cycle.
     pub command: Velocity,
-    /// Why this one.
+    /// The evaluation behind the command.
     pub evaluation: Evaluation,
 }
 
-/// How the candidates of one cycle fared. A planner that does not choose between candidates leaves
-/// it empty.
+/// Statistics of the candidates of one cycle. A planner that does not choose between candidates
+/// leaves it empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Velocities that were looked at.
+    /// Number of evaluated velocities.
     pub candidates: u32,
-    /// Those of them that let the robot drive on: admissible, and faster than standing, or leading
-    /// elsewhere within the horizon where whole courses are compared.
+    /// Number of candidates with which the robot drives on: admissible, with a speed other than
+    /// 0, or, if whole trajectories are compared, leading elsewhere within the horizon.
     pub driving: u32,
-    /// Why the others were refused: each rule of the planner, also those that refused none. No
+    /// Refused candidates by rule: each rule of the planner, also those that refused none. No
     /// candidate counts twice.
     pub rejected: Rejections,
-    /// The best way on comes near something that moves, where that is not forbidden: the robot
-    /// waits for it, makes way for it, or drives beside it.
+    /// True if the best trajectory comes near a moving obstacle and that is not forbidden: the
+    /// robot waits for it, gives way, or drives beside it.
     pub near_mover: bool,
     /// Each term's share of the chosen candidate's score.
     pub chosen: Shares,
-    /// The same of the second best.
+    /// The same for the second best.
     pub runner_up: Option<Shares>,
 }
 
 impl Evaluation {
-    /// True if the robot comes on no faster because of something that moves: the best way on comes
-    /// near it, or nothing lets the robot drive and it is in the way ([`Rejections::MOVER`]). Then
-    /// it is better to wait than to look for another way.
+    /// True if a moving obstacle delays the robot: the best trajectory comes near it, or no
+    /// candidate drives and some were refused because of it ([`Rejections::MOVER`]). Then it is
+    /// better to wait than to replan.
     pub fn waits_for_mover(&self) -> bool {
         self.near_mover || self.driving == 0 && self.rejected.count(Rejections::MOVER) > 0
     }
 }
 
-/// A rule of a local planner, and how many candidates it refused.
+/// A rule of a local planner, and the number of candidates it refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rejection {
-    /// The rule's name.
+    /// Name of the rule.
     pub rule: Cow<'static, str>,
-    /// What is wrong with the candidates, as in "7 candidates touch something".
+    /// Defect of the candidates, as in "7 candidates touch something".
     pub because: Cow<'static, str>,
-    /// Candidates refused.
+    /// Number of refused candidates.
     pub count: u32,
 }
 
@@ -64,14 +64,14 @@ pub struct Rejection {
 pub struct Rejections(ArrayVec<Rejection, { Self::MOST }>);
 
 impl Rejections {
-    /// The rule by which every planner refuses candidates that lead into something that moves.
+    /// The rule by which every planner refuses candidates that lead into a moving obstacle.
     pub const MOVER: &'static str = "mover";
 
-    /// No planner has more rules.
+    /// Upper limit of the rules of a planner.
     pub const MOST: usize = 8;
 
-    /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`] are
-    /// left out.
+    /// No candidate refused, under rules given by name and reason. Rules beyond [`Self::MOST`]
+    /// are left out.
     pub(crate) fn none_by(rules: &[(&'static str, &'static str)]) -> Self {
         let rejection = |&(rule, because): &(&'static str, &'static str)| Rejection {
             rule: Cow::Borrowed(rule),
@@ -86,7 +86,7 @@ impl Rejections {
         &self.0
     }
 
-    /// Candidates that a rule refused.
+    /// Number of candidates that a rule refused.
     pub fn count(&self, rule: &str) -> u32 {
         self.0.iter().find(|one| one.rule == rule).map_or(0, |one| one.count)
     }
@@ -117,11 +117,11 @@ impl Display for Rejections {
 /// One term of a candidate's score.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Share {
-    /// The term's name.
+    /// Name of the term.
     pub term: Cow<'static, str>,
-    /// Its value in its own unit, before normalisation.
+    /// Value in its own unit, before normalisation.
     pub raw: f64,
-    /// What it adds to the score: normalised, times its weight.
+    /// Contribution to the score: normalised, times its weight.
     pub weighted: f64,
 }
 
@@ -131,7 +131,7 @@ pub struct Share {
 pub struct Shares(ArrayVec<Share, { Self::MOST }>);
 
 impl Shares {
-    /// No planner has more terms.
+    /// Upper limit of the terms of a planner.
     pub const MOST: usize = 8;
 
     /// All terms in order.
@@ -161,9 +161,9 @@ impl FromIterator<Share> for Shares {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("none of {} candidates is admissible ({})", .evaluation.candidates, .evaluation.rejected)]
 pub struct NoCommand {
-    /// How the candidates fared.
+    /// Statistics of the candidates.
     pub evaluation: Evaluation,
-    /// What to do instead: brake along the present arc, or at standstill turn towards the guide
-    /// point.
+    /// Command to issue instead: brake along the present arc, or at standstill turn towards the
+    /// guide point.
     pub fallback: Velocity,
 }

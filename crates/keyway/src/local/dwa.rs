@@ -1,5 +1,5 @@
-//! The classic dynamic window approach (DWA): the winner among the admissible velocities is the one
-//! that best combines heading towards the guide point, distance to obstacles, and speed.
+//! The classic dynamic window approach (DWA): selects the admissible velocity with the best
+//! combination of heading towards the guide point, distance to obstacles, and speed.
 //!
 //! # Source
 //! \[Fox1997\], in the form of \[You2021\]: equation (9), tables 2 and 3. Equations (4) to (8) and
@@ -35,7 +35,7 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DwaConfig {
-    /// Which velocities are tried, and which of them are refused.
+    /// Candidate velocities, and the rules that refuse them.
     pub window: WindowConfig,
     /// Weights of the evaluation (9).
     pub weights: Weights,
@@ -60,7 +60,7 @@ impl Weights {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_weight("heading", self.heading)?;
         ConfigError::unless_weight("distance", self.distance)?;
@@ -76,13 +76,13 @@ impl DwaConfig {
         distance_term_cap_m: 5.0,
     };
 
-    /// The MATLAB sample that much of this literature runs as the classic dynamic window approach:
-    /// the distance is that of the trajectory's end, and in the evaluation at most 2 R1 = 1 m. R1 =
-    /// 0.5 m is the radius that its obstacles, points, have; here they are squares of that half
-    /// width, so nothing is subtracted.
+    /// The MATLAB sample that much of this literature runs as the classic dynamic window
+    /// approach: the distance is that of the trajectory's end, and in the evaluation at most 2 R1
+    /// = 1 m. R1 = 0.5 m is the radius of its obstacles, which are points; here they are squares
+    /// of that half width, so nothing is subtracted.
     ///
-    /// It drops candidates whose braking distance exceeds the distance, which is (7). There the cap
-    /// does not count: it would hold the robot below 0.632 m/s.
+    /// It drops candidates whose braking distance exceeds the distance, which is (7). The cap
+    /// does not apply there: it would limit the robot to 0.632 m/s.
     pub const SAMPLE: Self =
         Self { window: WindowConfig::AT_THE_END, distance_term_cap_m: 1.0, ..Self::PAPER };
 
@@ -97,9 +97,9 @@ impl DwaConfig {
         &["window.movers_s", "window.distance_cap_m", "distance_term_cap_m"];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same
-    /// cap in the evaluation. Distance weighs little: with 0.1, heading and distance take turns
-    /// beside obstacles, and the turn rate goes to and fro; with 0.02, a long robot gets stuck more
-    /// often.
+    /// cap in the evaluation. The weight of distance is small: with 0.1, heading and distance
+    /// alternate beside obstacles, and the turn rate oscillates; with 0.02, a long robot gets
+    /// stuck more often.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {
@@ -119,15 +119,15 @@ pub struct Dwa {
 }
 
 impl Dwa {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "dwa";
 
-    /// A planner for a robot.
+    /// Creates a planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together (a
-    /// horizon too short to stop within it, or steps too small for one cycle); the error names the
-    /// field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together (a horizon too short to stop within it, or steps too small for one
+    /// cycle); the error names the field.
     pub fn new(config: DwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let DwaConfig { window, weights, distance_term_cap_m: distance_cap_m } = config;
         let window = DynamicWindow::new(window, robot)?;
@@ -141,7 +141,7 @@ impl Dwa {
         Ok(Self { window, weighing, distance_cap_m })
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         self.window.robot()
     }

@@ -1,4 +1,4 @@
-//! Why a local planner decides as it does: every candidate with its fate, and what would free a
+//! Explanation of a decision: every candidate with its fate, and the changes that would free a
 //! robot that cannot drive.
 
 use super::Shares;
@@ -8,36 +8,36 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::fmt::{Display, Formatter};
 
-/// All candidates of one cycle. A planner that does not choose between candidates has none.
+/// All candidates of one cycle; empty for a planner that does not choose between candidates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
     /// Point towards which the planner drives: the guide point of the scene, or one of its own;
     /// `None` for a planner that drives to no point.
     pub target: Option<Point>,
-    /// All of them, in the order in which they were tried.
+    /// All candidates, in the order in which they were tried.
     pub candidates: Vec<JudgedCandidate>,
-    /// The best one, as an index of `candidates`; `None` when none was admissible.
+    /// Index of the best one in `candidates`; `None` if none was admissible.
     pub chosen: Option<usize>,
-    /// The second best one.
+    /// Index of the second best one.
     pub runner_up: Option<usize>,
-    /// What would let the robot drive, in the order in which it was tried. Empty while some
-    /// candidate does.
+    /// Changes that would let the robot drive, in the order in which they were tried. Empty while
+    /// some candidate drives.
     pub remedies: Vec<Remedy>,
 }
 
-/// A velocity that was tried, and what became of it.
+/// A velocity that was tried, with its fate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JudgedCandidate {
     /// The velocity.
     pub velocity: Velocity,
     /// Admissible or refused.
     pub fate: Fate,
-    /// Where it would lead: poses at equal intervals of time, the last one at the end of the
-    /// prediction, or at the contact. The pose at which the command acts is not among them.
+    /// Predicted poses at equal intervals of time, the last one at the end of the prediction, or
+    /// at the contact. The pose at which the command acts is not among them.
     pub poses: Vec<Pose>,
 }
 
-/// What became of a candidate.
+/// The fate of a candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "fate", rename_all = "kebab-case")]
 pub enum Fate {
@@ -50,54 +50,55 @@ pub enum Fate {
     },
     /// A rule forbids it.
     Refused {
-        /// The rule's name.
+        /// Name of the rule.
         rule: Cow<'static, str>,
-        /// What is wrong with such candidates, as in "touch something".
+        /// Defect of such candidates, as in "touch something".
         because: Cow<'static, str>,
-        /// How long the way is shown to be free \[s\]; only of a candidate that touches something.
+        /// Time for which the trajectory is shown to be free \[s\]; only for a candidate with a
+        /// contact.
         free_for_s: Option<f64>,
     },
 }
 
-/// A change that may let the robot drive, and whether it does: it was made, and decided again.
+/// A change that may let the robot drive, and the result of a decision with that change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Remedy {
-    /// What was changed, and by how much. Where it does not help: by how much at most.
+    /// The change and its size; if it does not help, the largest size that was tried.
     #[serde(flatten)]
     pub change: Change,
-    /// True if some candidate drives then.
+    /// True if some candidate drives after the change.
     pub frees: bool,
 }
 
-/// Something that can be done about a robot that cannot drive.
+/// A change that may free a robot that cannot drive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "change", rename_all = "kebab-case")]
 pub enum Change {
-    /// To stand: the robot brakes on its arc, or stands for a cycle if it does already.
+    /// Wait: the robot brakes on its arc, or is stationary for a cycle if it is already.
     Wait {
-        /// How long that takes \[s\].
+        /// Duration \[s\].
         duration_s: f64,
     },
-    /// To stand, then to turn on the spot; nothing is touched on the way.
+    /// Stop, then turn on the spot without contact.
     Turn {
-        /// By how much, positive to the left \[rad\].
+        /// Angle, positive to the left \[rad\].
         by_rad: f64,
     },
-    /// To stand, then to back up: the planner's `window.backwards`, and the robot's
-    /// `limits.v_min_mps` negative.
+    /// Stop, then back up: the planner's `window.backwards`, and the robot's `limits.v_min_mps`
+    /// negative.
     BackUp {
-        /// Its value \[m/s\].
+        /// Value of `v_min_mps` \[m/s\].
         v_min_mps: f64,
     },
     /// A smaller safety margin: the planner's `window.safety_margin_m`.
     SafetyMargin {
-        /// Its value, the largest that helps to a tenth of a millimetre \[m\].
+        /// The largest value that helps, to a tenth of a millimetre \[m\].
         safety_margin_m: f64,
     },
     /// A smaller footprint ([`Footprint::smaller_by`](crate::robot::Footprint::smaller_by)).
     Footprint {
-        /// By how much, to a millimetre \[m\].
+        /// Reduction, to a millimetre \[m\].
         smaller_by_m: f64,
     },
 }
@@ -106,14 +107,14 @@ pub enum Change {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ScoredCandidate<'a> {
-    /// Its velocity.
+    /// Velocity of the candidate.
     pub velocity: Velocity,
-    /// The shares of its score.
+    /// Shares of its score.
     pub shares: &'a Shares,
 }
 
 impl JudgedCandidate {
-    /// Its score; `None` when it was refused.
+    /// Score of the candidate; `None` if it was refused.
     pub const fn score(&self) -> Option<f64> {
         match self.fate {
             Fate::Admissible { score, .. } => Some(score),
@@ -133,13 +134,14 @@ impl Explanation {
         self.admissible(self.runner_up?)
     }
 
-    /// Chooses the best and the second best of the admissible candidates; of equals the first.
+    /// Chooses the best and the second best of the admissible candidates; ties go to the first.
     pub(super) fn rank(&mut self) {
         self.chosen = self.best(|_, _| true);
         self.runner_up = self.chosen.and_then(|chosen| self.best(|place, _| place != chosen));
     }
 
-    /// The best admissible candidate of those that count, by place and score; of equals the first.
+    /// The best of the admissible candidates that `counts` selects by index and score; ties go to
+    /// the first.
     pub(super) fn best(&self, counts: impl Fn(usize, f64) -> bool) -> Option<usize> {
         let scores = self.candidates.iter().map(JudgedCandidate::score).enumerate();
         let admissible = scores.filter_map(|(place, score)| Some((place, score?)));

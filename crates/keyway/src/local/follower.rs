@@ -1,8 +1,9 @@
-//! Pure pursuit \[Coulter1992\]: a route -> the velocity that follows it. It looks at no obstacle.
+//! Pure pursuit \[Coulter1992\]: computes the velocity that follows a route. It ignores
+//! obstacles.
 //!
-//! The robot drives on the arc that leads to the point of the route a look-ahead distance farther
-//! on, as fast as its limits and the rest of the route allow. For routes that are known to be free,
-//! and as what other local planners are compared with.
+//! The robot drives on the arc that leads to the point of the route at the look-ahead distance,
+//! as fast as its limits and the rest of the route allow. It is meant for routes that are known
+//! to be free, and as a baseline for other local planners.
 //!
 //! # Source
 //! \[Coulter1992\], section 2.
@@ -16,8 +17,8 @@
 //!
 //! # Where this differs from the paper
 //! - The robot turns on the spot while the carrot is more than a right angle off its heading.
-//! - The speed is not constant: it is the largest one for which the arc keeps the limit of the turn
-//!   rate and from which the robot can stop at the end of the route.
+//! - The speed is not constant: it is the largest one for which the arc keeps the limit of the
+//!   turn rate and from which the robot can stop at the end of the route.
 //!
 //! # Errors / cost
 //! [`ConfigError`]; a decision never fails. Linear in the segments that the robot passes in a
@@ -39,7 +40,7 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FollowerConfig {
-    /// How far ahead along the route the carrot is \[m\].
+    /// Look-ahead distance of the carrot along the route \[m\].
     pub look_ahead_m: f64,
 }
 
@@ -51,8 +52,8 @@ impl FollowerConfig {
     /// Fields for which the paper gives no value: those of [`Self::PAPER`] are interpretations.
     pub const READINGS: &'static [&'static str] = &["look_ahead_m"];
 
-    /// The look-ahead distance is what the robot drives in three cycles and needs to stop at full
-    /// speed, but at least its inscribed radius.
+    /// The look-ahead distance is the distance driven in three cycles plus the stopping distance
+    /// at full speed, but at least the inscribed radius.
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycles_m = 3.0 * limits.v_max_mps * robot.cycle_s;
@@ -70,13 +71,14 @@ pub struct Follower {
 }
 
 impl Follower {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "follower";
 
-    /// A follower for a robot.
+    /// Creates a follower for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used; the error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid; the error
+    /// names the field.
     pub fn new(config: FollowerConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let robot = robot.into();
         robot.validate().map_err(|error| error.within("robot"))?;
@@ -89,7 +91,7 @@ impl Follower {
         let limits = &self.robot.limits;
         let bearing_rad = scene.pose.bearing_to(carrot);
         if bearing_rad.abs() > FRAC_PI_2 {
-            // No faster than it can stop at the bearing.
+            // Limits the turn rate such that the robot can stop at the bearing.
             let fastest = (2.0 * limits.angular_deceleration_radps2 * bearing_rad.abs()).sqrt();
             return Velocity::new(0.0, fastest.copysign(bearing_rad));
         }
@@ -105,12 +107,12 @@ impl Follower {
 }
 
 impl Follower {
-    /// The point of the route that is driven towards after an arc length of it was covered.
+    /// The carrot: the target point on the route after an arc length of it was covered.
     pub(super) fn carrot(&self, path: &Polyline, covered_m: f64) -> Option<Point> {
         path.at_length(covered_m + self.config.look_ahead_m)
     }
 
-    /// The length of the route that is covered \[m\].
+    /// Covered length of the route \[m\].
     fn covered_m(&self, scene: &Scene<'_>, memory: &DriveMemory) -> f64 {
         let position = scene.pose.point();
         scene.path.nearest_along(position, memory.covered_m, self.config.look_ahead_m)
@@ -145,7 +147,7 @@ impl LocalPlanner for Follower {
         memory.covered_m = self.covered_m(scene, memory);
         let carrot = self.carrot(scene.path, memory.covered_m);
         let left_m = (scene.path.length_m() - memory.covered_m).min(scene.remaining_m);
-        // At the end there is nothing to turn to, either.
+        // At the end there is no direction to turn to, either.
         let carrot = carrot.filter(|_| left_m > 0.0);
         let wanted = carrot.map_or(Velocity::ZERO, |carrot| self.towards(scene, carrot, left_m));
         let command = self.robot.limits.reached(scene.velocity, wanted, self.robot.cycle_s);
@@ -180,7 +182,8 @@ mod tests {
         Follower::new(FollowerConfig::for_robot(&robot), robot).unwrap()
     }
 
-    /// Drives along a line from its beginning: largest distance from it, and the last pose.
+    /// Drives along a line from its beginning; returns the largest distance from it, and the last
+    /// pose.
     fn driven(path: &Polyline, heading_rad: f64, cycles: u32) -> (f64, Pose, DriveMemory) {
         let follower = small();
         let obstacles = &nothing();
@@ -262,7 +265,8 @@ mod tests {
 
     #[test]
     fn a_route_that_comes_back_is_driven_in_order() {
-        // Out and back 0.1 m beside: the nearest point of all would be on the way back.
+        // Out and back with an offset of 0.1 m: the nearest point of all would be on the way
+        // back.
         let path = line(&[[0., 0.], [4., 0.], [4., 0.1], [0., 0.1]]);
         let covered = |from_m| path.nearest_along(Point::new(1.0, 0.06), from_m, 0.5);
         assert!((covered(0.9) - 1.0).abs() < 1e-12 && (covered(6.9) - 7.1).abs() < 1e-12);

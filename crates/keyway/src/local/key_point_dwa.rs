@@ -1,10 +1,10 @@
-//! Key-point DWA: a dynamic window approach that heads for the key points of the route, and weighs
-//! speed less the more obstacles stand ahead.
+//! Key-point DWA: a dynamic window approach that heads for the key points of the route, and
+//! weights speed less the more obstacles are ahead.
 //!
 //! # Source
-//! \[You2021\]: equations (11) and (12), tables 2 and 3, and the weights of its fused runs. The key
-//! points are handed out by [`KeyPoints`](crate::guide::KeyPoints); equations (4) to (8) and (10)
-//! are those of [`WindowConfig`].
+//! \[You2021\]: equations (11) and (12), tables 2 and 3, and the weights of its fused runs. The
+//! key points come from [`KeyPoints`](crate::guide::KeyPoints); equations (4) to (8) and (10) are
+//! those of [`WindowConfig`].
 //!
 //! | paper | here | unit | fused runs |
 //! |---|---|---|---|
@@ -16,12 +16,12 @@
 //! | gamma(c, d) = `gamma_max` / (l1 c + l2 d + 1/2) | [`SpeedWeight::at`] | | |
 //!
 //! # Where this differs from the paper
-//! - The regions are drawn there but not described. Here they are two half-discs ahead of the
-//!   robot: up to `high_risk_m`, and from there to `low_risk_m`.
-//! - The number of obstacles is the occupied area in a region over `obstacle_area_m2`: 1 m² counts
-//!   the cells of the paper's grid. A cell is in a region when its centre is.
-//! - gamma is never above `gamma_max`: by the equation as printed, 0.1 m² would double the weight
-//!   that open ground has.
+//! - The paper draws the regions but does not describe them. Here they are two half-discs ahead
+//!   of the robot: up to `high_risk_m`, and from there to `low_risk_m`.
+//! - The number of obstacles is the occupied area in a region over `obstacle_area_m2`: 1 m²
+//!   counts the cells of the paper's grid. A cell is in a region if its centre is.
+//! - gamma is never above `gamma_max`: by the equation as printed, 0.1 m² would increase the
+//!   weight beyond that of open ground.
 //!
 //! # Errors / cost
 //! See [`WindowConfig`]. In addition, the occupied cells of the regions are counted once in each
@@ -45,11 +45,11 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct KeyPointDwaConfig {
-    /// Which velocities are tried, and which of them are refused.
+    /// Candidate velocities, and the rules that refuse them.
     pub window: WindowConfig,
     /// Constant weights of the evaluation (11).
     pub weights: KeyPointWeights,
-    /// The weight of speed, (12).
+    /// Weight of speed, (12).
     pub speed_weight: SpeedWeight,
     /// In the evaluation (11) alone, larger distances count as this one \[m\].
     pub distance_term_cap_m: f64,
@@ -66,24 +66,24 @@ pub struct KeyPointWeights {
     pub distance: f64,
 }
 
-/// The weight of speed \[You2021, eq. (12)\], from what stands ahead.
+/// Weight of speed \[You2021, eq. (12)\], by the obstacles ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpeedWeight {
-    /// `gamma_max`: the weight where nothing stands ahead.
+    /// `gamma_max`: the weight if no obstacle is ahead.
     pub largest: f64,
-    /// l1: how much an obstacle in the high-risk region counts.
+    /// l1: weight of an obstacle in the high-risk region.
     pub high_risk: f64,
-    /// l2: how much an obstacle in the low-risk region counts.
+    /// l2: weight of an obstacle in the low-risk region.
     pub low_risk: f64,
-    /// The high-risk region ends this far from the robot's centre \[m\].
+    /// Outer radius of the high-risk region, from the robot's centre \[m\].
     pub high_risk_m: f64,
-    /// The low-risk region begins there and ends this far from the robot's centre \[m\].
+    /// Outer radius of the low-risk region, which begins there \[m\].
     pub low_risk_m: f64,
-    /// Both regions reach this far to either side of straight ahead \[deg\].
+    /// Half of the opening angle of both regions, from straight ahead \[deg\].
     pub half_angle_deg: f64,
-    /// So much occupied area counts as one obstacle \[m²\].
+    /// Occupied area that counts as one obstacle \[m²\].
     pub obstacle_area_m2: f64,
 }
 
@@ -99,9 +99,9 @@ impl SpeedWeight {
         obstacle_area_m2: 1.0,
     };
 
-    /// The regions of the paper, scaled to what a decision of this robot can change: the low-risk
-    /// region ends at [`Robot::decision_reach_m`], the high-risk region half as far away, and one
-    /// obstacle is the same part of them as one cell of the paper's grid.
+    /// The regions of the paper, scaled to the area that a decision of this robot affects: the
+    /// low-risk region ends at [`Robot::decision_reach_m`], the high-risk region half as far
+    /// away, and one obstacle is the same fraction of them as one cell of the paper's grid.
     pub fn for_robot(robot: &Robot) -> Self {
         let low_risk_m = robot.decision_reach_m();
         let scale = low_risk_m / Self::PAPER.low_risk_m;
@@ -113,15 +113,15 @@ impl SpeedWeight {
         }
     }
 
-    /// gamma(c, d), eq. (12): the weight with so many obstacles in the high-risk and in the
-    /// low-risk region.
+    /// gamma(c, d), eq. (12): the weight for c obstacles in the high-risk and d in the low-risk
+    /// region.
     pub fn at(&self, c: f64, d: f64) -> f64 {
         let risk = self.high_risk * c + self.low_risk * d;
         self.largest * (1.0 / (risk + 0.5)).min(1.0)
     }
 
-    /// c and d: what stands in the high-risk and in the low-risk region of a robot at `pose`, in
-    /// obstacles.
+    /// c and d: the occupied area in the high-risk and in the low-risk region of a robot at
+    /// `pose`, in obstacles.
     fn obstacles_ahead(&self, obstacles: &Clearance<'_>, pose: Pose) -> (f64, f64) {
         let (frame, bits) = (obstacles.frame(), obstacles.obstacles());
         let cell_m = frame.resolution_m();
@@ -138,7 +138,7 @@ impl SpeedWeight {
                 let to_cell = Point::new(f64::from(x) + 0.5 - centre.x, dy);
                 let distance = to_cell.norm();
                 let ahead = to_cell.dot(Point::new(cos, sin));
-                // What lies on the edge belongs to the region, rounded or not.
+                // The edge belongs to the region, rounded or not.
                 if ahead < distance * (least_cos - 1e-9) {
                     continue;
                 }
@@ -168,8 +168,7 @@ impl SpeedWeight {
     }
 }
 
-/// The rows of a map of this height that may have a centre within `reach` of a coordinate
-/// \[cells\].
+/// Rows of a map of this height that may have a centre within `reach` of a coordinate \[cells\].
 fn rows_within(y: f64, reach: f64, height: u32) -> std::ops::RangeInclusive<i32> {
     let last = height as i32 - 1;
     ((y - reach).floor() as i32).max(0)..=((y + reach).floor() as i32).min(last)
@@ -197,9 +196,9 @@ impl KeyPointDwaConfig {
     ];
 
     /// Derived from the robot, one rule for all maps: [`WindowConfig::for_robot`], with the same
-    /// cap in the evaluation, and [`SpeedWeight::for_robot`]. Distance weighs less than speed does
-    /// where much stands ahead; where it weighs more, a robot stops in front of what stands behind
-    /// its goal.
+    /// cap in the evaluation, and [`SpeedWeight::for_robot`]. The weight of distance is below
+    /// that of speed among many obstacles; with a larger weight, a robot stops in front of an
+    /// obstacle behind its goal.
     pub fn for_robot(robot: &Robot) -> Self {
         let window = WindowConfig::for_robot(robot);
         Self {
@@ -221,17 +220,17 @@ pub struct KeyPointDwa {
 }
 
 impl KeyPointDwa {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "key-point-dwa";
 
-    /// The name of key(v, omega) in an evaluation.
+    /// Name of key(v, omega) in an evaluation.
     const KEY_POINT: &'static str = "key-point";
 
-    /// A planner for a robot.
+    /// Creates a planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
-    /// error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together; the error names the field.
     pub fn new(
         config: KeyPointDwaConfig,
         robot: impl Into<Arc<Robot>>,
@@ -245,7 +244,7 @@ impl KeyPointDwa {
         Ok(Self { window, weights, speed_weight, distance_cap_m: distance_term_cap_m })
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
@@ -331,23 +330,23 @@ mod tests {
 
     #[test]
     fn regions_by_hand() {
-        // The robot looks up from the middle of the lowest row.
+        // The robot faces up from the middle of the lowest row.
         let map =
             OccupancyGrid::from_ascii(&["##.....", "...#...", "...##..", ".......", "..#...."]);
         let obstacles = Clearance::new(map.frame(), map.occupied());
         let ahead =
             |x, y, theta| SpeedWeight::PAPER.obstacles_ahead(&obstacles, Pose::new(x, y, theta));
-        // Beside it, at exactly 90 degrees, stands one at 1 m; (3, 2) and (4, 2) are 2 m and 2.24 m
-        // away, (3, 3) 3 m.
+        // One obstacle is beside it, at exactly 90 degrees and 1 m; (3, 2) and (4, 2) are 2 m and
+        // 2.24 m away, (3, 3) 3 m.
         assert_eq!(ahead(3.5, 0.5, FRAC_PI_2), (1.0, 3.0));
         assert_eq!(ahead(3.5, 0.5, -FRAC_PI_2), (1.0, 0.0));
-        // Half a metre on: 1.5 m belongs to the high-risk region.
+        // Half a metre farther: 1.5 m belongs to the high-risk region.
         assert_eq!(ahead(3.5, 1.0, FRAC_PI_2), (1.0, 2.0));
         assert_eq!(ahead(-90.0, 1.0, 0.0), (0.0, 0.0));
     }
 
     proptest! {
-        /// On any map, wherever it lies, the cells are those that a look at each of them finds.
+        /// On any map at any pose, the cells are those that a test of each of them finds.
         #[test]
         fn regions_are_those_of_all_cells(seed in prop::collection::vec(0u8..4, 30 * 20), x in -1.0..4.0f64, y in -1.0..4.0f64,
                 theta in -3.0..3.0f64, yaw in -3.0..3.0f64, half_angle_deg in 1.0..180.0f64) {

@@ -1,4 +1,5 @@
-//! What the robot decides in each control cycle: a scene -> a velocity, and why that one.
+//! Local planning: turns a scene into the velocity for the next control cycle, with an
+//! explanation.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline, Pose, Velocity};

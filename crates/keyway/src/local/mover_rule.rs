@@ -1,4 +1,4 @@
-//! True if a velocity leads into something that moves.
+//! Rule against velocities that lead into a moving obstacle.
 //!
 //! # The rule
 //! | symbol | meaning | unit |
@@ -6,24 +6,25 @@
 //! | t | from now, up to the horizon | s |
 //! | c, v, r | centre, velocity and radius of a [`Mover`] | m, m/s, m |
 //! | e, f | a third of its uncertainties of position and velocity: a standard deviation | m, m/s |
-//! | P(t) | the footprint where the velocity leads: one cycle of change, then the arc | |
-//! | D(t) | the disc around c + v t of radius r + e + f t: where the mover is when it goes on as it does | |
+//! | P(t) | the footprint on the predicted motion: one cycle of velocity change, then the arc | |
+//! | D(t) | the disc around c + v t of radius r + e + f t: the moving obstacle at constant velocity | |
 //!
-//! A velocity is refused when at some t the distance between P(t) and D(t) is less than the margin,
-//! **and** less than that between P(0) and D(t), the distance of a robot that had stayed where it
-//! is. What comes after the first time at which D(t) would reach a robot that had stayed does not
-//! count, as nothing is lost by then. So standing is never refused: a robot waits until a mover has
-//! passed; who is run after may drive on; and who is inside a disc may leave it.
+//! A velocity is refused if at some t the distance between P(t) and D(t) is less than the margin,
+//! **and** less than that between P(0) and D(t), the distance of a robot that had stayed at its
+//! pose. Times after the first at which D(t) would reach a robot that had stayed do not count, as
+//! staying is no better then. So standstill is never refused: a robot waits until a moving
+//! obstacle has passed, one that is followed may drive on, and one that is inside a disc may
+//! leave it.
 //!
-//! # What it misses
-//! A mover that turns or speeds up by more than its uncertainty is seen to do so in the next cycle
-//! only. Whether the robot could then still stop is not asked: that is the [stop
-//! rule](super::StopRule). A mover may run into a robot that stands.
+//! # Limitations
+//! A moving obstacle that turns or speeds up by more than its uncertainty is only detected in the
+//! next cycle. The rule does not check if the robot could still stop then: that is the [stop
+//! rule](super::StopRule). A moving obstacle may run into a stationary robot.
 //!
 //! # Errors / cost
-//! None. Per velocity and mover at least ten poses with two distances each; steps are no longer
-//! than the room, but at least 1 cm, so a disc may be grazed by as much. Without movers it costs
-//! nothing. Allocates nothing.
+//! None. Per velocity and moving obstacle at least ten poses with two distances each; steps are
+//! no longer than the clearance, but at least 1 cm, so a disc may be grazed by as much. Costs
+//! nothing without moving obstacles. Allocates nothing.
 
 use crate::geometry::{Pose, Velocity};
 use crate::map::Core;
@@ -37,23 +38,24 @@ pub(crate) struct MoverRule<'a> {
     movers: &'a [Mover],
     pose: Pose,
     velocity: Velocity,
-    /// Of the predictions \[s\].
+    /// Horizon of the predictions \[s\].
     horizon_s: f64,
-    /// Less room than this is a meeting \[m\].
+    /// Less clearance than this counts as a contact \[m\].
     margin_m: f64,
 }
 
 impl<'a> MoverRule<'a> {
-    /// The part of a mover's uncertainty, which is three standard deviations, that counts.
+    /// Fraction of the uncertainty of a moving obstacle, which is three standard deviations, that
+    /// counts.
     const UNCERTAIN_PART: f64 = 1.0 / 3.0;
 
-    /// Steps in a horizon, at least.
+    /// Least number of steps in a horizon.
     const LEAST_STEPS: f64 = 10.0;
 
-    /// Room that is not told apart \[m\].
+    /// Resolution of the clearance \[m\].
     const LEAST_STEP_M: f64 = 0.01;
 
-    /// Differences of distances up to this are rounding \[m\].
+    /// Differences of distances up to this are rounding errors \[m\].
     pub(crate) const ROUNDING_M: f64 = 1e-9;
 
     /// The rule for a robot at a pose that moves with a velocity.
@@ -66,13 +68,13 @@ impl<'a> MoverRule<'a> {
         Self { robot, movers, pose, velocity, horizon_s, margin_m }
     }
 
-    /// True if a velocity leads into one of the movers.
+    /// True if a velocity leads into one of the moving obstacles.
     pub(crate) fn refuses(&self, candidate: Velocity) -> bool {
         self.room_m(candidate).is_none()
     }
 
-    /// The least room that a velocity leaves to any mover, as far as it counts \[m\], infinite
-    /// without movers; `None` when it is refused.
+    /// The least clearance of a velocity from any moving obstacle, as far as it counts \[m\],
+    /// infinite without moving obstacles; `None` if it is refused.
     #[inline]
     pub(crate) fn room_m(&self, candidate: Velocity) -> Option<f64> {
         if self.movers.is_empty() { Some(f64::INFINITY) } else { self.least_room_m(candidate) }
@@ -87,7 +89,7 @@ impl<'a> MoverRule<'a> {
     }
 }
 
-/// Where a velocity leads.
+/// The predicted motion of a velocity.
 struct Way<'r, 'a> {
     rule: &'r MoverRule<'a>,
     core: Core<'a>,
@@ -114,15 +116,15 @@ impl Way<'_, '_> {
         MoverRule::UNCERTAIN_PART * all_m
     }
 
-    /// The room between the footprint at a pose and where a mover is then \[m\]; negative when they
-    /// meet.
+    /// Clearance between the footprint at a pose and a moving obstacle at that time \[m\];
+    /// negative on overlap.
     fn room_m(&self, pose: Pose, mover: &Mover, after_s: f64) -> f64 {
         let centre = mover.centre + mover.velocity_mps * after_s;
         let disc_m = mover.radius_m + Self::off_m(mover, after_s);
         self.core.distance_to_m(pose, centre) - self.radius_m - disc_m
     }
 
-    /// No room becomes smaller faster than this \[m/s\].
+    /// Upper bound of the rate at which the clearance decreases \[m/s\].
     fn approach_mps(&self, mover: &Mover) -> f64 {
         let (from, to) = (self.rule.velocity, self.candidate);
         let v = from.v.abs().max(to.v.abs());
@@ -131,7 +133,7 @@ impl Way<'_, '_> {
         self.core.moves_m(v, omega) + mover.velocity_mps.norm() + spread_mps
     }
 
-    /// The least room to a mover; `None` when the rule refuses the way.
+    /// The least clearance from a moving obstacle; `None` if the rule refuses the motion.
     fn least_room_m(&self, mover: &Mover) -> Option<f64> {
         let MoverRule { pose, horizon_s, margin_m, .. } = *self.rule;
         let approach_mps = self.approach_mps(mover);
@@ -168,8 +170,8 @@ mod tests {
         Mover { velocity_mps, ..Mover::standing(0, Point::new(x, y), 0.3) }
     }
 
-    /// True if a small robot at the origin that moves may take a velocity, for 2 s and with 2 cm of
-    /// room.
+    /// True if a small robot at the origin with a velocity may take another one, for 2 s and with
+    /// 2 cm of clearance.
     fn admits(velocity: Velocity, candidate: Velocity, mover: Mover) -> bool {
         let (robot, movers) = (Robot::small(), [mover]);
         let start = (Pose::default(), velocity);
@@ -178,7 +180,7 @@ mod tests {
 
     #[test]
     fn meetings_by_hand() {
-        // Radii of 0.18 and 0.3 m, room of 0.02 m: within 2 s the robot drives 1 m.
+        // Radii of 0.18 and 0.3 m, clearance of 0.02 m: within 2 s the robot drives 1 m.
         assert!(!admits(AHEAD, AHEAD, walker(1.49, 0.0, 0.0, 0.0)));
         assert!(admits(AHEAD, AHEAD, walker(1.51, 0.0, 0.0, 0.0)));
         // Oncoming at 0.5 m/s: both drive 1 m.
@@ -186,11 +188,11 @@ mod tests {
         assert!(admits(AHEAD, AHEAD, walker(2.51, 0.0, -0.5, 0.0)));
         // Ahead at the same speed it is never reached.
         assert!(admits(AHEAD, AHEAD, walker(0.55, 0.0, 0.5, 0.0)));
-        // Crossing: behind it there is room, in front of it there is none.
+        // Crossing: behind it there is enough space, in front of it there is not.
         assert!(admits(AHEAD, AHEAD, walker(0.5, 0.6, 0.0, 0.6)));
         assert!(!admits(AHEAD, AHEAD, walker(0.6, 0.6, 0.0, -0.5)));
         assert!(!admits(AHEAD, AHEAD, walker(0.6, 0.9, 0.0, -0.6)));
-        // Uncertainty is room as well.
+        // Uncertainty reduces the clearance as well.
         let uncertain = Mover { velocity_uncertainty_mps: 0.3, ..walker(1.65, 0.0, 0.0, 0.0) };
         assert!(!admits(AHEAD, AHEAD, uncertain));
     }

@@ -1,4 +1,4 @@
-//! What every local planner says of itself by its parameters.
+//! The common interface of the parameters of all local planners.
 
 use super::LocalPlanner;
 use crate::ConfigError;
@@ -8,17 +8,17 @@ use std::sync::Arc;
 /// A local planner chosen by name.
 pub(super) type BoxedLocalPlanner = Box<dyn LocalPlanner + Send + Sync>;
 
-/// What is known of a local planner by its parameters.
+/// The parameters of a local planner.
 pub(super) trait LocalParameters {
     /// The parameters for a robot.
     fn for_robot(robot: &Robot) -> Self
     where
         Self: Sized;
 
-    /// The local planner for a robot.
+    /// Builds the local planner for a robot.
     fn build(&self, robot: &Arc<Robot>) -> Result<BoxedLocalPlanner, ConfigError>;
 
-    /// The values of the local planner's paper.
+    /// The published values of the local planner's paper.
     fn as_published() -> Option<Self>
     where
         Self: Sized,
@@ -26,7 +26,7 @@ pub(super) trait LocalParameters {
         None
     }
 
-    /// True if it asks which ground ahead has been seen
+    /// True if the planner uses the observed space ahead
     /// ([`SeenCells::ahead`](crate::sense::SeenCells::ahead)).
     fn stops_within_sight(&self) -> bool {
         false

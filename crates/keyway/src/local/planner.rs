@@ -1,4 +1,4 @@
-//! Local planners: a scene -> the velocity for the next cycle.
+//! Local planners: they map a scene to the velocity for the next cycle.
 
 use super::{Decision, Explanation, NoCommand, Scene};
 use crate::geometry::{Point, Velocity};
@@ -9,9 +9,9 @@ use std::fmt::Debug;
 
 /// Decides on a velocity in each control cycle.
 ///
-/// A planner is an immutable configuration. What it remembers from cycle to cycle is
-/// [`DriveMemory`], which anybody can look at, keep and restore; the memory that it works in is
-/// [`Scratch`]. So the same scene and the same memory give the same decision.
+/// A planner is an immutable configuration. Its state from cycle to cycle is [`DriveMemory`],
+/// which the caller can inspect, keep and restore; its working memory is [`Scratch`]. So the same
+/// scene and the same memory give the same decision.
 ///
 /// ```
 /// use keyway::geometry::Velocity;
@@ -35,10 +35,11 @@ use std::fmt::Debug;
 /// }
 /// ```
 pub trait LocalPlanner: Debug {
-    /// The velocity for the next cycle. Allocates nothing once `scratch` is warm.
+    /// Returns the velocity for the next cycle. Allocates nothing once `scratch` is warm.
     ///
     /// # Errors
-    /// When no velocity is admissible; the error says why and carries a command that is safe.
+    /// Returns [`NoCommand`] if no velocity is admissible; the error gives the reason and carries
+    /// a safe command.
     fn decide(
         &self,
         scene: &Scene<'_>,
@@ -46,16 +47,17 @@ pub trait LocalPlanner: Debug {
         scratch: &mut Scratch,
     ) -> Result<Decision, NoCommand>;
 
-    /// The reasons for its decision: the point it drives towards, what becomes of each candidate,
-    /// given the memory from before the decision, and, where none drives, what would free the
-    /// robot. Without candidates for a planner that does not choose between them.
+    /// Explains its decision: the point it drives towards, the fate of each candidate, given the
+    /// memory from before the decision, and, if none drives, the changes that would free the
+    /// robot. A planner that does not choose between candidates returns none.
     ///
     /// It costs many times as much as the decision, and allocates.
     fn explain(&self, _scene: &Scene<'_>, _memory: &DriveMemory) -> Explanation {
         Explanation::default()
     }
 
-    /// True if it turns the robot in time before narrow ground; otherwise the controller does.
+    /// True if the planner itself turns the robot in time before narrow ground; otherwise the
+    /// controller does.
     fn turns_in_time(&self) -> bool {
         false
     }
@@ -67,7 +69,7 @@ pub trait LocalPlanner: Debug {
 pub struct DriveMemory {
     /// Arc length of the route that the robot has covered \[m\].
     pub covered_m: f64,
-    /// The part that only its planner understands.
+    /// The part that only the planner that wrote it interprets.
     pub own: OwnMemory,
 }
 
@@ -76,17 +78,17 @@ pub struct DriveMemory {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum OwnMemory {
-    /// Nothing: the planner decides anew in every cycle, or is on its route.
+    /// Nothing: the planner decides afresh in every cycle, or is on its route.
     #[default]
     Nothing,
-    /// The way around something unknown on which a [`GuidedDwa`](super::GuidedDwa) is.
+    /// The detour around an unknown obstacle on which a [`GuidedDwa`](super::GuidedDwa) is.
     Detour(Detour),
-    /// The course that the last command of a [`SpaceTime`](super::SpaceTime) planner began.
+    /// The trajectory that the last command of a [`SpaceTime`](super::SpaceTime) planner began.
     Course(Course),
 }
 
 impl DriveMemory {
-    /// The memory at the beginning of another route: a course goes on, a detour does not.
+    /// The memory at the beginning of another route: a `Course` is kept, a detour is not.
     #[must_use]
     pub fn on_another_route(self) -> Self {
         let own = match self.own {
@@ -96,7 +98,7 @@ impl DriveMemory {
         Self { covered_m: 0.0, own }
     }
 
-    /// The way around something unknown, if the planner is on one.
+    /// The detour around an unknown obstacle, if the planner is on one.
     pub const fn detour(&self) -> Option<Detour> {
         match self.own {
             OwnMemory::Detour(detour) => Some(detour),
@@ -104,7 +106,7 @@ impl DriveMemory {
         }
     }
 
-    /// The course that the last command began, if the planner plans any farther than its command.
+    /// The trajectory that the last command began, if the planner plans farther than its command.
     pub const fn course(&self) -> Option<&Course> {
         match &self.own {
             OwnMemory::Course(course) => Some(course),
@@ -113,22 +115,23 @@ impl DriveMemory {
     }
 }
 
-/// Velocities at the ends of stretches of the same duration; in between they change linearly.
+/// A space-time trajectory: velocities at the ends of stretches of the same duration; in between
+/// they change linearly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Course {
     /// The duration of a stretch \[s\].
     pub stretch_s: f64,
-    /// In their order.
+    /// The velocities, in order.
     pub velocities: ArrayVec<Velocity, { Course::MOST_STRETCHES }>,
 }
 
 impl Course {
-    /// No course has more stretches.
+    /// Upper limit of the number of stretches.
     pub const MOST_STRETCHES: usize = 32;
 
-    /// The velocity at an instant after the beginning, when it began with `first`; after the end,
-    /// the last one.
+    /// Velocity at an instant after the beginning of a trajectory that begins with `first`; after
+    /// its end, the last velocity.
     pub fn velocity(&self, first: Velocity, after_s: f64) -> Velocity {
         let stretches = after_s / self.stretch_s;
         let begun = stretches.max(0.0) as usize;
@@ -139,38 +142,38 @@ impl Course {
     }
 }
 
-/// A way around something that the known map does not have, with the names of \[ZhuYin2024\].
+/// A detour around an obstacle that is not in the known map, with the names of \[ZhuYin2024\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "stage", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Detour {
-    /// To a point behind it.
+    /// Towards a point behind it.
     Behind {
-        /// `x_j`: where the way around begins \[m\].
+        /// `x_j`: beginning of the detour \[m\].
         from: Point,
         /// `x_ga`: the point behind it \[m\].
         point: Point,
-        /// Arc length of `x_st`, the node of the route nearest to that point, from the beginning of
+        /// Arc length of `x_st`, the node of the route nearest to that point, from the start of
         /// the route \[m\].
         rejoin_m: f64,
     },
     /// From there back to the route.
     Back {
-        /// `x_it`: where the route is joined \[m\].
+        /// `x_it`: the point at which the route is joined \[m\].
         point: Point,
-        /// Its arc length from the beginning of the route \[m\].
+        /// Its arc length from the start of the route \[m\].
         along_m: f64,
     },
 }
 
-/// Memory that local planners work in. It holds no result and has no meaning between calls; keeping
-/// it spares allocations. Each planner keeps what it needs under a type of its own.
+/// Working memory of local planners. It holds no result and has no meaning between calls; keeping
+/// it saves allocations. Each planner keeps its part under a type of its own.
 #[derive(Debug, Default)]
 pub struct Scratch {
     parts: Vec<Box<dyn Any + Send>>,
 }
 
 impl Scratch {
-    /// The part of this type: as the last call left it, at first its default.
+    /// The part of this type, as the last call left it; initially its default.
     #[expect(clippy::missing_panics_doc, reason = "a part is found by its type")]
     pub fn part<T: Any + Send + Default>(&mut self) -> &mut T {
         let known = self.parts.iter().position(|part| part.is::<T>());

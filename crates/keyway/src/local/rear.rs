@@ -11,9 +11,8 @@ pub(super) struct Rear {
     points: Vec<Point>,
 }
 
-/// A distance between points of an outline: so many inscribed radii, but not much less than the
-/// footprint is long, as a footprint that turns around a point of its edge has no inscribed circle
-/// \[m\].
+/// Spacing of points of an outline, given in inscribed radii, but not much less than the length
+/// of the footprint: one that turns around a point of its edge has no inscribed circle \[m\].
 pub(super) fn spacing_m(footprint: &Footprint, inscribed_radii: f64) -> f64 {
     const LEAST_OF_CIRCUMSCRIBED: f64 = 0.02;
     let least_m = LEAST_OF_CIRCUMSCRIBED * footprint.circumscribed_radius_m();
@@ -21,15 +20,16 @@ pub(super) fn spacing_m(footprint: &Footprint, inscribed_radii: f64) -> f64 {
 }
 
 impl Rear {
-    /// No two successive points are farther apart than so many inscribed radii.
+    /// Points of the rear of a footprint; successive points are at most this many inscribed radii
+    /// apart.
     pub(super) fn of(footprint: &Footprint, spacing_radii: f64) -> Self {
         let points = match footprint {
             Footprint::Circle(circle) => half_circle(circle.radius_m(), spacing_radii, PI),
             Footprint::Polygon(_) => {
                 let spacing_m = spacing_m(footprint, spacing_radii);
                 let mut points = outline_points(footprint, spacing_m);
-                // The rearmost ones, too, of a footprint that is all ahead of its centre of
-                // rotation.
+                // Includes the rearmost points of a footprint that is entirely ahead of its
+                // centre of rotation.
                 let rearmost_m = points.iter().map(|point| point.x).fold(f64::INFINITY, f64::min);
                 points.retain(|point| point.x < 0.0 || point.x <= rearmost_m + 1e-9);
                 points
@@ -38,7 +38,7 @@ impl Rear {
         Self { points }
     }
 
-    /// The same on a grid of cells over which the robot may back up.
+    /// Combines the points with a grid of cells over which the robot may back up.
     pub(super) const fn over<'a>(&'a self, cells: &'a BitGrid, frame: &GridFrame) -> Seen<'a> {
         Seen { points: self.points.as_slice(), cells, cell_m: frame.resolution_m() }
     }
@@ -51,13 +51,13 @@ pub(super) struct Front {
 }
 
 impl Front {
-    /// A cell that is seen is free around its centre: half of its diagonal is kept from where
-    /// nothing is known \[cells\].
+    /// A seen cell is free around its centre: half of its diagonal is kept from unknown ground
+    /// \[cells\].
     const KEPT_CELLS: f64 = 0.75;
 
-    /// The front of a robot. No two successive points are farther apart than so many inscribed
-    /// radii. Those of the sides are left out, which follow where the front has been, and so are
-    /// those that no sensor looks at, but for the foremost ones.
+    /// The front of a robot; successive points are at most this many inscribed radii apart.
+    /// Points of the sides are left out, as they follow the front, and so are those that no
+    /// sensor sees, except for the foremost ones.
     pub(super) fn of(robot: &Robot, spacing_radii: f64) -> Self {
         let footprint = &robot.footprint;
         let mut points = match footprint {
@@ -73,7 +73,7 @@ impl Front {
         Self { points }
     }
 
-    /// The same on a grid of cells that have been seen, among obstacles that are known.
+    /// Combines the points with a grid of cells that have been seen, among known obstacles.
     pub(super) const fn over<'a>(
         &'a self,
         cells: &'a BitGrid,
@@ -94,10 +94,10 @@ pub(super) struct SeenAhead<'a> {
 }
 
 impl SeenAhead<'_> {
-    /// True if all points keep to those cells; to either side, the next one is as good: something
-    /// between two of them would be narrower than both. A point in such a cell may also come as
-    /// near as it likes to an obstacle that is known, and to the end of the map: nothing else
-    /// stands there. Arguments as for [`Seen::holds`].
+    /// True if all points stay in those cells; the next cell to either side counts as well, as an
+    /// obstacle between two such points would be narrower than both. A point in such a cell may
+    /// also come arbitrarily close to a known obstacle, and to the map's border: nothing else can
+    /// be there. Arguments as for [`Seen::holds`].
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {
         let kept = ahead * (Front::KEPT_CELLS * self.cell_m);
         let aside = Point::new(-ahead.y, ahead.x) * self.cell_m;
@@ -110,20 +110,20 @@ impl SeenAhead<'_> {
         })
     }
 
-    /// True where an obstacle is known, or the map has ended.
+    /// True at a known obstacle or outside the map.
     #[inline]
     fn is_end(&self, cell: Cell) -> bool {
         !self.cells.contains(cell) || self.obstacles.get(cell)
     }
 }
 
-/// A point of a robot that faces `ahead`, a direction of length 1.
+/// Rotates a point of a robot that faces `ahead`, a direction of length 1.
 fn turned(point: Point, ahead: Point) -> Point {
     Point::new(point.x * ahead.x - point.y * ahead.y, point.x * ahead.y + point.y * ahead.x)
 }
 
 fn cell_of(place: Point, cell_m: f64) -> Cell {
-    // Rounded down: that is one less than towards 0 below 0.
+    // Rounds down: for negative values that is one less than rounding towards 0.
     let along = |value: f64| {
         let cells = value / cell_m;
         let towards_0 = cells as i32;
@@ -141,8 +141,8 @@ fn half_circle(radius_m: f64, spacing_radii: f64, around_rad: f64) -> Vec<Point>
     (0..=parts as u32).map(at).collect()
 }
 
-/// Points along the edges of a polygon, the first one again at the end, no farther apart than
-/// `spacing_m`; none of a disc.
+/// Points along the edges of a polygon, at most `spacing_m` apart, with the first one repeated at
+/// the end; empty for a disc.
 pub(super) fn outline_points(footprint: &Footprint, spacing_m: f64) -> Vec<Point> {
     let Footprint::Polygon(polygon) = footprint else { return Vec::new() };
     let vertices = polygon.vertices();
@@ -156,7 +156,7 @@ pub(super) fn outline_points(footprint: &Footprint, spacing_m: f64) -> Vec<Point
     points
 }
 
-/// Points of a footprint, and the cells on which they may be.
+/// Points of a footprint, and the cells on which they may lie.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen<'a> {
     points: &'a [Point],
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// One that turns around a point of its edge.
+    /// A footprint that turns around a point of its edge.
     #[test]
     fn without_an_inscribed_circle_there_are_no_more_points() {
         for back_m in [1e-9, 0.0, -0.1] {

@@ -1,8 +1,8 @@
-//! What would free a robot that cannot drive.
+//! Remedies for a robot that cannot drive.
 //!
-//! The [`Change`]s are tried in turn, each alone: it is made, and the planner is asked again. So
-//! each answer is the planner's own. Of turns, the smallest multiple of 15 degrees that helps is
-//! given, of the two sides first that of the guide point; of margins and footprints the least
+//! The [`Change`]s are tried in turn, each alone: the change is applied, and the planner decides
+//! again. So each result is the planner's own. Of turns, the smallest multiple of 15 degrees that
+//! helps is given, trying the side of the guide point first; of margins and footprints, the least
 //! change, found by bisection.
 //!
 //! # Errors / cost
@@ -17,28 +17,28 @@ use std::sync::Arc;
 /// Turns that are tried are multiples of this \[rad\].
 const TURN_STEP_RAD: f64 = PI / 12.0;
 
-/// How exactly the largest margin and the largest footprint that help are found \[m\].
+/// Resolution of the largest margin and of the largest footprint that help \[m\].
 const MARGIN_STEP_M: f64 = 1e-4;
 const FOOTPRINT_STEP_M: f64 = 1e-3;
 
-/// A local planner that can be asked what it would do if something were different.
+/// A local planner that can be evaluated under changed conditions.
 pub(super) trait Remediable: Sized {
-    /// The robot that it drives.
+    /// The robot that is driven.
     fn robot(&self) -> &Robot;
 
     /// True if some candidate drives.
     fn drives(&self, scene: &Scene<'_>) -> bool;
 
-    /// The same planner for another robot; `None` where its parameters do not fit.
+    /// The same planner for another robot; `None` if its parameters do not fit.
     fn for_other(&self, robot: Robot) -> Option<Self>;
 
-    /// True if it may drive backwards with a robot that can.
+    /// True if the planner may drive backwards with a robot that can.
     fn backs_up(&self) -> bool;
 
-    /// The same planner for a robot that backs up, and doing so.
+    /// The same planner for a robot that backs up, with backing up enabled.
     fn backing_up(&self, robot: Robot) -> Option<Self>;
 
-    /// A margin of its own that it keeps from what stands \[m\]; 0 for none.
+    /// Margin that the planner keeps from obstacles \[m\]; 0 for none.
     fn margin_m(&self) -> f64 {
         0.0
     }
@@ -49,7 +49,7 @@ pub(super) trait Remediable: Sized {
     }
 }
 
-/// What would let a robot drive that cannot.
+/// Remedies for a robot that cannot drive.
 pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
     let (standing, duration_s) = stopped(planner.robot(), scene);
     let wait = Remedy {
@@ -63,8 +63,9 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
     remedies
 }
 
-/// The scene in which the robot stands after braking on its arc, and how long that takes \[s\], at
-/// least a cycle; no scene where braking does not keep the margin of the [stop rule](StopRule).
+/// The scene in which the robot is stationary after braking on its arc, and the duration of that
+/// \[s\], at least a cycle; no scene if braking does not keep the margin of the [stop
+/// rule](StopRule).
 fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
     let braking = robot.limits.braked(scene.velocity, robot.cycle_s);
     let (mut standing, mut duration_s) = (*scene, 0.0);
@@ -95,7 +96,8 @@ fn turn(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Remedy {
     found.map_or(not, |by_rad| Remedy { change: Change::Turn { by_rad }, frees: true })
 }
 
-/// Backing up as fast as can be reached in a cycle; `None` for a robot that may anyway.
+/// Backing up at the largest speed that can be reached in a cycle; `None` for a robot that may
+/// anyway.
 fn back_up(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Option<Remedy> {
     let robot = planner.robot();
     let can_reverse = robot.limits.v_min_mps < 0.0;
@@ -112,7 +114,7 @@ fn back_up(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Option<Re
     Some(Remedy { change: Change::BackUp { v_min_mps }, frees })
 }
 
-/// `None` where there is no margin.
+/// The largest margin that helps; `None` if there is no margin.
 fn smaller_margin(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Remedy> {
     let kept_m = planner.margin_m();
     if kept_m == 0.0 {
@@ -122,7 +124,7 @@ fn smaller_margin(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Remedy
         |margin_m: f64| planner.with_margin(margin_m).is_some_and(|changed| changed.drives(scene));
     let without_frees = frees(0.0);
     let (mut safety_margin_m, mut too_large_m) = (0.0, kept_m);
-    // Near 0 numbers are dense: this ends however large the margin is.
+    // Floating-point numbers are dense near 0: this ends for any margin.
     while without_frees && too_large_m - safety_margin_m > MARGIN_STEP_M {
         let middle_m = 0.5 * (safety_margin_m + too_large_m);
         *(if frees(middle_m) { &mut safety_margin_m } else { &mut too_large_m }) = middle_m;
@@ -130,10 +132,10 @@ fn smaller_margin(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Remedy
     Some(Remedy { change: Change::SafetyMargin { safety_margin_m }, frees: without_frees })
 }
 
-/// `None` for a point.
+/// The least reduction of the footprint that helps; `None` for a point.
 fn smaller_footprint(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Remedy> {
     let robot = planner.robot();
-    // Almost a point: a polygon needs some ground.
+    // Almost a point: a polygon needs some area.
     let most_m = 0.99 * robot.footprint.inscribed_radius_m();
     if most_m == 0.0 {
         return None;
@@ -148,7 +150,7 @@ fn smaller_footprint(planner: &impl Remediable, scene: &Scene<'_>) -> Option<Rem
     Some(Remedy { change, frees: found_m.is_some() })
 }
 
-/// A change up to `most` that helps, such that one that is smaller by `step` does not (where more
+/// A change up to `most` that helps, such that one that is smaller by `step` does not (if more
 /// always helps more).
 fn least(most: f64, step: f64, helps: impl Fn(f64) -> bool) -> Option<f64> {
     if !helps(most) {

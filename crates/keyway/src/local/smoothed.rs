@@ -1,23 +1,24 @@
-//! A robot with limits of jerk, behind its reference.
+//! A robot with jerk limits, which lags behind its reference.
 
 use crate::geometry::{Pose, Velocity};
 use crate::robot::{CommandWindow, Robot};
 
-/// The state of a robot whose commands are averaged ([`CommandWindow`]). Whoever decides, decides
-/// for its reference; what it touches is a matter of the robot itself.
+/// State of a robot whose commands are averaged ([`CommandWindow`]). Planners decide for its
+/// reference; contact is checked for the robot itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Smoothed<'a> {
-    /// The velocities that are still averaged.
+    /// Velocities that are still averaged.
     pub window: &'a CommandWindow,
     /// Pose of the robot itself when its next command acts.
     pub pose: Pose,
-    /// Its velocity then.
+    /// Velocity of the robot itself at that instant.
     pub velocity: Velocity,
 }
 
 impl Smoothed<'_> {
-    /// The velocities of the robot at the ends of the next cycles, until it stands, for those of
-    /// its reference, which end at rest. It begins with `from`, and has at least one.
+    /// Velocities of the robot at the ends of the next cycles, until it is stationary, for those
+    /// of its reference, which end at rest. The robot begins with `from`; there is at least one
+    /// reference.
     pub(super) fn velocities<I>(
         &self,
         from: Velocity,
@@ -41,14 +42,14 @@ impl Smoothed<'_> {
         })
     }
 
-    /// The largest speed and turn rate of the robot and of what is averaged.
+    /// Largest speed and turn rate of the robot and of the averaged velocities.
     pub(super) fn fastest(&self) -> Velocity {
         self.window.references().fold(self.velocity, |most, one| {
             Velocity::new(most.v.abs().max(one.v.abs()), most.omega.abs().max(one.omega.abs()))
         })
     }
 
-    /// True if any of what is averaged leads ahead, or back.
+    /// True if any of the averaged velocities satisfies a condition on its forward speed.
     pub(super) fn leads(&self, is_there: impl Fn(f64) -> bool) -> bool {
         self.window.references().any(|velocity| is_there(velocity.v))
     }

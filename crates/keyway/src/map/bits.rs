@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 /// their own. All padding bits have one value, given when the grid is made. Memory: one bit per
 /// padded cell.
 ///
-/// Serialised as runs of equal cells, row by row from the bottom: free ones first, then others, in
-/// turn.
+/// Serialised as run lengths, row by row from the bottom, alternating between clear and set bits;
+/// the first run is of clear ones.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "BitRuns", into = "BitRuns")]
 pub struct BitGrid {
@@ -23,14 +23,14 @@ pub struct BitGrid {
     words: Vec<u64>,
 }
 
-/// A grid of bits in few numbers.
+/// Run-length encoding of a grid of bits.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BitRuns {
     width: u32,
     height: u32,
     padding: bool,
-    /// Lengths of runs: of 0, of 1, of 0 and so on.
+    /// Lengths of runs, alternating: of 0, of 1, of 0 and so on.
     runs: Vec<u64>,
 }
 
@@ -74,7 +74,7 @@ impl TryFrom<BitRuns> for BitGrid {
     }
 }
 
-/// Some columns of a grid: up to two words, and which of their bits.
+/// A range of columns in a grid: up to two words, and a mask for each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
     first: usize,
@@ -83,7 +83,7 @@ pub(crate) struct Columns {
 }
 
 impl BitGrid {
-    /// All cells `false`, the padding as given.
+    /// Creates a grid with all cells `false` and the given padding.
     pub fn new(width: u32, height: u32, padding: bool) -> Self {
         let words_per_row = (width as usize + 2).div_ceil(64);
         let fill = if padding { u64::MAX } else { 0 };
@@ -98,7 +98,7 @@ impl BitGrid {
         Self { width, height, words_per_row, padding, words }
     }
 
-    /// Sets some cells, row by row from the bottom.
+    /// Sets `count` cells from index `from` on, row by row from the bottom.
     fn fill_run(&mut self, from: u64, count: u64) {
         let width = u64::from(self.width);
         let (mut at, end) = (from, from + count);
@@ -156,7 +156,7 @@ impl BitGrid {
         cell.x >= 0 && cell.y >= 0 && (cell.x as u32) < self.width && (cell.y as u32) < self.height
     }
 
-    /// The bit of a cell; outside the grid the padding's value.
+    /// The bit of a cell; outside the grid the value of the padding.
     pub fn get(&self, cell: Cell) -> bool {
         if self.contains(cell) {
             let bit = (cell.x + 1) as usize;
@@ -166,7 +166,7 @@ impl BitGrid {
         }
     }
 
-    /// Sets the bit of a cell; true when it changed. Outside the grid nothing happens.
+    /// Sets the bit of a cell; returns true if it changed. Ignores cells outside the grid.
     pub fn set(&mut self, cell: Cell, value: bool) -> bool {
         if !self.contains(cell) {
             return false;
@@ -188,8 +188,8 @@ impl BitGrid {
         set_range(self.row_mut(y), (from + 1) as usize, (to + 2) as usize);
     }
 
-    /// Clears the bits of row `y` that are not in columns `from..=to`; all of them when there are
-    /// none.
+    /// Clears the bits of row `y` outside columns `from..=to`; clears the whole row if that range
+    /// is empty.
     pub(crate) fn keep_span(&mut self, y: i32, from: i32, to: i32) {
         let width = self.width as i32;
         if y < 0 || y >= self.height as i32 {
@@ -225,7 +225,7 @@ impl BitGrid {
     /// Sets every bit that is set in `other`, a grid of the same size and padding.
     ///
     /// # Panics
-    /// When the sizes differ.
+    /// Panics if the sizes differ.
     pub fn merge(&mut self, other: &Self) {
         assert_eq!((self.width, self.height), (other.width, other.height), "grids differ in size");
         for (own, new) in self.words.iter_mut().zip(&other.words) {
@@ -233,7 +233,7 @@ impl BitGrid {
         }
     }
 
-    /// True when a bit is set among columns `from..=to` of row `y`, clipped to the grid.
+    /// True if a bit is set among columns `from..=to` of row `y`, clipped to the grid.
     pub fn any_in_span(&self, y: i32, from: i32, to: i32) -> bool {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         if y < 0 || y >= self.height as i32 || from > to {
@@ -248,11 +248,11 @@ impl BitGrid {
         })
     }
 
-    /// Columns `from..=to`, clipped to the grid, for queries on many rows. `None` when they lie in
-    /// more than two words, or there are none.
+    /// Columns `from..=to`, clipped to the grid, for queries on many rows. `None` if they span
+    /// more than two words, or the range is empty.
     pub(crate) fn columns(&self, from: i32, to: i32) -> Option<Columns> {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
-        // The column asked for may be the largest number of its type.
+        // The requested column may be the largest number of its type.
         if from > to {
             return None;
         }
@@ -266,7 +266,7 @@ impl BitGrid {
         Some(Columns { first: word, last: last / 64, masks })
     }
 
-    /// True when a bit is set in one of these columns of row `y` of the grid.
+    /// True if a bit is set in one of these columns of row `y` of the grid.
     pub(crate) fn any_in_columns(&self, y: i32, columns: &Columns) -> bool {
         let start = (y + 1) as usize * self.words_per_row;
         let word = |number: usize| self.words[start + number];
@@ -290,7 +290,7 @@ impl BitGrid {
             let row = self.row(y);
             &row[(from + 1) as usize / 64..=(to + 1) as usize / 64]
         };
-        // The column asked for may be the largest number of its type.
+        // The requested column may be the largest number of its type.
         let first = from.saturating_add(1) / 64;
         words.iter().enumerate().flat_map(move |(i, &word)| {
             let base = (first + i as i32) * 64 - 1;
@@ -311,8 +311,8 @@ impl BitGrid {
         })
     }
 
-    /// Visits the columns of [`Self::ones_in_span`] until `visit` returns false; true when it never
-    /// did.
+    /// Visits the columns of [`Self::ones_in_span`] until `visit` returns false; returns true if
+    /// it never did.
     pub(crate) fn all_ones_in_span(
         &self,
         y: i32,
@@ -341,12 +341,12 @@ impl BitGrid {
         true
     }
 
-    /// How many set cells follow one another in a row to the left of a cell of the grid, and to its
-    /// right.
+    /// Numbers of consecutive set cells directly to the left and to the right of a cell of the
+    /// grid.
     pub(crate) fn ones_beside(&self, cell: Cell) -> (i32, i32) {
         let row = self.row(cell.y);
         let (at, width) = ((cell.x + 1) as usize, self.width as usize);
-        // The nearest bits on both sides that are not set, the cell's own left out.
+        // The nearest clear bits on both sides, excluding the cell's own.
         let (low, high) = ((1 << (at % 64)) - 1, !1 << (at % 64));
         let last = |word: usize, zeros: u64| word * 64 + 63 - zeros.leading_zeros() as usize;
         let first = |word: usize, zeros: u64| word * 64 + zeros.trailing_zeros() as usize;
@@ -363,7 +363,7 @@ impl BitGrid {
         ((at - 1 - left) as i32, (right - 1 - at) as i32)
     }
 
-    /// How many bits are set among columns `from..=to` of row `y`, clipped to the grid.
+    /// Number of set bits among columns `from..=to` of row `y`, clipped to the grid.
     pub(crate) fn count_in_span(&self, y: i32, from: i32, to: i32) -> u32 {
         let (from, to) = (from.max(0), to.min(self.width as i32 - 1));
         if y < 0 || y >= self.height as i32 || from > to {
@@ -419,7 +419,7 @@ impl BitGrid {
         let (columns, rows) = (turned.words.len() - 1, self.words.len() - 1);
         for down in 0..turned.words_per_row {
             for along in 0..self.words_per_row {
-                // Rows that are not there have the padding's value in every bit.
+                // Rows beyond the grid have the padding's value in every bit.
                 let mut block = [if self.padding { u64::MAX } else { 0 }; 64];
                 let first = down * 64 * self.words_per_row + along;
                 let from = (first..rows).step_by(self.words_per_row);

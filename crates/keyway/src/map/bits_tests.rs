@@ -103,7 +103,7 @@ proptest! {
     }
 }
 
-/// A row takes a whole word: narrow grids of few cells could take much memory.
+/// Each row takes a whole word, so narrow grids of few cells could take much memory.
 #[test]
 fn only_sizes_of_maps_are_taken_up() {
     let stored = |width: u64, height: u64| {

@@ -40,8 +40,7 @@ impl fmt::Display for Cell {
     }
 }
 
-/// The largest whole number that is not larger, saturating; NaN gives 0, for which every later
-/// comparison fails.
+/// Rounds down to an integer, saturating; NaN gives 0, for which every later comparison fails.
 pub(super) fn floor_to_i32(value: f64) -> i32 {
     let towards_zero = value as i32;
     towards_zero.saturating_sub(i32::from(f64::from(towards_zero) > value))

@@ -7,24 +7,24 @@ use super::Cell;
 pub struct CellIndex(pub u32);
 
 impl CellIndex {
-    /// As an index into arrays with [`super::SearchMap::index_count`] entries.
+    /// Index for arrays with [`super::SearchMap::index_count`] entries.
     pub const fn as_usize(self) -> usize {
         self.0 as usize
     }
 }
 
-/// From cells to their indices and back. A division by the row's length is a multiplication with
-/// its reciprocal: searches turn every generated node into a cell.
+/// Conversion between cells and their indices. Division by the row length is replaced by
+/// multiplication with its reciprocal, because searches convert every generated node to a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Numbering {
-    /// Indices from one row to the next.
+    /// Number of indices from one row to the next.
     stride: u32,
     /// 2^64 / `stride`, rounded up.
     reciprocal: u64,
 }
 
 impl Numbering {
-    /// For rows of `stride` (at least 2) indices, padding included.
+    /// Creates a numbering for rows of `stride` (at least 2) indices, padding included.
     pub(super) const fn new(stride: u32) -> Self {
         Self { stride, reciprocal: u64::MAX / stride as u64 + 1 }
     }
@@ -91,7 +91,7 @@ mod tests {
         fn the_reciprocal_divides_exactly(stride in 2u32.., index: u32, rows in 0u32..70_000, off in 0u32..3) {
             let numbering = Numbering::new(stride);
             prop_assert_eq!(numbering.cell(CellIndex(index)), by_division(stride, index));
-            // Just below, at and above a multiple.
+            // Just below, at, and just above a multiple.
             let near = (rows % (u32::MAX / stride + 1)) * stride;
             let near = near.saturating_add(off).saturating_sub(1);
             prop_assert_eq!(numbering.cell(CellIndex(near)), by_division(stride, near));

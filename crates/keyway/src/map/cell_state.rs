@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The state of a cell, as far as it is known.
+/// The state of a cell according to the observations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CellState {
-    /// Nothing stands there.
+    /// No obstacle.
     Free,
-    /// Something stands there.
+    /// An obstacle.
     Occupied,
     /// Never observed.
     Unknown,

@@ -1,29 +1,29 @@
-//! The costmap of ROS users: a byte per cell that falls with the distance to the nearest obstacle.
+//! A costmap as used in ROS: one byte per cell that decreases with the distance to the nearest
+//! obstacle.
 //!
 //! # Source
-//! The inflation layer of Nav2 (`nav2_costmap_2d`): the names of the parameters, the values and the
-//! rounding are taken from it. Distances run between the centres of cells there, and so do they
-//! here.
+//! The inflation layer of Nav2 (`nav2_costmap_2d`): parameter names, values and rounding follow
+//! it. As there, distances run between the centres of cells.
 //!
-//! # Which cells are safe
-//! A robot at the centre of a cell with cost 253 or 254 touches an obstacle, whatever its heading;
-//! the converse does not hold. Distances run from centre to centre, so an obstacle's square may be
-//! nearer by up to half of its diagonal (0.71 cells) than the cost suggests: a round robot of the
-//! inscribed radius whose centre is on a cell below 253 may still touch a corner of an obstacle. To
-//! forbid that, add half a diagonal to the inscribed radius, or plan on a
-//! [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint that is
-//! not round needs a check at its heading in all cells up to its circumscribed radius
+//! # Safe cells
+//! A robot at the centre of a cell with cost 253 or 254 touches an obstacle, whatever its
+//! heading; the converse does not hold. Distances run from centre to centre, so an obstacle's
+//! square may be nearer by up to half of its diagonal (0.71 cells) than the cost suggests: a
+//! round robot of the inscribed radius whose centre is on a cell below 253 may still touch a
+//! corner of an obstacle. To rule that out, add half a diagonal to the inscribed radius, or plan
+//! on a [`SearchMap`](super::SearchMap), whose clearance is measured to the squares. A footprint
+//! that is not round needs a check at its heading in all cells up to its circumscribed radius
 //! ([`Footprint::is_free`](super::Footprint::is_free)).
 //!
-//! # Who reads it
-//! Not Keyway's planners: they find shortest paths at a clearance. It is for programs that know
-//! costmaps, such as Nav2's planners and controllers, and for display.
+//! # Use
+//! Keyway's planners do not read it: they find shortest paths at a clearance. It is for programs
+//! that use costmaps, such as Nav2's planners and controllers, and for display.
 //!
-//! # Where this differs
-//! - Nav2 finds the nearest obstacle by a wave that can miss it by a fraction of a cell; here the
-//!   distance is exact.
-//! - Nav2 only logs an inflation radius below the inscribed one, with which cells that the robot
-//!   cannot pass may cost nothing; here it is an error.
+//! # Differences from Nav2
+//! - Nav2 finds the nearest obstacle by a wavefront that can miss it by a fraction of a cell;
+//!   here the distance is exact.
+//! - Nav2 only logs an inflation radius below the inscribed one, although cells that the robot
+//!   cannot pass may then cost nothing; here it is an error.
 
 use super::{
     BitGrid, Cell, CellWindow, DistanceField, DistanceTo, FieldConfig, GridFrame, OccupancyGrid,
@@ -37,17 +37,18 @@ use std::borrow::Cow;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct CostmapConfig {
-    /// Radius of the largest disc around the robot's centre inside its footprint \[m\]: cells up to
-    /// this near to an obstacle cost 253. Nav2 takes it from the footprint.
+    /// Radius of the largest disc around the robot's centre inside its footprint \[m\]: cells
+    /// within this distance of an obstacle cost 253. Nav2 takes it from the footprint.
     #[serde(alias = "inscribed_radius")]
     pub inscribed_radius_m: f64,
-    /// Farther cells cost nothing \[m\]; rounded up to whole cells. At least the inscribed radius:
-    /// otherwise cells beside obstacles that the robot cannot pass would cost nothing.
+    /// Distance beyond which cells cost nothing \[m\]; rounded up to whole cells. At least the
+    /// inscribed radius: otherwise cells beside obstacles that the robot cannot pass would cost
+    /// nothing.
     #[serde(alias = "inflation_radius")]
     pub inflation_radius_m: f64,
-    /// How fast the cost falls with the distance \[1/m\].
+    /// Rate at which the cost decreases with the distance \[1/m\].
     pub cost_scaling_factor: f64,
-    /// Unknown cells get the cost of any obstacle near them, not only costs of 253 and more.
+    /// Unknown cells take the cost of any obstacle near them, not only costs of 253 and more.
     pub inflate_unknown: bool,
     /// Unknown cells count as obstacles.
     pub inflate_around_unknown: bool,
@@ -73,26 +74,27 @@ impl Default for CostmapConfig {
 pub struct Costmap {
     config: CostmapConfig,
     field: DistanceField,
-    /// The cost at a distance, by its square in cells.
+    /// Cost by squared distance in cells.
     cost_of_cells_sq: Vec<u8>,
-    /// Row by row from the bottom.
+    /// Costs of all cells, row by row from the bottom.
     costs: Vec<u8>,
 }
 
 impl Costmap {
-    /// An obstacle.
+    /// Cost of an obstacle.
     pub const LETHAL: u8 = 254;
-    /// A robot whose centre is here touches an obstacle, whatever its heading.
+    /// Cost of cells at which a robot's centre makes it touch an obstacle, whatever its heading.
     pub const INSCRIBED: u8 = 253;
-    /// Nothing is known.
+    /// Cost of an unknown cell.
     pub const UNKNOWN: u8 = 255;
-    /// No obstacle within the inflation radius.
+    /// Cost of a cell with no obstacle within the inflation radius.
     pub const FREE: u8 = 0;
 
-    /// Costs of a map.
+    /// Creates the costmap of a map.
     ///
     /// # Errors
-    /// When a number of the config is not usable; the error names its field.
+    /// Returns [`ConfigError`] if a number of the config is not usable; the error names its
+    /// field.
     pub fn new(grid: &OccupancyGrid, config: CostmapConfig) -> Result<Self, ConfigError> {
         let frame = grid.frame();
         config.check(frame.resolution_m())?;
@@ -115,16 +117,16 @@ impl Costmap {
         Ok(costmap)
     }
 
-    /// Takes over the cells of a window from a map, and corrects every cost that they change.
+    /// Copies the cells of a window from a map, and corrects every cost that they change.
     ///
     /// # Panics
-    /// When the map's size is not the one the costmap was made for.
+    /// Panics if the map's size is not the one that the costmap was created for.
     pub fn update(&mut self, grid: &OccupancyGrid, window: CellWindow) {
         let changed = self.field.update(&self.config.obstacles(grid), window);
         self.recost(grid, &changed.map_or(window, |changed| changed.union(&window)));
     }
 
-    /// Where the costmap lies.
+    /// Geometry of the costmap: size, resolution and origin.
     pub const fn frame(&self) -> &GridFrame {
         self.field.frame()
     }
@@ -161,16 +163,16 @@ impl Costmap {
         }
     }
 
-    /// The cost by the distance alone.
+    /// The cost from the distance alone.
     fn inflated(&self, cell: Cell) -> u8 {
-        // Centres are whole cells apart: four times the squared cells.
+        // Centres are whole cells apart, and 4 squared half cells are one squared cell.
         let cells_sq = self.field.half_cells_sq(cell).map_or(usize::MAX, |sq| sq as usize / 4);
         self.cost_of_cells_sq.get(cells_sq).copied().unwrap_or(Self::FREE)
     }
 }
 
 impl CostmapConfig {
-    /// Wider inflation than this is refused \[cells\].
+    /// Largest allowed inflation \[cells\].
     const MAX_RADIUS_CELLS: f64 = 4096.0;
 
     fn check(&self, resolution_m: f64) -> Result<(), ConfigError> {
@@ -195,7 +197,7 @@ impl CostmapConfig {
         Ok(())
     }
 
-    /// No more than two cells of the map can be apart.
+    /// The inflation radius \[cells\], at most the largest distance between two cells of the map.
     fn radius_cells(&self, frame: &GridFrame) -> u32 {
         let farthest = libm::hypot(f64::from(frame.width()), f64::from(frame.height()));
         (self.inflation_radius_m / frame.resolution_m()).min(farthest).ceil() as u32
@@ -219,7 +221,7 @@ impl CostmapConfig {
         } else {
             let beyond_m = distance_m - self.inscribed_radius_m;
             let factor = libm::exp(-self.cost_scaling_factor * beyond_m);
-            // Cut off, not rounded.
+            // Truncated, not rounded.
             (f64::from(Costmap::INSCRIBED - 1) * factor) as u8
         }
     }
@@ -327,7 +329,7 @@ mod tests {
         }
     }
 
-    /// The table of costs ends with the farthest two cells of the map.
+    /// The cost table ends at the largest distance between two cells of the map.
     #[test]
     fn a_wide_inflation_costs_no_more_than_the_map() {
         let grid = OccupancyGrid::from_ascii(&["#..", "...", "..."]);

@@ -1,4 +1,4 @@
-//! Where a grid lies in the world: the only place where metres and cells meet.
+//! Pose of a grid in the world; all conversions between metres and cells.
 
 use super::Cell;
 use crate::geometry::{Point, Pose};
@@ -7,21 +7,21 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use thiserror::Error;
 
-/// The largest number of cells that a grid may have (2^31: padded cell indices fit 32 bits).
+/// Largest number of cells of a grid (2^31: padded cell indices fit 32 bits).
 pub const MAX_CELLS: u64 = 1 << 31;
 
 /// True if a grid may have this many columns and rows.
 pub(super) fn is_size(width: u64, height: u64) -> bool {
-    // Padding included, so that a thin map cannot overflow the padded index either.
+    // Counts the padding, so that a thin map cannot overflow the padded index either.
     let padded = (u128::from(width) + 130) * (u128::from(height) + 2);
     let cells = u128::from(width) * u128::from(height);
     (1..=u128::from(MAX_CELLS)).contains(&cells) && padded <= 1 << 32
 }
 
-/// Size, resolution and origin of a grid.
+/// Geometry of a grid: size, resolution and origin.
 ///
-/// Three coordinates are used: *world* (metres), *grid* (continuous, in cells: cell (i, j) is the
-/// square from (i, j) to (i + 1, j + 1)), and *cells* (integers).
+/// Three coordinate systems are used: *world* (metres), *grid* (continuous, in cells: cell (i, j)
+/// is the square from (i, j) to (i + 1, j + 1)), and *cells* (integers).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "FrameParts")]
 pub struct GridFrame {
@@ -36,7 +36,7 @@ pub struct GridFrame {
     cos: f64,
 }
 
-/// A frame that was not checked yet.
+/// A frame that is not yet validated.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrameParts {
@@ -55,55 +55,55 @@ impl TryFrom<FrameParts> for GridFrame {
     }
 }
 
-/// Why a grid cannot have such a frame.
+/// Reason why a frame is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FrameError {
     /// No cells at all.
     #[error("a map needs at least one cell, got {width} x {height}")]
     Empty {
-        /// Columns asked for.
+        /// Requested columns.
         width: u64,
-        /// Rows asked for.
+        /// Requested rows.
         height: u64,
     },
     /// More than [`MAX_CELLS`].
     #[error("a map of {width} x {height} cells is larger than the limit of {MAX_CELLS} cells")]
     TooLarge {
-        /// Columns asked for.
+        /// Requested columns.
         width: u64,
-        /// Rows asked for.
+        /// Requested rows.
         height: u64,
     },
-    /// Not a positive length, or one with which coordinates cannot be told apart.
+    /// Not a positive length, or one at which coordinates cannot be distinguished.
     #[error("resolution must be a number of metres per cell from 1e-6 to 1e6, got {}", Given(*.0))]
     Resolution(f64),
-    /// NaN, infinite, or so far away that cells cannot be told apart.
+    /// NaN, infinite, or so far away that cells cannot be distinguished.
     #[error("origin must be within 1e9 m, got x = {x:e}, y = {y:e}, yaw = {yaw_rad} rad")]
     Origin {
-        /// Asked-for x \[m\].
+        /// Requested x \[m\].
         x: f64,
-        /// Asked-for y \[m\].
+        /// Requested y \[m\].
         y: f64,
-        /// Asked-for yaw \[rad\].
+        /// Requested yaw \[rad\].
         yaw_rad: f64,
     },
 }
 
-/// True if cells so far away can be told apart.
+/// True if cells at this distance can be distinguished.
 pub(super) fn is_origin(origin: Pose) -> bool {
     [origin.x, origin.y, origin.theta].iter().all(|n| n.abs() <= 1e9)
 }
 
 impl GridFrame {
-    /// Sides of a cell that a frame may have \[m\].
+    /// Allowed range of the side of a cell \[m\].
     pub const RESOLUTIONS_M: RangeInclusive<f64> = 1e-6..=1e6;
 
     /// A grid of `width` x `height` cells of `resolution_m`, whose lower-left corner has the world
     /// pose `origin`.
     ///
     /// # Errors
-    /// When there are no cells or too many, or a number is not usable.
+    /// Returns [`FrameError`] if there are no cells or too many, or a number is not usable.
     pub fn new(
         width: u64,
         height: u64,
@@ -183,21 +183,22 @@ impl GridFrame {
         self.world_from_grid(Point::new(f64::from(cell.x) + 0.5, f64::from(cell.y) + 0.5))
     }
 
-    /// The cell that holds a world point; `None` outside the grid. A point on a shared edge belongs
-    /// to the cell right of or above it, on the outer right or upper edge to the last cell.
+    /// The cell that contains a world point; `None` outside the grid. A point on a shared edge
+    /// belongs to the cell right of or above it, on the outer right or upper edge to the last
+    /// cell.
     pub fn cell_from_world(&self, world: Point) -> Option<Cell> {
         self.cell_from_grid(self.grid_from_world(world))
     }
 
-    /// The same, also outside the grid: there the cell that would hold the point if the grid went
-    /// on.
+    /// Like [`Self::cell_from_world`], but also for points outside the grid: returns the cell
+    /// that would contain the point if the grid continued.
     pub fn cell_near(&self, world: Point) -> Cell {
         let grid = self.grid_from_world(world);
         self.cell_from_grid(grid)
             .unwrap_or_else(|| Cell::new(grid.x.floor() as i32, grid.y.floor() as i32))
     }
 
-    /// The cell that holds a point in grid coordinates, as for [`Self::cell_from_world`].
+    /// The cell that contains a point in grid coordinates, as for [`Self::cell_from_world`].
     pub fn cell_from_grid(&self, grid: Point) -> Option<Cell> {
         let index = |value: f64, count: u32| -> Option<i32> {
             if !(value >= 0.0 && value <= f64::from(count)) {

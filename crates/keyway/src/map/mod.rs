@@ -1,5 +1,5 @@
-//! What a robot may drive on: occupancy grids as files give them, the layers derived for a search,
-//! exact distances to obstacles, and readers and writers of the field's file formats.
+//! Maps: occupancy grids as read from files, the layers derived for a search, exact distances to
+//! obstacles, and readers and writers of common map file formats.
 
 mod bits;
 mod cell;

@@ -1,4 +1,4 @@
-//! The cells of a map, as its file says.
+//! The cells of a map as read from its file.
 
 use super::packed::packed;
 use super::{BitGrid, Cell, CellState, GridFrame, OccupancyError, OccupancyThresholds};
@@ -10,14 +10,14 @@ use std::sync::Arc;
 pub struct Edit {
     /// The cell.
     pub cell: Cell,
-    /// Its state from now on.
+    /// Its new state.
     pub state: CellState,
 }
 
-/// An occupancy grid: for every cell occupied, unknown or free, and on request the occupancy
-/// value of the file (0 to 100).
+/// An occupancy grid: the state of every cell (occupied, unknown or free), and optionally the
+/// occupancy value of the file (0 to 100).
 ///
-/// Memory: two bits per cell, one byte more where the file has values.
+/// Memory: two bits per cell, and one byte more if the file has values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "GridParts")]
 pub struct OccupancyGrid {
@@ -28,7 +28,7 @@ pub struct OccupancyGrid {
     revision: u64,
 }
 
-/// A grid that was not checked yet.
+/// A grid that is not yet validated.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GridParts {
@@ -56,7 +56,7 @@ impl TryFrom<GridParts> for OccupancyGrid {
     }
 }
 
-/// The values that the states of cells were made of.
+/// The values from which the states of cells were derived.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Values {
     /// Row by row from the bottom; 0 to 100, 255 unknown.
@@ -78,7 +78,7 @@ impl OccupancyGrid {
         Self { frame, occupied, unknown: Arc::new(unknown), values: None, revision: 0 }
     }
 
-    /// A grid whose cells are given by `state`.
+    /// Creates a grid whose cells are given by `state`.
     pub fn from_fn(frame: GridFrame, mut state: impl FnMut(Cell) -> CellState) -> Self {
         let mut grids = no_bits(frame);
         for y in 0..frame.height() as i32 {
@@ -101,8 +101,8 @@ impl OccupancyGrid {
         Self::of_bits(frame, occupied, unknown)
     }
 
-    /// A grid with a byte for every cell, whose states `state` gives; `row` gives the bytes of row
-    /// y, as many as there are columns. Some 3 instructions per cell.
+    /// Creates a grid from one byte per cell, which `state` converts to a state; `row` returns
+    /// the bytes of row y, one per column. Costs some 3 instructions per cell.
     pub(super) fn from_rows<'a>(
         frame: GridFrame,
         row: impl Fn(usize) -> &'a [u8],
@@ -124,12 +124,12 @@ impl OccupancyGrid {
         Self::of_bits(frame, occupied, unknown)
     }
 
-    /// A grid whose cells are given by occupancy values from 0 to 100, row by row from the bottom,
-    /// which `thresholds` turn into states. The values are kept.
+    /// Creates a grid from occupancy values from 0 to 100, row by row from the bottom, which
+    /// `thresholds` convert to states. The values are kept.
     ///
     /// # Errors
-    /// If there is not exactly one value per cell, or the values are usually a mistake
-    /// ([`OccupancyThresholds::check`]).
+    /// Returns [`OccupancyError`] if there is not exactly one value per cell, or if the values
+    /// are usually a mistake ([`OccupancyThresholds::check`]).
     pub fn from_values(
         frame: GridFrame,
         values: Vec<u8>,
@@ -139,10 +139,11 @@ impl OccupancyGrid {
         Self::from_known_values(frame, values, thresholds)
     }
 
-    /// The same for values that have been a map before: none is taken for a mistake.
+    /// Like [`Self::from_values`], for values that have been a map before: none is taken for a
+    /// mistake.
     ///
     /// # Errors
-    /// If there is not exactly one value per cell.
+    /// Returns [`OccupancyError`] if there is not exactly one value per cell.
     pub fn from_known_values(
         frame: GridFrame,
         values: Vec<u8>,
@@ -155,7 +156,7 @@ impl OccupancyGrid {
         Ok(Self::from_value_per_cell(frame, values, thresholds))
     }
 
-    /// There is one value per cell.
+    /// Creates a grid from values; requires exactly one per cell.
     pub(super) fn from_value_per_cell(
         frame: GridFrame,
         numbers: Vec<u8>,
@@ -168,7 +169,8 @@ impl OccupancyGrid {
         grid
     }
 
-    /// A grid that is occupied where asked for, row by row from the bottom, and free elsewhere.
+    /// Creates a grid from flags of occupied cells, row by row from the bottom; the others are
+    /// free.
     #[cfg(test)]
     pub(crate) fn from_occupied(frame: GridFrame, occupied: &[bool]) -> Self {
         let mut each = occupied.iter();
@@ -178,11 +180,11 @@ impl OccupancyGrid {
         })
     }
 
-    /// A grid of 1 m cells from a drawing, top row first: `.` free, `?` unknown, anything else
-    /// occupied. Meant for tests and examples.
+    /// Creates a grid of 1 m cells from a drawing, top row first: `.` free, `?` unknown, anything
+    /// else occupied. Meant for tests and examples.
     ///
     /// # Panics
-    /// If the rows are empty or differ in length.
+    /// Panics if the rows are empty or differ in length.
     pub fn from_ascii(rows: &[&str]) -> Self {
         let width = rows.first().map_or(0, |row| row.len());
         assert!(rows.iter().all(|row| row.len() == width), "rows differ in length");
@@ -197,7 +199,7 @@ impl OccupancyGrid {
         })
     }
 
-    /// Size and place of the grid.
+    /// Geometry of the grid: size, resolution and origin.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
@@ -212,7 +214,7 @@ impl OccupancyGrid {
         &self.unknown
     }
 
-    /// Unknown cells, to be shared until either side changes one.
+    /// Unknown cells, shared until either side changes one.
     pub(super) const fn shared_unknown(&self) -> &Arc<BitGrid> {
         &self.unknown
     }
@@ -223,12 +225,12 @@ impl OccupancyGrid {
         self.values.as_ref().map(|values| values.numbers.as_slice())
     }
 
-    /// The thresholds that turned [`Self::values`] into states; `None` where there are no values.
+    /// The thresholds that converted [`Self::values`] to states; `None` without values.
     pub fn thresholds(&self) -> Option<OccupancyThresholds> {
         self.values.as_ref().map(|values| values.thresholds)
     }
 
-    /// The number of calls of [`Self::apply`] that have changed something.
+    /// Number of calls of [`Self::apply`] that changed a cell.
     pub const fn revision(&self) -> u64 {
         self.revision
     }
@@ -246,7 +248,8 @@ impl OccupancyGrid {
         })
     }
 
-    /// Changes cells; edits outside the grid are ignored. Counts a revision when a cell changed.
+    /// Changes cells; edits outside the grid are ignored. Increments the revision if a cell
+    /// changed.
     pub fn apply(&mut self, edits: &[Edit]) {
         let mut changed = false;
         let frame = self.frame;
@@ -274,7 +277,7 @@ impl OccupancyGrid {
     }
 }
 
-/// The bits of no occupied and of no unknown cell. Their memory is touched where a bit is set.
+/// Bit grids without occupied and unknown cells. Their memory is touched only when a bit is set.
 fn no_bits(frame: GridFrame) -> [BitGrid; 2] {
     std::array::from_fn(|_| BitGrid::new(frame.width(), frame.height(), false))
 }
@@ -286,13 +289,14 @@ fn write_word(grids: &mut [BitGrid; 2], y: i32, word: usize, bits: [u64; 2]) {
     }
 }
 
-/// Sets a bit of a grid that others may share; they keep what they have. True if it was different.
+/// Sets a bit of a grid that others may share, without changing their copy. Returns true if it
+/// was different.
 #[inline]
 pub(super) fn set_shared(bits: &mut Arc<BitGrid>, cell: Cell, value: bool) -> bool {
     bits.get(cell) != value && copied_and_set(bits, cell, value)
 }
 
-/// Apart from the test above, which nearly always says that there is nothing to do.
+/// Separate from the test above, which nearly always finds nothing to do.
 #[cold]
 #[inline(never)]
 fn copied_and_set(bits: &mut Arc<BitGrid>, cell: Cell, value: bool) -> bool {

@@ -1,15 +1,15 @@
-//! From an occupancy value to the state of a cell.
+//! Conversion of an occupancy value to the state of a cell.
 //!
 //! # Source
-//! `nav2_map_server/src/map_io.cpp` of Nav2, which saves a map by this rule. Nav2's costmaps count
-//! all but 100 as free: what nine of ten scans have seen would be free.
+//! `nav2_map_server/src/map_io.cpp` of Nav2, which saves a map by this rule. Nav2's costmaps
+//! count all values but 100 as free, even a cell that nine of ten scans have seen occupied.
 
 use super::CellState;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// From which occupancy value (0 to 100) on a cell is occupied, and up to which it is free. A value
-/// between the two is unknown, and so is one above 100.
+/// Thresholds of occupancy values (0 to 100): a cell is occupied from one value on, and free up to
+/// the other. A value between the two is unknown, and so is one above 100.
 ///
 /// ```
 /// use keyway::map::{CellState, OccupancyThresholds};
@@ -25,7 +25,7 @@ pub struct OccupancyThresholds {
     free: u8,
 }
 
-/// The reason why occupancy values, or their thresholds, cannot be used.
+/// Reason why occupancy values, or their thresholds, cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum OccupancyError {
@@ -34,12 +34,12 @@ pub enum OccupancyError {
         "the occupied threshold must be from 1 to 100 and the free threshold below it, got {occupied} and {free}"
     )]
     Thresholds {
-        /// The threshold that was given for occupied cells.
+        /// The given threshold for occupied cells.
         occupied: u8,
-        /// The threshold that was given for free ones.
+        /// The given threshold for free cells.
         free: u8,
     },
-    /// Another number of values than cells.
+    /// The number of values differs from that of cells.
     #[error("expected {expected} occupancy values, one for each cell, got {got}")]
     Count {
         /// The number of cells.
@@ -47,7 +47,7 @@ pub enum OccupancyError {
         /// The number of values.
         got: u64,
     },
-    /// Not all cells are empty, and yet no value comes near to occupied: usually a mask of 0 and 1.
+    /// Not all cells are empty, yet no value comes near to occupied: usually a mask of 0 and 1.
     #[error(
         "the largest occupancy is {largest} of 100, so that every cell would be free: a mask of what is occupied must be of \
          type bool"
@@ -59,17 +59,17 @@ pub enum OccupancyError {
 }
 
 impl Default for OccupancyThresholds {
-    /// Those of Nav2's map saver: 65 and 25.
+    /// The thresholds of Nav2's map saver: 65 and 25.
     fn default() -> Self {
         Self { occupied: 65, free: 25 }
     }
 }
 
 impl OccupancyThresholds {
-    /// Occupied from the first on, free up to the second.
+    /// Creates thresholds: occupied from the first on, free up to the second.
     ///
     /// # Errors
-    /// Unless `free` is below `occupied`, and that is at most 100.
+    /// Returns [`OccupancyError`] unless `free` is below `occupied`, and that is at most 100.
     pub const fn new(occupied: u8, free: u8) -> Result<Self, OccupancyError> {
         if free < occupied && occupied <= 100 {
             return Ok(Self { occupied, free });
@@ -77,8 +77,8 @@ impl OccupancyThresholds {
         Err(OccupancyError::Thresholds { occupied, free })
     }
 
-    /// Those of a map file, as parts of 1. Where they are swapped, what both claim is occupied; 0
-    /// never is.
+    /// Converts the thresholds of a map file, as parts of 1. If they are exchanged, values that
+    /// satisfy both are occupied; 0 never is.
     #[cfg(feature = "formats")]
     pub(super) fn of_file(occupied_thresh: f64, free_thresh: f64) -> Self {
         let percent = |part: f64| (100.0 * part).round_ties_even() as u8;
@@ -86,7 +86,7 @@ impl OccupancyThresholds {
         Self { occupied, free: percent(free_thresh).min(occupied - 1) }
     }
 
-    /// The least value of an occupied cell.
+    /// The smallest value of an occupied cell.
     pub const fn occupied(self) -> u8 {
         self.occupied
     }
@@ -106,11 +106,11 @@ impl OccupancyThresholds {
         }
     }
 
-    /// Refuses values that are usually a mask of 0 and 1: they are not all 0, and the largest is
+    /// Rejects values that are usually a mask of 0 and 1: they are not all 0, and the largest is
     /// below the free threshold.
     ///
     /// # Errors
-    /// If they are.
+    /// Returns [`OccupancyError`] for such values.
     pub fn check(self, values: &[u8]) -> Result<(), OccupancyError> {
         let largest = values.iter().copied().filter(|&value| value <= 100).max().unwrap_or(0);
         if largest == 0 || largest >= self.free {

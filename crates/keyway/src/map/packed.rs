@@ -1,10 +1,10 @@
-//! From bytes to bits.
+//! Conversion of bytes to bits.
 
-/// One bit for each of at most 64 bytes, the first one lowest: 64 bytes cost some hundred
+/// Packs a test of at most 64 bytes into bits, the first byte lowest: 64 bytes cost some hundred
 /// instructions.
 pub(super) fn packed(bytes: &[u8], is_set: impl Fn(u8) -> bool) -> u64 {
     let mut flags = [0; 64];
-    // A length that is known makes the compiler compare many bytes at once.
+    // A fixed length lets the compiler compare many bytes at once.
     match bytes.first_chunk::<64>() {
         Some(bytes) => mark(&mut flags, bytes, is_set),
         None => mark(&mut flags, bytes, is_set),
@@ -20,7 +20,7 @@ fn mark(flags: &mut [u8; 64], bytes: &[u8], is_set: impl Fn(u8) -> bool) {
     }
 }
 
-/// The lowest bits of eight bytes that are 0 or 1, side by side: byte k is moved up by 56 - 7 k.
+/// Gathers the lowest bits of eight bytes that are 0 or 1: byte k is moved up by 56 - 7 k.
 const fn gathered(flags: u64) -> u64 {
     flags.wrapping_mul(0x0102_0408_1020_4080) >> 56
 }

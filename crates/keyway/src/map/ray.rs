@@ -1,4 +1,4 @@
-//! The cells that a ray passes, in order.
+//! The cells that a ray passes through, in order.
 
 use super::cell::floor_to_i32;
 use super::{Cell, GridFrame};
@@ -10,51 +10,51 @@ use crate::geometry::Point;
 pub struct RayCell {
     /// The cell.
     pub cell: Cell,
-    /// Where the ray enters it, in lengths of the ray's direction: cells for a unit vector. 0 for
-    /// the cell in which the ray begins.
+    /// Distance at which the ray enters the cell, in lengths of the ray's direction: cells for a
+    /// unit vector. 0 for the cell in which the ray begins.
     pub enter: f64,
 }
 
-/// The cells of a grid that a ray passes, in order of the distance at which it enters them
-/// \[Amanatides1987\].
+/// The cells of a grid that a ray passes through, in order of the distance at which it enters
+/// them \[Amanatides1987\].
 ///
 /// The ray visits the cells whose *interior* it crosses; a cell that is only touched at a corner
-/// is not. A ray along the border between two rows or columns crosses the interior of neither: it
-/// passes the cells above or right of it (on the outer upper or right border the last cells), as
-/// [`GridFrame::cell_from_grid`] assigns points. So a ray of no width slips through the common
-/// corner of two cells.
+/// is not visited. A ray along the border between two rows or columns crosses the interior of
+/// neither: it visits the cells above or right of it (on the outer upper or right border the last
+/// cells), as [`GridFrame::cell_from_grid`] assigns points. A ray has no width, so it slips
+/// through the common corner of two cells.
 ///
-/// A crossing's distance is computed from its own grid line, not summed up, so rounding does not
-/// grow along the ray: a cell is missed or added only where the ray runs inside or outside of it
-/// for a length in the last digits of the coordinates. Cost: a few operations per cell, none for
-/// the way to the grid of a ray that begins outside.
+/// The distance of a crossing is computed from its own grid line, not summed up, so rounding does
+/// not accumulate along the ray: a cell is missed or added only if the ray runs inside or outside
+/// of it for a length in the last digits of the coordinates. Cost: a few operations per cell,
+/// none for the distance to the grid of a ray that begins outside.
 #[derive(Clone, Debug)]
 pub struct RayCells {
     x: Axis,
     y: Axis,
     enter: f64,
-    /// Where the ray ends or leaves the grid.
+    /// Distance at which the ray ends or leaves the grid.
     leave: f64,
 }
 
-/// A ray that begins nearer than this to the origin of the grid \[cells\] knows its place on the
-/// grid far better than to a cell.
+/// Distance from the origin of the grid \[cells\] within which the precision of a ray's start is
+/// far finer than a cell.
 const NEAR_CELLS: f64 = 1e9;
 
-/// One coordinate of a ray: the column (or row) it is in and where it leaves it.
+/// One coordinate of a ray: its current column (or row), and the distance at which it leaves it.
 #[derive(Clone, Debug)]
 struct Axis {
     start: f64,
     rate: f64,
     cell: i32,
-    /// Where the ray leaves `cell`, in lengths of its direction.
+    /// Distance at which the ray leaves `cell`, in lengths of its direction.
     next: f64,
 }
 
 impl RayCells {
     /// The cells of `frame`'s grid on the ray from `start` (grid coordinates \[cells\], may lie
-    /// outside the grid) to `start + direction * length`; `length` may be infinite. None for a
-    /// start or direction that is not finite, or a length that is not positive.
+    /// outside the grid) to `start + direction * length`; `length` may be infinite. Empty if the
+    /// start or direction is not finite, or the length not positive.
     pub fn new(frame: &GridFrame, start: Point, direction: Point, length: f64) -> Self {
         let mut x = Axis::new(start.x, direction.x);
         let mut y = Axis::new(start.y, direction.y);
@@ -72,10 +72,10 @@ impl RayCells {
         Self { x, y, enter, leave }
     }
 
-    /// Where the ray enters the first cell that is an obstacle, if it passes one: exactly the place
-    /// that going from cell to cell finds. `steps` gives the number of steps (to any of the 8
-    /// neighbours) from a cell of the grid to an obstacle cell: 0 for one, and never more than to
-    /// the nearest.
+    /// Distance at which the ray enters the first obstacle cell, if any; exactly the one found
+    /// from cell to cell. `steps` returns a lower bound of the number of steps (to any of the 8
+    /// neighbours) from a cell of the grid to the nearest obstacle cell: 0 only for an obstacle
+    /// cell itself.
     ///
     /// Costs a few operations per square of free cells that the ray crosses.
     pub fn enters_first(mut self, steps: impl Fn(Cell) -> i32) -> Option<f64> {
@@ -89,7 +89,7 @@ impl RayCells {
                 self.next();
                 continue;
             }
-            // What is fewer steps away is free: a square around the cell.
+            // All cells fewer steps away are free: a square around the cell.
             self.enter = self.x.leaves_around(free - 1).min(self.y.leaves_around(free - 1));
             if self.enter < self.leave {
                 self.x.go_to(self.enter);
@@ -104,13 +104,14 @@ impl Iterator for RayCells {
     type Item = RayCell;
 
     fn next(&mut self) -> Option<RayCell> {
-        // At the grid's last column `next` is computed as the span's end was: equal to `leave`.
+        // At the grid's last column `next` is computed like the end of the span: it equals
+        // `leave`.
         if self.enter >= self.leave {
             return None;
         }
         let passed = RayCell { cell: Cell::new(self.x.cell, self.y.cell), enter: self.enter };
         self.enter = self.x.next.min(self.y.next);
-        // Both at once through a corner.
+        // Both at once if the ray passes through a corner.
         if self.enter < self.leave {
             self.x.pass(self.enter);
             self.y.pass(self.enter);
@@ -124,12 +125,13 @@ impl Axis {
         Self { start, rate, cell: 0, next: f64::INFINITY }
     }
 
-    /// Where the ray crosses the grid line `line`.
+    /// Distance at which the ray crosses the grid line `line`.
     fn crossing(&self, line: i32) -> f64 {
         (f64::from(line) - self.start) / self.rate
     }
 
-    /// Where the ray is among the `count` columns; empty (from infinity on) when nowhere.
+    /// The span of distances in which the ray is among the `count` columns; empty (from infinity
+    /// on) if it never is.
     fn span(&self, count: i32) -> (f64, f64) {
         if self.rate == 0.0 {
             let inside = self.start >= 0.0 && self.start <= f64::from(count);
@@ -140,12 +142,12 @@ impl Axis {
         (first.min(last), first.max(last))
     }
 
-    /// Finds the column into which the ray goes at distance `enter`.
+    /// Finds the column that the ray enters at distance `enter`.
     fn enter_at(&mut self, enter: f64, count: i32) {
         let at = self.start + self.rate * enter;
         self.cell = (at.floor() as i32).clamp(0, count - 1);
         self.next = self.leaves();
-        // On a grid line, or because `at` is rounded, that may be the column that ends here.
+        // On a grid line, or because `at` is rounded, this may be the column that ends here.
         self.pass(enter);
     }
 
@@ -157,7 +159,7 @@ impl Axis {
         }
     }
 
-    /// Where the ray leaves the columns that are at most `beside` away from `cell`.
+    /// Distance at which the ray leaves the columns that are at most `beside` away from `cell`.
     fn leaves_around(&self, beside: i32) -> f64 {
         match self.rate {
             rate if rate > 0.0 => self.crossing(self.cell + 1 + beside),
@@ -166,14 +168,14 @@ impl Axis {
         }
     }
 
-    /// Goes on to the column in which the ray is after distance `enter`: it is entered by then, and
-    /// left later. That is where passing one grid line after the other leads.
+    /// Advances to the column in which the ray is after distance `enter`: entered by then, and
+    /// left later. Passing one grid line after the other leads to the same column.
     fn go_to(&mut self, enter: f64) {
         if self.rate == 0.0 {
             return;
         }
         self.cell = floor_to_i32(self.start + self.rate * enter);
-        // Beside a grid line rounding may be a column off.
+        // Next to a grid line, rounding may be off by a column.
         let (entered_line, backwards) = if self.rate > 0.0 { (0, -1) } else { (1, 1) };
         if self.crossing(self.cell + entered_line) > enter {
             self.cell += backwards;
@@ -182,7 +184,7 @@ impl Axis {
         self.pass(enter);
     }
 
-    /// Goes on to the column after the grid line at distance `enter`, if one is crossed there.
+    /// Advances to the column after the grid line at distance `enter`, if one is crossed there.
     fn pass(&mut self, enter: f64) {
         if self.next <= enter {
             self.cell += if self.rate > 0.0 { 1 } else { -1 };
@@ -259,7 +261,7 @@ mod tests {
         assert_eq!(cells([-1e300, 0.5], [1.0, 0.0], 9.0), []);
     }
 
-    /// Any coordinate, half of them on or half-way between grid lines.
+    /// Any coordinate; half of them are on grid lines or half-way between them.
     fn coordinate(low: i32, high: i32) -> impl Strategy<Value = f64> {
         let grid = (2 * low..=2 * high).prop_map(|n| f64::from(n) / 2.0);
         prop_oneof![grid, f64::from(low)..f64::from(high)]
@@ -288,7 +290,7 @@ mod tests {
                 let (a, b) = (pair[0].cell, pair[1].cell);
                 prop_assert!((a.x - b.x).abs().max((a.y - b.y).abs()) == 1);
             }
-            // Squares of free cells are skipped, whatever their size, and nothing else changes.
+            // Squares of free cells of any size are skipped, without any other change.
             for (obstacle, most) in passed.iter().zip([255, 1, 2, 3].into_iter().cycle()) {
                 let steps = |cell: Cell| {
                     let away = cell.x.abs_diff(obstacle.cell.x).max(cell.y.abs_diff(obstacle.cell.y));
@@ -300,7 +302,7 @@ mod tests {
             let ray = RayCells::new(&frame, start, direction, length);
             prop_assert_eq!(ray.enters_first(|_| 2), None);
             for cell in frame.cells() {
-                // A little smaller: which side of a corner a rounded ray passes is open.
+                // Slightly smaller: the side on which a rounded ray passes a corner is undefined.
                 let scaled = |p: Point| (p - corner(cell) - Point::new(1e-9, 1e-9)) * (1.0 + 2e-9);
                 let inner = Segment::new(scaled(segment.a), scaled(segment.b));
                 if inner.crosses(Square { corner: Point::new(0.0, 0.0) }) {
@@ -309,7 +311,8 @@ mod tests {
             }
         }
 
-        /// Rays through corners, where rounding decides which cells are passed: the same ones.
+        /// Rays through corners, for which rounding decides which cells are passed: the cells are
+        /// the same.
         #[test]
         fn skipping_passes_corners_as_steps_do(corner in (0..40i32, 0..30i32), angle in -3.2..3.2f64,
                                                back in 0.0..30.0f64, most in 2..9i32) {

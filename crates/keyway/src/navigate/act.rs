@@ -1,4 +1,4 @@
-//! Single acts: a turn on the spot, a straight drive.
+//! Single acts: a rotation on the spot, a straight drive.
 
 use super::recovery::{Moment, Motion, MotionStep, MotionUnderWay};
 use super::{Blocked, Step};
@@ -6,11 +6,11 @@ use crate::geometry::Shift;
 use crate::map::DistanceField;
 use serde::{Deserialize, Serialize};
 
-/// A motion that was asked for by itself, with the time that it may take.
+/// A motion requested on its own, with a time limit.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Act {
     motion: MotionUnderWay,
-    /// The rest of that time \[s\].
+    /// Remaining time \[s\].
     left_s: f64,
     is_done: bool,
 }
@@ -20,8 +20,8 @@ impl Act {
         Self { motion: MotionUnderWay::new(motion), left_s: allowance_s, is_done: false }
     }
 
-    /// Goes on with it among what stands. Where what is left of it would touch something, the robot
-    /// brakes, and tries again in the next cycle.
+    /// Continues the motion among stationary obstacles. If the rest of it would touch one, the
+    /// robot brakes and tries again in the next cycle.
     pub(super) fn step(&mut self, moment: &Moment<'_>, obstacles: &DistanceField) -> Step {
         let &Moment { robot, velocity, elapsed_s, .. } = moment;
         let braked = robot.limits.braked(velocity, robot.cycle_s);
@@ -42,12 +42,12 @@ impl Act {
         }
     }
 
-    /// Time passes in which it cannot go on.
+    /// Counts time in which it cannot continue.
     pub(super) fn wait(&mut self, elapsed_s: f64) {
         self.left_s -= elapsed_s;
     }
 
-    /// Moves it with the robot.
+    /// Moves it along with a correction of the robot's pose.
     pub(super) fn shift(&mut self, shift: &Shift) {
         self.motion.shift(shift);
     }

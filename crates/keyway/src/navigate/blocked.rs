@@ -1,4 +1,4 @@
-//! What a controller answers, and why a robot makes no progress.
+//! Results of a controller step, and the reasons why a robot makes no progress.
 
 use super::{NavigateError, RecoveryKind};
 use crate::geometry::{Point, Velocity};
@@ -7,26 +7,27 @@ use crate::local::{Evaluation, NoCommand, Refusal};
 use crate::plan::PlanError;
 use thiserror::Error;
 
-/// What to do until the next cycle.
+/// Result of a step, valid until the next cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// Drive with this velocity.
     Drive(Velocity),
     /// The goal is reached: stop.
     Arrived,
-    /// There is no goal, and the robot stands.
+    /// There is no goal, and the robot is stationary.
     Idle,
-    /// There is no good way on at the moment: drive with `command`, which is safe, and ask again.
+    /// The robot cannot proceed at the moment: drive with `command`, which is safe, and step
+    /// again.
     Blocked {
-        /// Drives on as far as is safe, brakes along the present arc, or turns on the spot.
+        /// Continues as far as is safe, brakes along the present arc, or rotates on the spot.
         command: Velocity,
-        /// What is in the way.
+        /// Reason for the block.
         why: Blocked,
     },
 }
 
 impl Step {
-    /// What to drive with until the next cycle.
+    /// The velocity command until the next cycle.
     pub const fn command(&self) -> Velocity {
         match *self {
             Self::Drive(command) | Self::Blocked { command, .. } => command,
@@ -34,7 +35,7 @@ impl Step {
         }
     }
 
-    /// Its name: `drive`, `arrived`, `idle` or `blocked`.
+    /// The name: `drive`, `arrived`, `idle` or `blocked`.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Drive(_) => "drive",
@@ -44,7 +45,7 @@ impl Step {
         }
     }
 
-    /// The reason of a robot that is blocked; otherwise `None`.
+    /// The reason of a blocked robot; otherwise `None`.
     pub const fn why(&self) -> Option<&Blocked> {
         match self {
             Self::Blocked { why, .. } => Some(why),
@@ -52,7 +53,7 @@ impl Step {
         }
     }
 
-    /// The same with another command; a robot that has arrived, or has no goal, is not given any.
+    /// The same step with another command; a robot that has arrived or has no goal gets none.
     pub(super) fn commanding(self, command: Velocity) -> Self {
         match self {
             Self::Drive(_) => Self::Drive(command),
@@ -62,65 +63,68 @@ impl Step {
     }
 }
 
-/// Why a robot makes no progress.
+/// Reason why a robot makes no progress.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Blocked {
     /// The local planner found no admissible velocity.
     #[error(transparent)]
     NothingAdmissible(NoCommand),
-    /// The local planner found nothing better than to stand: no velocity that drives is admissible.
+    /// The local planner found nothing better than to stay: no velocity that moves the robot is
+    /// admissible.
     #[error("of {} velocities none lets the robot drive ({})", .0.candidates, .0.rejected)]
     NothingDrives(Evaluation),
-    /// With what was sensed, there is no longer a route. The robot goes on along the last one as
-    /// far as is safe (it may see a gap when it is nearer), and plans again from time to time.
+    /// With the sensed obstacles, no route exists any more. The robot continues along the last
+    /// one as far as is safe (it may see a gap from nearby), and replans from time to time.
     #[error("{}", no_route_text(.0))]
     NoRoute(NavigateError),
-    /// The robot got no farther, or would not, and tries what this says. Its motions are as safe as
-    /// any others.
+    /// The robot made no progress, or would make none, and runs this recovery. Its motions are as
+    /// safe as any others.
     #[error("instead of driving on, the robot {0}")]
     Recovering(RecoveryKind),
-    /// Somebody wants past where two cannot pass: the robot stands beside their way until they have
-    /// gone by.
+    /// A moving obstacle needs to pass where there is no space for two: the robot waits beside
+    /// its path until it has passed.
     #[error("the robot makes way for somebody who comes towards it")]
     MakingWay,
-    /// The robot stands at its goal and has no room to turn to the heading there, to either side.
+    /// The robot is stationary at its goal and has no space to turn to the goal heading, in
+    /// either direction.
     #[error("there is no room at the goal to turn to its heading")]
     NoRoomToTurn,
-    /// The robot is where the map says nothing, which is no place to plan from: its localisation is
+    /// The robot is outside the map, and nothing can be planned from there: its localisation is
     /// wrong, or the map is too small. The command brakes.
     #[error(
         "the pose ({}, {}) is outside the map: correct the localisation, or use a map that holds the place",
         Computed(.0.x), Computed(.0.y)
     )]
     OffTheMap(Point),
-    /// No beam of any sensor has said anything for longer than the sensor's time-out
-    /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot sees
-    /// nothing. The command brakes, and the robot drives on when it sees again.
+    /// No beam of any sensor has been valid for longer than the sensor's time-out
+    /// ([`RangeSensor::timeout_s`](crate::robot::RangeSensor::timeout_s)), or ever: the robot is
+    /// blind. The command brakes, and the robot drives on when it senses again.
     #[error("{}", silence_text(*.silent_s))]
     SensorSilent {
-        /// Index of the sensor that said something the last; 0 where none ever has.
+        /// Index of the sensor with the latest valid beam; 0 if there was none.
         sensor: usize,
-        /// Since a beam said something \[s\]; infinite when none ever has.
+        /// Time since the last valid beam \[s\]; infinite if there was none.
         silent_s: f64,
     },
-    /// The rest of a single act would touch something. The command brakes, and the robot goes on
-    /// once there is room.
+    /// The rest of a single act would touch something. The command brakes, and the robot
+    /// continues once there is space.
     #[error("there is no room for what is left of the act")]
     NoRoomForAct,
-    /// A single act has taken longer than it may. The command brakes, and the robot stands.
+    /// A single act has exceeded its time limit. The command brakes, and the robot stays
+    /// stationary.
     #[error("the act has taken longer than it may: the robot stands; give it another task")]
     OutOfTime,
-    /// The stop rule refuses what was decided, and drives slower or brakes: with what was decided
-    /// the robot could no longer stop in time.
+    /// The stop rule rejects the command, because the robot could no longer stop in time with it;
+    /// the robot drives slower or brakes.
     #[error(transparent)]
     Unsafe(Refusal),
-    /// A stamp, pose or velocity that cannot be true: where the robot is or how it moves is
-    /// unknown. The command is to stop.
+    /// An implausible stamp, pose or velocity: the state of the robot is unknown. The command is
+    /// to stop.
     #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
     BadInput(&'static str),
-    /// The last observation is older than the one before: nothing of it was taken in. The command
-    /// is to stop.
+    /// The last observation is older than the one before and was discarded. The command is to
+    /// stop.
     #[error(
         "the observation of {} s is older than the last one, of {} s: give observations in the order of their stamps; \
          after a change of the clock, say that it begins anew (`restart_clock`)",
@@ -132,10 +136,10 @@ pub enum Blocked {
         /// The last stamp before it \[s\].
         last_s: f64,
     },
-    /// Nothing has been observed yet: where the robot is is unknown. The command is to stop.
+    /// Nothing has been observed yet: the pose is unknown. The command is to stop.
     #[error("nothing has been observed yet: give an observation before the first step")]
     NothingObserved,
-    /// The last pose is old: where the robot is is unknown. The command brakes.
+    /// The last pose is old: the pose is unknown. The command brakes.
     #[error(
         "the last pose is {} s old: the localisation or the odometry is silent, and the robot stands until it is not",
         Computed(*.age_s)
@@ -147,8 +151,8 @@ pub enum Blocked {
 }
 
 impl Blocked {
-    /// Its kind as a number, which never changes and which no other stop or error has
-    /// ([`NavigateError::kind`]): for programs that do not read texts.
+    /// A number that identifies the kind, for programs that do not parse messages. It never
+    /// changes, and no other stop or error has it ([`NavigateError::kind`]).
     pub const fn kind(&self) -> u16 {
         match self {
             Self::NothingAdmissible(_) => 101,
@@ -181,7 +185,7 @@ fn silence_text(silent_s: f64) -> String {
     )
 }
 
-/// The route would begin at the robot, not at the start.
+/// Message for a missing route, without a start: the route would start at the robot.
 fn no_route_text(why: &NavigateError) -> String {
     match why {
         NavigateError::Plan(PlanError::NoPath { .. }) => {

@@ -1,4 +1,4 @@
-//! Inputs that contradict each other.
+//! Detection of inputs that contradict each other.
 
 use super::motors::Motors;
 use super::time::Time;
@@ -8,48 +8,48 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::fmt::{self, Display, Formatter};
 
-/// Something that cannot be true of what a robot is told: its pose, its velocity, its scans, its
-/// own commands and its description contradict each other. It drives on, with what it has learned
-/// in the place of what is wrong, where it can; whoever looks after it should know.
+/// An inconsistency between the inputs of a robot: its pose, its velocity, its scans, its own
+/// commands and its description. The robot drives on, where possible with learned values in place
+/// of wrong ones; the operator should be told.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Doubt {
-    /// The pose was elsewhere than the velocity could take the robot, within the last 2 s. What was
-    /// sensed went with the robot.
+    /// The pose was farther away than the velocity could take the robot, within the last 2 s. The
+    /// sensed obstacles were moved along with the robot.
     PoseJumped {
         /// Distance of the last jump \[m\].
         by_m: f64,
-        /// Its turn \[rad\], positive to the left.
+        /// Rotation of the last jump \[rad\], positive to the left.
         by_rad: f64,
     },
-    /// The velocity has been told as 0 for 2 s, while the pose moved by more than 0.1 m or 0.1 rad.
-    /// The one that follows from the commands is used in its place.
+    /// The velocity has been reported as 0 for 2 s, while the pose moved by more than 0.1 m or
+    /// 0.1 rad. The velocity that follows from the commands is used instead.
     VelocityAlwaysZero,
-    /// The motors act later than the robot's description says
-    /// ([`Robot::actuation_delay_s`]), by so much that it was seen in what the robot did. What was
-    /// learned is used in its place.
+    /// The actuation delay is longer than the robot's description says
+    /// ([`Robot::actuation_delay_s`]), by enough to show in the motion of the robot. The learned
+    /// value is used instead.
     ActsLate {
-        /// The time from a command to its effect \[s\].
+        /// Learned time from a command to its effect \[s\].
         learned_s: f64,
-        /// The same as described \[s\].
+        /// Time of the description \[s\].
         described_s: f64,
     },
-    /// Small commands do not move the robot. None are given any more that are not larger.
+    /// Small commands do not move the robot. Only larger ones are given from now on.
     DeadBand {
-        /// The largest speed that has not moved it \[m/s\]; 0 where none is known.
+        /// Largest speed that has not moved it \[m/s\]; 0 if none is known.
         v_mps: f64,
-        /// The largest turn rate that has not moved it \[rad/s\]; 0 where none is known.
+        /// Largest turn rate that has not moved it \[rad/s\]; 0 if none is known.
         omega_radps: f64,
     },
-    /// The robot has been told to move for 2 s, and its pose has moved by less than a fifth of
-    /// that.
+    /// The robot has been commanded to move for 2 s, and its pose has moved by less than a fifth
+    /// of that.
     DoesNotMove,
-    /// The robot stood, has been told to stand for 2 s, and its pose has moved by more than 0.1 m
-    /// or 0.1 rad.
+    /// The robot was stationary, has been commanded to stay so for 2 s, and its pose has moved by
+    /// more than 0.1 m or 0.1 rad.
     MovesUntold,
-    /// A scan within the last 2 s had the same ranges as the one before, to the last bit, while the
-    /// robot drove or turned, by more than 2 cm or 1 degree. It counts as no new look, unless
-    /// nearly all that it shows is known.
+    /// A scan within the last 2 s had bitwise the same ranges as the one before, while the robot
+    /// drove or turned by more than 2 cm or 1 degree. It does not count as a new scan, unless
+    /// nearly all of its hits are at obstacles that are already known or sensed.
     ScanRepeated {
         /// Index of the sensor.
         sensor: usize,
@@ -93,10 +93,10 @@ impl Display for Doubt {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Doubts {
     moments: VecDeque<Moment>,
-    /// Usual distance of poses from those to which the velocity takes the robot \[m\], \[rad\].
+    /// Usual distance of poses from those predicted by the velocity \[m\], \[rad\].
     usual_m: f64,
     usual_rad: f64,
-    /// The last jump, and when.
+    /// Time and size of the last jump.
     jump: Option<(Time, [f64; 2])>,
     /// Time at which each sensor last repeated a scan.
     repeated: Vec<Option<Time>>,
@@ -112,13 +112,13 @@ struct Moment {
 }
 
 impl Doubts {
-    /// Time that is looked back \[s\].
+    /// Length of the window of inputs \[s\].
     const WINDOW_S: f64 = 2.0;
 
-    /// More moments than this are thinned out by forgetting the oldest.
+    /// Maximum number of moments; beyond it, the oldest ones are dropped.
     const MOST: usize = 512;
 
-    /// Usual error of poses, until it is known better.
+    /// Initial value of the usual error of poses.
     const AT_FIRST_M: f64 = 0.03;
     const AT_FIRST_RAD: f64 = 0.02;
 
@@ -136,9 +136,10 @@ impl Doubts {
         }
     }
 
-    /// The expected pose, if the one that was observed is a jump: farther from it than 5 cm or
-    /// 0.03 rad, and four times as far as poses usually are, and farther than the robot can have
-    /// sped up or braked meanwhile. After more than three cycles, or 0.3 s, nobody knows.
+    /// The expected pose, if the observed one is a jump: farther from it than 5 cm or 0.03 rad,
+    /// plus four times the usual error of poses, plus what the robot can have sped up or braked
+    /// meanwhile. `None` if the last pose is older than three cycles and 0.3 s, since no pose can
+    /// be expected then.
     pub(super) fn jump(
         &mut self,
         robot: &Robot,
@@ -146,7 +147,7 @@ impl Doubts {
         (pose, now): (Pose, Velocity),
         elapsed_s: f64,
     ) -> Option<Pose> {
-        /// Share by which the last pose counts in what is usual.
+        /// Weight of the last pose in the usual error.
         const FRESH: f64 = 0.1;
         const TIMES: f64 = 4.0;
         const LONGEST_S: f64 = 0.3;
@@ -173,14 +174,14 @@ impl Doubts {
         is_jump.then_some(expected)
     }
 
-    /// Notes a jump from where the robot was expected.
+    /// Records a jump away from the expected pose.
     pub(super) fn note_jump(&mut self, time: Time, expected: Pose, pose: Pose) {
         let by_m = pose.point().distance(expected.point());
         self.jump = Some((time, [by_m, wrap_angle(pose.theta - expected.theta)]));
         self.moments.clear();
     }
 
-    /// True if a robot that moves like this has come so far that a scan can no longer be the same.
+    /// True if a robot that moves like this has moved too far for a scan to be the same.
     pub(super) fn has_come_far(velocity: Velocity, from: Pose, to: Pose) -> bool {
         const FAR_M: f64 = 0.02;
         const FAR_RAD: f64 = 0.017;
@@ -189,15 +190,15 @@ impl Doubts {
         !stands(velocity) && (is_far || is_turned)
     }
 
-    /// Notes that a sensor has repeated a scan.
+    /// Records that a sensor has repeated a scan.
     pub(super) fn note_repeated(&mut self, sensor: usize, time: Time) {
         self.repeated[sensor] = Some(time);
     }
 
-    /// Notes what is told, and the command that acts meanwhile.
+    /// Records the inputs of a cycle and the command in effect.
     pub(super) fn note(&mut self, time: Time, (pose, told): (Pose, Velocity), command: Velocity) {
         self.moments.push_back(Moment { time, pose, told, command });
-        // The first moment is kept that is as old as the window.
+        // The latest moment that is at least as old as the window is kept.
         let is_old = |moments: &VecDeque<Moment>| {
             moments.get(1).is_some_and(|second| time.since_s(second.time) >= Self::WINDOW_S)
         };
@@ -206,7 +207,7 @@ impl Doubts {
         }
     }
 
-    /// Notes that another command acts from now on, of which the robot says nothing yet.
+    /// Records that another command takes effect now, before the next input of the robot.
     pub(super) fn note_command(&mut self, now: Time, command: Velocity) {
         if let Some(&Moment { time, pose, told, .. }) = self.moments.back()
             && now > time
@@ -215,17 +216,17 @@ impl Doubts {
         }
     }
 
-    /// Number of sensors that are looked at.
+    /// Number of monitored sensors.
     pub(super) fn sensors(&self) -> usize {
         self.repeated.len()
     }
 
-    /// The doubts.
+    /// The doubts found by the last [`Self::look`].
     pub(super) fn found(&self) -> &[Doubt] {
         &self.found
     }
 
-    /// Looks at the last 2 s, and at what the motors do.
+    /// Evaluates the last 2 s of inputs, and the behaviour of the motors.
     pub(super) fn look(&mut self, now: Time, motors: &Motors) {
         self.found.clear();
         if let Some(learned_s) = motors.learned_s() {
@@ -266,8 +267,8 @@ impl Doubts {
         }
     }
 
-    /// The distance and the turn from where the window begins to where the commands lead: all the
-    /// way around comes to nothing.
+    /// Distance and rotation from the start of the window to the end of the commanded motion; a
+    /// full circle cancels out.
     fn asked(&self) -> [f64; 2] {
         let begin = Pose::default();
         let spans = self.moments.iter().zip(self.moments.iter().skip(1));
@@ -278,7 +279,7 @@ impl Doubts {
     }
 }
 
-/// Noise of odometry is no motion.
+/// Below the noise of odometry.
 const fn stands(velocity: Velocity) -> bool {
     velocity.v.abs() < 0.01 && velocity.omega.abs() < 0.02
 }

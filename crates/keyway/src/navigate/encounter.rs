@@ -1,61 +1,62 @@
-//! Two that meet where there is room for one: which of them makes way, and to where.
+//! Encounters of two parties where there is space for one: decides which of them makes way, and
+//! to where.
 //!
-//! The other one is taken to want past, to the end of what lies behind the robot. The robot stands
-//! beside that way when two discs fit there. What that costs the other one is found in the same
-//! manner, with the parts exchanged, so two robots that judge like this agree: the one that has the
-//! shorter way makes way.
+//! The other party is assumed to want to pass, to the end of the space behind the robot. The robot
+//! makes way at a position beside that path where both discs fit. The cost for the other party is
+//! found in the same manner with the roles exchanged, so two robots that use this rule agree: the
+//! one with the shorter path makes way.
 
 use crate::geometry::Point;
 use crate::map::Clearance;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A robot, and something in its way.
+/// A robot, and a moving obstacle that needs to pass it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Encounter<'a> {
-    /// Everything that stands, as the map says: neither of them is among it.
+    /// Stationary obstacles of the map, which contains neither party.
     pub(super) known: Clearance<'a>,
-    /// Everything that stands, as it is seen. Near the two it does not count: the other one may be
-    /// among it.
+    /// Known and sensed stationary obstacles. Ignored near the two parties, since the other one
+    /// may be among them.
     pub(super) seen: Clearance<'a>,
     pub(super) robot: Party,
     pub(super) other: Party,
-    /// Room that a robot wants to have to the way of the other one, beyond both radii \[m\].
+    /// Distance that a robot keeps from the path of the other party, beyond both radii \[m\].
     pub(super) apart_m: f64,
 }
 
-/// One of the two.
+/// One of the two parties.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Party {
     pub(super) centre: Point,
-    /// It drives where a disc of this radius fits \[m\].
+    /// Radius of the disc that must fit to drive \[m\].
     pub(super) narrow_m: f64,
-    /// It stands, in any direction, where a disc of this radius fits \[m\].
+    /// Radius of the disc that must fit to stand at any heading \[m\].
     pub(super) wide_m: f64,
 }
 
-/// A place to let somebody pass.
+/// A position at which another party can pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PassingPlace {
     pub(super) at: Point,
-    /// Length of the way there \[m\].
+    /// Path length to that position \[m\].
     pub(super) way_m: f64,
 }
 
 impl Encounter<'_> {
-    /// Ground up to this far from the middle between the two is looked at, and half of what they are
-    /// apart farther \[m\].
+    /// Reach of the search from the midpoint between the two, beyond half of their distance
+    /// \[m\].
     pub(super) const REACH_M: f64 = 6.0;
 
-    /// It drives so much farther than to the nearest place where that leaves more room \[m\].
+    /// Extra path length, beyond the nearest position, that is accepted for more clearance \[m\].
     const DEEPER_M: f64 = 0.3;
 
-    /// Ways that differ by less are alike \[m\].
+    /// Path lengths that differ by less count as equal \[m\].
     const ALIKE_M: f64 = 0.3;
 
-    /// The place to which the robot makes way, if it is the one to do so: its way is shorter, or
-    /// alike and it is on the left of the two, or below. Without an answer from the other one
-    /// (`is_alone`) it does so wherever it can.
+    /// The position at which the robot makes way, if it is the one to do so: its path is shorter,
+    /// or about equal and it is the one on the left, or below. If the other party does not
+    /// cooperate (`is_alone`), the robot makes way wherever it can.
     pub(super) fn place(&self, is_alone: bool) -> Option<PassingPlace> {
         let ground = Ground::around(self);
         let own = self.passing_place(&ground)?;
@@ -70,9 +71,9 @@ impl Encounter<'_> {
         (longer_m < -Self::ALIKE_M || is_first).then_some(own)
     }
 
-    /// The nearest place that the robot reaches without passing the other one, beside the way of
-    /// that to the farthest end of what lies behind the robot. `None` where the other one can pass
-    /// the robot where it is, or there is no such place.
+    /// The nearest position that the robot reaches without passing the other party, beside the
+    /// other party's path to the farthest end of the space behind the robot. `None` if the other
+    /// party can pass the robot at its present position, or if no such position exists.
     fn passing_place(&self, ground: &Ground) -> Option<PassingPlace> {
         let Self { robot, other, apart_m, .. } = *self;
         let touching_m = robot.narrow_m + other.narrow_m;
@@ -104,7 +105,8 @@ impl Encounter<'_> {
         reached.sort_unstable_by(|&a, &b| from_robot[a].total_cmp(&from_robot[b]));
         let nearest = reached.iter().position(|&place| is_beside(ground.place(place)))?;
         let way_m = from_robot[reached[nearest]];
-        // The other one may drive to one side of its way, and there may be more room farther on.
+        // The other party may drive along one side of its path, and there may be more clearance
+        // farther on.
         let near = reached[nearest..].iter().map(|&place| (place, ground.place(place)));
         let near = near.take_while(|(place, _)| from_robot[*place] <= way_m + Self::DEEPER_M);
         let all = near.filter(|(_, place)| is_beside(*place));
@@ -113,14 +115,15 @@ impl Encounter<'_> {
     }
 }
 
-/// An order of two places that both of two that stand there find the same: along the axis on which
+/// An order of two positions that both parties determine identically: along the axis on which
 /// they are farther apart.
 fn is_before(a: Point, b: Point) -> bool {
     let apart = b - a;
     if apart.x.abs() >= apart.y.abs() { apart.x > 0.0 } else { apart.y > 0.0 }
 }
 
-/// Places around an encounter, in rows, and whether one of the two fits there.
+/// Sample positions around an encounter, in rows, with a flag for those at which the smaller
+/// party fits.
 struct Ground {
     low: Point,
     spacing_m: f64,
@@ -129,7 +132,7 @@ struct Ground {
 }
 
 impl Ground {
-    /// Places are this part of the smaller radius apart, or a cell.
+    /// Spacing of the positions as a share of the smaller radius; at least a cell.
     const SPACING: f64 = 0.4;
 
     fn around(encounter: &Encounter<'_>) -> Self {
@@ -141,7 +144,8 @@ impl Ground {
         let half_m = 0.5 * spacing_m * (columns - 1) as f64;
         let low = robot.centre.lerp(other.centre, 0.5) - Point::new(half_m, half_m);
         let mut ground = Self { low, spacing_m, columns, is_free: Vec::new() };
-        // A lane whose middle lies between two places is one, too: the router looks exactly.
+        // A lane whose centreline lies between two positions counts, too: the router checks
+        // exactly.
         let least_m = (radius_m - 0.5 * spacing_m).max(0.0);
         let near_m = robot.wide_m.max(other.wide_m) + radius_m + spacing_m;
         let is_free = |place: usize| {
@@ -165,7 +169,7 @@ impl Ground {
         y as usize * self.columns + x as usize
     }
 
-    /// The places beside one, with the lengths of the steps there \[m\].
+    /// The positions beside one, with their distances \[m\].
     fn neighbours(&self, index: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         const AROUND: [(isize, isize); 8] =
             [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
@@ -177,13 +181,13 @@ impl Ground {
         })
     }
 
-    /// The lengths of the shortest ways from a point to all places, over those that may be entered
-    /// \[m\]; infinite where there is none.
+    /// Shortest path lengths from a point to all positions, over those that may be entered \[m\];
+    /// infinite if no path exists.
     fn ways(&self, from: Point, may_enter: impl Fn(Point) -> bool) -> Vec<f64> {
         let mut ways_m = vec![f64::INFINITY; self.is_free.len()];
         let begin = self.nearest(from);
         ways_m[begin] = 0.0;
-        // Lengths that are not negative are in the order of their bits.
+        // Lengths are not negative, so they are in the order of their bits.
         let mut open = BinaryHeap::from([Reverse((0_u64, begin))]);
         while let Some(Reverse((bits, place))) = open.pop() {
             let way_m = f64::from_bits(bits);
@@ -201,7 +205,7 @@ impl Ground {
         ways_m
     }
 
-    /// The shortest way to a place, from its end to its beginning.
+    /// The shortest path to a position, from its end to its start.
     fn way_to(&self, end: usize, ways_m: &[f64]) -> Vec<Point> {
         let before = |&place: &usize| {
             let nearest = self
@@ -218,7 +222,8 @@ mod tests {
     use super::*;
     use crate::map::OccupancyGrid;
 
-    /// Cells of 0.1 m, a lane of 0.8 m with its middle at y = 1 m, and a bay of 1.2 m above it.
+    /// Cells of 0.1 m, a lane of 0.8 m with its centreline at y = 1 m, and a bay of 1.2 m above
+    /// it.
     fn lane(bay_x: std::ops::Range<i32>) -> OccupancyGrid {
         let frame = crate::map::GridFrame::new(120, 30, 0.1, crate::geometry::Pose::default());
         OccupancyGrid::from_fn(frame.unwrap(), |cell| {
@@ -239,7 +244,7 @@ mod tests {
     fn the_one_that_is_nearer_to_the_bay_makes_way() {
         let map = lane(30..40);
         let found = met(&map, 5.0, 7.0).unwrap();
-        // It drives farther into the bay than it has to.
+        // It drives farther into the bay than necessary.
         assert!((3.0..4.0).contains(&found.at.x) && found.at.y > 1.6, "{found:?}");
         assert!((1.5..2.5).contains(&found.way_m), "{found:?}");
         assert_eq!(met(&map, 7.0, 5.0), None, "the other one is nearer");

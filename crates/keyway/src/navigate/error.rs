@@ -13,8 +13,8 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NavigateError {
-    /// A value of the robot or the stack cannot be used; for the robot's, the path begins with
-    /// `robot`.
+    /// A value of the robot or the stack cannot be used; for a value of the robot, the path
+    /// starts with `robot`.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
@@ -26,16 +26,16 @@ pub enum NavigateError {
     NoRoom {
         /// Start or goal.
         end: PathEnd,
-        /// The position asked for \[m\].
+        /// Requested position \[m\].
         position: Point,
         /// The robot's radius \[m\].
         radius_m: f64,
         /// The nearest hindrance.
         why: Hindrance,
-        /// The nearest position with room \[m\], unless there is none.
+        /// Nearest position with enough clearance \[m\], if there is one.
         nearest: Option<Point>,
     },
-    /// The robot would begin in contact with something.
+    /// The robot would start in contact with an obstacle.
     #[error(
         "at the start ({}, {}){} the robot ({footprint}) touches something{} ({why}); move the start away from it{}",
         Computed(.position.x), Computed(.position.y),
@@ -46,14 +46,14 @@ pub enum NavigateError {
     StartTouches {
         /// The start \[m\].
         position: Point,
-        /// Its heading \[rad\]; `None`: it touches something at every heading.
+        /// Heading at the start \[rad\]; `None`: it touches something at every heading.
         heading_rad: Option<f64>,
         /// The robot.
         footprint: Footprint,
         /// The hindrance nearest to the start.
         why: Hindrance,
     },
-    /// The footprint does not fit at the goal with the heading there.
+    /// The footprint does not fit at the goal with the goal heading.
     #[error(
         "at the goal ({}, {}) the robot ({footprint}) does not fit with a yaw of {} deg; {}",
         Computed(.position.x), Computed(.position.y), Computed(degrees(*.heading_rad)), headings_text(.fits)
@@ -61,14 +61,14 @@ pub enum NavigateError {
     GoalHeading {
         /// The goal \[m\].
         position: Point,
-        /// Its heading \[rad\].
+        /// Goal heading \[rad\].
         heading_rad: f64,
         /// The robot.
         footprint: Footprint,
         /// The headings at which it fits there.
         fits: Vec<HeadingRange>,
     },
-    /// A start or goal that is not a place.
+    /// A start or goal whose coordinates are not finite.
     #[error(
         "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
          check the localisation, or the file that it is from",
@@ -77,44 +77,44 @@ pub enum NavigateError {
     NotFinite {
         /// Start or goal.
         end: PathEnd,
-        /// The position asked for.
+        /// Requested position.
         position: Point,
     },
-    /// There is no way on the known map.
+    /// No path exists on the known map.
     #[error("{}{why}", margin_text(.why))]
     NoWay {
-        /// The clearance that would leave one, or the way in which start and goal are parted.
+        /// The clearance at which a path would exist, or the separation of start and goal.
         why: Separation,
     },
-    /// A path to be followed does not lead anywhere.
+    /// A path to be followed has fewer than two points, or points that are not finite.
     #[error("a path to be followed needs two points or more, all of them finite")]
     NoPathToFollow,
-    /// A path to be followed begins too far from the robot.
+    /// A path to be followed starts too far from the robot.
     #[error(
         "the path begins {} m from the robot, and may begin {} m from it at most: drive to its beginning first",
         Computed(*.away_m), Computed(*.most_m)
     )]
     PathFarAway {
-        /// Distance of its beginning from the robot \[m\].
+        /// Distance of its start from the robot \[m\].
         away_m: f64,
-        /// The largest distance from which it is followed \[m\].
+        /// Largest such distance that is accepted \[m\].
         most_m: f64,
     },
     /// The robot does not fit along a path that it is to follow.
     #[error("the robot does not fit along the path: {0}")]
     Misfit(Misfit),
-    /// Nobody has said where the robot is.
+    /// The pose of the robot has not been given.
     #[error(
         "where the robot is is unknown: observe its pose, or tell its place, before it gets a goal"
     )]
     PlaceUnknown,
-    /// There is no route.
+    /// No route exists.
     #[error(transparent)]
     Plan(#[from] PlanError),
-    /// There is none to a way-point, or on from the one before it.
+    /// No route exists to a way-point, or on from the one before it.
     #[error("way-point {number}: {why}")]
     WayPoint {
-        /// Its number, from 1.
+        /// Number of the way-point, from 1.
         number: usize,
         /// The reason.
         why: Box<NavigateError>,
@@ -122,7 +122,7 @@ pub enum NavigateError {
 }
 
 impl NavigateError {
-    /// True if the goal cannot be reached, and not because of the start.
+    /// True if the goal cannot be reached for a reason other than the start.
     pub(super) const fn is_of_goal(&self) -> bool {
         matches!(
             self,
@@ -137,8 +137,8 @@ impl NavigateError {
         )
     }
 
-    /// Its kind as a number, which never changes and which no other error or stop has
-    /// ([`Blocked::kind`](super::Blocked::kind)): for programs that do not read texts.
+    /// A number that identifies the kind, for programs that do not parse messages. It never
+    /// changes, and no other error or stop has it ([`Blocked::kind`](super::Blocked::kind)).
     pub const fn kind(&self) -> u16 {
         match self {
             Self::Config(_) => 201,
@@ -158,7 +158,7 @@ impl NavigateError {
     }
 }
 
-/// Of which radius it is.
+/// Prefix that names the radius of a separation.
 const fn margin_text(why: &Separation) -> &'static str {
     match why {
         Separation::TooNarrow { .. } => "with the safety margin around the robot, ",

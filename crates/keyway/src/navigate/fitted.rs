@@ -1,4 +1,4 @@
-//! A stack that fits a robot, with its parts built: the only thing a controller takes.
+//! A stack fitted to a robot, with its parts built: the input of a controller.
 
 use super::Stack;
 use crate::ConfigError;
@@ -11,8 +11,8 @@ use crate::sense::Tracker;
 use crate::smooth::Smoother;
 use std::sync::Arc;
 
-/// A stack whose values are checked and fit a robot. Its parts are built once; clones share them.
-/// Its planner, smoother, guide and local planner can be exchanged for others of your own.
+/// A stack whose values have been checked for a robot. Its parts are built once; clones share
+/// them. Its planner, smoother, guide and local planner can be replaced by custom ones.
 ///
 /// ```
 /// use keyway::guide::{Carrot, CarrotConfig};
@@ -31,23 +31,24 @@ use std::sync::Arc;
 pub struct FittedStack {
     pub(super) robot: Arc<Robot>,
     pub(super) stack: Arc<Stack>,
-    /// One of the caller's own, in the place of that of the stack, which is built with the map.
+    /// Custom planner in place of the stack's, which is built with the map.
     pub(super) planner: Option<Arc<dyn GlobalPlanner + Send + Sync>>,
     pub(super) smoother: Arc<dyn Smoother + Send + Sync>,
     pub(super) guide: Arc<dyn Guide + Send + Sync>,
     pub(super) local: Arc<dyn LocalPlanner + Send + Sync>,
-    /// The local planner is one of the caller's own.
+    /// True if the local planner is a custom one.
     has_own_local: bool,
     pub(super) tracker: Option<Tracker>,
     pub(super) stop_rule: Option<StopRule>,
 }
 
 impl Stack {
-    /// The stack for this robot, ready to drive. What the map layers need is checked with the map.
+    /// Fits the stack to a robot, ready to drive. The needs of the map layers are checked with
+    /// the map.
     ///
     /// # Errors
-    /// Names the first field that cannot be used: a value that is out of range, a clearance that
-    /// leaves no room for the robot, or a planner that needs a map that stays as it is.
+    /// Returns [`ConfigError`] for the first field that cannot be used: a value that is out of
+    /// range, a clearance that is too small for the robot, or a planner that needs a static map.
     pub fn fit(&self, robot: &Robot) -> Result<FittedStack, ConfigError> {
         let fitted = self.build(robot)?;
         self.check_room(robot)?;
@@ -56,10 +57,11 @@ impl Stack {
         Ok(fitted)
     }
 
-    /// Checks every value alone. Plans with parts of a stack need no clearance that suits a robot.
+    /// Checks every value on its own. Planning with parts of a stack needs no clearance that fits
+    /// a robot.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns [`ConfigError`] for the first field that cannot be used.
     pub fn check_parameters(&self, robot: &Robot) -> Result<(), ConfigError> {
         self.build(robot).map(drop)
     }
@@ -86,8 +88,8 @@ impl Stack {
         })
     }
 
-    /// Refuses clearances at which no footprint of the robot's size fits: its routes would lead
-    /// through gaps in which the local planner finds nothing but contact.
+    /// Rejects clearances below the inscribed radius of the robot: its routes would lead through
+    /// gaps in which the local planner finds nothing but contact.
     fn check_room(&self, robot: &Robot) -> Result<(), ConfigError> {
         let radius_m = robot.footprint.inscribed_radius_m();
         let clearances = [
@@ -107,7 +109,7 @@ impl Stack {
         }
     }
 
-    /// Refuses planners that cannot plan on a map that changes.
+    /// Rejects planners that cannot plan on a changing map.
     fn check_planner(&self) -> Result<(), ConfigError> {
         if self.planner.needs_static_map() {
             let name = self.planner.name();
@@ -119,7 +121,7 @@ impl Stack {
         Ok(())
     }
 
-    /// Refuses lifted clearances: a route would lead where the footprint does not fit.
+    /// Rejects lifted clearances: a route would lead to where the footprint does not fit.
     fn check_free_ends(&self) -> Result<(), ConfigError> {
         if self.map.free_ends_m == 0.0 {
             return Ok(());
@@ -131,8 +133,8 @@ impl Stack {
 }
 
 impl FittedStack {
-    /// The robot as one that is no faster than a speed \[m/s\], and a local planner for it; one of
-    /// the caller's own stays as it is.
+    /// The robot with its speed limited \[m/s\], and a local planner for it; a custom one stays
+    /// as it is.
     pub(super) fn slowed(
         &self,
         speed_mps: f64,
@@ -145,12 +147,12 @@ impl FittedStack {
             return (robot, Arc::clone(&self.local));
         }
         let local = self.stack.local.build_for(&robot);
-        // What can be built for a robot can be built for a slower one.
+        // A planner that can be built for a robot can be built for a slower one.
         let local = local.map_or_else(|_| Arc::clone(&self.local), Arc::from);
         (robot, local)
     }
 
-    /// The robot that it drives.
+    /// The robot that the stack is fitted to.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
@@ -160,25 +162,25 @@ impl FittedStack {
         &self.stack
     }
 
-    /// The same with a global planner of your own, in the place of that of the stack.
+    /// Replaces the global planner of the stack by a custom one.
     #[must_use]
     pub fn with_planner(self, planner: Arc<dyn GlobalPlanner + Send + Sync>) -> Self {
         Self { planner: Some(planner), ..self }
     }
 
-    /// The same with a smoother of your own, in the place of that of the stack.
+    /// Replaces the smoother of the stack by a custom one.
     #[must_use]
     pub fn with_smoother(self, smoother: Arc<dyn Smoother + Send + Sync>) -> Self {
         Self { smoother, ..self }
     }
 
-    /// The same with a local planner of your own, in the place of that of the stack.
+    /// Replaces the local planner of the stack by a custom one.
     #[must_use]
     pub fn with_local(self, local: Arc<dyn LocalPlanner + Send + Sync>) -> Self {
         Self { local, has_own_local: true, ..self }
     }
 
-    /// The same with a guide of your own, in the place of that of the stack.
+    /// Replaces the guide of the stack by a custom one.
     #[must_use]
     pub fn with_guide(self, guide: Arc<dyn Guide + Send + Sync>) -> Self {
         Self { guide, ..self }

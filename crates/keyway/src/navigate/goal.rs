@@ -1,4 +1,4 @@
-//! Where a robot is to go, and how it stops there.
+//! The goal of a robot.
 
 use crate::geometry::{Point, Pose, degrees, wrap_angle};
 use serde::{Deserialize, Serialize};
@@ -9,22 +9,22 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(with = "Vec<f64>", extend("minItems" = 2, "maxItems" = 3)))]
 pub struct Goal {
-    /// Where \[m\].
+    /// Position \[m\].
     pub position: Point,
-    /// Heading at the end \[rad\], counter-clockwise from the x axis; `None`: any is right.
+    /// Goal heading \[rad\], counter-clockwise from the x axis; `None`: any heading.
     pub heading_rad: Option<f64>,
 }
 
 impl Goal {
-    /// How far a heading is from the one at the end, positive to the left \[rad\]; `None` where any
-    /// is right.
+    /// Rotation from the heading of a pose to the goal heading, positive to the left \[rad\];
+    /// `None` if any heading will do.
     pub(crate) fn turn_left_rad(&self, pose: Pose) -> Option<f64> {
         self.heading_rad.map(|heading_rad| wrap_angle(heading_rad - pose.theta))
     }
 }
 
 impl From<Point> for Goal {
-    /// With any heading.
+    /// A goal at any heading.
     fn from(position: Point) -> Self {
         Self { position, heading_rad: None }
     }
@@ -33,7 +33,7 @@ impl From<Point> for Goal {
 impl TryFrom<Vec<f64>> for Goal {
     type Error = String;
 
-    /// From the numbers of a file, whose heading is in degrees.
+    /// Reads the numbers of a file, with the heading in degrees.
     fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
         match numbers[..] {
             [x, y] => Ok(Point::new(x, y).into()),
@@ -47,7 +47,7 @@ impl TryFrom<Vec<f64>> for Goal {
 }
 
 impl From<Goal> for Vec<f64> {
-    /// The numbers of a file, whose heading is in degrees.
+    /// The numbers for a file, with the heading in degrees.
     fn from(goal: Goal) -> Self {
         let Point { x, y } = goal.position;
         [Some(x), Some(y), goal.heading_rad.map(degrees)].into_iter().flatten().collect()

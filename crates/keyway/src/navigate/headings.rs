@@ -1,24 +1,24 @@
-//! At which headings a footprint fits at a place.
+//! Headings at which a footprint fits at a position.
 
 use crate::geometry::{Point, Pose};
 use crate::map::DistanceField;
 use crate::robot::Footprint;
 use std::fmt;
 
-/// A range of headings, from one to another to the left; both are from -180 to 180 degrees.
+/// A range of headings, counter-clockwise from one to another, both from -180 to 180 degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HeadingRange {
-    /// Its first heading \[deg\].
+    /// First heading \[deg\].
     pub from_deg: f64,
-    /// Its last heading \[deg\], not before the first one.
+    /// Last heading \[deg\], not less than the first one.
     pub to_deg: f64,
 }
 
 impl HeadingRange {
-    /// All ranges of headings at which a footprint is free ([`Footprint::is_free`]) at a place,
-    /// degree by degree, from -180 to 180. One that holds the heading of 180 degrees is in two
-    /// parts, the first and the last.
+    /// All ranges of headings at which a footprint is free ([`Footprint::is_free`]) at a
+    /// position, in steps of one degree, from -180 to 180. A range across 180 degrees is split in
+    /// two, the first and the last.
     pub fn all_free(
         footprint: &Footprint,
         position: Point,
@@ -48,7 +48,7 @@ impl fmt::Display for HeadingRange {
     }
 }
 
-/// True if a footprint fits at a pose, turned by up to a tolerance \[rad\] to either side.
+/// True if a footprint fits at a pose, rotated by up to a tolerance \[rad\] to either side.
 pub(super) fn fits_within(
     footprint: &Footprint,
     pose: Pose,
@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn ranges_by_hand() {
-        // A box of 2 m x 0.8 m around its rear end, in a lane of 1 m: along it, both ways.
+        // A box of 2 m x 0.8 m around its rear end, in a lane of 1 m: it fits along the lane, in
+        // both directions.
         let field = |rows: &[&str]| {
             let grid = OccupancyGrid::from_ascii(rows);
             DistanceField::new(grid.frame(), grid.occupied(), &FieldConfig::default())
@@ -81,7 +82,7 @@ mod tests {
         assert_eq!(texts(&long, &lane), ["-180 to -175", "-5 to 5", "175 to 180"]);
         assert_eq!(texts(&long, &["#####", "..#..", "#####"]), Vec::<String>::new());
         assert_eq!(texts(&long, &["....."; 3]), ["-180 to 180"]);
-        // As wide as the lane it fits along it only.
+        // If it is as wide as the lane, it fits along it only.
         let wide = Footprint::rectangle(2.0, 1.0).unwrap();
         assert_eq!(texts(&wide, &lane), ["-180", "0", "180"]);
     }

@@ -1,4 +1,4 @@
-//! Ground on which a robot is not wanted, or is to be slow, whatever the map says.
+//! Keep-out zones and speed zones.
 
 use crate::ConfigError;
 use crate::geometry::Point;
@@ -6,17 +6,17 @@ use crate::map::{CellState, GridFrame, OccupancyGrid};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Ground to keep out of, and ground to be slow on, as the filters of Nav2 have them. Each mask has
-/// a frame of its own, which need not be that of the map.
+/// Keep-out zones and speed zones, as in the costmap filters of Nav2. Each mask has its own
+/// frame, which may differ from that of the map.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Masks {
-    /// Occupied cells are ground to keep out of: they count as obstacles for every planner.
+    /// Keep-out zones: occupied cells count as obstacles for every planner.
     pub keep_out: Option<Arc<OccupancyGrid>>,
-    /// Ground to be slow on.
+    /// Speed zones.
     pub speed: Option<SpeedMask>,
 }
 
-/// Speeds that a robot keeps, place by place.
+/// Speed limits by position.
 ///
 /// ```
 /// use keyway::geometry::{Point, Pose};
@@ -38,7 +38,7 @@ pub struct SpeedMask {
     limits_mps: Arc<[f64]>,
 }
 
-/// A mask that was not checked yet.
+/// A mask before its checks.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SpeedMaskParts {
@@ -55,7 +55,7 @@ impl TryFrom<SpeedMaskParts> for SpeedMask {
 }
 
 impl Masks {
-    /// The state of a map's cell at a place, with ground to keep out of as an obstacle.
+    /// The state of a map's cell at a position, with keep-out zones as obstacles.
     pub(super) fn state(&self, place: Point, state: CellState) -> CellState {
         let Some(mask) = &self.keep_out else { return state };
         let cell = mask.frame().cell_from_world(place);
@@ -63,7 +63,7 @@ impl Masks {
         if is_kept_out { CellState::Occupied } else { state }
     }
 
-    /// A map with ground to keep out of as obstacles.
+    /// A map with keep-out zones as obstacles.
     pub(super) fn over(&self, map: &Arc<OccupancyGrid>) -> Arc<OccupancyGrid> {
         if self.keep_out.is_none() {
             return Arc::clone(map);
@@ -74,18 +74,18 @@ impl Masks {
         Arc::new(OccupancyGrid::from_fn(frame, masked))
     }
 
-    /// The speed that is kept at a place \[m/s\]; infinite where none is.
+    /// The speed limit at a position \[m/s\]; infinite if there is none.
     pub(super) fn limit_mps(&self, place: Point) -> f64 {
         self.speed.as_ref().map_or(f64::INFINITY, |mask| mask.limit_mps(place))
     }
 }
 
 impl SpeedMask {
-    /// A mask with the largest speed in each cell \[m/s\], row by row from the bottom; infinite
-    /// where there is no limit.
+    /// A mask with the speed limit of each cell \[m/s\], row by row from the bottom; infinite for
+    /// no limit.
     ///
     /// # Errors
-    /// When the speeds are not as many as the cells, or one is not positive.
+    /// Returns [`ConfigError`] if there is not one limit per cell, or if one is not positive.
     pub fn new(frame: GridFrame, limits_mps: Vec<f64>) -> Result<Self, ConfigError> {
         let cells = frame.width() as usize * frame.height() as usize;
         if limits_mps.len() != cells {
@@ -100,8 +100,7 @@ impl SpeedMask {
         Ok(Self { frame, limits_mps: limits_mps.into() })
     }
 
-    /// The largest speed at a place \[m/s\]; infinite where there is no limit, and outside the
-    /// mask.
+    /// The speed limit at a position \[m/s\]; infinite if there is none, and outside the mask.
     pub fn limit_mps(&self, place: Point) -> f64 {
         let index = |cell: crate::map::Cell| {
             cell.y as usize * self.frame.width() as usize + cell.x as usize

@@ -1,32 +1,33 @@
-//! Somebody whom the robot met on its way.
+//! The moving obstacle that the robot has met on its route.
 
 use super::walked_ground::is_across;
 use crate::geometry::{Disc, Segment, Shift};
 use crate::sense::Mover;
 use serde::{Deserialize, Serialize};
 
-/// The last one that moved across the robot's way. Once it stands, it is seen as an obstacle.
+/// The last obstacle that moved across the robot's route. Once stationary, it is sensed as an
+/// ordinary obstacle.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Met {
     disc: Option<Disc>,
-    /// Since it was seen to move \[s\].
+    /// Time since it was seen to move \[s\].
     age_s: f64,
-    /// Since the robot looked for a way past \[s\].
+    /// Time since the last search for a route around it \[s\].
     unlooked_s: f64,
 }
 
 impl Met {
-    /// A way past is looked for each time when so much more time has passed \[s\].
+    /// Time between two searches for a route around it \[s\].
     const LOOK_S: f64 = 0.5;
 
-    /// Somebody who has not been seen to move for so long is forgotten \[s\].
+    /// Time without motion after which it is forgotten \[s\].
     const FORGET_S: f64 = 30.0;
 
-    /// The same one is found again no farther than this from its last place \[m\].
+    /// Largest distance from its last position at which it is recognised again \[m\].
     const SAME_M: f64 = 1.0;
 
-    /// Takes in what moves: the one that was met before, or else the first that is nearer than
-    /// `needed_m` to a way.
+    /// Takes in the moving obstacles: the one that was met before, or else the first one that is
+    /// closer than `needed_m` to a route.
     pub(super) fn note(
         &mut self,
         movers: &[Mover],
@@ -55,12 +56,12 @@ impl Met {
         }
     }
 
-    /// The one that was met, if there is one.
+    /// The obstacle that was met, if there is one.
     pub(super) const fn disc(&self) -> Option<Disc> {
         self.disc
     }
 
-    /// True when it is time to look for a way past.
+    /// True if a search for a route around it is due.
     pub(super) fn look(&mut self) -> bool {
         let is_time = self.unlooked_s >= Self::LOOK_S;
         if is_time {
@@ -69,7 +70,7 @@ impl Met {
         is_time
     }
 
-    /// Moves it with the robot, to where that turns out to be.
+    /// Moves it along with a correction of the robot's pose.
     pub(super) fn shift(&mut self, shift: &Shift) {
         if let Some(disc) = &mut self.disc {
             disc.centre = shift.point(disc.centre);

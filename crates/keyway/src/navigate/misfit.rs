@@ -1,8 +1,8 @@
-//! True if a footprint fits along a route: straight along each stretch, turning on the spot where
-//! two of them meet.
+//! Checks that a footprint fits along a route: straight along each segment, with a rotation on
+//! the spot between two segments.
 //!
-//! Routes are planned for a disc. Where that is smaller than the robot, a route leads where the
-//! robot may not fit, and nobody would know before it stands there.
+//! Routes are planned for a disc. If that is smaller than the robot, a route may lead to where
+//! the robot does not fit, which it would otherwise notice only there.
 
 use crate::geometry::{Point, Polyline, Pose, wrap_angle};
 use crate::map::DistanceField;
@@ -11,32 +11,32 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
-/// The first place of a route at which the footprint does not fit. A robot that drives curves may
-/// pass there all the same, and its recoveries may find a way through; but it may also get stuck.
+/// The first part of a route at which the footprint does not fit. A robot that drives curves may
+/// still pass there, and its recoveries may find a way through; but it may also get stuck.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Misfit {
-    /// Along this straight stretch something is touched.
+    /// The robot touches an obstacle along this straight segment.
     Straight {
-        /// Where the stretch begins \[m\].
+        /// Start of the segment \[m\].
         from: Point,
-        /// Where it ends \[m\].
+        /// End of the segment \[m\].
         to: Point,
     },
-    /// At this corner there is no room to turn on the spot, to either side.
+    /// There is no space to rotate on the spot at this corner, in either direction.
     Turn {
-        /// Where \[m\].
+        /// Position of the corner \[m\].
         at: Point,
-        /// From this heading, counter-clockwise from the x axis \[deg\].
+        /// Heading before the rotation, counter-clockwise from the x axis \[deg\].
         from_deg: f64,
-        /// To this one \[deg\].
+        /// Heading after the rotation \[deg\].
         to_deg: f64,
     },
 }
 
 impl Misfit {
-    /// The first one along a path; none where a robot of this footprint can drive it, turning on
-    /// the spot at its corners. Costs a few look-ups per stretch in the open.
+    /// The first misfit along a path; `None` if a robot of this footprint can drive it with
+    /// rotations on the spot at its corners. Costs a few look-ups per segment in open space.
     pub(crate) fn first_along(
         path: &Polyline,
         footprint: &Footprint,
@@ -64,7 +64,8 @@ impl Misfit {
     }
 }
 
-/// Goes on after "the robot": "has no room to turn from 0 to 90 deg at (1.000, 2.000)".
+/// Completes a sentence that starts with "the robot": "has no room to turn from 0 to 90 deg at
+/// (1.000, 2.000)".
 impl Display for Misfit {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
@@ -98,8 +99,8 @@ mod tests {
             Misfit::first_along(&path, &footprint, &field)
         };
         let around = [[1.0, 1.5], [5.5, 1.5], [5.5, 3.3]];
-        // The diagonal of the square is 0.99 m: it turns within the lane. The rectangle is 1.08 m
-        // from corner to corner.
+        // The diagonal of the square is 0.99 m: it rotates within the lane. The rectangle is 1.08
+        // m from corner to corner.
         assert_eq!(along(&around, 0.7, 0.7), None);
         let at = Point::new(5.5, 1.5);
         let turn = Misfit::Turn { at, from_deg: 0.0, to_deg: 90.0 };

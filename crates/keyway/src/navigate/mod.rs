@@ -1,7 +1,7 @@
-//! Driving: a map and a goal -> a route -> one command per cycle. No simulator is needed: a
-//! [`Navigator`] sees the known map, poses, velocities and scans, and nothing else. A [`Stack`] is
-//! its parameters. Fitted to a robot ([`Stack::fit`]) it is what a navigator takes; there a local
-//! planner or a guide of your own can be put in, as in the example `own_local_planner`.
+//! Navigation: a map and a goal -> a route -> one command per cycle. No simulator is needed: a
+//! [`Navigator`] takes the known map, poses, velocities and scans, and nothing else. A [`Stack`]
+//! holds its parameters. A navigator takes a stack that is fitted to a robot ([`Stack::fit`]), in
+//! which parts can be replaced by custom ones, as in the example `own_local_planner`.
 //!
 //! ```
 //! use keyway::geometry::{Point, Pose, Velocity};

@@ -1,4 +1,4 @@
-//! Doings of a robot that has a goal.
+//! Modes of a robot that has a goal.
 
 use super::recovery::{MotionUnderWay, RecoveryUnderWay};
 use super::{NavigateError, RecoveryKind};
@@ -7,50 +7,50 @@ use crate::plan::PlanError;
 use crate::search::SearchStatistics;
 use serde::{Deserialize, Serialize};
 
-/// Activity of a robot with a goal. It is in one mode at a time.
+/// Mode of a robot with a goal. It is in one mode at a time.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) enum Mode {
     /// It follows its route.
     #[default]
     Following,
-    /// It turns towards its guide point, before it enters ground on which it cannot turn.
+    /// It rotates towards its guide point before it enters a passage in which it cannot rotate.
     TurningFirst(MotionUnderWay),
-    /// It brakes, to begin a recovery where it then stands: what that can do there is not known
-    /// before.
+    /// It brakes for a recovery, which starts where the robot comes to rest; its options there
+    /// are not known before.
     StoppingFor(RecoveryKind),
-    /// It got no farther, and tries something.
+    /// It made no progress and runs a recovery.
     Recovering(RecoveryUnderWay),
-    /// There is no route, and the next attempt has to wait. It goes on along the last route as far
-    /// as is safe.
+    /// No route exists, and the next attempt has to wait. The robot continues along the last
+    /// route as far as is safe.
     Waiting {
-        /// The reason why the last attempt failed. Not stored: another attempt says it again.
+        /// Reason why the last attempt failed. Not stored: the next attempt yields it again.
         #[serde(skip, default = "no_path")]
         why: NavigateError,
-        /// Until the next one \[s\].
+        /// Time until the next attempt \[s\].
         left_s: f64,
     },
-    /// It drives to a place beside the way of somebody who wants past, and stands there until they
-    /// have passed.
+    /// It drives to a position beside the path of a moving obstacle that must pass, and waits
+    /// there until the obstacle has passed.
     MakingWay {
-        /// The end of its route.
+        /// End of its route.
         place: Point,
-        /// The other one, at the place where it was when the robot began to make way.
+        /// The moving obstacle, at its position when the robot began to make way.
         other: Disc,
-        /// Since it stands there \[s\].
+        /// Time that the robot has waited there \[s\].
         stood_s: f64,
     },
     /// It is at its goal: it brakes, then turns to the heading there.
     Arriving(Option<MotionUnderWay>),
 }
 
-/// There is no path, as far as anybody remembers.
+/// The error of a restored navigator without a path.
 pub(super) fn no_path() -> NavigateError {
     PlanError::NoPath { statistics: SearchStatistics::default() }.into()
 }
 
 impl Mode {
-    /// Moves what is under way with the robot. The heading at the goal is that of the map, and so is
-    /// a place beside somebody's way.
+    /// Moves the activity along with a correction of the robot's pose. The goal heading is in the
+    /// map frame, and so is the position for making way.
     pub(super) fn shift(&mut self, shift: &Shift) {
         match self {
             Self::TurningFirst(motion) => motion.shift(shift),

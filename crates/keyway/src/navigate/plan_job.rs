@@ -8,9 +8,9 @@ use crate::geometry::Point;
 use crate::map::OccupancyGrid;
 use std::sync::Arc;
 
-/// A search for the route to a goal, with all that it needs
-/// ([`Navigator::plan_job`](super::Navigator::plan_job)): the robot drives on while it runs, in
-/// another thread where there is one.
+/// A search for the route to a goal, with all its inputs
+/// ([`Navigator::plan_job`](super::Navigator::plan_job)). The robot drives on while it runs, in
+/// another thread if available.
 pub struct PlanJob {
     router: Router,
     known: Arc<OccupancyGrid>,
@@ -21,14 +21,14 @@ pub struct PlanJob {
     goal: Goal,
 }
 
-/// The result of a [`PlanJob`], to be given to [`Navigator::accept`](super::Navigator::accept).
+/// The result of a [`PlanJob`], for [`Navigator::accept`](super::Navigator::accept).
 pub struct Planned {
     pub(super) start: Point,
-    /// Number of changes of the map when it was made.
+    /// Number of changes of the map when the job was created.
     pub(super) changes: u64,
-    /// The clearance of the map that was added for the route, if one was \[m\].
+    /// Clearance of the map that was added for the route, if any \[m\].
     pub(super) inserted_m: Option<f64>,
-    /// A route had to lead between the centres of cells.
+    /// True if a route had to lead between the centres of cells.
     pub(super) is_between_cells: bool,
     pub(super) task: Result<Task, NavigateError>,
 }
@@ -46,7 +46,7 @@ impl PlanJob {
         Self { router, known, parts, changes, start, way_points, goal }
     }
 
-    /// Searches.
+    /// Runs the search.
     pub fn run(self) -> Planned {
         let Self { mut router, known, parts, changes, start, way_points, goal } = self;
         let task = Task::plan(&mut router, &known, &parts, start, (&way_points, goal));
@@ -57,7 +57,7 @@ impl PlanJob {
 }
 
 impl Planned {
-    /// The reason why there is no route, if there is none.
+    /// The reason why no route exists, if there is none.
     pub fn error(&self) -> Option<&NavigateError> {
         self.task.as_ref().err()
     }

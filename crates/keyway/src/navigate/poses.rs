@@ -5,8 +5,8 @@ use crate::geometry::{Pose, Velocity, wrap_angle};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The last poses that were observed, the oldest first: a scan that arrives late is put where it
-/// was made.
+/// The latest observed poses, the oldest first: a scan that arrives late is placed at the pose of
+/// its time.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Poses {
     poses: VecDeque<(Time, Pose)>,
@@ -14,17 +14,17 @@ pub(super) struct Poses {
 }
 
 impl Poses {
-    /// Poses that are kept.
+    /// Maximum number of poses.
     const MOST: usize = 128;
 
-    /// Time beyond the last pose for which a robot is taken to go on as it did \[s\].
+    /// Time beyond the last pose for which constant velocity is assumed \[s\].
     const GOES_ON_S: f64 = 0.5;
 
     pub(super) fn new() -> Self {
         Self { poses: VecDeque::with_capacity(Self::MOST), velocity: Velocity::ZERO }
     }
 
-    /// Notes a pose that is not older than the last one. Allocates nothing.
+    /// Records a pose that is not older than the last one. Allocates nothing.
     pub(super) fn note(&mut self, time: Time, pose: Pose, velocity: Velocity) {
         if self.poses.back().is_some_and(|last| last.0 == time) {
             self.poses.pop_back();
@@ -36,8 +36,8 @@ impl Poses {
         self.velocity = velocity;
     }
 
-    /// Pose at a time, between two that were observed by its share of the way; `None` before all
-    /// of them and long after.
+    /// The pose at a time, interpolated linearly between two observed ones; `None` before all of
+    /// them and long after.
     pub(super) fn at(&self, time: Time) -> Option<Pose> {
         let next = self.poses.partition_point(|&(noted, _)| noted < time);
         let Some(&(next_time, next_pose)) = self.poses.get(next) else {
@@ -56,12 +56,12 @@ impl Poses {
         Some(Pose::new(place.x, place.y, before_pose.theta + share * turn_rad))
     }
 
-    /// True if all of them are places.
+    /// True if all poses are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.poses.iter().all(|(_, pose)| pose.point().is_finite() && pose.theta.is_finite())
     }
 
-    /// Forgets all: the next pose has nothing to do with them.
+    /// Forgets all poses, because the next one is unrelated to them.
     pub(super) fn clear(&mut self) {
         self.poses.clear();
     }
@@ -88,11 +88,11 @@ mod tests {
         assert!((middle.theta.abs() - PI).abs() < 1e-12, "across the half turn: {middle:?}");
         assert_eq!(poses.at(at(1.0)), Some(Pose::new(2.0, 0.0, PI - 0.1)), "what was observed");
         assert_eq!(poses.at(at(0.9)), None);
-        // It goes on for up to half a second.
+        // Extrapolation for up to half a second.
         let later = poses.at(at(1.4)).unwrap();
         assert!((later.x - (3.0 - 0.1 * 0.1f64.cos())).abs() < 1e-12, "{later:?}");
         assert!(poses.at(at(1.7)).is_some() && poses.at(at(1.71)).is_none());
-        // Of two poses of the same time the later one counts.
+        // Of two poses of the same time, the later one counts.
         poses.note(at(1.2), Pose::new(9.0, 1.0, 0.0), velocity);
         assert_eq!(poses.at(at(1.2)).unwrap().x, 9.0);
         poses.clear();

@@ -1,48 +1,48 @@
-//! Progress along a way: what is left of it becomes shorter, or what is left of a turn smaller.
-//! Controllers and simulated runs ask for the same steps.
+//! Progress along a route: its remaining length decreases, or the remaining rotation does.
+//! Controllers and simulated runs use the same steps.
 
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// The rest of a way.
+/// The rest of a route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayLeft {
-    /// Its length \[m\]; NaN or infinity: unknown.
+    /// Length \[m\]; NaN or infinity: unknown.
     pub way_m: f64,
-    /// Angle by which the robot has to turn, to either side, to face it \[rad\].
+    /// Absolute angle by which the robot has to rotate to face it \[rad\].
     pub turn_rad: f64,
 }
 
-/// The least that is left so far.
+/// The smallest rest so far.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WayProgress {
     shortest_m: f64,
-    /// The smallest turn left since the way became shorter \[rad\].
+    /// Smallest remaining rotation since the length last decreased \[rad\].
     smallest_rad: f64,
 }
 
 impl WayProgress {
-    /// Nothing is known of the way yet: whatever comes first is progress.
+    /// The state of a new route: the first value is progress.
     pub const NEW: Self = Self { shortest_m: f64::INFINITY, smallest_rad: f64::INFINITY };
 
-    /// The largest step that is asked for \[m\].
+    /// Largest step that is required \[m\].
     const LARGEST_STEP_M: f64 = 0.05;
 
-    /// The part of what a slow robot drives in the time by which it has to get closer.
+    /// Share of the distance covered at full speed that a slow robot must get closer by.
     const SLOW_PART: f64 = 0.1;
 
-    /// The step of a turn \[rad\]. Turns are no progress for ever: between two steps of the way
-    /// there are at most as many of them as half a circle has.
+    /// Step of a rotation \[rad\]. Rotations cannot count as progress forever: between two steps
+    /// of the length, there are at most as many of them as fit into half a circle.
     const TURN_STEP_RAD: f64 = 0.1;
 
-    /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or a tenth of what a
-    /// slow robot drives in that time.
+    /// The step by which a robot has to get closer within a time \[m\]: 5 cm, or for a slow robot
+    /// a tenth of the distance that it covers in that time at full speed.
     pub fn step_m(robot: &Robot, within_s: f64) -> f64 {
         (Self::SLOW_PART * robot.limits.v_max_mps * within_s).min(Self::LARGEST_STEP_M)
     }
 
-    /// True if the way has become shorter by the step since the last time that this was true, or
-    /// the robot has turned towards it by 0.1 rad.
+    /// True if the remaining length has decreased by the step since the last time that this was
+    /// true, or if the robot has rotated towards the route by 0.1 rad.
     pub fn has_progressed(&mut self, left: WayLeft, step_m: f64) -> bool {
         let WayLeft { way_m, turn_rad } = left;
         if way_m <= self.shortest_m - step_m {
@@ -56,7 +56,7 @@ impl WayProgress {
         has_turned
     }
 
-    /// The robot takes another way. Where that is longer, progress is measured on it.
+    /// Switches to another route. If that is longer, progress is measured on it.
     pub const fn begin_another_way(&mut self, remaining_m: f64) {
         self.shortest_m = self.shortest_m.max(remaining_m);
     }
@@ -90,7 +90,8 @@ mod tests {
         );
     }
 
-    /// A robot that turns to and fro gets nowhere; one that turns towards its way does.
+    /// A robot that rotates back and forth makes no progress; one that rotates towards its route
+    /// does.
     #[test]
     fn a_turn_towards_the_way_is_progress_once() {
         let mut progress = WayProgress::NEW;

@@ -4,17 +4,17 @@ use super::NavigateError;
 use crate::ConfigError;
 use thiserror::Error;
 
-/// Number of the form in which snapshots are stored.
+/// Version of the snapshot format.
 pub(super) const FORM: u32 = 1;
 
 /// Reason why a snapshot cannot be restored.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RestoreError {
-    /// It was stored in another form.
+    /// The snapshot has another format.
     #[error("the snapshot has form {0}, and this version reads form {form}", form = FORM)]
     Form(u32),
-    /// Its robot or its stack cannot be used.
+    /// The robot or the stack of the snapshot cannot be used.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// One part contradicts the others.
@@ -25,7 +25,7 @@ pub enum RestoreError {
 }
 
 impl NavigateError {
-    /// The error of a map that no navigator can be made for.
+    /// The error for a map for which no navigator can be built.
     pub(super) fn into_restore(self) -> RestoreError {
         match self {
             Self::Config(error) => error.into(),

@@ -1,4 +1,4 @@
-//! Layers of a robot, and the route on the widest one that has a way.
+//! Map layers of a robot, and routes on the widest layer that has a path.
 
 use super::headings::fits_within;
 use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
@@ -18,20 +18,21 @@ use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::Smoother;
 use std::sync::Arc;
 
-/// The map layers of one robot, widest clearance first: a route uses the first on which there is a
-/// way.
+/// The map layers of one robot, widest clearance first: a route uses the first one that has a
+/// path.
 ///
-/// The last one is for a robot that has met something on its way: a lane between what it sees and a
-/// wall may fit the robot, and yet hold no cell whose centre keeps the clearance. There the route
-/// says where to try, and the local planner whether the robot fits.
+/// The last one is for a robot that senses obstacles along its route: a lane between a sensed
+/// obstacle and a wall may fit the robot although it contains no cell whose centre keeps the
+/// clearance. The route then indicates where to try, and the local planner decides if the robot
+/// fits.
 #[derive(Clone, Debug)]
 pub(super) struct Layers {
     pub(super) maps: Vec<SearchMap>,
-    /// How many of the maps have the clearance that the robot needs.
+    /// Number of maps whose clearance is sufficient for the robot.
     fitting: usize,
-    /// The last but one of these was added for a route.
+    /// True if the last but one of these was added for a route.
     is_inserted: bool,
-    /// A route had to lead between the centres of cells, so later ones may have to.
+    /// True if a route had to lead between the centres of cells, so later ones may have to.
     pub(super) is_between_cells: bool,
 }
 
@@ -39,7 +40,7 @@ impl Layers {
     fn new(known: &OccupancyGrid, stack: &Stack, robot: &Robot) -> Result<Self, ConfigError> {
         let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
         let least_m = stack.controller.least_clearance_m;
-        // For a round robot the second one is the last one.
+        // For a round robot, the second one is the last one.
         let turning_m = turning_clearance_m(stack, robot);
         let mut maps = vec![layer(stack.map.clone())?];
         for clearance_m in [turning_m, least_m] {
@@ -48,15 +49,15 @@ impl Layers {
             }
         }
         let fitting = maps.len();
-        // A lane that is just wide enough has a cell near its middle.
+        // A lane that is just wide enough has a cell near its centreline.
         let narrowest_m = least_m.min(stack.map.clearance_m);
         let clearance_m = looser_clearance_m(known.frame(), narrowest_m);
         maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
         Ok(Self { maps, fitting, is_inserted: false, is_between_cells: false })
     }
 
-    /// Adds a map between those on which a way has the clearance that the robot needs, in the place
-    /// of the last one that was added.
+    /// Adds a map with a clearance between those that are sufficient for the robot, in place of
+    /// the one that was added last.
     fn insert(&mut self, map: SearchMap) {
         let at = self.fitting - 1;
         if self.is_inserted {
@@ -67,13 +68,13 @@ impl Layers {
         (self.fitting, self.is_inserted) = (self.fitting + 1, true);
     }
 
-    /// The maps on which a way has the clearance that the robot needs.
+    /// The maps whose clearance is sufficient for the robot.
     fn fitting(&self) -> &[SearchMap] {
         &self.maps[..self.fitting]
     }
 
-    /// The last map, and the clearance that the robot needs \[m\]; `None` where no map is looser
-    /// than those on which a way has it.
+    /// The last map, and the clearance that the robot needs \[m\]; `None` if no map has a smaller
+    /// clearance than that.
     fn looser(&mut self) -> Option<(&mut SearchMap, f64)> {
         let [.., least, looser] = &mut self.maps[..] else { return None };
         let needed_m = least.config().clearance_m;
@@ -86,17 +87,17 @@ impl Layers {
         self.maps.iter_mut().for_each(|map| map.apply(&edits));
     }
 
-    /// Gives some cells of all maps back what the known map says.
+    /// Resets some cells of all maps to their state in the known map.
     pub(super) fn unmark(&mut self, cells: &[Cell], known: &OccupancyGrid) {
         self.mark(cells, |cell| known.state(cell).unwrap_or(CellState::Free));
     }
 
-    /// The clearance of the map that was added for a route, if one was \[m\].
+    /// Clearance of the map that was added for a route, if any \[m\].
     pub(super) fn inserted_m(&self) -> Option<f64> {
         self.is_inserted.then(|| self.maps[self.fitting - 2].config().clearance_m)
     }
 
-    /// Adds a map of a clearance \[m\] again.
+    /// Adds a map of a stored clearance \[m\].
     pub(super) fn insert_again(&mut self, known: &OccupancyGrid, clearance_m: f64) {
         let config = LayerConfig { clearance_m, ..self.maps[0].config().clone() };
         if let Ok(map) = SearchMap::new(known, config) {
@@ -104,20 +105,20 @@ impl Layers {
         }
     }
 
-    /// Any of the maps: they have the same obstacles.
+    /// One of the maps; all have the same obstacles.
     pub(super) fn obstacles(&self) -> &SearchMap {
         &self.maps[0]
     }
 }
 
-/// The least clearance at which the robot can turn on the spot anywhere \[m\].
+/// The smallest clearance at which the robot can rotate on the spot anywhere \[m\].
 pub(super) fn turning_clearance_m(stack: &Stack, robot: &Robot) -> f64 {
     let Robot { footprint, .. } = robot;
     stack.controller.least_clearance_m + footprint.circumscribed_radius_m()
         - footprint.inscribed_radius_m()
 }
 
-/// Plans the routes of one robot, on layers that follow what it senses.
+/// Plans the routes of one robot, on layers that include the sensed obstacles.
 pub(super) struct Router {
     pub(super) layers: Layers,
     planner: Arc<dyn GlobalPlanner + Send + Sync>,
@@ -127,7 +128,7 @@ pub(super) struct Router {
 }
 
 impl Clone for Router {
-    /// With scratch of its own.
+    /// Clones the router with its own scratch memory.
     fn clone(&self) -> Self {
         let Self { layers, planner, smoother, radius_m, .. } = self;
         Self {
@@ -142,7 +143,7 @@ impl Clone for Router {
 
 impl Router {
     /// # Errors
-    /// When the stack cannot be used.
+    /// Returns [`NavigateError`] if the stack cannot be used.
     pub(super) fn new(known: &OccupancyGrid, fitted: &FittedStack) -> Result<Self, NavigateError> {
         let FittedStack { stack, robot, smoother, planner, .. } = fitted;
         let layers = Layers::new(known, stack, robot)?;
@@ -159,15 +160,15 @@ impl Router {
         })
     }
 
-    /// Distances to the obstacles of its maps, as far as a robot looks at them.
+    /// Distances to the obstacles of its maps, up to the horizon of the robot's decisions.
     pub(super) fn distances(&self, robot: &Robot) -> DistanceField {
         let config = FieldConfig { reach_m: robot.decision_reach_m(), ..FieldConfig::default() };
         let map = self.layers.obstacles();
         DistanceField::new(map.frame(), map.obstacles(), &config)
     }
 
-    /// The least distance of a path from the obstacles of its maps \[m\], up to the widest
-    /// clearance that its routes keep.
+    /// The smallest distance of a path from the obstacles of its maps \[m\], up to the widest
+    /// clearance of its routes.
     pub(super) fn clearance_along(&self, path: &Polyline) -> f64 {
         let map = self.layers.obstacles();
         let (clearance, most_m) = (map.clearance(), map.config().clearance_m);
@@ -175,8 +176,8 @@ impl Router {
         along.fold(most_m, f64::min)
     }
 
-    /// Refuses a start without room for the robot, or in contact with something, by more than an
-    /// error of localisation explains; of one that is too near by less it says so.
+    /// Rejects a start with too little clearance or in contact with an obstacle, by more than a
+    /// localisation error explains. Reports one that is too close by less.
     pub(super) fn check_start(
         &self,
         start: Point,
@@ -206,7 +207,7 @@ impl Router {
         Err(NavigateError::StartTouches { position, heading_rad: None, footprint, why })
     }
 
-    /// A route on the known map, or why there is none.
+    /// A route on the known map, or the reason why none exists.
     pub(super) fn first(
         &mut self,
         known: &OccupancyGrid,
@@ -226,14 +227,14 @@ impl Router {
         }
     }
 
-    /// Paths on which a first route between the centres of cells is sought: where there is none, it
-    /// costs more to tell why.
+    /// Maximum number of attempts for a first route between the centres of cells; finding out why
+    /// none exists costs more.
     const FIRST_ATTEMPTS: u32 = 16;
 
-    /// The same while the robot waits for it.
+    /// The same while the robot waits for the route.
     const LATER_ATTEMPTS: u32 = 4;
 
-    /// A route that keeps what the robot needs, though no path of cells does.
+    /// A route that keeps the required clearance although no path of cells does.
     fn between_cells(&mut self, query: &RouteQuery, attempts: u32) -> Option<Route> {
         let Self { layers, planner, smoother, workspace, radius_m } = self;
         let (looser, needed_m) = layers.looser()?;
@@ -241,9 +242,9 @@ impl Router {
         plan_between_cells(looser, wanted, &**planner, &**smoother, query, workspace, &mut ())
     }
 
-    /// A route that keeps more than the least clearance, where the robot cannot turn anywhere on
-    /// the given one: near the middle of the narrowest place, and not along its side. The clearance
-    /// is found by halving; its layer stays, so that later routes may use it.
+    /// A route with more than the least clearance, for a given one on which the robot cannot turn
+    /// everywhere: along the middle of the narrowest passage instead of along its side. The
+    /// clearance is found by bisection; its layer is kept for later routes.
     fn wider(&mut self, known: &OccupancyGrid, query: &RouteQuery, route: &Route) -> Option<Route> {
         let mut fitting = self.layers.fitting().iter().rev();
         let (least, above) = (fitting.next()?.config().clone(), fitting.next()?.config());
@@ -272,11 +273,11 @@ impl Router {
         Some(route)
     }
 
-    /// How often the range of clearances is halved.
+    /// Bisection steps of the range of clearances.
     const HALVINGS: u32 = 3;
 
-    /// A route on what is known and sensed, within a budget of expanded nodes: between the centres
-    /// of cells where a route had to lead there on the known map.
+    /// A route with the known and the sensed obstacles, within a budget of expanded nodes; also
+    /// between the centres of cells if a route on the known map had to lead there.
     pub(super) fn again(
         &mut self,
         position: Point,
@@ -293,26 +294,27 @@ impl Router {
         }
         let between = self.layers.is_between_cells;
         let between = between.then(|| self.between_cells(&query, Self::LATER_ATTEMPTS)).flatten();
-        // What has failed so far fails at once: its ends are not joined.
+        // Searches that have failed so far fail at once, since start and goal are not connected.
         let any = self.layers.maps.len();
         between.map_or_else(|| self.first_of(any, &query), Ok)
     }
 
-    /// The route on the first of the widest maps on which there is one.
+    /// The route on the first of the widest maps that has one.
     fn first_of(&mut self, maps: usize, query: &RouteQuery) -> Result<Route, NavigateError> {
         let Self { layers, planner, smoother, workspace, .. } = self;
         first_route(&layers.maps[..maps], &**planner, &**smoother, query, workspace)
     }
 
-    /// The nearest place with room for the robot, on what is known and sensed.
+    /// The nearest position with enough clearance for the robot, with the known and the sensed
+    /// obstacles.
     fn nearest_with_room(&self, position: Point) -> Option<Point> {
         let map = self.layers.fitting().last()?;
         let cell = map.nearest_free(map.frame().cell_near(position))?;
         Some(map.frame().world_from_cell(cell))
     }
 
-    /// The place nearest to a goal to which there is a way, on what is known and sensed; `None`
-    /// where there is none from the start.
+    /// The position nearest to a goal to which a path exists, with the known and the sensed
+    /// obstacles; `None` if none exists from the start.
     pub(super) fn nearest_reachable(&mut self, start: Point, goal: Point) -> Option<Point> {
         let to = self.nearest_with_room(goal)?;
         let map = self.layers.fitting().last()?;
@@ -325,7 +327,7 @@ impl Router {
         plan.cells.last().map(|&cell| map.frame().world_from_cell(cell))
     }
 
-    /// A route between two places around some ground; `None` where there is none, or no ground.
+    /// A route between two positions around some areas; `None` if there is none, or no area.
     pub(super) fn around(
         &mut self,
         known: &OccupancyGrid,
@@ -348,7 +350,7 @@ impl Router {
     }
 }
 
-/// The cells of some discs on which nothing stands, each once.
+/// The free cells of some discs, each once.
 fn free_cells(discs: &[Disc], map: &SearchMap) -> Vec<Cell> {
     let (frame, obstacles) = (map.frame(), map.obstacles());
     let mut cells = Vec::new();
@@ -366,7 +368,7 @@ fn free_cells(discs: &[Disc], map: &SearchMap) -> Vec<Cell> {
     cells
 }
 
-/// The route on the first of the maps on which there is one.
+/// The route on the first of the maps that has one.
 fn first_route(
     maps: &[SearchMap],
     planner: &dyn GlobalPlanner,
@@ -378,7 +380,8 @@ fn first_route(
     for map in maps {
         match plan_route(map, planner, smoother, query, workspace, &mut ()) {
             Ok(route) => return Ok(route),
-            // Where the budget is too small for one layer, the next would only cost as much again.
+            // If the budget is too small for one layer, the next one would only cost as much
+            // again.
             Err(error @ PlanError::BudgetExhausted { .. }) => return Err(error.into()),
             Err(error) if query.on_cells(map).is_err() => {
                 no_room = Some(no_way_on(maps, query, error));
@@ -387,17 +390,17 @@ fn first_route(
         }
     }
     let statistics = crate::search::SearchStatistics::default();
-    // The result of a search says more than an end from which none could begin.
+    // The result of a search is more informative than an end from which none could start.
     Err(failure.or(no_room).unwrap_or(PlanError::NoPath { statistics }.into()))
 }
 
-/// From a position to another; where a cell is blocked, straight as far as a footprint of this
-/// radius fits.
+/// A query from one position to another; at a blocked cell, straight as far as a footprint of
+/// this radius fits.
 const fn footprint_query(start: Point, goal: Point, radius_m: f64) -> RouteQuery {
     RouteQuery { ends: EndRule::NearestFree { radius_m }, ..RouteQuery::new(start, goal) }
 }
 
-/// Refuses a goal with a heading at which the footprint does not fit there.
+/// Rejects a goal heading at which the footprint does not fit at the goal.
 pub(super) fn check_goal_heading(
     goal: &Goal,
     footprint: &Footprint,
@@ -415,7 +418,7 @@ pub(super) fn check_goal_heading(
     Err(NavigateError::GoalHeading { position, heading_rad, footprint, fits })
 }
 
-/// Refuses an end at which the footprint touches something, or would leave the map.
+/// Rejects an end at which the footprint touches an obstacle, or would leave the map.
 fn check_room(
     layers: &Layers,
     end: PathEnd,
@@ -429,12 +432,12 @@ fn check_room(
     if map.clearance().is_clear_point(position, radius_m) {
         return Ok(());
     }
-    // The narrowest layer knows the cells with room.
+    // The narrowest layer has the cells with enough clearance.
     let least = layers.fitting().last().unwrap_or(map);
     Err(no_room(least, end, position, radius_m))
 }
 
-/// `map` has the clearance that leaves room.
+/// The error for an end with too little clearance, given a `map` of sufficient clearance.
 fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> NavigateError {
     let nearest = map
         .nearest_free(map.frame().cell_near(position))
@@ -443,8 +446,8 @@ fn no_room(map: &SearchMap, end: PathEnd, position: Point, radius_m: f64) -> Nav
     NavigateError::NoRoom { end, position, radius_m, why, nearest }
 }
 
-/// Why no route can begin (or end) at a position: where the footprint has no room, that says more
-/// than the cell that is blocked in the last of the layers.
+/// The reason why no route can start (or end) at a position: too little clearance for the
+/// footprint is more informative than the blocked cell of the last layer.
 fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> NavigateError {
     let (PlanError::Blocked { end, .. } | PlanError::OutsideMap { end, .. }) = why else {
         return why.into();
@@ -463,8 +466,7 @@ fn no_way_on(maps: &[SearchMap], query: &RouteQuery, why: PlanError) -> Navigate
     }
 }
 
-/// Says of a route that does not exist what is in the way: for the least clearance that the robot
-/// needs.
+/// Explains why a route does not exist, for the smallest clearance that the robot needs.
 fn explain(
     layers: &Layers,
     planner: &dyn GlobalPlanner,

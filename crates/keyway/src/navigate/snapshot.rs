@@ -1,4 +1,4 @@
-//! A navigator between two cycles, as a value.
+//! Snapshot of a navigator between two cycles.
 
 use super::Stack;
 use super::navigator::{Errand, StoredRecord};
@@ -9,14 +9,14 @@ use crate::geometry::{Pose, Velocity};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// All of a navigator between two cycles: stored, opened on another machine and restored
-/// ([`Navigator::restore`](super::Navigator::restore)), it gives the same commands for the same
-/// observations.
+/// The complete state of a navigator between two cycles. Restored
+/// ([`Navigator::restore`](super::Navigator::restore)), also on another machine, it gives the
+/// same commands for the same observations.
 ///
-/// It can be written in every format of serde that describes itself and has numbers that are not
-/// finite, such as CBOR. What follows from the rest is not stored, but made again: layers of the
-/// map and distances. Nor is the planner's path of the route, and why the last attempt at a route
-/// failed. Its form may change with every version of this library.
+/// It can be written in any self-describing serde format that supports non-finite numbers, such
+/// as CBOR. Derived data is recomputed instead of stored: map layers and distances. The planner's
+/// path of the route and the reason of the last failed route attempt are not stored. The format
+/// may change with every version of this library.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
@@ -35,6 +35,6 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Number of the form in which snapshots are stored.
+    /// Version of the snapshot format.
     pub const FORM: u32 = FORM;
 }

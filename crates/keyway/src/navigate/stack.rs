@@ -1,4 +1,4 @@
-//! One full choice along the pipeline, as data.
+//! The parts of the pipeline and their parameters, as data.
 
 use super::RecoveryKind;
 use crate::ConfigError;
@@ -19,14 +19,14 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Stack {
-    /// How the search's layers follow from the map. `map.clearance_m` is what a route keeps from
-    /// obstacles where it can.
+    /// Layers of the search, derived from the map. `map.clearance_m` is the clearance that a
+    /// route keeps from obstacles if possible.
     pub map: LayerConfig,
     /// The global planner.
     pub planner: PlannerConfig,
     /// The smoother.
     pub smoother: SmootherConfig,
-    /// The guide: which point the local planner drives towards.
+    /// The guide, which chooses the point that the local planner drives towards.
     pub guide: GuideConfig,
     /// The local planner.
     pub local: LocalConfig,
@@ -40,83 +40,84 @@ pub struct Stack {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ControllerConfig {
-    /// The goal is reached where the robot stands within this distance \[m\]; a way-point is passed
-    /// within it.
+    /// Position tolerance of the goal, at which the robot must be stationary; a way-point is
+    /// passed within it \[m\].
     pub goal_tolerance_m: f64,
-    /// Where the goal has a heading, it is reached within this angle \[rad\].
+    /// Heading tolerance of a goal with a heading \[rad\].
     pub goal_yaw_tolerance_rad: f64,
-    /// What a route keeps from obstacles where `map.clearance_m` leaves no way \[m\].
+    /// Clearance of a route if no path keeps `map.clearance_m` \[m\].
     pub least_clearance_m: f64,
-    /// The error that a start may have \[m\]: where the robot touches something there, but nothing
-    /// at a place as near as this, it begins, and leaves what is too near. 0 refuses every such
-    /// start, also in stack files that do not have it.
+    /// Tolerated error of a start \[m\]: a robot that touches an obstacle there, but none at a
+    /// position within this distance, starts, and leaves the obstacle first. 0 rejects every such
+    /// start, also in stack files without this field.
     #[serde(default)]
     pub start_error_m: f64,
-    /// Plan again as soon as something sensed is too near to the rest of the route; and drive to a
-    /// place of the route that is in sight while the guide point is not.
+    /// Replan as soon as a sensed obstacle is too close to the rest of the route, and drive to a
+    /// point of the route in line of sight while the guide point is not.
     pub watch_route: bool,
-    /// Where movers walk to and fro on the way, go around the ground on which they are seen, once
-    /// that takes no longer than the robot has been held up beside it. Needs `movers`; false in
-    /// stack files that do not have it.
+    /// Take a detour around the area in which moving obstacles walk back and forth on the route,
+    /// once it takes no longer than the robot has been held up. Needs `movers`; false in stack
+    /// files without this field.
     #[serde(default)]
     pub go_around: bool,
-    /// Drive to a place beside the way of somebody who comes towards the robot where two cannot pass,
-    /// and let them pass, if that place is nearer than theirs. Needs `movers`; false in stack files
-    /// that do not have it.
+    /// Let an oncoming moving obstacle pass where two cannot, at a position beside its path, if
+    /// that position is closer than its own. Needs `movers`; false in stack files without this
+    /// field.
     #[serde(default)]
     pub make_way: bool,
-    /// A recovery begins when nothing lets the robot drive for this long \[s\].
+    /// Time without an admissible motion after which a recovery starts \[s\].
     pub blocked_s: f64,
-    /// A recovery begins when the remaining way has not become shorter for this long \[s\], by 5 cm
-    /// or by a tenth of what a slow robot drives in that time, nor the robot has turned towards it.
+    /// Time without progress after which a recovery starts \[s\]. Progress is a decrease of the
+    /// remaining path length by 5 cm, or for a slow robot by a tenth of the distance that it
+    /// covers in that time, or a rotation towards the route.
     pub no_progress_s: f64,
-    /// What is tried when the robot gets no farther, one kind after the other until it does; then
-    /// from the beginning. Where `turn` is among them, a robot that is not round also turns before
-    /// it drives where it could not.
+    /// Recoveries of a robot that makes no progress, tried one after the other until it does;
+    /// then from the start. With `turn` among them, a non-circular robot also rotates before it
+    /// drives to where it could not.
     pub recoveries: Cow<'static, [RecoveryKind]>,
-    /// How far `back-up` goes back at most \[m\].
+    /// Maximum distance of `back-up` \[m\].
     pub back_up_m: f64,
-    /// How long `wait` waits \[s\].
+    /// Duration of `wait` \[s\].
     pub wait_s: f64,
-    /// A new route is given up after this many expanded nodes: planning must not hold up the
-    /// control cycle for long.
+    /// Node budget of a new route: planning must not hold up the control cycle for long.
     pub replan_budget: u64,
-    /// After a new route was not found, the next attempt is made `blocked_s` later, then twice as
-    /// much later each time, up to this \[s\]. Nor does the robot wait longer than this for
-    /// something that moves before it counts as getting no farther.
+    /// Longest waiting time \[s\]. After a failed search for a route, the next attempt follows
+    /// after `blocked_s`, then after twice as long each time, up to this limit. The robot also
+    /// waits no longer than this for a moving obstacle before it counts as making no progress.
     pub longest_wait_s: f64,
-    /// Reaction to a way-point to which there is no route twice in turn, such as one on which
-    /// something stands. `wait` in stack files that do not have it.
+    /// Reaction to a way-point to which two searches in a row find no route, for example an
+    /// occupied one. `wait` in stack files without this field.
     #[serde(default)]
     pub if_way_point_blocked: IfWayPointBlocked,
-    /// Stop while the sensors say nothing for longer than their time-outs (`sensors.timeout_s` of
-    /// the robot), and before they have said anything: all of them, or one where the robot need not
-    /// stay within ground that it has seen. True in stack files that do not have it.
+    /// Stop while the sensors have had no valid reading for longer than their time-outs
+    /// (`sensors.timeout_s` of the robot), and before the first one. Applies to all sensors, or
+    /// to any one of them if the robot need not stay within observed free space. True in stack
+    /// files without this field.
     #[serde(default = "yes")]
     pub stop_when_blind: bool,
-    /// How what moves is told from what stands. Without it everything counts as standing where it
-    /// was seen last.
+    /// Tracking of moving obstacles. Without it, everything counts as stationary at its last
+    /// sensed position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub movers: Option<TrackerConfig>,
-    /// The stop rule, through which every command goes, whoever gave it; it needs `movers`. Without
-    /// it commands are issued as they were decided.
+    /// The stop rule, which checks every command, whatever its source; it needs `movers`. Without
+    /// it, commands are issued as decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe: Option<StopRuleConfig>,
 }
 
-/// Reaction to a way-point that cannot be reached for now. The goal is always waited for.
+/// Reaction to a way-point that cannot be reached at present. The goal is never skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum IfWayPointBlocked {
-    /// The robot goes on trying, as for the goal.
+    /// Keep trying, as for the goal.
     #[default]
     Wait,
-    /// It passes the nearest place with room for it instead, no farther than a metre or twice its
-    /// diameter from the way-point; where there is none it skips the way-point.
+    /// Pass the nearest position with enough clearance instead, at most a metre or twice the
+    /// robot's diameter from the way-point; without one, skip the way-point.
     PassNear,
-    /// It goes on to the next one.
+    /// Continue to the next way-point.
     Skip,
 }
 
@@ -125,8 +126,8 @@ const fn yes() -> bool {
 }
 
 impl ControllerConfig {
-    /// For \[You2021\], whose robot is a point that plans once and never again: a new route is
-    /// planned only where it would otherwise stand still for ever.
+    /// Values for \[You2021\], whose robot is a point that plans only once. A new route is
+    /// planned only if the robot would otherwise stay stationary forever.
     pub const PAPER: Self = Self {
         goal_tolerance_m: 0.5,
         goal_yaw_tolerance_rad: 0.05,
@@ -170,16 +171,16 @@ impl ControllerConfig {
         "safe",
     ];
 
-    /// The usual error of a localisation by scans \[m\]; a cell of most maps.
+    /// Usual error of a scan-based localisation \[m\]; a cell of most maps.
     const START_ERROR_M: f64 = 0.05;
 
-    /// Derived from the robot: the goal tolerance is 0.15 m or half the inscribed radius, whichever
-    /// is larger; the least clearance is the inscribed radius and the margin that the local planner
-    /// keeps. The route is watched, a start may be off by 5 cm (a cell of most maps, and what a
-    /// localisation by scans is off), the robot goes around movers that hold it up and makes way
-    /// where two cannot pass, all recoveries are tried, and it goes back by up to twice its
-    /// circumscribed radius. Movers are followed; there is no stop rule. A robot that sees nothing
-    /// stops.
+    /// Derives the parameters from the robot. The goal tolerance is 0.15 m or half the inscribed
+    /// radius, whichever is larger; the least clearance is the inscribed radius plus the margin
+    /// of the local planner; and the start tolerance is 5 cm (a cell of most maps, and the usual
+    /// error of a scan-based localisation). The route is watched, the robot takes detours around
+    /// moving obstacles that hold it up and makes way where two cannot pass, all recoveries are
+    /// enabled, and it backs up by at most twice its circumscribed radius. Moving obstacles are
+    /// tracked; there is no stop rule. A blind robot stops.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
@@ -203,7 +204,7 @@ impl ControllerConfig {
         }
     }
 
-    /// The same with the stop rule for a robot, and movers followed, which it needs.
+    /// Adds the stop rule for a robot, and the tracking of moving obstacles, which it needs.
     #[must_use]
     pub fn with_stop_rule(self, robot: &Robot) -> Self {
         let movers = self.movers.or_else(|| Some(TrackerConfig::default()));
@@ -213,8 +214,8 @@ impl ControllerConfig {
 }
 
 impl ControllerConfig {
-    /// Checks the values of its own; those of its tracker and its stop rule are checked when they
-    /// are built.
+    /// Checks its own values; those of the tracker and the stop rule are checked when these are
+    /// built.
     pub(super) fn check(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("goal_tolerance_m", self.goal_tolerance_m)?;
         ConfigError::unless_positive("goal_yaw_tolerance_rad", self.goal_yaw_tolerance_rad)?;
@@ -237,14 +238,14 @@ impl ControllerConfig {
         Ok(())
     }
 
-    /// What tells movers apart, if anything does.
+    /// The tracker of moving obstacles, if it is enabled.
     pub(super) fn build_tracker(&self) -> Result<Option<Tracker>, ConfigError> {
         let tracker = self.movers.clone().map(Tracker::new).transpose();
         tracker.map_err(|error| error.within("movers"))
     }
 
-    /// How fast somebody may walk up behind a robot that does not look there \[m/s\]; 0 without a
-    /// stop rule.
+    /// Maximum speed of a pedestrian that approaches from behind a robot without rear sensing
+    /// \[m/s\]; 0 without a stop rule.
     pub(super) fn walker_mps(&self) -> f64 {
         self.safe.as_ref().map_or(0.0, |safe| safe.movers.speed_mps)
     }
@@ -265,28 +266,27 @@ impl ControllerConfig {
 }
 
 impl Stack {
-    /// The memory of ground that the robot has seen, as far as its stop rule or its local planner
-    /// ask for it.
+    /// The observed free space, as far as the stop rule or the local planner needs it.
     pub(super) fn build_seen_ground(&self, frame: &GridFrame, robot: &Robot) -> Option<SeenGround> {
         let looks_ahead = self.controller.safe.is_some() || self.local.stops_within_sight();
         let wanted = if looks_ahead { SeenWanted::AheadAndBehind } else { SeenWanted::Behind };
         SeenGround::new(frame, robot, self.controller.walker_mps(), wanted)
     }
 
-    /// The same with the stop rule for a robot ([`ControllerConfig::with_stop_rule`]).
+    /// Adds the stop rule for a robot ([`ControllerConfig::with_stop_rule`]).
     #[must_use]
     pub fn with_stop_rule(self, robot: &Robot) -> Self {
         Self { controller: self.controller.with_stop_rule(robot), ..self }
     }
 
-    /// The same, with the stop rule where it is to be safe.
+    /// Adds the stop rule if `safe`.
     #[must_use]
     pub fn safe_if(self, safe: bool, robot: &Robot) -> Self {
         if safe { self.with_stop_rule(robot) } else { self }
     }
 
-    /// The parameters for plans without driving, unless others are asked for: those of the usual
-    /// stack, but for a point, and not smoothed.
+    /// Default parameters for plans without driving: those of the default stack, but for a point
+    /// robot and without smoothing.
     pub fn for_plans(robot: &Robot) -> Self {
         let stack = Self::keyway(robot);
         let map = LayerConfig { clearance_m: 0.0, ..stack.map };

@@ -1,26 +1,26 @@
-//! The stacks by name: the usual one, those of the papers, and what the papers compare theirs with.
+//! The stacks by name: the default one, those of the papers, and the baselines of the papers.
 //!
-//! A stack is data: each is a row of parts, known by their names. It comes twice:
+//! A stack is data: each is a row of parts, given by name. It comes in two versions:
 //!
 //! - For a robot, every part has the parameters that it derives from the robot, or its defaults.
-//!   Routes keep the robot's clearance, smoothers with a safe distance of their own keep the same,
-//!   and no corner is cut.
-//! - As published, every part has its paper's values, the robot is the point of [`Robot::paper`] on
-//!   cells of 1 m, and corners are cut where the paper's own search cuts them. The route is planned
-//!   once.
+//!   Routes keep the robot's clearance, smoothers with their own safe distance keep the same, and
+//!   no corner is cut.
+//! - As published, every part has its paper's values, the robot is the point of [`Robot::paper`]
+//!   on cells of 1 m, and corners are cut if the paper's own search cuts them. The route is
+//!   planned once.
 //!
-//! # What the papers do not say
+//! # Interpretations
 //! - \[Wang2019\] does not drive, and the baselines of \[ZhuYin2024\] are paths. Here a robot
-//!   follows them ([`Follower`](crate::local::Follower)); as published from so near that it hardly
-//!   leaves them.
-//! - References 9 and 14 of \[S1\] and reference 20 of \[ZhuYin2024\] cannot be identified from the
-//!   texts. Their stand-ins are what the texts say of them: the turning points of A*, followed, and
-//!   as the guide of a classic DWA; key points of A* that guide the DWA of \[You2021\] with a fixed
-//!   weight of speed.
-//! - \[ZhuYin2024\] plans again only when no place behind an obstacle is free. As its DWA may stop
-//!   before an obstacle (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that does not get on
-//!   waits, then plans again. Its collision constraint is lifted within a cell of the start and the
-//!   goal, so that a robot beside an obstacle can plan at all.
+//!   follows them ([`Follower`](crate::local::Follower)), in the published version so closely
+//!   that it hardly leaves them.
+//! - References 9 and 14 of \[S1\] and reference 20 of \[ZhuYin2024\] cannot be identified from
+//!   the texts. Their stand-ins follow the descriptions in the texts: the turning points of A*,
+//!   followed, and as the guide of a classic DWA; key points of A* that guide the DWA of
+//!   \[You2021\] with a fixed weight of speed.
+//! - \[ZhuYin2024\] replans only when no position behind an obstacle is free. Since its DWA may
+//!   stop in front of an obstacle (see [`GuidedDwa`](crate::local::GuidedDwa)), a robot that
+//!   makes no progress waits, then replans. Its collision constraint is lifted within a cell of
+//!   the start and the goal, so that a robot beside an obstacle can plan at all.
 
 use super::{ControllerConfig, RecoveryKind, Stack};
 use crate::guide::GuideConfig;
@@ -35,15 +35,15 @@ use std::borrow::Cow;
 /// A stack as a row of parts.
 struct Parts {
     name: &'static str,
-    /// What it is, in a sentence.
+    /// Description in one sentence.
     about: &'static str,
-    /// The key in docs/papers.md, where it was published.
+    /// Key in docs/papers.md, if it was published.
     source: Option<&'static str>,
     planner: &'static str,
     smoother: &'static str,
     guide: &'static str,
     local: &'static str,
-    /// Corner rule of the search as published, where the planner has one.
+    /// Corner rule of the search as published, if the planner has one.
     corners: CornerRule,
 }
 
@@ -189,48 +189,48 @@ impl Stack {
         names
     };
 
-    /// The stack that is used when none is named.
+    /// Name of the default stack.
     pub const DEFAULT: &'static str = KEYWAY.name;
 
-    /// A stack with the parameters for a robot.
+    /// The stack of this name with the parameters for a robot.
     pub fn by_name(name: &str, robot: &Robot) -> Option<Self> {
         of_name(name)?.for_robot(robot)
     }
 
-    /// Keyway's own stack, which is used when none is named, with the parameters for a robot. Where
-    /// they can, routes keep one cycle of driving at full speed and the circumscribed radius from
-    /// obstacles: there the robot can turn on the spot. Where they cannot, they try the
-    /// circumscribed radius and the margin alone, then [`ControllerConfig::least_clearance_m`].
+    /// Keyway's own stack, the default, with the parameters for a robot. If possible, routes keep
+    /// the distance covered in one cycle at full speed plus the circumscribed radius from
+    /// obstacles, at which the robot can rotate on the spot. Otherwise they try the circumscribed
+    /// radius and the margin alone, then [`ControllerConfig::least_clearance_m`].
     pub fn keyway(robot: &Robot) -> Self {
         of_known_parts(KEYWAY.for_robot(robot))
     }
 
-    /// The classic one: key points that guide a dynamic window, with the parameters for a robot.
-    /// Its routes are those of [`Self::keyway`].
+    /// The classic stack: key points that guide a dynamic window, with the parameters for a
+    /// robot. Its routes are those of [`Self::keyway`].
     pub fn key_point_fusion(robot: &Robot) -> Self {
         of_known_parts(KEY_POINT_FUSION.for_robot(robot))
     }
 
-    /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for one that is
-    /// nobody's.
+    /// A stack with the values of its paper, for [`Robot::paper`]; `None` also for an unpublished
+    /// one.
     pub fn published_by_name(name: &str) -> Option<Self> {
         let parts = of_name(name)?;
         parts.source.and_then(|_| parts.as_published())
     }
 
-    /// A sentence about the stack of this name.
+    /// A one-sentence description of the stack of this name.
     pub fn summary(name: &str) -> Option<&'static str> {
         of_name(name).map(|parts| parts.about)
     }
 
-    /// The key in docs/papers.md of the paper that published the stack of this name; `None` for one
-    /// that is nobody's.
+    /// Key in docs/papers.md of the paper that published the stack of this name; `None` for an
+    /// unpublished one.
     pub fn source(name: &str) -> Option<&'static str> {
         of_name(name)?.source
     }
 }
 
-/// A stack whose parts are named above.
+/// Unwraps a stack whose parts are named above.
 #[expect(clippy::expect_used, reason = "tests make every stack")]
 fn of_known_parts(stack: Option<Stack>) -> Stack {
     stack.expect("its parts exist")
@@ -241,8 +241,8 @@ fn of_name(name: &str) -> Option<&'static Parts> {
 }
 
 impl Parts {
-    /// Routes keep one cycle of driving at full speed and the circumscribed radius from obstacles,
-    /// where they can.
+    /// Routes keep the distance covered in one cycle at full speed plus the circumscribed radius
+    /// from obstacles, if possible.
     fn for_robot(&self, robot: &Robot) -> Option<Stack> {
         let clearance_m = robot.preferred_clearance_m();
         let mut stack = Stack {
@@ -260,7 +260,7 @@ impl Parts {
             stack.controller.recoveries = Cow::Borrowed(without_route);
         }
         if self.name == KEYWAY.name {
-            // Its local planner turns and backs up by itself, before it has to.
+            // Its local planner rotates and backs up by itself, before it has to.
             let others = &[RecoveryKind::Replan, RecoveryKind::Manoeuvre, RecoveryKind::Wait];
             stack.controller.recoveries = Cow::Borrowed(others);
         }
@@ -304,7 +304,7 @@ impl Parts {
     }
 }
 
-/// A planner under a corner rule, where it has one.
+/// Applies a corner rule to a planner, if it has one.
 fn with_corners(mut planner: PlannerConfig, corners: CornerRule) -> PlannerConfig {
     match &mut planner {
         PlannerConfig::AStar(config) => config.corners = corners,
@@ -385,7 +385,7 @@ mod tests {
             let stack = Stack::by_name(name, &Robot::small()).unwrap();
             assert_eq!(stack.smoother.safe_distance_m(0.05), stack.map.clearance_m, "{name}");
         }
-        // Without a route there is none to look after, and none to plan anew.
+        // Without a route there is none to watch, and none to replan.
         let to_goal = Stack::by_name("dwa-to-goal", &Robot::small()).unwrap().controller;
         assert!(!to_goal.watch_route && !to_goal.recoveries.contains(&RecoveryKind::Replan));
     }

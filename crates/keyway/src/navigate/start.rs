@@ -1,10 +1,10 @@
-//! True if a robot can begin where it stands.
+//! Checks on the start position of a robot.
 //!
-//! A localisation is off by a little, and what it tells may be a place at which the robot touches a
-//! wall. So a start counts when the robot fits anywhere as near to it as that error
-//! ([`ControllerConfig::start_error_m`](super::ControllerConfig::start_error_m)). Its route then
-//! begins at that place. The local planner and the stop rule let it leave what is too near, but not
-//! come nearer.
+//! A localisation has a small error, so the reported position may be one at which the robot
+//! touches a wall. A start is therefore accepted if the robot fits at any position within that
+//! error ([`ControllerConfig::start_error_m`](super::ControllerConfig::start_error_m)). Its route
+//! then starts at that position. The local planner and the stop rule let the robot leave the
+//! obstacle that is too close, but not approach it.
 
 use crate::geometry::{Point, Pose};
 use crate::map::{Clearance, Hindrance};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// A robot that begins nearer to something than it can stand.
+/// A start that is closer to an obstacle than the robot fits.
 #[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[error(
     "the robot is told to be nearer to something than it can stand ({why}), and leaves it first: the localisation is off by \
@@ -21,25 +21,26 @@ use thiserror::Error;
 )]
 #[non_exhaustive]
 pub struct StartTooNear {
-    /// The obstacle that is too near.
+    /// The obstacle that is too close.
     pub why: Hindrance,
-    /// A place at which the robot fits: its route begins there \[m\].
+    /// A position at which the robot fits, at which its route starts \[m\].
     pub nearest: Point,
     /// Its distance from the start \[m\].
     pub off_m: f64,
 }
 
-/// True if a footprint touches an obstacle or the border of the map, or is beyond it: what the
-/// simulator calls a contact.
+/// True if a footprint touches an obstacle or the border of the map, or is beyond it: the contact
+/// test of the simulator.
 pub fn touches(footprint: &Footprint, pose: Pose, clearance: &Clearance<'_>) -> bool {
-    // Farther away than this, a distance says nothing about contact.
+    // Beyond this distance, contact is impossible.
     const REACH_M: f64 = 1e-6;
     footprint.to_border_m(pose, clearance) <= 0.0
         || footprint.distance_m(pose, clearance, REACH_M) <= 0.0
 }
 
-/// True if a footprint touches something whatever its heading. A controller is given the heading
-/// later, so one without contact is enough; they are tried degree by degree.
+/// True if a footprint touches an obstacle at every heading. The heading is known to the
+/// controller only later, so one heading without contact is enough; they are tried in steps of
+/// one degree.
 pub(super) fn touches_at_every_heading(
     footprint: &Footprint,
     position: Point,
@@ -53,8 +54,8 @@ pub(super) fn touches_at_every_heading(
     (0..headings).all(|degree| touches(footprint, at(degree), clearance))
 }
 
-/// The nearest of some places around a position, no farther away than `within_m`, at which a
-/// footprint touches nothing at some heading and nothing is nearer than its inscribed radius.
+/// The nearest of some positions around the given one, within `within_m`, at which a footprint
+/// touches nothing at some heading and keeps its inscribed radius to all obstacles.
 pub(super) fn nearest_fitting(
     footprint: &Footprint,
     position: Point,
@@ -94,7 +95,7 @@ mod tests {
         assert!(!touches(&round, 2.5, 1.401) && !touches(&round, 0.401, 1.5));
         assert!(touches(&round, 2.5, 1.4), "the wall");
         assert!(touches(&round, 0.4, 1.5) && touches(&round, -1.0, 1.5), "the border");
-        // It fits along the lane, and at no heading when it is as wide as the lane.
+        // It fits along the lane, and at no heading if it is as wide as the lane.
         let along = Footprint::rectangle(2.0, 0.9).unwrap();
         assert!(!touches(&along, 2.5, 1.5));
         let wide = Footprint::rectangle(2.0, 1.0).unwrap();
@@ -108,15 +109,15 @@ mod tests {
         let place = |footprint: &Footprint, x, y, within_m| {
             nearest_fitting(footprint, Point::new(x, y), within_m, &clearance)
         };
-        // It fits from y = 1.4 m to 1.6 m, without touching.
+        // It fits from y = 1.4 m to 1.6 m without contact.
         let round = Footprint::circle(0.4).unwrap();
         let found = place(&round, 2.5, 1.35, 0.1).unwrap();
         assert!(found.y > 1.4 && found.distance(Point::new(2.5, 1.35)) <= 0.1, "{found:?}");
         assert_eq!(place(&round, 2.5, 1.35, 0.04), None);
         assert_eq!(place(&round, 2.5, 1.35, 0.0), None);
-        // Between two walls that are nearer than it is wide.
+        // Between two walls whose distance is less than its width.
         assert_eq!(place(&Footprint::circle(0.52).unwrap(), 2.5, 1.5, 0.1), None);
-        // In a corner with the border it gets away from both.
+        // In a corner with the border, it gets away from both.
         let found = place(&round, 0.37, 1.37, 0.05).unwrap();
         assert!(found.x > 0.4 && found.y > 1.4, "{found:?}");
         // A rectangle that fits along the lane only.

@@ -16,64 +16,64 @@ use crate::robot::Robot;
 use crate::route::Route;
 use serde::{Deserialize, Serialize};
 
-/// A goal, the route there, and what is remembered on the way.
+/// A goal, the route to it, and the state of driving there.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Task {
     /// Way-points, then the goal, each with the length of the leg that leads there \[m\].
     pub(super) stops: Vec<(Point, f64)>,
-    /// Number of them that the robot has passed; never the goal.
+    /// Number of stops that the robot has passed; never the goal.
     pub(super) passed: usize,
     /// Indices of the way-points that were skipped, in order.
     pub(super) skipped: Vec<usize>,
-    /// The way-points that were asked for, where a stop may be a place beside one.
+    /// The requested way-points; a stop may be a position beside one.
     pub(super) asked: Vec<Point>,
     pub(super) goal: Goal,
-    /// The path from elsewhere that the route is a part of.
+    /// The external path that the route is a part of.
     pub(super) given: Option<GivenPath>,
-    /// To the next of the stops.
+    /// Route to the next stop.
     pub(super) route: Route,
     /// Length of the route that the robot has covered \[m\].
     pub(super) covered_m: f64,
     pub(super) mode: Mode,
-    /// The place to which the last cycle drove; before the first one the next stop.
+    /// Guide point of the last cycle; before the first one, the next stop.
     pub(super) guidance: Guidance,
     pub(super) guide_memory: GuideMemory,
     /// Memory of the local planner.
     pub(super) memory: DriveMemory,
-    /// No place of the route is in sight.
+    /// True if no point of the route is in line of sight.
     pub(super) is_lost: bool,
     pub(super) watch: Watch,
     pub(super) hold: Hold,
-    /// Whom it met.
+    /// Moving obstacle that the robot has met.
     #[serde(default)]
     pub(super) met: Met,
     pub(super) order: RecoveryOrder,
     /// Duration of the last wait between two attempts at a route \[s\].
     pub(super) waited_s: f64,
-    /// The place from which no manoeuvre was found that leads beyond the point of no return: near
-    /// it the robot is not led any more.
+    /// Position from which no manoeuvre was found that leads beyond the point of no return: near
+    /// it, none is tried again.
     #[serde(default)]
     pub(super) led_from: Option<Point>,
     /// The obstacle that the robot has to leave first, until it has.
     pub(super) too_near: Option<StartTooNear>,
 }
 
-/// A path from elsewhere that is followed.
+/// An external path that is followed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct GivenPath {
     pub(super) path: Polyline,
-    /// Length of it that the robot has covered \[m\].
+    /// Length of the path that the robot has covered \[m\].
     pub(super) covered_m: f64,
 }
 
 impl Task {
-    /// A path from elsewhere is followed from no farther than this \[m\].
+    /// Largest distance of an external path from the robot at its start \[m\].
     pub(super) fn near_m(robot: &Robot) -> f64 {
         (4.0 * robot.footprint.circumscribed_radius_m()).max(1.0)
     }
 
-    /// The task to drive from a start by way of some points to a goal, with the first route, on the
-    /// map that a router knows.
+    /// The task of driving from a start to a goal by way-points, with the first route, on the map
+    /// of a router.
     pub(super) fn plan(
         router: &mut Router,
         known: &OccupancyGrid,
@@ -96,7 +96,7 @@ impl Task {
         Ok(Self::new(stops, goal, route, too_near))
     }
 
-    /// The task to drive along a path from elsewhere to its end.
+    /// The task of driving along an external path to its end.
     pub(super) fn along(
         router: &Router,
         parts: &FittedStack,
@@ -170,7 +170,8 @@ impl Task {
         self.passed + 1 == self.stops.len()
     }
 
-    /// True on the way to the next stop, and not to a place beside somebody else's way.
+    /// True on the route to the next stop, and not to a position beside the path of a moving
+    /// obstacle.
     pub(super) const fn is_on_its_way(&self) -> bool {
         !matches!(self.mode, Mode::MakingWay { .. })
     }
@@ -184,7 +185,7 @@ impl Task {
     }
 }
 
-/// The legs of a route, each with where it ends.
+/// The legs of a route, each with its end.
 fn plan_legs(
     router: &mut Router,
     known: &OccupancyGrid,

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A time by the clock of whoever observes, in whole microseconds: what happens between two times
-/// is then the same to the last bit, however long ago the clock began.
+/// A time by the clock of the observations, in whole microseconds. Differences of times are thus
+/// identical to the last bit for any epoch of the clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "i64", into = "i64")]
 pub(super) struct Time {
@@ -26,8 +26,8 @@ impl From<Time> for i64 {
 }
 
 impl Time {
-    /// The farthest time from 0 \[s\]: up to here a microsecond is larger than the rounding of a
-    /// stamp.
+    /// Largest absolute time \[s\]: up to it, a microsecond is larger than the rounding error of
+    /// a stamp.
     pub(super) const FARTHEST_S: f64 = 4e9;
 
     /// The time of a stamp \[s\]; `None` for one that is not finite or absurdly far away.
@@ -36,23 +36,23 @@ impl Time {
         is_usable.then(|| Self { micros: to_micros(stamp_s) })
     }
 
-    /// Since an earlier time \[s\]; negative since a later one.
+    /// Time since an earlier one \[s\]; negative since a later one.
     pub(super) const fn since_s(self, earlier: Self) -> f64 {
         (self.micros - earlier.micros) as f64 / 1e6
     }
 
-    /// The time this long after it.
+    /// The time that is later by this duration.
     pub(super) fn after_s(self, duration_s: f64) -> Self {
         Self { micros: self.micros + to_micros(duration_s) }
     }
 
-    /// Its stamp \[s\].
+    /// The time as a stamp \[s\].
     pub(super) const fn stamp_s(self) -> f64 {
         self.micros as f64 / 1e6
     }
 }
 
-/// Saturates; nothing for NaN.
+/// Saturates; 0 for NaN.
 const fn to_micros(duration_s: f64) -> i64 {
     (duration_s * 1e6).round() as i64
 }

@@ -1,46 +1,47 @@
-//! Ground on which movers walk, and for how long the robot has been held up beside it.
+//! Areas in which moving obstacles walk, and the time for which the robot has been held up beside
+//! them.
 //!
-//! Somebody who walks to and fro in a gap may be waited for in vain, though there is a way around.
-//! Nobody knows how long the wait will be. So the robot goes around once that takes no longer than
-//! it has been held up already, as one rents skis until the rent has cost as much as buying them
-//! would (\[Karlin1988\]): then it loses no more than twice what somebody loses who knows it
-//! beforehand, but for the time between two looks.
+//! A pedestrian that walks back and forth in a gap may block it indefinitely although a detour
+//! exists, and the waiting time is unknown. The robot therefore takes the detour once it takes no
+//! longer than the robot has been held up already, as in the ski-rental problem, where one rents
+//! until the rent has cost as much as buying (\[Karlin1988\]). It then loses at most twice as
+//! much as with the waiting time known beforehand, apart from the time between two checks.
 
 use crate::geometry::{Disc, Point, Segment, Shift};
 use crate::robot::Robot;
 use crate::sense::Mover;
 use serde::{Deserialize, Serialize};
 
-/// Where movers were seen lately, and around which of it the robot goes.
+/// Recent positions of moving obstacles, and the areas that the robot avoids.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct WalkedGround {
     steps: Vec<Step>,
-    /// The discs of those that are avoided.
+    /// Discs of the avoided steps.
     avoided: Vec<Disc>,
 }
 
-/// A mover was seen here.
+/// A position at which a moving obstacle was seen.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Step {
     disc: Disc,
-    /// Since it was last seen here \[s\].
+    /// Time since a moving obstacle was last seen here \[s\].
     age_s: f64,
-    /// It had gone, and came back.
+    /// True if the obstacle had left, and came back.
     is_walked_again: bool,
     is_avoided: bool,
 }
 
 impl WalkedGround {
-    /// Who has not come back for so long does not walk here any more \[s\].
+    /// Time without a return after which a position is forgotten \[s\].
     const FORGET_S: f64 = 20.0;
 
-    /// Who has been away for so long comes back \[s\].
+    /// Time of absence after which a new sighting counts as a return \[s\].
     const AWAY_S: f64 = 1.0;
 
-    /// Steps that are remembered; of more, the oldest ones are forgotten.
+    /// Maximum number of steps; beyond it, the oldest ones are dropped.
     const MOST: usize = 128;
 
-    /// Takes in where movers are seen.
+    /// Takes in the moving obstacles that are seen.
     pub(super) fn note(&mut self, movers: &[Mover], elapsed_s: f64) {
         self.steps.iter_mut().for_each(|step| step.age_s += elapsed_s);
         self.steps.retain(|step| step.age_s <= Self::FORGET_S);
@@ -49,7 +50,7 @@ impl WalkedGround {
         self.list_avoided();
     }
 
-    /// Moves it with the robot, to where that turns out to be.
+    /// Moves the steps along with a correction of the robot's pose.
     pub(super) fn shift(&mut self, shift: &Shift) {
         let steps = self.steps.iter_mut();
         steps.for_each(|step| step.disc.centre = shift.point(step.disc.centre));
@@ -74,10 +75,10 @@ impl WalkedGround {
         self.steps.push(Step { disc, age_s: 0.0, is_walked_again: false, is_avoided: false });
     }
 
-    /// The ground on which movers walk again and again nearer than `needed_m` to one of the
-    /// segments, what is avoided already, and all ground from which these are not farther than
-    /// twice that: between them the robot does not fit. Somebody who has crossed the way once has
-    /// left it free.
+    /// The area to avoid: discs closer than `needed_m` to one of the segments on which moving
+    /// obstacles walk repeatedly, those that are avoided already, and all discs at most twice
+    /// that distance from these, since the robot does not fit between them. An obstacle that has
+    /// crossed the route only once has left it free.
     pub(super) fn across(
         &self,
         way: &(impl Iterator<Item = Segment> + Clone),
@@ -101,13 +102,13 @@ impl WalkedGround {
         joined
     }
 
-    /// The robot goes around this ground, and no other.
+    /// Sets the avoided area, in place of the last one.
     pub(super) fn avoid(&mut self, ground: &[Disc]) {
         self.steps.iter_mut().for_each(|step| step.is_avoided = ground.contains(&step.disc));
         self.list_avoided();
     }
 
-    /// What the robot goes around.
+    /// The avoided area.
     pub(super) fn avoided(&self) -> &[Disc] {
         &self.avoided
     }
@@ -118,7 +119,7 @@ impl WalkedGround {
     }
 }
 
-/// True if a disc comes nearer than `needed_m` to a way.
+/// True if a disc comes closer than `needed_m` to a route.
 pub(super) fn is_across(
     disc: &Disc,
     way: &(impl Iterator<Item = Segment> + Clone),
@@ -134,24 +135,24 @@ impl Step {
     }
 }
 
-/// How long a robot has stayed near a place.
+/// Time for which a robot has stayed near a position.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Hold {
     at: Option<Point>,
     held_s: f64,
-    /// Since a way around was looked for \[s\].
+    /// Time since the last search for a detour \[s\].
     unlooked_s: f64,
 }
 
 impl Hold {
-    /// A way around is looked for each time when so much more time has passed \[s\].
+    /// Time between two searches for a detour \[s\].
     const LOOK_S: f64 = 0.5;
 
-    /// A robot is held up while it comes no farther than its own diameter, or than it drives at
+    /// A robot is held up while it gets no farther than its own diameter, or than it drives at
     /// full speed in this time \[s\].
     const AWAY_S: f64 = 0.5;
 
-    /// Notes where the robot is, this long after it was noted last \[s\].
+    /// Updates the position of the robot, after this time since the last update \[s\].
     pub(super) fn note(&mut self, position: Point, robot: &Robot, elapsed_s: f64) {
         let away_m = Self::AWAY_S * robot.limits.v_max_mps;
         let away_m = away_m.max(2.0 * robot.footprint.circumscribed_radius_m());
@@ -167,9 +168,9 @@ impl Hold {
         self.held_s
     }
 
-    /// How long the robot has been held up, when it is time to look for a way around \[s\].
+    /// Time for which the robot has been held up, if a search for a detour is due \[s\].
     pub(super) fn look(&mut self) -> Option<f64> {
-        // A sum of cycles is that time, rounded or not.
+        // A sum of cycles reaches that time despite rounding.
         const ROUNDING_S: f64 = 1e-9;
         let is_time = self.unlooked_s >= Self::LOOK_S - ROUNDING_S;
         is_time.then(|| {
@@ -266,7 +267,7 @@ mod tests {
         let (mut hold, robot) = (Hold::default(), Robot::small());
         let mut held = Vec::new();
         for cycle in 1..=12 {
-            // To and fro by 10 cm.
+            // Back and forth by 10 cm.
             hold.note(Point::new(0.1 * f64::from(cycle % 2), 0.0), &robot, 0.1);
             held.extend(hold.look().map(|held_s| (cycle, held_s)));
         }

@@ -1,20 +1,20 @@
-//! What is watched while a robot drives: its progress, and the rest of its route.
+//! Monitoring of a drive: the progress, and the rest of the route.
 
 use super::{WayLeft, WayProgress};
 use crate::geometry::{Point, Polyline, Segment, Square};
 use crate::map::{CellState, CellWindow, Clearance, Edit, GridFrame};
 use serde::{Deserialize, Serialize};
 
-/// How long the robot has made no progress.
+/// Time for which the robot has made no progress.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Watch {
     /// Age of the route, or time since the last recovery \[s\].
     pub(super) route_s: f64,
-    /// How long nothing has let the robot drive \[s\].
+    /// Time for which no admissible motion was found \[s\].
     pub(super) blocked_s: f64,
-    /// Time without progress along the remaining way \[s\].
+    /// Time without progress along the rest of the route \[s\].
     pub(super) no_progress_s: f64,
-    /// How long the robot has waited for something that moves \[s\].
+    /// Time for which the robot has waited for a moving obstacle \[s\].
     mover_s: f64,
     progress: WayProgress,
 }
@@ -28,9 +28,9 @@ impl Watch {
         progress: WayProgress::NEW,
     };
 
-    /// Notes a cycle of driving. A way that is shorter by `progress_m` is progress. Where the robot
-    /// waits for something that moves, its time does not count for up to `waits_s`, which is 0
-    /// otherwise.
+    /// Updates the times after a cycle of driving. A decrease of the remaining length by
+    /// `progress_m` is progress. While the robot waits for a moving obstacle, the time does not
+    /// count for up to `waits_s`, which is 0 otherwise.
     pub(super) fn note_cycle(
         &mut self,
         (left, progress_m): (WayLeft, f64),
@@ -53,20 +53,20 @@ impl Watch {
     }
 }
 
-/// What is left of a route.
+/// The rest of a route.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RestOfRoute<'a> {
     pub(super) path: &'a Polyline,
-    /// How far along the path the robot has come \[m\].
+    /// Progress of the robot along the path \[m\].
     pub(super) covered_m: f64,
 }
 
 impl RestOfRoute<'_> {
-    /// Places of the path between the robot and its guide point that are tried in place of the
-    /// latter.
+    /// Number of points of the path between the robot and its guide point that are tried in place
+    /// of the latter.
     const STATIONS: u32 = 32;
 
-    /// The segments that are not behind the robot; the first one from where it is.
+    /// The segments ahead of the robot; the first one starts at its progress.
     pub(super) fn segments(&self) -> impl Iterator<Item = Segment> + Clone + '_ {
         let mut begin_m = 0.0;
         self.path.segments().filter_map(move |segment| {
@@ -77,7 +77,7 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// The segments that begin less than this along the way from the robot \[m\].
+    /// The segments that start less than this ahead of the robot along the path \[m\].
     pub(super) fn beginning(&self, length_m: f64) -> impl Iterator<Item = Segment> + Clone + '_ {
         self.segments().scan(0.0, move |along_m, segment| {
             let begins_m = *along_m;
@@ -86,10 +86,10 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// True when one of the cells that have just become occupied comes nearer than `needed_m`.
+    /// True if a cell that has just become occupied is closer than `needed_m`.
     ///
-    /// Costs a few operations for each segment, and for each cell where a segment comes near the
-    /// window of all of them.
+    /// Costs a few operations per segment, and per cell for the segments near the bounding window
+    /// of all these cells.
     pub(super) fn is_cut(&self, edits: &[Edit], frame: &GridFrame, needed_m: f64) -> bool {
         let marked = || edits.iter().filter(|edit| edit.state == CellState::Occupied);
         let windows = marked().map(|edit| CellWindow { low: edit.cell, high: edit.cell });
@@ -110,8 +110,8 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// The farthest place of the path, up to `guide_m` along it, to which the straight way from
-    /// `position` keeps `clearance_m`; `None` where there is none farther than `least_m` from
+    /// The farthest point of the path, up to `guide_m` along it, to which the straight line from
+    /// `position` keeps `clearance_m`; `None` if none of them is farther than `least_m` from
     /// there.
     pub(super) fn farthest_in_sight(
         &self,
@@ -129,8 +129,8 @@ impl RestOfRoute<'_> {
         })
     }
 
-    /// True if another path leads the same way: from the robot on, no vertex of either is farther
-    /// than `apart_m` from the other.
+    /// True if another path follows the same route: ahead of the robot, no vertex of either is
+    /// farther than `apart_m` from the other.
     pub(super) fn is_same_way(&self, other: &Polyline, apart_m: f64) -> bool {
         let whole = RestOfRoute { path: other, covered_m: 0.0 };
         self.is_along(&whole, apart_m) && whole.is_along(self, apart_m)
@@ -167,9 +167,9 @@ mod tests {
         let rest = RestOfRoute { path: &path, covered_m: 3.0 };
         let is_cut = |edits: &[Edit], needed_m| rest.is_cut(edits, map.frame(), needed_m);
         let occupied = |x, y| edit(x, y, CellState::Occupied);
-        // The square from x = 4 to 5 and from y = 1 to 2 is 0.5 m from the way.
+        // The square from x = 4 to 5 and from y = 1 to 2 is 0.5 m from the route.
         assert!(is_cut(&[occupied(4, 1)], 0.51) && !is_cut(&[occupied(4, 1)], 0.49));
-        // 0.5 m from the way behind, 0.707 m from where the robot is.
+        // 0.5 m from the part behind the robot, 0.707 m from the robot itself.
         assert!(!is_cut(&[occupied(2, 1)], 0.7) && is_cut(&[occupied(2, 1)], 0.72));
         assert!(!is_cut(&[edit(4, 0, CellState::Free)], 1.0) && !is_cut(&[], 1.0));
         assert!(is_cut(&[occupied(0, 5), occupied(6, 3)], 0.1), "the last leg");
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn what_is_in_sight_replaces_what_is_not() {
-        // The wall hides the end of the path from the robot.
+        // The wall occludes the end of the path from the robot.
         let map = OccupancyGrid::from_ascii(&[
             "........", "####....", "####....", "####....", "####....", "........",
         ]);
@@ -187,7 +187,7 @@ mod tests {
         let rest = RestOfRoute { path: &path, covered_m: 0.5 };
         let seen = rest.farthest_in_sight(position, 10.0, [0.2, 0.1], &obstacles).unwrap();
         assert!(seen.x == 6.5 && seen.y > 0.5 && seen.y < 2.0, "{seen:?}");
-        // Nothing but what is nearer than the least.
+        // Only points that are closer than the minimum.
         assert_eq!(rest.farthest_in_sight(position, 0.6, [0.2, 0.3], &obstacles), None);
         assert_eq!(rest.farthest_in_sight(position, 10.0, [2.0, 0.1], &obstacles), None);
     }

@@ -1,5 +1,5 @@
-//! Shared parts of any-angle planners: the search of the Theta* family, and the path that its
-//! parents give.
+//! Shared parts of any-angle planners: the search loop of the Theta* family, and the path that
+//! follows from its parents.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanCost, PlanError, Stop};
@@ -10,10 +10,12 @@ use crate::search::{
     Workspace, cells,
 };
 
-/// Which way to a cell a search records, and when it checks whether that way is free.
+/// The choice of parents in a search of the Theta* family, and the time of the line-of-sight
+/// checks.
 pub(super) trait Ways {
-    /// The way to a neighbour of an expanded node, and the node that it comes from: the node
-    /// itself, or its parent. `known` is the value of the known way; `None` leaves it as it is.
+    /// The best path to a neighbour of an expanded node: the node that it comes from (the expanded
+    /// node itself or its parent) and the step. `known` is the value of the known path; `None`
+    /// keeps that path.
     fn way(
         &self,
         lines: &Lines<'_>,
@@ -23,8 +25,8 @@ pub(super) trait Ways {
         known: Option<u64>,
     ) -> Option<(Expanded, GridStep)>;
 
-    /// The true parent and value of a node just taken from the open list, if it was put in with
-    /// others.
+    /// The true parent and value of a node just taken from the open list, if it was inserted with
+    /// provisional ones.
     fn corrected(
         &self,
         lines: &Lines<'_>,
@@ -36,7 +38,7 @@ pub(super) trait Ways {
     }
 }
 
-/// The lines and the steps between the cells of a map.
+/// Lines of sight and grid steps between the cells of a map.
 pub(super) struct Lines<'m> {
     map: &'m SearchMap,
     sight: Sight<'m>,
@@ -52,24 +54,24 @@ impl<'m> Lines<'m> {
         }
     }
 
-    /// The straight line between two cells, its length rounded down, whether it is free or not.
+    /// The straight line between two cells, free or not; its length is rounded down.
     pub(super) fn line(&self, from: CellIndex, to: CellIndex) -> GridStep {
         let (a, b) = (self.map.cell(from), self.map.cell(to));
         GridStep { to, cost: Euclidean.length(a.x.abs_diff(b.x), a.y.abs_diff(b.y)) }
     }
 
-    /// True if two cells see each other.
+    /// True if the line of sight between two cells is free.
     pub(super) fn is_free(&self, a: CellIndex, b: CellIndex) -> bool {
         self.sight.is_free(self.map.cell(a), self.map.cell(b))
     }
 
-    /// The steps from a cell, which are also those to it.
+    /// Visits the steps from a cell; they are also the steps to it.
     pub(super) fn for_each_step(&self, at: CellIndex, visit: impl FnMut(GridStep)) {
         self.steps.for_each(at, visit);
     }
 }
 
-/// A search of the Theta* family, from the query's start to its goal, into a plan.
+/// Runs a search of the Theta* family from the query's start to its goal and writes the plan.
 pub(super) fn plan(
     ways: &impl Ways,
     map: &SearchMap,
@@ -142,7 +144,7 @@ fn correct(
     node
 }
 
-/// Puts the neighbours of a node into the open list.
+/// Inserts the neighbours of a node into the open list.
 fn expand(
     ways: &impl Ways,
     lines: &Lines<'_>,
@@ -167,7 +169,7 @@ fn expand(
     });
 }
 
-/// Drops the waypoints at which a path goes straight on.
+/// Drops the waypoints at which a path does not turn.
 pub(super) fn keep_turns(cells: &mut Vec<Cell>) {
     let mut kept = 0;
     for i in 0..cells.len() {
@@ -197,7 +199,7 @@ pub(super) fn length(cells: &[Cell]) -> PlanCost {
         let dy = f64::from(pair[0].y.abs_diff(pair[1].y));
         (dx * dx + dy * dy).sqrt()
     };
-    // The sum of no floating-point numbers at all would be -0.
+    // An empty floating-point sum would be -0.
     PlanCost::Length(cells.windows(2).map(leg).fold(0.0, |sum, leg| sum + leg))
 }
 
@@ -208,14 +210,14 @@ pub(super) mod watched {
     use crate::plan::{GlobalPlanner, Plan};
     use crate::search::{Observer, Query, Side, Workspace};
 
-    /// A report about (x, y): its parent, and g.
+    /// One report: the event, the cell (x, y), its parent, and g.
     pub(in crate::plan) type Line = (&'static str, (i32, i32), (i32, i32), f64);
 
-    /// All reports, in order.
+    /// Collects all reports, in order.
     #[derive(Default)]
     pub(in crate::plan) struct Told(pub(in crate::plan) Vec<Line>);
 
-    /// Values are rounded to 1e-8 cells.
+    /// Rounds to 1e-6 cells: the values of the search are exact to 1e-8 cells only.
     pub(in crate::plan) fn rounded(g: f64) -> f64 {
         (g * 1e6).round() / 1e6
     }
@@ -234,7 +236,7 @@ pub(super) mod watched {
         }
     }
 
-    /// A plan, and what was reported meanwhile.
+    /// A plan, and the reports of its search.
     pub(in crate::plan) fn reported(
         planner: &impl GlobalPlanner,
         rows: &[&str],
@@ -273,7 +275,7 @@ mod tests {
         assert_eq!(kept(&[(3, 4)]), [(3, 4)]);
         assert_eq!(kept(&[(0, 0), (2, 1), (4, 2), (10, 5)]), [(0, 0), (10, 5)]);
         assert_eq!(kept(&[(0, 0), (2, 1), (4, 3), (6, 5)]), [(0, 0), (2, 1), (6, 5)]);
-        // There and back again is a turn.
+        // A reversal is a turn.
         assert_eq!(kept(&[(0, 0), (2, 0), (1, 0)]), [(0, 0), (2, 0), (1, 0)]);
     }
 

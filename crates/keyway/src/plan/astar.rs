@@ -17,16 +17,17 @@
 //! | Open, Closed | the open list; a bit of each node |
 //!
 //! # The traditional A* of \[Wang2019\]
-//! There g(n) is the straight line from the start to n, not the cost of a path. With `g =
-//! "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"` the search is that one: an
-//! open cell that is met again has the same f, which is "smaller or equal" (step 5), so its parent
-//! becomes the cell expanded last; closed cells are skipped; the search ends when the goal appears
-//! in the open list (step 3), which its last expanded neighbour put there. A cell is closed once
-//! and after its parent, so the search ends, and the parents of the goal lead back to the start
-//! over legal steps. That path need not be a shortest one.
+//! There g(n) is the straight line from the start to n, not the cost of a path. The parameters
+//! `g = "straight-line"`, `heuristic = "euclidean"` and `corners = "allow"` give exactly that
+//! search. An open cell that is generated again has the same f, which is "smaller or equal" (step
+//! 5), so its parent becomes the cell expanded last. Closed cells are skipped. The search ends
+//! when the goal appears in the open list (step 3), inserted by the cell expanded last. A cell is
+//! closed once and after its parent, so the search terminates, and the parents of the goal lead
+//! back to the start over legal steps. That path need not be a shortest one.
 //!
 //! # Where this differs from the papers
-//! Ties, on which the papers are silent. In the traditional A* a larger straight-line g goes first.
+//! Tie-breaking, on which the papers are silent. In the traditional A* a larger straight-line g
+//! goes first.
 //!
 //! # Errors / cost
 //! See [`PlanError`]. O(n log n) in the number n of reached cells; 16 bytes per cell of the padded
@@ -60,7 +61,7 @@ pub enum PathCost {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct AStarConfig {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
     /// The estimate of the remaining cost: `octile`, `euclidean`, `manhattan` or `mean`. Paths are
     /// shortest ones with the first two.
@@ -84,10 +85,10 @@ pub struct AStar {
 }
 
 impl AStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "astar";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: AStarConfig) -> Self {
         Self { config }
     }

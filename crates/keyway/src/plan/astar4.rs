@@ -40,10 +40,10 @@ pub struct AStar4 {
 }
 
 impl AStar4 {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "astar4";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: AStar4Config) -> Self {
         Self { config }
     }

@@ -1,4 +1,4 @@
-//! The loop under every one-sided planner.
+//! The search loop of every one-sided planner.
 
 use super::{Plan, PlanError, Stop, path_cost};
 use crate::map::SearchMap;
@@ -7,8 +7,9 @@ use crate::search::{
     Workspace, cells,
 };
 
-/// Evaluates an expression with `$cost` bound to what steps cost on a map and `$seen` to the
-/// observer, if any: one copy of the search for each, so that nothing is looked up inside.
+/// Evaluates an expression with `$cost` bound to the step costs of a map and `$seen` to the
+/// observer, if any. Each combination gets its own copy of the search, so that the inner loop does
+/// no dispatch.
 macro_rules! with_costs {
     ($map:expr, $observer:expr, $cost:ident, $seen:ident => $body:expr) => {
         match ($crate::search::UnknownCost::of($map), $observer) {
@@ -34,7 +35,7 @@ macro_rules! with_costs {
 
 pub(super) use with_costs;
 
-/// A best-first search under a rule, from the query's start to its goal, into a plan.
+/// Runs a best-first search under a rule from the query's start to its goal and writes the plan.
 pub(super) fn plan(
     map: &SearchMap,
     query: &Query,
@@ -88,7 +89,7 @@ fn run<R: Rule>(
     }
 }
 
-/// An error when the query's budget is used up.
+/// Returns an error if the query's budget is used up.
 pub(super) fn check_budget(query: &Query, statistics: SearchStatistics) -> Result<(), PlanError> {
     match query.budget {
         Some(budget) if statistics.expanded() >= budget => {

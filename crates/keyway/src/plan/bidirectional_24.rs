@@ -1,13 +1,13 @@
-//! Bidirectional A* with the 24 neighbours of the 5 x 5 \[Gao2019\]: a map and two cells -> some
-//! path whose steps take 16 directions.
+//! Bidirectional A* with the 24 neighbours of the 5 x 5 block \[Gao2019\]: a map and two cells ->
+//! some path whose steps take 16 directions.
 //!
-//! Like [`super::BidirectionalAStar`], but each side steps to every cell of the 5 x 5 around a node
-//! that a straight line reaches over free cells. Paths turn less and are shorter than those of 8
-//! neighbours, and take more work.
+//! Like [`super::BidirectionalAStar`], but each side steps to every cell of the 5 x 5 block around
+//! a node that a straight line reaches over free cells. Paths turn less and are shorter than with
+//! 8 neighbours, at a higher search effort.
 //!
 //! # Source
-//! \[Gao2019\], known here only from \[Wang2019\], where it is reference 18: it searches from both
-//! ends, in more directions.
+//! \[Gao2019\], known here only through \[Wang2019\], where it is reference 18: it searches from
+//! both start and goal, in more directions.
 //!
 //! | there | here |
 //! |---|---|
@@ -15,18 +15,18 @@
 //! | h | [`Bidirectional24Config::heuristic`], to the other side's root |
 //!
 //! # Where this differs from the paper
-//! All of it is a reading:
-//! - The 24 offsets of the 5 x 5, with every swept cell checked.
-//! - Turn, meeting and order are those of [`super::BidirectionalAStar`]. Only the nodes of a side
-//!   can be met: cells in the middle of a long step are not reached.
-//! - The straight line is the estimate by default; the octile distance is larger than a knight's
-//!   step.
+//! The original paper was not available, so all of this is an interpretation:
+//! - The 24 offsets of the 5 x 5 block, with every swept cell checked.
+//! - Turn, meeting and order are those of [`super::BidirectionalAStar`]. The sides can only meet
+//!   at nodes: cells in the middle of a long step are not nodes.
+//! - The straight line is the default estimate; the octile distance exceeds the length of a
+//!   knight's step.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; a path that exists is found, as every single step is among the 24. Maps with
-//! penalised cells are refused: a long step would have to weigh every cell that it sweeps. O(n log
-//! n) in the number n of reached cells, with 24 look-ups per expansion; 32 bytes per cell of the
-//! padded map, of which only the pages of reached cells are touched.
+//! See [`PlanError`]. The planner is complete, as every single step is among the 24. Maps with
+//! penalised cells are refused: the cost of a long step would depend on every cell that it sweeps.
+//! O(n log n) in the number n of reached cells, with 24 look-ups per expansion; 32 bytes per cell
+//! of the padded map, of which only the pages of reached cells are touched.
 
 use super::any_angle::length;
 use super::heuristic::with_metric;
@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Bidirectional24Config {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
     /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
     /// `mean`.
@@ -57,17 +57,17 @@ impl Default for Bidirectional24Config {
     }
 }
 
-/// Bidirectional A* with 24 neighbours that stops where its sides first meet; not optimal.
+/// Bidirectional A* with 24 neighbours that stops at the first meeting of its sides; not optimal.
 #[derive(Clone, Debug, Default)]
 pub struct Bidirectional24 {
     config: Bidirectional24Config,
 }
 
 impl Bidirectional24 {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "bidirectional-24";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: Bidirectional24Config) -> Self {
         Self { config }
     }
@@ -142,11 +142,11 @@ mod tests {
     use crate::map::{Cell, LayerConfig, OccupancyGrid, UnknownPolicy};
     use crate::plan::two_sided::drawn;
 
-    /// S = (0, 2), G = (5, 0). Best of S is the knight's step to (2, 1): f = 2.236 + 3.162 = 5.398;
-    /// (1, 1) has 1.414 + 4.123 = 5.537, (2, 0) 2.828 + 3 = 5.828. Best of G is (4, 0) with 1 +
-    /// 4.472 = 5.472; the knight's step to (4, 2) has 2.236 + 4 = 6.236, and the one to (3, 1) is
-    /// blocked. From (2, 1) the wall hides everything to the right, and nothing is nearer than
-    /// known. From (4, 0) a double step reaches (2, 0).
+    /// S = (0, 2), G = (5, 0). The best node of S is the knight's step to (2, 1): f = 2.236 +
+    /// 3.162 = 5.398; (1, 1) has 1.414 + 4.123 = 5.537, (2, 0) 2.828 + 3 = 5.828. The best node of
+    /// G is (4, 0) with 1 + 4.472 = 5.472; the knight's step to (4, 2) has 2.236 + 4 = 6.236, and
+    /// the one to (3, 1) is blocked. From (2, 1) the wall hides everything to the right, and no
+    /// known value improves. From (4, 0) a double step reaches (2, 0).
     #[test]
     fn an_expansion_sequence_by_hand() {
         let rows = ["S.....", "...#..", ".....G"];

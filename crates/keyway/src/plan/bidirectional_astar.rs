@@ -1,13 +1,13 @@
-//! Bidirectional A*, as it is usually published \[You2021, Wang2019\]: a map and two cells -> some
-//! 8-connected path, where a search from the start and one from the goal first meet.
+//! Bidirectional A* as it is usually published \[You2021, Wang2019\]: a map and two cells -> some
+//! 8-connected path through the first meeting of a search from the start and one from the goal.
 //!
-//! Two A*, one from each end, each aiming at the other's root, expand one node each in turn. The
-//! first node that both have reached joins their two halves into the path. It is fast, and not
-//! optimal: a cheaper path may lead over another node; [`super::BidirectionalOptimal`] goes on
-//! until none can.
+//! Two A* searches, each aiming at the other's root, take turns and expand one node at a time. The
+//! first node that both have reached joins their two halves into the path. The method is fast but
+//! not optimal: a cheaper path may lead over another node. [`super::BidirectionalOptimal`]
+//! continues until no cheaper path is possible.
 //!
 //! # Source
-//! A baseline of three papers, none of which gives more than its name and its idea. \[You2021\]:
+//! A baseline of three papers, none of which gives more than the name and the idea. \[You2021\]:
 //! section 1.3.1 and figure 2. \[Wang2019\]: reference 17, "synchronous bidirectional A*".
 //! \[ZhuYin2024\]: table 1.
 //!
@@ -19,21 +19,21 @@
 //! | the same node in both open lists | a node that both sides have generated |
 //!
 //! # Where this differs from the papers
-//! They leave open:
-//! - The turn: one expansion each, the start's side first.
-//! - The meeting: a side puts into its open list a node that the other has in its list, or has
-//!   expanded. (Until then no node was reached by both, so it is found at once.) Of several such
-//!   nodes of one expansion it is the one with the cheapest path, the first of equal ones
-//!   counter-clockwise from east.
-//! - Order within a side: f, then larger g, then lower cell index.
-//! - The corner rule. The papers' own comparisons with it forbid cutting \[You2021\] or allow it
-//!   \[Wang2019, ZhuYin2024\].
-//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the
-//!   robot *enters* costs. The backward side prices its step from a to b as the robot's step from b
-//!   to a.
+//! The papers leave open:
+//! - The turns: one expansion each, the forward side first.
+//! - The meeting: a side inserts into its open list a node that the other side has in its list or
+//!   has expanded. (Until then no node was reached by both, so the meeting is found at once.) If
+//!   one expansion finds several such nodes, the one with the cheapest path counts; among equal
+//!   ones, the first counter-clockwise from east.
+//! - The order within a side: f, then larger g, then lower cell index.
+//! - The corner rule. The papers' own comparisons with this method forbid corner cutting
+//!   \[You2021\] or allow it \[Wang2019, ZhuYin2024\].
+//! - Costs are directed where unknown cells are penalised: the cost of a step is that of the cell
+//!   which the robot *enters*. The backward side prices its step from a to b as the robot's step
+//!   from b to a.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; a path that exists is found. O(n log n) in the number n of reached cells; 32
+//! See [`PlanError`]; the planner is complete. O(n log n) in the number n of reached cells; 32
 //! bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::best_first::with_costs;
@@ -53,24 +53,24 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalAStarConfig {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
     /// The estimate of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
     /// `mean`.
     pub heuristic: Heuristic,
 }
 
-/// Bidirectional A* with 8 neighbours that stops where its sides first meet; not optimal.
+/// Bidirectional A* with 8 neighbours that stops at the first meeting of its sides; not optimal.
 #[derive(Clone, Debug, Default)]
 pub struct BidirectionalAStar {
     config: BidirectionalAStarConfig,
 }
 
 impl BidirectionalAStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "bidirectional-astar";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: BidirectionalAStarConfig) -> Self {
         Self { config }
     }
@@ -138,10 +138,11 @@ mod tests {
     use crate::plan::two_sided::drawn;
     use crate::search::Cost;
 
-    /// f of the forward side, octile. S = (1, 2) puts in (1, 3) 1 + 3.83, (0, 3) 1.41 + 4.83, (0,
-    /// 2) 1 + 4.41, (0, 1) 1.41 + 4 and (1, 1) 1 + 3 = 4, the best; no diagonal passes the wall. G
-    /// = (4, 1) puts in (3, 1) with 1 + 2.41 = 3.41, the best. Then (1, 1) puts in (2, 1), and (3,
-    /// 1) as well: they have met, with one step more from (2, 1) to either.
+    /// f of the forward side, octile. S = (1, 2) inserts (1, 3) with 1 + 3.83, (0, 3) with 1.41 +
+    /// 4.83, (0, 2) with 1 + 4.41, (0, 1) with 1.41 + 4 and (1, 1) with 1 + 3 = 4, the best; no
+    /// diagonal passes the wall. G = (4, 1) inserts (3, 1) with 1 + 2.41 = 3.41, the best. Then
+    /// (1, 1) inserts (2, 1), and (3, 1) as well: the sides have met, with one more step from
+    /// (2, 1) to either.
     #[test]
     fn an_expansion_sequence_by_hand() {
         let rows = ["......", ".S##..", "....G.", "......"];
@@ -154,14 +155,14 @@ mod tests {
         assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(2, 1)), Some(Stop::SidesMet)));
     }
 
-    /// In the first turn S puts in (1, 0), which the other side has not reached. Then G puts in (1,
-    /// 0): met, before anything is expanded twice.
+    /// In the first turn S inserts (1, 0), which the other side has not reached. Then G inserts
+    /// (1, 0): the sides have met before any cell is expanded twice.
     #[test]
     fn generating_is_meeting() {
         let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["S.G"]).unwrap();
         assert_eq!(sides, [vec![(0, 0)], vec![(2, 0)]]);
         assert_eq!(plan.meeting, Some(Cell::new(1, 0)));
-        // Neighbours: S puts in the other root.
+        // Neighbours: S inserts the other root.
         let (plan, sides) = drawn::plan(&BidirectionalAStar::default(), &["SG"]).unwrap();
         assert_eq!((sides, plan.meeting), ([vec![(0, 0)], vec![]], Some(Cell::new(1, 0))));
     }

@@ -2,9 +2,9 @@
 //! 8-connected path.
 //!
 //! One A* from the start and one from the goal share the cells: a cell that either side has closed
-//! is out of bounds for the other, so no cell is expanded twice. Whenever both sides have reached a
-//! cell there is a path over it; the shortest so far has length L. Cells that cannot lie on a
-//! shorter one are *rejected*: closed, but not expanded.
+//! is excluded for the other, so no cell is expanded twice. Any cell that both sides have reached
+//! gives a path; the shortest so far has length L. Cells that cannot lie on a shorter one are
+//! *rejected*: closed, but not expanded.
 //!
 //! # Source
 //! \[Pijls2009\]: the algorithm and its theorem.
@@ -23,17 +23,17 @@
 //! is empty, and F1 <= d and F2 <= d.* So when a side has no open cell left, or none with f < L,
 //! then L = d.
 //!
-//! Proof. As long as L > d, some shortest path v0 .. vk can be cut in three: cells before vi, which
-//! the forward side has expanded, with their true g1; cells after vj, which the backward side has
-//! expanded, with their true g2; and between them, i < j, cells of M. Then vi and vj are open with
-//! their true values, and f1(vi) <= d and f2(vj) <= d by consistency. At first i = 0 and j = k, and
-//! it stays so:
+//! Proof. As long as L > d, some shortest path v0 .. vk can be cut in three: cells before vi,
+//! which the forward side has expanded, with their true g1; cells after vj, which the backward
+//! side has expanded, with their true g2; and between them, i < j, cells of M. Then vi and vj are
+//! open with their true values, and f1(vi) <= d and f2(vj) <= d by consistency. Initially i = 0
+//! and j = k, and the invariant is kept:
 //! - Let the forward side close a cell vm of the middle (the other side is its mirror image). It
 //!   had the smallest f1, so g1(vm) + h1(vm) <= f1(vi), which with consistency makes g1(vm) true.
-//!   The way by which it was reached, with vm .. vk after it, is a shortest path as well, and takes
-//!   the place of v0 .. vk.
-//! - vm is not rejected: g1(vm) + h1(vm) <= d < L; and g1(vm) + F2 - h2(vm) < L, too, because
-//!   F2 <= f2(vj) = g2(vj) + h2(vj) and h2(vj) <= h2(vm) + c(vm, vj), so F2 - h2(vm) is at most the
+//!   The path by which it was reached, followed by vm .. vk, is a shortest path as well, and
+//!   replaces v0 .. vk.
+//! - vm is not rejected: g1(vm) + h1(vm) <= d < L; and g1(vm) + F2 - h2(vm) < L, too, because F2
+//!   <= f2(vj) = g2(vj) + h2(vj) and h2(vj) <= h2(vm) + c(vm, vj), so F2 - h2(vm) is at most the
 //!   cost from vm to the goal. (vj itself has both true values only when L = d.)
 //! - So vm is expanded, and the next cell, which is in M, gets its true g1: i becomes m + 1. If
 //!   that is j, both values of vj are true, and L = d.
@@ -44,12 +44,13 @@
 //! # Where this differs from the paper
 //! - The side with the shorter open list moves, in a tie the forward one. The paper leaves the
 //!   choice free.
-//! - The search ends as soon as F1 >= L or F2 >= L: the rest would be rejected one by one.
+//! - The search ends as soon as F1 >= L or F2 >= L: the remaining cells would be rejected one by
+//!   one.
 //! - F2 is the value after the backward side's last move, and F1 likewise; cells that the other
-//!   side has closed since may have raised it. A lower value only rejects less.
-//! - Costs are directed where unknown cells are penalised: a step costs what the cell that the
-//!   robot *enters* costs. The backward side prices its step from a to b as the robot's step from b
-//!   to a.
+//!   side has closed since may have raised the true value. A lower value only rejects less.
+//! - Costs are directed where unknown cells are penalised: the cost of a step is that of the cell
+//!   which the robot *enters*. The backward side prices its step from a to b as the robot's step
+//!   from b to a.
 //! - Order within a side: f, then larger g, then lower cell index.
 //!
 //! # Errors / cost
@@ -72,7 +73,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalOptimalConfig {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
 }
 
@@ -83,10 +84,10 @@ pub struct BidirectionalOptimal {
 }
 
 impl BidirectionalOptimal {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "bidirectional-optimal";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: BidirectionalOptimalConfig) -> Self {
         Self { config }
     }
@@ -160,7 +161,7 @@ impl GlobalPlanner for BidirectionalOptimal {
     }
 }
 
-/// The place where the best path so far passes from one side's tree into the other's.
+/// The cell at which the best path so far passes from one side's tree into the other's.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     at: CellIndex,
@@ -214,8 +215,7 @@ fn run(
 }
 
 impl<N: Successors> Half<'_, N> {
-    /// Brings F up to date; false when no open cell of this side can be on a path better than
-    /// `best`.
+    /// Updates F. False if no open cell of this side can lie on a path better than `best`.
     fn find_lowest_key(&mut self, other: &Frontier, best: Meeting) -> bool {
         match self.frontier.best_key(|at| other.is_closed(at)) {
             Some(key) if key < best.cost => {

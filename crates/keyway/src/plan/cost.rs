@@ -6,14 +6,14 @@ use std::cmp::Ordering;
 /// The cost of a path, in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanCost {
-    /// This many straight and diagonal steps, penalties included: exact.
+    /// Numbers of straight and diagonal steps, penalties included: exact.
     Steps(Cost),
     /// The length of a path in any direction \[cells\].
     Length(f64),
 }
 
 impl PlanCost {
-    /// In cells.
+    /// The cost \[cells\].
     pub fn cells(self) -> f64 {
         match self {
             Self::Steps(cost) => cost.cells(),
@@ -21,7 +21,8 @@ impl PlanCost {
         }
     }
 
-    /// The exact cost of a path of straight and diagonal steps.
+    /// The exact cost of a path of straight and diagonal steps; `None` for a path in any
+    /// direction.
     pub const fn steps(self) -> Option<Cost> {
         match self {
             Self::Steps(cost) => Some(cost),
@@ -44,7 +45,7 @@ impl PartialOrd for PlanCost {
     }
 }
 
-/// Exact between costs of steps; otherwise by the numbers.
+/// Exact between costs of steps; otherwise by the floating-point lengths.
 impl Ord for PlanCost {
     fn cmp(&self, other: &Self) -> Ordering {
         match (self, other) {

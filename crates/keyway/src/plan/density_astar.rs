@@ -1,9 +1,10 @@
 //! Density-weighted A* \[S1\]: a map and two cells -> an 8-connected path, found with fewer
 //! expansions.
 //!
-//! The estimate weighs 1.5 times as much at the start, where the search is to hurry, and falls
-//! along a sigmoid towards 1 with the distance from the start. The cost so far weighs more, the
-//! denser the obstacles are. Diagonal steps past obstacles are not taken ("safe children").
+//! The estimate is weighted by 1.5 at the start, where the search should advance quickly; the
+//! weight falls along a sigmoid towards 1 with the distance from the start. The denser the
+//! obstacles, the higher the weight of the cost so far. Diagonal steps past obstacles are not
+//! taken ("safe children").
 //!
 //! # Source
 //! \[S1\], section 1: 1.2 evaluation, 1.3 safe children. Its equations have no numbers.
@@ -20,34 +21,34 @@
 //!
 //! # Where this differs from the paper
 //! - The paper writes g as the straight line from the start, and calls it the actual cost of the
-//!   way. Here it is the cost of the way; [`PathCost::StraightLine`] is the letter of the paper,
-//!   with the rules of \[Wang2019\] (see [`super::AStar`]): an open cell's parent is the neighbour
-//!   that was expanded last, and the search ends when the goal appears in the open list.
-//! - The paper does not say where P is measured. Here it is the share of occupied cells in the box
-//!   that start and goal span; see [`Density`] for others. Cells that are only blocked by a
-//!   clearance or an expansion do not count, and unknown ones do not either, even where they may
-//!   not be visited.
+//!   path. Here it is the cost of the path. [`PathCost::StraightLine`] follows the paper to the
+//!   letter, with the rules of \[Wang2019\] (see [`super::AStar`]): an open cell's parent is the
+//!   neighbour that was expanded last, and the search ends when the goal appears in the open list.
+//! - The paper does not define the region in which P is measured. Here P is the share of occupied
+//!   cells in the box that start and goal span; see [`Density`] for alternatives. Cells that are
+//!   only blocked by a clearance or an expansion do not count, and neither do unknown ones, even
+//!   if they are not traversable.
 //! - Children are numbered 1 2 3 / 4 . 5 / 6 7 8 around the parent. An obstacle above drops 1, 2,
 //!   3, one below 6, 7, 8, one to the left 1, 4, 6, one to the right 3, 5, 8: this is exactly
 //!   [`CornerRule::Forbid`]. The paper's traditional A* is [`CornerRule::Allow`].
-//! - The estimate is too large, so a closed cell may turn out to have a shorter way to it. The
-//!   paper is silent; by default it stays closed.
+//! - The estimate is inadmissible, so a shorter path to a closed cell may be found later. The
+//!   paper is silent; by default the cell stays closed.
 //! - f is rounded to whole units of [`crate::search::Cost::key`] (1e-8 cells), and to 53 bits,
-//!   which is coarser only for paths of more than 96 million cells; what does not fit into 64 bits
-//!   counts as equal. Ties go to the larger g, then to the lower cell index.
+//!   which is coarser only for paths of more than 96 million cells; values that do not fit into 64
+//!   bits count as equal. Ties go to the larger g, then to the lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]. Where P is the same for all cells, closed cells are reopened, g is
-//! accumulated and the heuristic consistent, a path is at most max(1, 1.5 / (1 + P)) times as long
-//! as the shortest one: an open cell of the shortest path always has f <= max(1 + P, 1.5) times its
-//! length, and the goal is taken with f = (1 + P) g. Without reopening nothing is promised.
+//! See [`PlanError`]. If P is the same for all cells, closed cells are reopened, g is accumulated
+//! and the heuristic is consistent, a path is at most max(1, 1.5 / (1 + P)) times as long as the
+//! shortest one: an open cell of the shortest path always has f <= max(1 + P, 1.5) times its
+//! length, and the goal is taken with f = (1 + P) g. Without reopening there is no bound.
 //!
-//! O(n log n) in the number n of reached cells unless they are reopened (which in clutter may take
-//! many times as many expansions as there are cells), with one exponential for each generated node;
-//! 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
-//! [`Density::Box`] and [`Density::Map`] count 64 cells at a time, once per query;
-//! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4 bytes
-//! for each.
+//! O(n log n) in the number n of reached cells unless they are reopened (in clutter this may take
+//! many times as many expansions as there are cells), with one exponential for each generated
+//! node; 16 bytes per cell of the padded map, of which only the pages of reached cells are
+//! touched. [`Density::Box`] and [`Density::Map`] count 64 cells at a time, once per query;
+//! [`Density::Remaining`] makes a pass over all cells of the map for every query, and takes 4
+//! bytes for each.
 
 mod summed_area;
 
@@ -61,19 +62,19 @@ use crate::search::{
 use serde::{Deserialize, Serialize};
 use summed_area::SummedArea;
 
-/// The cells on which the density P of obstacles is measured: the share of occupied cells.
+/// The region in which the density P of obstacles, the share of occupied cells, is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Density {
-    /// In the box that start and goal span, both included.
+    /// The box that start and goal span, both included.
     Box,
-    /// In the box that the node and the goal span: another P for every node.
+    /// The box that the node and the goal span: P differs from node to node.
     Remaining,
-    /// On the whole map.
+    /// The whole map.
     Map,
-    /// Nowhere: P = 0, the paper's first formula.
+    /// None: P = 0, the paper's first formula.
     None,
 }
 
@@ -83,13 +84,13 @@ pub enum Density {
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum EstimateWeight {
-    /// It falls along a sigmoid from 1.5 at the start to 1.119 at the goal.
+    /// A sigmoid that falls from 1.5 at the start to 1.119 at the goal.
     Sigmoid,
     /// 1 everywhere.
     One,
 }
 
-/// The fate of a closed cell to which a shorter way is found.
+/// The treatment of a closed cell to which a shorter path is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -97,7 +98,7 @@ pub enum EstimateWeight {
 pub enum Closed {
     /// It stays closed.
     Stay,
-    /// It is opened again, and may be expanded more than once.
+    /// It is reopened, and may be expanded more than once.
     Reopen,
 }
 
@@ -108,15 +109,15 @@ pub enum Closed {
 pub struct DensityAStarConfig {
     /// The factor of the estimate: `sigmoid` as in the paper, or `one`.
     pub weight: EstimateWeight,
-    /// The place where the share P of occupied cells is measured: in the `box` of start and goal,
-    /// in the `remaining` box of node and goal, on the whole `map`, or `none` for P = 0.
+    /// The region in which the share P of occupied cells is measured: the `box` of start and goal,
+    /// the `remaining` box of node and goal, the whole `map`, or `none` for P = 0.
     pub density: Density,
     /// The cost of a node: `accumulated` along its path, or the `straight-line` from the start.
     pub g: PathCost,
-    /// May a diagonal step pass blocked side neighbours? `forbid` (the paper's safe children) or
+    /// Diagonal steps past blocked side neighbours: `forbid` (the paper's safe children) or
     /// `allow` (its traditional A*).
     pub corners: CornerRule,
-    /// The fate of a closed cell to which a shorter way is found: `stay` or `reopen`. Has no
+    /// The treatment of a closed cell to which a shorter path is found: `stay` or `reopen`. Has no
     /// effect with a straight-line g.
     pub closed: Closed,
     /// The estimate of the remaining cost: `octile`, `euclidean` as in the paper, `manhattan` or
@@ -125,7 +126,7 @@ pub struct DensityAStarConfig {
 }
 
 impl DensityAStarConfig {
-    /// The paper's choice, as read above.
+    /// The paper's choice, as interpreted above.
     pub const PAPER: Self = Self {
         weight: EstimateWeight::Sigmoid,
         density: Density::Box,
@@ -149,10 +150,10 @@ pub struct DensityAStar {
 }
 
 impl DensityAStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "density-astar";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: DensityAStarConfig) -> Self {
         Self { config }
     }
@@ -189,7 +190,7 @@ impl GlobalPlanner for DensityAStar {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        // The search has the rest of the workspace.
+        // The search borrows the rest of the workspace.
         let mut table = std::mem::take(workspace.part::<SummedArea>());
         let share = Share::of(self.config.density, map, query, &mut table);
         let result = self.search(map, query, share, workspace, seen, plan);
@@ -213,7 +214,7 @@ impl DensityAStar {
         let from_start = DistanceTo::new(map, Euclidean, query.start);
         with_metric!(heuristic, metric => {
             let to_goal = DistanceTo::new(map, metric, query.goal);
-            // Start and goal may be the same cell, where d is 0, too.
+            // Start and goal may be the same cell, where d is 0 as well.
             let whole = from_start.from(map.index(query.goal)).max(1) as f64;
             let f = Evaluation { weight, share, from_start, whole, to_goal };
             match g {
@@ -230,7 +231,7 @@ impl DensityAStar {
     }
 }
 
-/// P, as far as it can be known before the search.
+/// P, as far as it is known before the search.
 enum Share<'a> {
     Constant(f64),
     Remaining { map: &'a SearchMap, occupied: &'a SummedArea, goal: Cell },

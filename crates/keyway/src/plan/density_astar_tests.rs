@@ -1,4 +1,4 @@
-//! The formulas by hand, a scene by hand, safe children, and what is promised for paths.
+//! The formulas by hand, a scene by hand, safe children, and the bounds on paths.
 
 use super::*;
 use crate::map::{
@@ -46,7 +46,7 @@ fn the_weight_by_hand() {
     assert_eq!(sigmoid_weight(1e9), 1.0);
 }
 
-/// Without the sigmoid and without density the search is that of A*.
+/// Without the sigmoid and without density the search is A*.
 #[test]
 fn without_weights_it_is_astar() {
     let map = map(&["..#..", "..#..", "..#..", ".....", "....."]);
@@ -103,7 +103,7 @@ fn the_density_by_hand() {
 /// ```
 ///
 /// Corners are not cut, so the lower row is followed up to (2, 0). It generates the goal with
-/// 5.518, but (0, 2) has 5.485, and the upper row is followed, too. Without P the lower row has
+/// 5.518, but (0, 2) has 5.485, so the upper row is followed, too. Without P the lower row has
 /// 5.235, 4.863, 4.674 and the goal 4.414: it comes before (0, 2) with 5.235.
 #[test]
 fn a_scene_by_hand() {
@@ -132,7 +132,8 @@ fn the_letter_of_the_paper() {
     assert_eq!(plan.unwrap().stop, Some(Stop::GoalGenerated));
 }
 
-/// Children 1 2 3 / 4 . 5 / 6 7 8 of section 1.3 that are kept, obstacles themselves never.
+/// The children 1 2 3 / 4 . 5 / 6 7 8 of section 1.3 that are kept; obstacles themselves never
+/// are.
 fn safe_children(is_blocked: impl Fn(usize) -> bool) -> Vec<usize> {
     let dropped_by = |obstacle| match obstacle {
         // Class I: above, below.
@@ -141,7 +142,7 @@ fn safe_children(is_blocked: impl Fn(usize) -> bool) -> Vec<usize> {
         // Class II: left, right.
         4 => [1, 4, 6],
         5 => [3, 5, 8],
-        // Class III: on a diagonal nothing further.
+        // Class III: an obstacle on a diagonal drops no other child.
         corner => [corner; 3],
     };
     let obstacles = || (1..=8).filter(|&child| is_blocked(child));

@@ -1,8 +1,7 @@
 //! Dijkstra's algorithm \[Dijkstra1959\]: a map and two cells -> a shortest 8-connected path.
 //!
-//! Nodes are expanded in the order of their path cost, in all directions alike, until the goal is
-//! expanded. It is A* ([`super::AStar`]) with the estimate 0: the baseline that knows nothing of
-//! the goal.
+//! Nodes are expanded in the order of their path cost, uniformly in all directions, until the goal
+//! is expanded. It is A* ([`super::AStar`]) with the estimate 0: the uninformed baseline.
 //!
 //! # Source
 //! \[Dijkstra1959\]: problem 2.
@@ -14,7 +13,7 @@
 //! | set C | nodes that were not reached |
 //!
 //! # Where this differs from the paper
-//! A node of set B is put in again when a shorter way to it is found, and its older entry is
+//! A node of set B is reinserted when a shorter path to it is found, and its older entry is
 //! skipped.
 //!
 //! # Errors / cost
@@ -32,7 +31,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct DijkstraConfig {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
 }
 
@@ -43,10 +42,10 @@ pub struct Dijkstra {
 }
 
 impl Dijkstra {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "dijkstra";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: DijkstraConfig) -> Self {
         Self { config }
     }

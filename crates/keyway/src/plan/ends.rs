@@ -1,12 +1,12 @@
-//! Answers to a query without a search: whether its ends are free and connected.
+//! Checks of start and goal before the search: both must be free and connected.
 
 use super::{PathEnd, PlanError};
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{IfUnreachable, Query, SearchStatistics};
 
-/// The query to be searched: both ends are on the map and free, and there is a path between them by
-/// the steps of `connectivity`. Its goal is the one asked for, or the nearest cell that can be
-/// reached where the query allows it.
+/// Returns the query to search: start and goal are on the map and free, and a path with the steps
+/// of `connectivity` joins them. The goal is the requested one, or the nearest reachable cell
+/// where the query allows it.
 ///
 /// Costs two look-ups in the map's components, which the first call computes.
 pub(super) fn settle_ends(
@@ -30,13 +30,13 @@ pub(super) fn settle_ends(
         }
         IfUnreachable::NearestReachable => {
             let nearest = map.nearest_connected(query.start, query.goal, connectivity);
-            // A start that is free is itself a cell that can be reached.
+            // A free start is itself a reachable cell.
             Ok(Query { goal: nearest.unwrap_or(query.start), ..*query })
         }
     }
 }
 
-/// Refuses an end that is outside the map, or blocked.
+/// Refuses a start or goal that is outside the map or blocked.
 pub(crate) fn check_end(map: &SearchMap, end: PathEnd, cell: Cell) -> Result<(), PlanError> {
     check_inside(map, end, cell)?;
     check_free(map, end, cell)

@@ -1,4 +1,4 @@
-//! Why there is no plan.
+//! Errors of planners.
 
 use super::prepared::PrepareError;
 use crate::ConfigError;
@@ -6,50 +6,50 @@ use crate::map::{BlockedBy, Cell};
 use crate::search::SearchStatistics;
 use thiserror::Error;
 
-/// Why there is no plan.
+/// The reason for a failed plan.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// The start or goal is not on the map.
     #[error("{end} {cell} is outside the map of {width} x {height} cells")]
     OutsideMap {
-        /// Which of the two.
+        /// The start or the goal.
         end: PathEnd,
-        /// The cell asked for.
+        /// The requested cell.
         cell: Cell,
         /// Columns of the map.
         width: u32,
         /// Rows of the map.
         height: u32,
     },
-    /// The start or goal is blocked: by an obstacle, or because the map's config asks for more room
-    /// around obstacles than there is.
+    /// The start or goal is blocked: by an obstacle, or because its clearance is below the one
+    /// that the map's config requires.
     #[error("{end} {cell} {by}{}", nearest_text(.nearest.as_ref()))]
     Blocked {
-        /// Which of the two.
+        /// The start or the goal.
         end: PathEnd,
-        /// The cell asked for.
+        /// The requested cell.
         cell: Cell,
-        /// The reason why it is blocked.
+        /// The cause of the blockage.
         by: BlockedBy,
-        /// The nearest free cell, unless all are blocked.
+        /// The nearest free cell; `None` if all cells are blocked.
         nearest: Option<Cell>,
     },
-    /// Start and goal are in different connected components. Found without a search: the statistics
-    /// are zero, unless every cell that can be reached was searched.
+    /// Start and goal are in different connected components. This is found without a search, so
+    /// the statistics are zero, unless every reachable cell was searched.
     #[error("there is no path from the start to the goal")]
     NoPath {
-        /// The work of the search.
+        /// The counters of the search.
         statistics: SearchStatistics,
     },
-    /// There is a path, and the planner did not find it.
+    /// A path exists, but the planner did not find it.
     #[error("{planner} found no path, although there is one: {miss}")]
     Missed {
         /// The planner.
         planner: &'static str,
-        /// The part of the planner that is to blame.
+        /// The part of the planner that caused the miss.
         miss: Miss,
-        /// The work of the search.
+        /// The counters of the search.
         statistics: SearchStatistics,
     },
     /// The start or goal is nearer to an obstacle than the planner's constraint allows.
@@ -60,19 +60,19 @@ pub enum PlanError {
     Constrained {
         /// The planner.
         planner: &'static str,
-        /// Which of the two.
+        /// The start or the goal.
         end: PathEnd,
-        /// The cell asked for.
+        /// The requested cell.
         cell: Cell,
         /// Its L1 distance to the nearest obstacle, in reference cells.
         distance: f64,
-        /// The least one allowed.
+        /// The smallest distance allowed, in reference cells.
         constraint: f64,
     },
-    /// A parameter of the planner cannot be used.
+    /// A parameter of the planner is out of range.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// The planner cannot weigh penalised cells.
+    /// The planner does not support penalised cells.
     #[error(
         "{planner} needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
     )]
@@ -93,27 +93,27 @@ pub enum PlanError {
     BudgetExhausted {
         /// The budget.
         budget: u64,
-        /// The work of the search.
+        /// The counters of the search.
         statistics: SearchStatistics,
     },
 }
 
-/// Advice against an error: a parameter of the planner that failed, and its value.
+/// Advice on an error: a parameter of the planner that failed, and the value to set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Advice {
-    /// Its purpose: "to lower the constraint as far as needed".
+    /// Purpose of the change: "to lower the constraint as far as needed".
     pub purpose: &'static str,
     /// Name of the planner.
     pub planner: &'static str,
     /// The parameter, such as `if_no_path`.
     pub parameter: &'static str,
-    /// Its value, such as `relax`.
+    /// The value to set, such as `relax`.
     pub value: String,
 }
 
 impl PlanError {
-    /// Advice, where a parameter of the planner helps.
+    /// Advice, if a parameter of the planner can help.
     pub fn advice(&self) -> Option<Advice> {
         let relax = |planner| Advice {
             purpose: "to lower the constraint as far as needed",
@@ -143,12 +143,12 @@ impl PlanError {
     }
 }
 
-/// One end of a path.
+/// Start or goal of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
-    /// The beginning.
+    /// The start of the path.
     Start,
-    /// The end.
+    /// The end of the path.
     Goal,
 }
 
@@ -168,7 +168,7 @@ fn nearest_text(nearest: Option<&Cell>) -> String {
     )
 }
 
-/// Why a planner misses a path that exists: a property of the method, not of the map.
+/// The reason why a planner missed an existing path: a property of the method, not of the map.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Miss {
@@ -178,13 +178,13 @@ pub enum Miss {
     /// All paths come nearer to an obstacle than the planner's constraint allows.
     #[error("no path keeps its constraint of {constraint} (L1 norm, in reference cells)")]
     Constraint {
-        /// The least distance allowed, in reference cells.
+        /// The smallest distance allowed, in reference cells.
         constraint: f64,
     },
     /// All random samples were used up.
     #[error("its {samples} random samples were used up")]
     SamplesUsedUp {
-        /// Their number.
+        /// The number of samples.
         samples: u64,
     },
 }

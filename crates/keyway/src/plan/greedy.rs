@@ -1,8 +1,8 @@
 //! Greedy best-first search \[Doran1966\]: a map and two cells -> some 8-connected path, quickly.
 //!
-//! The node that seems nearest to the goal is expanded next, whatever it has cost to get there: in
-//! \[Wang2019\], where it is called BFS, it is A* whose g has weight 0. Paths are not shortest
-//! ones.
+//! Expands the node with the smallest estimated distance to the goal next, regardless of its path
+//! cost: in \[Wang2019\], where it is called BFS, it is A* whose g has weight 0. Paths are not
+//! shortest ones.
 //!
 //! # Source
 //! \[Doran1966\]. \[Wang2019\]: section 1.2.
@@ -12,7 +12,7 @@
 //! | h(n) | [`GreedyConfig::heuristic`]; the papers' straight line is `euclidean` |
 //!
 //! # Where this differs from the papers
-//! - Of two ways to an open node the shorter one is kept, as the value h says nothing about them.
+//! - Of two paths to an open node the shorter one is kept, as h does not tell them apart.
 //! - Ties go to the node with the longer path, then to the lower cell index.
 //!
 //! # Errors / cost
@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct GreedyConfig {
-    /// May a diagonal step pass blocked side neighbours? `forbid` or `allow`.
+    /// Diagonal steps past blocked side neighbours: `forbid` or `allow`.
     pub corners: CornerRule,
     /// The estimate that orders the nodes: `octile`, `euclidean`, `manhattan` or `mean`.
     pub heuristic: Heuristic,
@@ -44,10 +44,10 @@ pub struct GreedyBestFirst {
 }
 
 impl GreedyBestFirst {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "greedy";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: GreedyConfig) -> Self {
         Self { config }
     }

@@ -1,8 +1,8 @@
-//! Which estimate a planner uses, as data.
+//! The choice of heuristic, as data.
 
 use serde::{Deserialize, Serialize};
 
-/// The estimate of the cost that is still to come.
+/// The estimate of the remaining cost to the goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -11,25 +11,25 @@ pub enum Heuristic {
     /// The cost of the shortest 8-connected path without obstacles.
     #[default]
     Octile,
-    /// The straight line.
+    /// The straight-line distance.
     Euclidean,
-    /// Columns and rows: exact for 4 neighbours, too large for 8.
+    /// The sum of column and row distances: exact for 4 neighbours, inadmissible for 8.
     Manhattan,
-    /// The mean of the straight line and of columns and rows \[You2021, eq. (3)\]: too large for 8
-    /// neighbours.
+    /// The mean of the Euclidean and the Manhattan distance \[You2021, eq. (3)\]: inadmissible for
+    /// 8 neighbours.
     Mean,
 }
 
 impl Heuristic {
-    /// True if no step among 8 neighbours makes the estimate smaller by more than it costs: the
-    /// paths of A* are then shortest ones.
+    /// True if the estimate is consistent for 8 neighbours: no step reduces it by more than the
+    /// step costs. Paths of A* are then shortest ones.
     pub(crate) const fn is_consistent(self) -> bool {
         matches!(self, Self::Octile | Self::Euclidean)
     }
 }
 
-/// Evaluates an expression with `$metric` bound to the metric of a [`Heuristic`]: one copy of the
-/// search for each, so that nothing is looked up inside.
+/// Evaluates an expression with `$metric` bound to the metric of a [`Heuristic`]. Each metric gets
+/// its own copy of the search, so that the inner loop does no dispatch.
 macro_rules! with_metric {
     ($heuristic:expr, $metric:ident => $body:expr) => {
         match $heuristic {

@@ -1,9 +1,10 @@
 //! Jump point search \[Harabor2011\]: a map and two cells -> a shortest 8-connected path, without
 //! corner cutting.
 //!
-//! A* over jump points: of all shortest paths between two cells only one order of moves is searched
-//! (diagonal first), and whole straight runs are passed 64 cells at a time. Nodes are straight jump
-//! points only; a node reached at equal cost from another direction takes on that direction, too.
+//! A* over jump points. Of all shortest paths between two cells, only one canonical order of moves
+//! is searched (diagonal first), and straight runs are scanned 64 cells at a time. Only straight
+//! jump points become nodes. A node reached at equal cost from another direction adds that
+//! direction.
 //!
 //! # Source
 //! \[Harabor2011\]. \[Harabor2014\]: block scanning and pruning, rules without corner cutting.
@@ -15,23 +16,23 @@
 //! | g, h | [`Cost::key`], octile |
 //!
 //! # Where this differs from the papers
-//! - The goal does not stop scans. It is looked for in the one direction of a node in which it
-//!   lies: diagonal until it is in line, then straight. A shortest path in this order of moves
-//!   leaves its last jump point in just this way.
-//! - On a map that has been asked often, and where little happens along most diagonals, these are
-//!   passed from one cell at which anything happens to the next (`DiagonalEvents`), 64 cells at a
-//!   time. What is found is the same, in the same order.
-//! - A diagonal is walked no further once a jump point seen from it is known to be so near to the
-//!   start that the way over it to the diagonal's cell is shorter than the diagonal. Paths that
-//!   begin with a longer way to a cell than is known are not shortest paths, so none is lost.
+//! - The goal does not stop scans. It is tested in the one direction of a node in which it lies:
+//!   diagonal until aligned, then straight. A shortest path in this order of moves leaves its last
+//!   jump point in exactly this way.
+//! - After many queries on the same map, if few cells on its diagonals are events, diagonals are
+//!   traversed from one event cell to the next (`DiagonalEvents`), 64 cells at a time. The results
+//!   are the same, in the same order.
+//! - A diagonal is cut off once a jump point seen from it is known to be so near to the start that
+//!   the path over that jump point to the diagonal's cell is shorter than the diagonal. Paths that
+//!   begin with a longer than known path to a cell are not shortest paths, so none is lost.
 //! - Nodes leave the open list in the order of f rounded down to 0.18 cells. So a node may be
-//!   expanded before its path cost is final; it is expanded again when a shorter way turns up. The
-//!   search ends when no node is left whose f is below the cost of the best path so far. As h never
-//!   exceeds the true cost, a better path would have such a node: the answer is exact.
+//!   expanded before its path cost is final; it is expanded again if a shorter path is found. The
+//!   search ends when no node is left whose f is below the cost of the best path so far. As h
+//!   never exceeds the true cost, a better path would have such a node: the result is exact.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
-//! cells. Nodes take 16 bytes per cell in pages of 32 that are handed out at the first touch.
+//! cells. Nodes take 16 bytes per cell, in pages of 32 that are allocated on first touch.
 
 mod bucket_queue;
 mod jump_nodes;
@@ -46,7 +47,7 @@ use jump_nodes::{JumpNode, JumpNodes};
 use jump_points::{Arrival, Diagonals, JumpPoints, JumpVisitor, Place, Walked};
 use serde::{Deserialize, Serialize};
 
-/// Parameters of [`Jps`]: none, the rule is fixed.
+/// Parameters of [`Jps`]: none, the corner rule is fixed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -57,7 +58,7 @@ pub struct JpsConfig {}
 pub struct Jps;
 
 impl Jps {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "jps";
 }
 
@@ -118,7 +119,8 @@ fn run(
     found
 }
 
-/// About so many cells of diagonals were walked: to count them would cost more than it is worth.
+/// Estimates the number of cells walked along diagonals: counting them would cost more than it is
+/// worth.
 fn cells_walked(query: &Query, nodes: &JumpNodes) -> u64 {
     let (start, goal) = (query.start, query.goal);
     let apart = start.x.abs_diff(goal.x) + start.y.abs_diff(goal.y);
@@ -169,7 +171,7 @@ fn expand<D: Diagonals>(
     jumps.scan(from, node.g, onward, &mut Successors { goal, from, nodes, seen });
 }
 
-/// Receives what the scans from one node find.
+/// Receives the finds of the scans from one node.
 struct Successors<'s, O> {
     goal: Cell,
     from: Place,
@@ -216,8 +218,8 @@ fn estimate(at: Cell, goal: Cell) -> u64 {
     Cost::octile(at.x.abs_diff(goal.x), at.y.abs_diff(goal.y)).key()
 }
 
-/// All cells of the path and its cost: each leg is diagonal first, then straight. Jump points are
-/// the nodes and the cells in which a leg turns.
+/// Writes all cells of the path and its cost: each leg is diagonal first, then straight. Jump
+/// points are the nodes and the turning cells of the legs.
 fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Plan) {
     let mut to = query.goal;
     plan.cells.push(to);
@@ -235,14 +237,14 @@ fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Pla
     plan.cost = PlanCost::Steps(cost);
 }
 
-/// The cell in which a leg turns from diagonal to straight.
+/// The cell at which a leg turns from diagonal to straight.
 fn turn_of_leg(from: Cell, to: Cell) -> Cell {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let diagonal = dx.abs().min(dy.abs());
     Cell::new(from.x + diagonal * dx.signum(), from.y + diagonal * dy.signum())
 }
 
-/// The cells before `to`; seen from its end, the leg is straight, then diagonal.
+/// Appends the cells before `to`; seen from its end, the leg is straight, then diagonal.
 fn unfold_leg_backwards(to: Cell, from: Cell, plan: &mut Plan) {
     let turn = turn_of_leg(from, to);
     for (to, from) in [(to, turn), (turn, from)] {
@@ -259,7 +261,8 @@ mod tests {
     use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
     use crate::random::Random;
 
-    /// Answers are the same, and found by the same work, whether diagonals are walked or passed.
+    /// Results and statistics do not depend on whether diagonals are walked cell by cell or
+    /// traversed by events.
     #[test]
     fn passing_diagonals_changes_nothing() {
         const SIDE: i32 = 200;

@@ -1,10 +1,10 @@
-//! Which cells of a path are jump points.
+//! The jump points of a path.
 
 use super::Plan;
 use super::any_angle::is_straight_on;
 
 impl Plan {
-    /// The last cell so far is a jump point.
+    /// Marks the last cell so far as a jump point.
     pub(super) fn mark_last(&mut self) {
         let last = self.cells.len().saturating_sub(1);
         if self.jump_points.last() != Some(&last) {
@@ -12,7 +12,7 @@ impl Plan {
         }
     }
 
-    /// Reverses the path from its cell number `from` on.
+    /// Reverses the path from index `from` to its end.
     pub(super) fn reverse_from(&mut self, from: usize) {
         self.cells[from..].reverse();
         let mirror = from + self.cells.len() - 1;
@@ -24,7 +24,7 @@ impl Plan {
         }
     }
 
-    /// Makes both ends and the cells in which the path turns its jump points.
+    /// Sets the jump points to start, goal and turning cells of the path.
     pub(super) fn mark_turns(&mut self) {
         let cells = &self.cells;
         let is_jump_point = |&i: &usize| {
@@ -54,7 +54,7 @@ mod tests {
             plan.jump_points
         };
         assert_eq!(turns(&[(0, 0), (1, 0), (2, 0), (3, 1), (4, 2), (4, 3)]), [0, 2, 4, 5]);
-        // Back over its own cells, and a far waypoint in the same direction.
+        // A reversal over its own cells, and a far waypoint in the same direction.
         assert_eq!(turns(&[(0, 0), (1, 0), (2, 0), (1, 0)]), [0, 2, 3]);
         assert_eq!(turns(&[(0, 0), (2, 1), (6, 3), (7, 3)]), [0, 2, 3]);
         assert_eq!((turns(&[(0, 0)]), turns(&[])), (vec![0], vec![]));

@@ -2,10 +2,9 @@
 //! line-of-sight checks.
 //!
 //! Theta* (see [`super::ThetaStar`]) checks for every generated cell whether it sees the parent of
-//! the node that it was generated from. Here that is taken for granted, and checked only when the
-//! cell is expanded: once for each expanded node. Where there is no sight after all, the best of
-//! the expanded neighbours becomes the parent. The price is that values in the open list may be too
-//! small.
+//! the node that it was generated from. Lazy Theta* assumes the line of sight, and checks it only
+//! when the cell is expanded: once for each expanded node. If the line is blocked, the best of the
+//! expanded neighbours becomes the parent. In exchange, values in the open list may be too small.
 //!
 //! # Source
 //! \[Nash2010\]: figure 5.
@@ -20,19 +19,20 @@
 //!
 //! # Where this differs from the paper
 //! - Nodes are the centres of cells, not their corners, as for [`super::ThetaStar`].
-//! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open, here
-//!   they go to the lower cell index.
-//! - Whether the goal sees its parent is checked, too, when the goal is taken from the open list.
-//! - Waypoints at which the path goes straight on are dropped from the result.
+//! - `SetVertex` takes the neighbour of smallest g(s') + c(s', s); the paper leaves ties open,
+//!   here they go to the lower cell index.
+//! - The goal's line of sight to its parent is checked, too, when the goal is taken from the open
+//!   list.
+//! - Collinear waypoints are dropped from the result.
 //! - Ties of the open list: f, then larger g, then lower cell index.
 //!
 //! Unlike that of Theta*, its path may be longer than a shortest one with 8 neighbours: a node may
-//! be expanded too early, on the strength of a value that it then turns out not to have.
+//! be expanded too early, because of a value that then proves too small.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the
-//! number n of reached cells, and a line of sight for each expanded one; 16 bytes per cell of the
-//! padded map, of which only the pages of reached cells are touched.
+//! See [`PlanError`]; maps with penalised cells are refused, as the cost of a line is not defined
+//! there. O(n log n) in the number n of reached cells, and a line-of-sight check for each expanded
+//! one; 16 bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -46,28 +46,28 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct LazyThetaStarConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
-    /// `forbid` or `allow`.
+    /// Lines that pass between two cells touching at a corner, one of which is blocked: `forbid`
+    /// or `allow`.
     pub corners: CornerRule,
 }
 
-/// Lazy Theta*: paths in any direction, a little longer than shortest ones.
+/// Lazy Theta*: paths in any direction, a little longer than the shortest ones.
 #[derive(Clone, Debug, Default)]
 pub struct LazyThetaStar {
     config: LazyThetaStarConfig,
 }
 
 impl LazyThetaStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "lazy-theta-star";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: LazyThetaStarConfig) -> Self {
         Self { config }
     }
 }
 
-/// A cell sees its parent when it is expanded.
+/// The line of sight to the parent is checked when a cell is expanded.
 struct SeenWhenExpanded;
 
 impl Ways for SeenWhenExpanded {
@@ -144,7 +144,7 @@ mod tests {
     use crate::plan::any_angle::watched::{reported, rounded, waypoints};
 
     /// Over the obstacle, whose corners are not cut. All cells take the parent of the node that
-    /// they are generated from; (1, 1) and (2, 0) turn out not to see it.
+    /// they are generated from; (1, 1) and (2, 0) then prove not to see it.
     #[test]
     fn corrections_by_hand() {
         let (plan, reported) = reported(&LazyThetaStar::default(), &["...", ".#."], (0, 0), (2, 0));

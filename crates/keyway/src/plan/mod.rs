@@ -16,8 +16,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A planner of your own implements [`GlobalPlanner`]; the example `own_planner` does so outside
-//! the crate.
+//! Your own planner implements [`GlobalPlanner`]; the example `own_planner` does so outside the
+//! crate.
 
 mod any_angle;
 mod astar;
@@ -90,48 +90,48 @@ use crate::map::{Cell, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Workspace};
 use serde::Serialize;
 
-/// A path on the grid, and what it took to find it.
+/// A path on the grid, and the statistics of its search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// The path's waypoints, start and goal included; it goes straight from the centre of one to
-    /// that of the next. They are neighbours, unless the planner [is
+    /// Waypoints of the path, start and goal included; the path goes straight from centre to
+    /// centre. Consecutive waypoints are neighbours, unless the planner [is
     /// any-angle](GlobalPlanner::is_any_angle).
     pub cells: Vec<Cell>,
-    /// Which of the cells are jump points, as ascending indices; the first cell, the last one and
-    /// every cell in which the path turns are among them. A planner that searches jump points has
-    /// more: the nodes of its search that lie on the path, even where it goes straight on.
+    /// Indices of the cells that are jump points, ascending. They include the first cell, the last
+    /// one and every cell in which the path turns. A planner that searches jump points adds the
+    /// nodes of its search on the path, even if the path goes straight on there.
     pub jump_points: Vec<usize>,
-    /// Its cost, penalties of unknown cells included.
+    /// Cost of the path, penalties of unknown cells included.
     pub cost: PlanCost,
-    /// The work of the search.
+    /// Counters of the search.
     pub statistics: SearchStatistics,
     /// The cell in which the two sides of a bidirectional search met.
     pub meeting: Option<Cell>,
-    /// The reason why the search stopped; `None` without a path.
+    /// The reason why the search stopped; `None` if there is no path.
     pub stop: Option<Stop>,
-    /// Something that only its planner knows of it; mostly `None`.
+    /// A remark that is specific to the planner; usually `None`.
     pub note: Option<PlanNote>,
 }
 
-/// A planner's note on its plan, for whoever reads the plan: searches and smoothers do without it.
+/// A planner's remark on its plan, for reports: searches and smoothers ignore it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PlanNote {
-    /// A constraint of the planner left no path and was lowered.
+    /// A constraint of the planner left no path and was relaxed.
     Relaxed(Relaxed),
 }
 
-/// A constraint that was lowered as little as was needed to leave a path.
+/// A constraint that was relaxed as little as necessary to leave a path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Relaxed {
-    /// The constraint that was asked for \[m\].
+    /// The requested constraint \[m\].
     pub asked_m: f64,
-    /// The one that was searched with \[m\].
+    /// The constraint that the search used \[m\].
     pub used_m: f64,
 }
 
-/// The reason why a search that found a path stopped.
+/// The reason why a successful search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -142,11 +142,11 @@ pub enum Stop {
     GoalGenerated,
     /// The two sides met.
     SidesMet,
-    /// Nothing in the open lists can lead to a shorter path.
+    /// No node in the open lists can lead to a shorter path.
     NothingBetter,
     /// The goal was joined to the tree.
     GoalJoined,
-    /// The path was looked up, not searched for.
+    /// The path was looked up without a search.
     LookedUp,
 }
 
@@ -163,41 +163,43 @@ impl std::fmt::Display for Stop {
     }
 }
 
-/// The boundary at which a planner is chosen by name.
+/// The interface of all global planners.
 ///
-/// A planner is an immutable config; the map, the query, the memory and the observer are arguments.
-/// No call allocates once workspace and plan are warm and the map's components are known. Time is
-/// measured by the caller.
+/// A planner is an immutable config; the map, the query, the memory and the observer are
+/// arguments. No call allocates once workspace and plan are warm and the map's components are
+/// known. Time is measured by the caller.
 pub trait GlobalPlanner: Debug {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     fn name(&self) -> &'static str;
 
-    /// Which neighbouring cells its steps join.
+    /// Connectivity of the planner's steps.
     fn connectivity(&self) -> Connectivity;
 
-    /// True if its paths leave the 8 directions of the grid: its waypoints are then not neighbours,
-    /// and its cost is a length.
+    /// True if paths leave the 8 directions of the grid: waypoints are then not neighbours, and
+    /// the cost is a length.
     fn is_any_angle(&self) -> bool {
         false
     }
 
-    /// True if it plans only where all cells cost the same: on maps with [penalised
-    /// cells](SearchMap::penalised) it is refused.
+    /// True if the planner requires one cost for all cells. It refuses maps with [penalised
+    /// cells](SearchMap::penalised).
     fn needs_uniform_cost(&self) -> bool {
         false
     }
 
-    /// Memory on the heap that the planner itself holds \[bytes\]: what it has prepared.
+    /// Memory on the heap of the planner itself \[bytes\]: its preparation.
     fn memory_bytes(&self) -> usize {
         0
     }
 
-    /// The search itself, for [`Self::plan_into`]: start and goal are on the map, free and
-    /// connected, all cells cost the same if [it needs that](Self::needs_uniform_cost), and the
-    /// plan is empty. Without jump points of its own it leaves [`Plan::jump_points`] empty.
+    /// The search itself, for [`Self::plan_into`]. Start and goal are on the map, free and
+    /// connected; all cells cost the same if [the planner needs that](Self::needs_uniform_cost);
+    /// the plan is empty. A planner without jump points of its own leaves [`Plan::jump_points`]
+    /// empty.
     ///
     /// # Errors
-    /// When the planner cannot plan on such a map, or the budget is used up. The plan stays empty.
+    /// Returns an error if the planner cannot plan on such a map or the budget is used up. The
+    /// plan stays empty.
     fn search_into(
         &self,
         map: &SearchMap,
@@ -207,11 +209,12 @@ pub trait GlobalPlanner: Debug {
         plan: &mut Plan,
     ) -> Result<(), PlanError>;
 
-    /// Plans into `plan`, which is overwritten; after an error it is empty. Ends that are blocked
-    /// or not connected are reported without a search.
+    /// Plans into `plan`, which is overwritten; after an error it is empty. A blocked start or
+    /// goal, or a start and goal that are not connected, are reported without a search.
     ///
     /// # Errors
-    /// Says why there is no plan; a search that failed carries its statistics.
+    /// Returns the reason why there is no plan; if a search failed, the error carries its
+    /// statistics.
     fn plan_into(
         &self,
         map: &SearchMap,
@@ -234,7 +237,7 @@ pub trait GlobalPlanner: Debug {
 }
 
 impl Plan {
-    /// The cell in which the path ends: the goal, or the one that was reached in its place (see
+    /// The cell in which the path ends: the goal or its replacement (see
     /// [`crate::search::IfUnreachable`]); `None` without a path.
     pub fn reached(&self) -> Option<Cell> {
         self.cells.last().copied()
@@ -242,7 +245,7 @@ impl Plan {
 
     /// The path in the world: the given start position, the centres of all cells, the given goal
     /// position. Positions at the centre of their cell are not repeated. Between two positions in
-    /// one cell it is the straight line, from a position to itself a single point.
+    /// one cell the path is the straight line; from a position to itself it is a single point.
     pub fn line(&self, map: &SearchMap, start: Point, goal: Point) -> PlannedLine {
         let frame = map.frame();
         let is_in = |point| Some(frame.cell_near(point)) == self.reached();
@@ -276,8 +279,8 @@ impl Plan {
     }
 }
 
-/// Positions nearer than this are the same point: a cell's centre and a decimal fraction that
-/// stands for it.
+/// Positions nearer than this count as the same point \[m\]: a cell's centre and its rounded
+/// decimal fraction.
 const SAME_POINT_M: f64 = 1e-9;
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.

@@ -1,13 +1,13 @@
-//! Several goals, the one with the cheapest path first.
+//! Plans to several goals, in the order of their path cost.
 //!
-//! A path is never cheaper than the octile distance of its ends. So goals wait in a queue by that
-//! bound until it is their turn, and then by the cost of their path; a goal whose path cost comes
-//! first in the queue is the next nearest one, and no paths to the goals behind it were planned at
-//! all.
+//! A path is never cheaper than the octile distance between start and goal. So goals wait in a
+//! queue by that bound, and once planned, by the cost of their path. A goal whose path cost comes
+//! first in the queue is the next nearest one, and no paths to the goals behind it need to be
+//! planned.
 //!
 //! # Cost
-//! A search for each goal whose bound is smaller than the cost of the last goal asked for, and no
-//! other. Memory: the paths that were found and not yet asked for.
+//! One search for each goal whose bound is smaller than the cost of the last goal requested, and
+//! no other. Memory: the paths that were found and not yet requested.
 
 use super::{GlobalPlanner, Plan, PlanCost, PlanError};
 use crate::map::{Cell, SearchMap};
@@ -19,19 +19,20 @@ use std::collections::{BinaryHeap, VecDeque};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct GoalPlan {
-    /// Its place in the list of goals that was given.
+    /// Index of the goal in the given list.
     pub index: usize,
     /// The goal.
     pub goal: Cell,
-    /// The path, or why there is none.
+    /// The path, or the reason why there is none.
     pub result: Result<Plan, PlanError>,
 }
 
-/// Plans from one start to several goals, nearest first by path cost (ties: the order of the list).
-/// Each call of `next` plans as far as it must; goals without a path come last, in the order of the
-/// list.
+/// Plans from one start to several goals, nearest first by path cost (ties: the order of the
+/// list). Each call of `next` plans only as far as necessary; goals without a path come last, in
+/// the order of the list.
 ///
-/// The order is that of the planner's own paths: of shortest ones where it is optimal.
+/// The order is by the cost of the planner's own paths, which are shortest ones only if the
+/// planner is optimal.
 ///
 /// ```
 /// use keyway::map::{Cell, LayerConfig, OccupancyGrid, SearchMap};
@@ -64,8 +65,8 @@ pub struct NearestFirst<'a> {
 }
 
 impl<'a> NearestFirst<'a> {
-    /// `query` gives the start and the budget of each search; its goal has no meaning, and goals
-    /// that cannot be reached are never replaced by others.
+    /// `query` gives the start and the budget of each search; its goal is ignored, and unreachable
+    /// goals are never replaced by others.
     pub fn new(
         planner: &'a dyn GlobalPlanner,
         map: &'a SearchMap,
@@ -74,7 +75,7 @@ impl<'a> NearestFirst<'a> {
         workspace: &'a mut Workspace,
     ) -> Self {
         let start = query.start;
-        // No path to a goal is cheaper.
+        // A lower bound of the cost of any path to the goal.
         let bound = |goal: &Cell| {
             let (dx, dy) = (start.x.abs_diff(goal.x), start.y.abs_diff(goal.y));
             if planner.is_any_angle() {
@@ -96,7 +97,7 @@ impl<'a> NearestFirst<'a> {
         }
     }
 
-    /// Plans to a goal and puts it back into the queue, with the cost of its path.
+    /// Plans to a goal and returns it to the queue with the cost of its path.
     fn plan_to(&mut self, index: usize) {
         let query = Query { goal: self.goals[index], ..self.query };
         let mut plan = Plan::default();
@@ -106,7 +107,7 @@ impl<'a> NearestFirst<'a> {
                 self.found[index] = Some(plan);
             }
             Err(error) => {
-                // Kept in the order of the list.
+                // Sorted by the order of the list.
                 let place = self.failed.partition_point(|(other, _)| *other < index);
                 self.failed.insert(place, (index, error));
             }

@@ -1,4 +1,4 @@
-//! Facts about every planner by its parameters.
+//! The trait that connects the parameters of a planner to the planner.
 
 use super::{GlobalPlanner, PlanError, PrepareProgress};
 use crate::ConfigError;
@@ -8,17 +8,17 @@ use std::ops::ControlFlow;
 /// A planner chosen by name.
 pub(super) type BoxedPlanner = Box<dyn GlobalPlanner + Send + Sync>;
 
-/// Facts about a planner by its parameters.
+/// The properties of a planner that follow from its parameters.
 pub(super) trait PlannerParameters {
-    /// Refuses parameters that cannot be used.
+    /// Refuses parameters out of range.
     fn check(&self) -> Result<(), ConfigError> {
         Ok(())
     }
 
-    /// The planner with these parameters. Most do not look at the map.
+    /// Builds the planner with these parameters. Most planners ignore the map.
     fn build(&self, map: &SearchMap) -> Result<BoxedPlanner, PlanError>;
 
-    /// The same for one that prepares the map, which takes long: see
+    /// Like `build` for a planner that prepares the map, which takes long: see
     /// [`PlannerConfig::build_with_progress`].
     fn build_with_progress(
         &self,
@@ -28,7 +28,7 @@ pub(super) trait PlannerParameters {
         self.build(map)
     }
 
-    /// The values of the planner's paper.
+    /// The values of the planner's paper, if it gives any.
     fn as_published() -> Option<Self>
     where
         Self: Sized,
@@ -36,7 +36,7 @@ pub(super) trait PlannerParameters {
         None
     }
 
-    /// Fields for which the paper gives no value.
+    /// Fields whose value is an interpretation, as the paper gives none.
     fn readings(&self) -> &'static [&'static str] {
         &[]
     }

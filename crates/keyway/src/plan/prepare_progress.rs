@@ -4,8 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PrepareProgress {
-    /// Corner cells that have been put into their order, and those whose label was entered.
+    /// Corner cells that have been ordered, plus those whose labels were entered.
     pub done: u64,
-    /// Both when all is done.
+    /// Value of `done` at the end.
     pub total: u64,
 }

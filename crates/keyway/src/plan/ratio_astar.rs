@@ -1,8 +1,8 @@
 //! Weight-ratio A* \[Wang2019\]: a map and two cells -> an 8-connected path with few turns.
 //!
-//! A* whose estimate weighs X times as much as the cost so far. X = 1 is plain A*; a larger X draws
-//! the search to the goal, so it expands fewer cells and prefers straight ways, at the price of a
-//! path that may be longer.
+//! A* whose estimate weighs X times as much as the cost so far. X = 1 is plain A*. A larger X
+//! directs the search more strongly towards the goal: it expands fewer cells and prefers straight
+//! segments, but the path may be longer.
 //!
 //! # Source
 //! \[Wang2019\]: steps 1 to 8, equations (5) to (9) and (13) to (15), section 2.2.
@@ -22,17 +22,17 @@
 //! map ([`crate::map::PublishedConstraints::expansion_cells`]).
 //!
 //! # Where this differs from the paper
-//! - Equation (12) says g'(n) <= g(n), with g the straight line from the start. It is the other way
-//!   round: a path is never shorter than the straight line, so g'(n) >= g(n), and the first
+//! - Equation (12) says g'(n) <= g(n), with g the straight line from the start. The opposite
+//!   holds: a path is never shorter than the straight line, so g'(n) >= g(n), and the first
 //!   improvement does not lower the weight of the past cost but raises it. Equations (6) to (9)
 //!   stand.
 //! - The open list is ordered by (1 + X) f' = g' + X h, which is the same order without rounding
 //!   g': X = 1 expands exactly the cells that A* does. X h is rounded to whole units of
 //!   [`crate::search::Cost::key`] (1e-8 cells); sums that do not fit into 64 bits count as equal.
-//! - Step 5: an open node takes over a value that is smaller *or equal*; the parent is then the
+//! - Step 5: an open node accepts a value that is smaller *or equal*; the parent is then the
 //!   neighbour that was expanded last. Step 3: the search ends when the goal appears in the open
-//!   list, so its last step need not be the best one, even with X = 1; [`SearchEnd::GoalExpanded`]
-//!   waits until it is taken out.
+//!   list, so its last step need not be the best one, even with X = 1. With
+//!   [`SearchEnd::GoalExpanded`] the search continues until the goal is taken from the list.
 //! - Ties, on which the paper is silent: the larger g', then the lower cell index.
 //!
 //! # Errors / cost
@@ -67,11 +67,11 @@ pub enum SearchEnd {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct RatioAStarConfig {
-    /// X: how many times the weight of the cost the estimate has; more than 0. 1 is plain A*.
+    /// X, the weight of the estimate relative to the cost; more than 0. 1 is plain A*.
     pub x: f64,
     /// The event that ends the search: `goal-generated` as in the paper, or `goal-expanded`.
     pub end: SearchEnd,
-    /// May a diagonal step pass blocked side neighbours? `forbid`, or `allow` as in the paper.
+    /// Diagonal steps past blocked side neighbours: `forbid`, or `allow` as in the paper.
     pub corners: CornerRule,
     /// The estimate of the remaining cost: `octile`, `euclidean` as in the paper, `manhattan` or
     /// `mean`.
@@ -101,13 +101,13 @@ pub struct RatioAStar {
 }
 
 impl RatioAStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "ratio-astar";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     ///
     /// # Errors
-    /// When X is not a positive number.
+    /// Returns an error if X is not a positive number.
     pub fn new(config: RatioAStarConfig) -> Result<Self, ConfigError> {
         config.check()?;
         Ok(Self { config })
@@ -187,7 +187,7 @@ impl<M: Metric> Rule for WeightRatio<M> {
 
 /// Eq. (14) times 1 + X, in units of [`crate::search::Cost::key`].
 fn key(x: f64, g: u64, h: u64) -> u64 {
-    // Numbers that are too large become the largest one.
+    // Values that are too large saturate.
     let weighted = if x == 1.0 { h } else { (x * h as f64).round() as u64 };
     g.saturating_add(weighted)
 }
@@ -202,7 +202,7 @@ mod tests {
 
     const Q: u64 = Cost::KEY_STRAIGHT;
 
-    /// Expanded cells with the cost of their path.
+    /// Expanded cells with their path costs.
     #[derive(Default)]
     struct Log(Vec<(Cell, f64)>);
 
@@ -230,9 +230,9 @@ mod tests {
     }
 
     /// Eq. (6) and (8) step by step: from g' = 2 a straight step gives 3, a diagonal one 2 +
-    /// sqrt(2) = 3.414; eq. (9), their sum from the start (g' = 0) over two straight and one
-    /// diagonal step, is the same 2 + sqrt(2). Eq. (7), the estimate, and (5): 3 columns and 4 rows
-    /// are 5.
+    /// sqrt(2) = 3.414. Eq. (9) is their sum from the start (g' = 0): over two straight and one
+    /// diagonal step it is 2 + sqrt(2) as well. Eq. (7), the estimate, and (5): 3 columns and 4
+    /// rows are 5.
     #[test]
     fn equations_5_to_9_by_hand() {
         let map = OccupancyGrid::from_ascii(&["....", "....", "....", "....", "...."]);
@@ -271,8 +271,8 @@ mod tests {
     /// 4.479  3.874  3.970   .
     /// ```
     ///
-    /// After the start (1, 0) is taken, as its index is lower than that of (1, 2), which comes
-    /// next. It gives (2, 1) the same g' as (1, 0) did, so it becomes its parent. (2, 1) then
+    /// After the start, (1, 0) is taken, as its index is lower than that of (1, 2), which comes
+    /// next. (1, 2) gives (2, 1) the same g' as (1, 0) did, so it becomes its parent. (2, 1) then
     /// generates the goal.
     #[test]
     fn a_scene_by_hand() {
@@ -331,14 +331,14 @@ mod tests {
                 let (plan, log) = run(&RatioAStar::new(config.clone()).unwrap(), &map, &query);
                 prop_assert_eq!(&log.0, &expected.0);
                 prop_assert_eq!(plan.map(|plan| plan.cost), by_astar.map(|plan| plan.cost));
-                // The paper's end only comes earlier.
+                // The paper's stop condition is only met earlier.
                 let config = RatioAStarConfig { end: SearchEnd::GoalGenerated, ..config };
                 let (_, log) = run(&RatioAStar::new(config).unwrap(), &map, &query);
                 prop_assert!(expected.0.starts_with(&log.0));
             }
         }
 
-        /// Eq. (12) the right way round.
+        /// Eq. (12) corrected.
         #[test]
         fn no_path_is_shorter_than_the_straight_line((map, query) in any_scene(), x in 0.1..5.0f64) {
             let config = RatioAStarConfig { x, ..RatioAStarConfig::PAPER };

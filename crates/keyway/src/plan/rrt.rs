@@ -1,13 +1,13 @@
 //! Rapidly-exploring random tree \[LaValle1998\]: a map, two cells and a seed -> some path in any
 //! direction.
 //!
-//! A tree grows from the start. Each random sample pulls at the tree's nearest node, which grows
-//! one step towards it: as large unknown regions catch most samples, the tree is drawn into them.
-//! It ends when a new node can be joined to the goal. The path has many turns and is far from
+//! A tree grows from the start. For each random sample, the tree's nearest node grows one step
+//! towards it; as large unexplored regions catch most samples, the tree spreads into them. The
+//! search ends when a new node can be joined to the goal. The path has many turns and is far from
 //! shortest; here it is a baseline. The same seed gives the same path on every machine.
 //!
 //! # Source
-//! \[LaValle1998\]: section 2. The goal as a sample now and then: \[LaValle2001\].
+//! \[LaValle1998\]: section 2. The occasional use of the goal as a sample: \[LaValle2001\].
 //!
 //! | paper | here | unit |
 //! |---|---|---|
@@ -19,24 +19,24 @@
 //!
 //! # Where this differs from the paper
 //! - Nodes are the centres of cells: a sample is any cell of the map, all equally likely, blocked
-//!   ones included, and a step ends in the cell whose centre is nearest to where it should end.
+//!   ones included, and a step ends in the cell whose centre is nearest to the exact end point.
 //!   Steps are whole numbers of cells, at least one, so they may be up to 0.71 cells longer or
-//!   shorter than asked for.
-//! - A line is free under the same corner rule as a diagonal step; a step that is not free is not
-//!   taken, and neither is one into a cell that is in the tree.
-//! - The paper does not say when to end: here, when a new node sees the goal and is within one step
-//!   of it.
-//! - Waypoints at which the path goes straight on are dropped from the result.
+//!   shorter than requested.
+//! - A line is free under the same corner rule as a diagonal step. A step is skipped if it is not
+//!   free, or if its cell is already in the tree.
+//! - The paper gives no stop condition: here, the search stops when a new node sees the goal and
+//!   is within one step of it.
+//! - Collinear waypoints are dropped from the result.
 //! - In the statistics, the expanded nodes are the samples drawn, which a budget counts, and the
-//!   generated ones are the nodes of the tree. An observer sees the node that each sample pulls at,
-//!   every time, and each new node.
+//!   generated ones are the nodes of the tree. An observer is told of the nearest node of each
+//!   sample, every time, and of each new node.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. Where a step is
-//! one cell, every cell that can be reached is joined eventually; with longer steps a narrow
-//! passage may never be passed. Penalised maps are refused. About O(log n) per sample in a tree of
-//! n nodes; 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree are
-//! touched.
+//! See [`PlanError`]; the method may miss a path: [`super::Miss::SamplesUsedUp`]. With a step of
+//! one cell, every reachable cell is joined eventually; with longer steps a narrow passage may
+//! never be passed. Maps with penalised cells are refused. About O(log n) per sample in a tree of
+//! n nodes; 4.4 bytes per cell of the map and 32 for each node, of which only those of the tree
+//! are touched.
 
 mod cell_tree;
 mod nearest_node;
@@ -60,16 +60,16 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct RrtConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
-    /// `forbid` or `allow`.
+    /// Lines that pass between two cells touching at a corner, one of which is blocked: `forbid`
+    /// or `allow`.
     pub corners: CornerRule,
-    /// The length by which the tree grows at a time, rounded to whole cells, at least one \[m\].
+    /// The length of a growth step, rounded to whole cells, at least one \[m\].
     pub step_m: f64,
     /// The probability that a sample is the goal, from 0 to 1.
     pub goal_bias: f64,
-    /// Give up after this many samples.
+    /// The maximum number of samples.
     pub samples: u64,
-    /// Which random numbers are drawn: the same seed gives the same path.
+    /// Seed of the random numbers: the same seed gives the same path.
     pub seed: u64,
 }
 
@@ -85,20 +85,20 @@ impl Default for RrtConfig {
     }
 }
 
-/// Rapidly-exploring random tree: some path, from a seed.
+/// Rapidly-exploring random tree: a path from a seed.
 #[derive(Clone, Debug, Default)]
 pub struct Rrt {
     config: RrtConfig,
 }
 
 impl Rrt {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "rrt";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     ///
     /// # Errors
-    /// When a parameter is out of its range; the error names it.
+    /// Returns an error if a parameter is out of its range; the error names it.
     pub fn new(config: RrtConfig) -> Result<Self, ConfigError> {
         config.check()?;
         Ok(Self { config })
@@ -116,7 +116,8 @@ impl Rrt {
         let step_cells = step_cells(self.config.step_m, map.frame().resolution_m());
         let mut growth = Growth { tree, sight: Sight::new(map, corners), step_cells, seen };
         let mut sampler = Sampler::new(&self.config, map, query.goal);
-        // The tree has no cell twice, and at most one node for each sample besides both ends.
+        // No cell is in the tree twice, and there is at most one node per sample besides start and
+        // goal.
         let most = samples.saturating_add(2).min(map.index_count() as u64);
         let mut newest = Some(growth.tree.start(map, query.start, most as usize));
         let mut expanded = 0;
@@ -140,11 +141,11 @@ impl Rrt {
 
 /// The length of a step in whole cells, at least one.
 fn step_cells(step_m: f64, resolution_m: f64) -> u32 {
-    // A step longer than any map is as good as one of its size: the conversion stops there.
+    // A step longer than any map is equivalent to one of its size, so the value is clamped.
     (step_m / resolution_m + 0.5).clamp(1.0, f64::from(i32::MAX)) as u32
 }
 
-/// Draws samples: the goal now and then, otherwise any cell of the map.
+/// Draws samples: the goal with probability `goal_bias`, otherwise any cell of the map.
 struct Sampler {
     random: Random,
     goal: Cell,
@@ -173,7 +174,7 @@ impl Sampler {
     }
 }
 
-/// A tree that grows.
+/// The growth of a tree.
 struct Growth<'a, O> {
     tree: &'a mut CellTree,
     sight: Sight<'a>,
@@ -182,7 +183,7 @@ struct Growth<'a, O> {
 }
 
 impl<O: Observer> Growth<'_, O> {
-    /// Grows one step from the nearest node towards a sample, if nothing is in the way.
+    /// Grows one step from the nearest node towards a sample, unless the step is blocked.
     fn extend(&mut self, sample: Cell) -> Option<TreeNode> {
         let near = self.tree.nearest(sample)?;
         if self.seen.is_watching() {
@@ -193,7 +194,7 @@ impl<O: Observer> Growth<'_, O> {
         grows.then(|| self.add(to, near))
     }
 
-    /// The goal's node, if the goal is within one step of this node, and seen from there.
+    /// The goal's node, if the goal is within one step of this node and in its line of sight.
     fn join(&mut self, node: TreeNode, goal: Cell) -> Option<TreeNode> {
         if node.cell == goal {
             return Some(node);
@@ -215,8 +216,8 @@ impl<O: Observer> Growth<'_, O> {
     }
 }
 
-/// The cell whose centre is nearest to the point on the line from `from` to `to` at the distance of
-/// a step (half-way: the farther one); `to` itself when it is not farther.
+/// The cell whose centre is nearest to the point on the line from `from` to `to` at the distance
+/// of a step (half-way: the farther one); `to` itself if it is within a step.
 fn cell_towards(from: Cell, to: Cell, step_cells: u32) -> Cell {
     let distance_sq = u128::from(distance_sq(from, to));
     let step_sq = u128::from(step_cells).pow(2);
@@ -334,7 +335,7 @@ mod tests {
             let cell = cell_towards(Cell::new(0, 0), Cell::new(to.0, to.1), step);
             (cell.x, cell.y)
         };
-        // The whole way, as it is 5 cells long.
+        // The whole distance, as it is 5 cells long.
         assert_eq!(towards((3, -4), 5), (3, -4));
         // A tenth of it.
         assert_eq!(towards((30, -40), 5), (3, -4));
@@ -372,11 +373,11 @@ mod tests {
             SearchStatistics::one_sided(SideStatistics { expanded: 100, generated: 1 });
         let miss = Miss::SamplesUsedUp { samples: 100 };
         assert_eq!(error, PlanError::Missed { planner: "rrt", miss, statistics });
-        // Random samples find the way around.
+        // Random samples find a path around it.
         assert!(ask(&rows, [(0, 0), (2, 0)], RrtConfig::default()).is_ok());
     }
 
-    /// A long way of one cell's width, which a few samples cannot find.
+    /// A long corridor, one cell wide, which a few samples cannot pass.
     #[test]
     fn few_samples_miss_a_winding_corridor() {
         let rows = ["...........", "##########.", "...........", ".##########", "..........."];

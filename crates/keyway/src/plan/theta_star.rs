@@ -1,10 +1,9 @@
 //! Theta* \[Nash2007\]: a map and two cells -> a short path in any direction.
 //!
 //! A* whose nodes may have any node as a parent, not only a neighbour: a cell that is generated
-//! from a node takes that node's parent as its own when the two see each other. So paths follow
-//! the edges of the grid in the search only, and not in the result; they turn where obstacles make
-//! them turn. They are not shortest any-angle paths, but hardly longer. [`super::LazyThetaStar`]
-//! checks lines of sight less often.
+//! from a node adopts that node's parent if the two see each other. So only the search follows the
+//! edges of the grid, not the path, which turns only at obstacles. Paths are not shortest
+//! any-angle paths, but hardly longer. [`super::LazyThetaStar`] checks lines of sight less often.
 //!
 //! # Source
 //! \[Nash2007\], and \[Daniel2010\]: the basic Theta*, figure 4.
@@ -15,7 +14,7 @@
 //! | h(s), c(s, s') | [`crate::search::Euclidean`], the straight line |
 //! | parent(s) | [`crate::search::Frontier::parent`] |
 //! | lineofsight(s, s') | [`crate::search::Sight`] |
-//! | path 1, path 2 | over s, over parent(s): the two answers of `way` below |
+//! | path 1, path 2 | over s, over parent(s): the two results of `way` below |
 //!
 //! # Never longer than a shortest path with 8 neighbours
 //! Let o(v) be the cost of a shortest path with 8 neighbours from the start to v. *A node v that is
@@ -32,19 +31,19 @@
 //! and so does the consistency of h.
 //!
 //! # Where this differs from the paper
-//! - Nodes are the centres of cells, not their corners: the project's paths lead from centre to
+//! - Nodes are the centres of cells, not their corners: paths of this crate lead from centre to
 //!   centre. A line is free under the same corner rule as a diagonal step.
-//! - The line of sight is checked only where path 2 is shorter than the known way. Otherwise
-//!   path 1, which is never shorter, would not be taken either: the same search, with fewer checks.
-//! - Expanded nodes are not opened again, as in the paper's figure; f may decrease along a path, so
-//!   a node's way need not be the best that could be found.
-//! - Waypoints at which the path goes straight on are dropped from the result.
+//! - The line of sight is checked only if path 2 is shorter than the known path. Otherwise path 1,
+//!   which is never shorter, would not be taken either: the same search, with fewer checks.
+//! - Expanded nodes are not reopened, as in the paper's figure. As f may decrease along a path,
+//!   the path to a node need not be the best one that could be found.
+//! - Collinear waypoints are dropped from the result.
 //! - Ties: f, then larger g, then lower cell index.
 //!
 //! # Errors / cost
-//! See [`PlanError`]; penalised maps are refused, as a line has no price there. O(n log n) in the
-//! number n of reached cells, and at most 8 n lines of sight; 16 bytes per cell of the padded map,
-//! of which only the pages of reached cells are touched.
+//! See [`PlanError`]; maps with penalised cells are refused, as the cost of a line is not defined
+//! there. O(n log n) in the number n of reached cells, and at most 8 n line-of-sight checks; 16
+//! bytes per cell of the padded map, of which only the pages of reached cells are touched.
 
 use super::any_angle::{self, Lines, Ways};
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -58,28 +57,28 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ThetaStarConfig {
-    /// May a line pass between two cells that touch at a corner, when one of them is blocked?
-    /// `forbid` or `allow`.
+    /// Lines that pass between two cells touching at a corner, one of which is blocked: `forbid`
+    /// or `allow`.
     pub corners: CornerRule,
 }
 
-/// Theta*: paths in any direction, a little longer than shortest ones.
+/// Theta*: paths in any direction, a little longer than the shortest ones.
 #[derive(Clone, Debug, Default)]
 pub struct ThetaStar {
     config: ThetaStarConfig,
 }
 
 impl ThetaStar {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "theta-star";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     pub const fn new(config: ThetaStarConfig) -> Self {
         Self { config }
     }
 }
 
-/// A cell sees its parent when it is generated.
+/// The line of sight to the parent is checked when a cell is generated.
 struct SeenWhenGenerated;
 
 impl Ways for SeenWhenGenerated {

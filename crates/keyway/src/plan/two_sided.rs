@@ -1,4 +1,4 @@
-//! Shared parts of all planners that search from both ends.
+//! Shared parts of all bidirectional planners.
 
 use super::best_first::check_budget;
 use super::{Plan, PlanError, Stop, path_cost};
@@ -13,7 +13,7 @@ pub(super) const fn statistics(forward: &Frontier, backward: &Frontier) -> Searc
     SearchStatistics { forward: forward.statistics(), backward: backward.statistics() }
 }
 
-/// Writes the path over a cell that both sides reached, where they met and what they did. The
+/// Writes the path over a cell that both sides reached, the meeting cell and the statistics. The
 /// path's waypoints are the nodes of the two searches.
 pub(super) fn join(
     map: &SearchMap,
@@ -22,14 +22,14 @@ pub(super) fn join(
     plan: &mut Plan,
 ) {
     forward.path_into(map, meeting, &mut plan.cells);
-    // The meeting cell ends the one half and begins the other.
+    // The meeting cell ends the first half and begins the second one.
     plan.cells.pop();
     backward.append_path_back(map, meeting, &mut plan.cells);
     plan.statistics = statistics(forward, backward);
     plan.meeting = Some(map.cell(meeting));
 }
 
-/// The same for a path of neighbouring cells, with its cost and why the search stopped.
+/// Like `join` for a path of neighbouring cells; adds its cost and the reason for the stop.
 pub(super) fn finish(
     map: &SearchMap,
     sides: (&Frontier, &Frontier),
@@ -42,59 +42,61 @@ pub(super) fn finish(
     plan.stop = Some(stop);
 }
 
-/// The fate of the keys of open nodes when what they depend on changes: the other side's target,
-/// or a weight.
+/// The treatment of the keys of open nodes when they become outdated because the other side's
+/// target or a weight changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum OpenKeys {
-    /// They stay as they were computed when the node was put in or improved.
+    /// They keep the values from the time of insertion or improvement.
     #[default]
     Kept,
-    /// All are computed again before each turn of their side: O(n log n) for n open nodes.
+    /// All are recomputed before each turn of their side: O(n log n) for n open nodes.
     Renewed,
 }
 
-/// The current nodes of both sides: those that they expanded last, their roots at first.
+/// The current nodes of both sides: the nodes that they expanded last, initially their roots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurrentNodes {
-    /// That of the side whose turn it is.
+    /// The current node of the side whose turn it is.
     pub(super) own: CellIndex,
-    /// That of the other one.
+    /// The current node of the other side.
     pub(super) other: CellIndex,
 }
 
-/// The rule by which two sides that take turns have met.
+/// The condition under which two alternating sides have met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meeting {
-    /// They meet when one puts into its open list a node that the other has reached; of several
-    /// such nodes of one expansion it is the one with the cheapest path, the first of equal ones.
+    /// They meet when one side inserts a node into its open list that the other has reached. If
+    /// one expansion finds several such nodes, the one with the cheapest path counts, the first of
+    /// equal ones.
     Generated,
-    /// They meet when one takes from its open list a node that the other has expanded.
+    /// They meet when one side takes a node from its open list that the other has expanded.
     Expanded,
 }
 
-/// One side of a search that takes turns with the other one.
+/// One side of a search whose two sides take turns.
 pub(super) struct Half<'a, N, A> {
     side: Side,
     frontier: &'a mut Frontier,
     steps: N,
-    /// True if a cell that a step leads to may be visited; asked until the cell is reached.
+    /// True if a step into a cell is allowed; asked until the cell is reached.
     allows: A,
-    /// Its current node: the one that it expanded last, its root at first.
+    /// Its current node: the node that it expanded last, initially its root.
     current: CellIndex,
 }
 
-/// Lets both sides expand one node each in turn, the forward one first, until they meet; returns
-/// where. `rule` gives the rule of a side from the current nodes: for the successors of its node,
-/// which is then its current one, and, where keys are renewed, before it takes that node.
+/// Lets the sides expand one node each in turn, the forward one first, until they meet; returns
+/// the meeting cell. `rule` gives the rule of a side from the current nodes. It is used for the
+/// successors of the side's node, which is then its current one, and, if keys are renewed, before
+/// that node is taken.
 ///
-/// Where a path exists they meet: a side that runs out of open nodes has expanded all that can be
-/// reached, the root of the other one included.
+/// If a path exists, the sides meet: a side that runs out of open nodes has expanded every
+/// reachable cell, including the root of the other one.
 ///
 /// # Errors
-/// [`PlanError::NoPath`] when a side runs out of open nodes.
+/// [`PlanError::NoPath`] if a side runs out of open nodes.
 pub(super) fn take_turns<R: Rule>(
     map: &SearchMap,
     query: &Query,
@@ -133,7 +135,7 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
     }
 
     /// Takes the best node from the open list, and expands it unless the sides have met there.
-    /// Returns where they have met, if they have.
+    /// Returns the meeting cell, if any.
     fn turn<R: Rule>(
         &mut self,
         map: &SearchMap,
@@ -185,7 +187,7 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
         Ok(met)
     }
 
-    /// Puts the successors of a node into the open list, and reports each of them with its g.
+    /// Inserts the successors of a node into the open list, and reports each of them with its g.
     fn expand(
         &mut self,
         map: &SearchMap,
@@ -207,7 +209,7 @@ impl<'a, N: Successors, A: Fn(CellIndex) -> bool> Half<'a, N, A> {
     }
 }
 
-/// For tests of planners: what they do on a drawn map.
+/// Runs planners on drawn maps, for tests.
 #[cfg(test)]
 pub(super) mod drawn {
     use super::Side;
@@ -215,7 +217,7 @@ pub(super) mod drawn {
     use crate::plan::{GlobalPlanner, Plan, PlanError};
     use crate::search::{Observer, Query, Workspace};
 
-    /// The cells that the forward and the backward side expand, each in its order.
+    /// The cells that the forward and the backward side expand, each in order of expansion.
     pub(in crate::plan) type Sides = [Vec<(i32, i32)>; 2];
 
     #[derive(Default)]
@@ -232,7 +234,7 @@ pub(super) mod drawn {
         SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
     }
 
-    /// From `S` to `G`: the plan, and what was expanded.
+    /// Plans from `S` to `G`; returns the plan and the expanded cells.
     pub(in crate::plan) fn plan(
         planner: &impl GlobalPlanner,
         rows: &[&str],

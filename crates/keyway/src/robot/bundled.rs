@@ -1,4 +1,4 @@
-//! Robots that are bundled.
+//! The bundled robots.
 
 use super::{Footprint, FootprintError, Limits, Mount, RangeSensor, Robot};
 use crate::geometry::Point;
@@ -58,9 +58,9 @@ impl Robot {
     }
 
     /// Clearpath Jackal as in the BARN challenge: 0.508 m x 0.430 m, up to 2 m/s, lidar of 270
-    /// degrees and 30 m. It backs up at 0.5 m/s at most, as its lidar looks ahead. Its velocity
-    /// controller would allow 20 m/s² and 25 rad/s²; the accelerations here are what its tyres
-    /// hold.
+    /// degrees and 30 m. It backs up at 0.5 m/s at most, because its lidar faces forward. Its
+    /// velocity controller would allow 20 m/s² and 25 rad/s²; the accelerations here are limited
+    /// by the grip of its tyres.
     pub fn jackal() -> Self {
         Self {
             footprint: bundled(Footprint::rectangle(0.508, 0.430)),
@@ -105,21 +105,22 @@ impl Robot {
         }
     }
 
-    /// `TurtleBot3` Burger: 0.14 m x 0.178 m, up to 0.22 m/s, with its lidar LDS-01 of 3.5 m, which
-    /// scans five times a second.
+    /// `TurtleBot3` Burger: 0.14 m x 0.178 m, up to 0.22 m/s, with the lidar LDS-01 of 3.5 m at
+    /// five scans per second.
     ///
     /// # Source
-    /// Width, speeds and lidar: ROBOTIS e-Manual, `TurtleBot3`, Specifications. Length and place of
-    /// the base, and the place of the lidar behind the axle: its URDF. Accelerations: those that
-    /// Nav2's parameters for it allow.
+    /// Width, speeds and lidar: ROBOTIS e-Manual, `TurtleBot3`, Specifications. Length and
+    /// position of the base, and position of the lidar behind the axle: its URDF. Accelerations:
+    /// those allowed by Nav2's parameters for it.
     pub fn burger() -> Self {
-        // The base is a box of 0.14 m behind the axle, between wheels 0.178 m apart outside.
+        // The base is a box of 0.14 m behind the axle, between wheels whose outer sides are 0.178
+        // m apart.
         let footprint = box_around(-0.032, 0.14, 0.178);
         Self::turtlebot3(footprint, -0.032, (0.22, 2.84))
     }
 
-    /// `TurtleBot3` Waffle: 0.281 m x 0.306 m, up to 0.26 m/s, with the lidar LDS-01 of 3.5 m,
-    /// which scans five times a second.
+    /// `TurtleBot3` Waffle: 0.281 m x 0.306 m, up to 0.26 m/s, with the lidar LDS-01 of 3.5 m at
+    /// five scans per second.
     ///
     /// # Source
     /// As for [`Self::burger`]; the length is that of the e-Manual.
@@ -128,13 +129,13 @@ impl Robot {
         Self::turtlebot3(footprint, -0.064, (0.26, 1.82))
     }
 
-    /// `TurtleBot` 4: radius 0.175 m, up to 0.306 m/s with its safety features on, which do not let
-    /// it back up; lidar RPLIDAR A1M8 of 12 m, which scans about eight times a second.
+    /// `TurtleBot` 4: radius 0.175 m, up to 0.306 m/s with its safety features on, which do not
+    /// let it back up; lidar RPLIDAR A1M8 of 12 m at about eight scans per second.
     ///
     /// # Source
-    /// Radius: Nav2's parameters of `turtlebot4_navigation`. Speeds and accelerations: iRobot Create
-    /// 3, documentation and simulation. Place and beams of the lidar: `turtlebot4_description`; its
-    /// shortest range and its period: scans of real ones.
+    /// Radius: Nav2's parameters of `turtlebot4_navigation`. Speeds and accelerations: iRobot
+    /// Create 3, documentation and simulation. Mount and beams of the lidar:
+    /// `turtlebot4_description`; its shortest range and its period: scans of real robots.
     pub fn turtlebot4() -> Self {
         let lidar = RangeSensor {
             mount: Mount { x_m: -0.04, y_m: 0.0, yaw_deg: 90.0 },
@@ -162,12 +163,12 @@ impl Robot {
         }
     }
 
-    /// Clearpath Husky A200: 0.99 m x 0.67 m, up to 1 m/s, with a lidar of 270 degrees
-    /// and 30 m on its front. It backs up at 0.1 m/s, as its lidar looks ahead.
+    /// Clearpath Husky A200: 0.99 m x 0.67 m, up to 1 m/s, with a lidar of 270 degrees and 30 m on
+    /// its front. It backs up at 0.1 m/s, because its lidar faces forward.
     ///
     /// # Source
-    /// Size and speed: its user manual. Limits: `clearpath_control` (ROS 2); the speed back: those
-    /// of `husky_navigation`. Place and beams of the lidar: `husky_description`, `lms1xx`.
+    /// Size and speed: its user manual. Limits: `clearpath_control` (ROS 2); reverse speed: those
+    /// of `husky_navigation`. Mount and beams of the lidar: `husky_description`, `lms1xx`.
     pub fn husky() -> Self {
         let lidar = RangeSensor {
             mount: Mount { x_m: 0.337, ..Mount::CENTRE },
@@ -198,7 +199,7 @@ impl Robot {
     /// S300 at opposite corners, of 270 degrees and 29 m each.
     ///
     /// # Source
-    /// `mir_robot` (DFKI): footprint and limits of `mir_navigation`, places and beams of the
+    /// `mir_robot` (DFKI): footprint and limits of `mir_navigation`, mounts and beams of the
     /// scanners of `mir_description`.
     pub fn mir100() -> Self {
         let scanner = |x_m, y_m, yaw_deg| RangeSensor {
@@ -228,13 +229,13 @@ impl Robot {
     }
 
     /// A wheelchair that turns about its rear axle, like WHILL Model C: 0.878 m x 0.54 m, up to
-    /// 0.567 m/s, with a lidar of 200 degrees and 30 m at its feet. It backs up at 0.2 m/s, as its
-    /// lidar looks ahead.
+    /// 0.567 m/s, with a lidar of 200 degrees and 30 m at its feet. It backs up at 0.2 m/s,
+    /// because its lidar faces forward.
     ///
     /// # Source
-    /// Size, and place and beams of the lidar: URDF of `ros_whill` and `ros2_whill`; what overhangs
-    /// behind the wheels is not in it. Limits: the indoor speed profile of `ros_whill`, but for
-    /// the speed back.
+    /// Size, and mount and beams of the lidar: URDF of `ros_whill` and `ros2_whill`, which does
+    /// not include the overhang behind the wheels. Limits: the indoor speed profile of
+    /// `ros_whill`, except for the reverse speed.
     pub fn wheelchair() -> Self {
         let lidar = RangeSensor {
             mount: Mount { x_m: 0.5, ..Mount::CENTRE },
@@ -261,14 +262,14 @@ impl Robot {
         }
     }
 
-    /// A pallet truck that turns about the wheels of its forks, like HR-Recycler of Robotnik:
-    /// 1.95 m x 0.8 m, up to 0.6 m/s, with a safety scanner SICK S300 of 270 degrees and 30 m on its
-    /// front. Its steered wheel turns by a quarter to either side, so it turns on the spot.
+    /// A pallet truck that turns about the wheels of its forks, like HR-Recycler of Robotnik: 1.95
+    /// m x 0.8 m, up to 0.6 m/s, with a safety scanner SICK S300 of 270 degrees and 30 m on its
+    /// front. Its steered wheel turns by 90 degrees to either side, so it can turn in place.
     ///
     /// # Source
     /// `pallet_truck` (Robotnik): footprint, speeds and accelerations of its navigation,
-    /// decelerations of its controller, place of the scanner of its description; the turn rate is
-    /// that at which the wheel drives at 1 m/s.
+    /// decelerations of its controller, scanner mount of its description; the turn rate is that at
+    /// which the wheel drives at 1 m/s.
     pub fn pallet_truck() -> Self {
         let scanner = RangeSensor {
             mount: Mount { x_m: 1.689, ..Mount::CENTRE },
@@ -328,7 +329,7 @@ impl Robot {
     }
 }
 
-/// A box whose middle is ahead of the centre of rotation by so much.
+/// A box whose centre is this far ahead of the centre of rotation \[m\].
 fn box_around(middle_x_m: f64, length_m: f64, width_m: f64) -> Footprint {
     let (half_length_m, half_width_m) = (0.5 * length_m, 0.5 * width_m);
     let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];

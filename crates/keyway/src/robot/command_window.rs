@@ -1,29 +1,31 @@
-//! Limits of jerk, as a moving average behind a motion that is limited in acceleration only.
+//! Jerk limits, as a moving average over a motion that is limited in acceleration only.
 //!
-//! # The method
-//! The motion of a robot is planned as a *reference*: a velocity for the end of each cycle, which
-//! keeps the limits of speed and acceleration. The command of a cycle is the mean of the last n of
-//! them. From one command to the next it changes by the mean of the last n changes of the
-//! reference, so it keeps the limits of acceleration, too; and that change changes by the
-//! difference of two changes of the reference, n cycles apart, over n. With changes from -b c to
-//! a c in cycles of duration c, the jerk is (a + b) / (n c) at most, and n follows from its limit
-//! ([`Limits::smoothing_cycles`]). Only where acceleration and deceleration differ, and the
-//! reference turns round within n cycles, a command may change by the larger one where the motors
-//! do the smaller one: then they are behind it for some cycles.
+//! # Method
+//! The motion of a robot is planned as a *reference*: a velocity for the end of each cycle, within
+//! the limits of speed and acceleration. The command of a cycle is the mean of the last n
+//! reference velocities. From one command to the next it changes by the mean of the last n changes
+//! of the reference, so it keeps the acceleration limits, too. That change itself changes by the
+//! difference of two changes of the reference, n cycles apart, over n. With changes from -b c to a
+//! c in cycles of duration c, the jerk is at most (a + b) / (n c), and n follows from the jerk
+//! limit ([`Limits::smoothing_cycles`]).
 //!
-//! The mean neither adds nor takes way: the robot comes along a straight as far as the reference,
-//! later by (n - 1) / 2 cycles. So at any time there is a place at which the reference is
-//! ([`CommandWindow::reference_pose`]): ahead of the robot by what its commands still owe it. On an
-//! arc of constant curvature, and turning on the spot, that is exact; where the curvature changes,
-//! the robot cuts the corner a little, and whoever asks what it touches has to follow the commands
-//! ([`CommandWindow::commands`]).
+//! There is one exception: if acceleration and deceleration differ and the reference reverses
+//! within n cycles, a command may change by the larger limit although the motors only achieve the
+//! smaller one. The motors then lag behind the command for some cycles.
+//!
+//! The mean preserves the distance: on a straight, the robot travels as far as the reference, but
+//! (n - 1) / 2 cycles later. So the reference has a pose at any time
+//! ([`CommandWindow::reference_pose`]), ahead of the robot by the distance that is still in its
+//! commands. That is exact on an arc of constant curvature and when turning in place. At changes
+//! of curvature the robot cuts the corner slightly, so a collision check has to follow the
+//! commands ([`CommandWindow::commands`]).
 //!
 //! # Source
-//! Filters of moving averages for set points: \[Biagiotti2012\].
+//! Moving average filters for set points: \[Biagiotti2012\].
 //!
 //! # Cost
-//! A command costs n additions, a manoeuvre of k cycles n + k. Nothing is allocated but by
-//! [`CommandWindow::of`].
+//! A command costs n additions, a manoeuvre of k cycles n + k. Only [`CommandWindow::of`]
+//! allocates.
 
 use super::{Limits, Robot};
 use crate::ConfigError;
@@ -33,25 +35,25 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 impl Limits {
-    /// Commands are the mean of no longer time than this \[s\]: for longer, the robot would not do
-    /// what it was asked for.
+    /// Maximum averaging time of commands \[s\]: with a longer one, the robot would no longer do
+    /// what it is commanded to.
     const LONGEST_SMOOTHING_S: f64 = 2.0;
 
-    /// The number of cycles over which commands are averaged to keep the limits of jerk; 1 where
-    /// there are none.
+    /// The number of cycles over which commands are averaged to keep the jerk limits; 1 without
+    /// limits.
     pub fn smoothing_cycles(&self, cycle_s: f64) -> usize {
         let cycles = |(_, jerk, range, _): (&str, Option<f64>, f64, &str)| {
-            // A window that is just long enough is not one cycle longer for a rounding error.
+            // Rounding must not make a window that is just long enough one cycle longer.
             jerk.map_or(1.0, |jerk| (range / (jerk * cycle_s) - 1e-9).ceil().max(1.0))
         };
         self.jerks().map(cycles).into_iter().fold(1.0, f64::max) as usize
     }
 
-    /// Each limit of jerk: its field, its value, the widest difference of two accelerations, and
-    /// the fields of those.
+    /// Each jerk limit: its field, its value, the largest difference of two accelerations, and the
+    /// fields of those.
     fn jerks(&self) -> [(&'static str, Option<f64>, f64, &'static str); 2] {
-        // Between two accelerations of a robot that backs up, or turns to either side, both may be
-        // the larger one.
+        // If a robot backs up, or turns to either side, two successive accelerations may both have
+        // the larger magnitude.
         let either = |a: f64, b: f64| 2.0 * a.max(b);
         let (a, b) = (self.acceleration_mps2, self.deceleration_mps2);
         let straight = if self.v_min_mps < 0.0 { either(a, b) } else { a + b };
@@ -67,7 +69,7 @@ impl Limits {
         ]
     }
 
-    /// Refuses limits of jerk that are no numbers, or need too long a window.
+    /// Refuses jerk limits that are not positive numbers, or that need too long a window.
     pub(super) fn check_jerks(&self, cycle_s: f64) -> Result<(), ConfigError> {
         let most = (Self::LONGEST_SMOOTHING_S / cycle_s + 1e-9).floor().max(1.0);
         for (field, jerk, range, accelerations) in self.jerks() {
@@ -75,7 +77,7 @@ impl Limits {
             ConfigError::unless_positive(field, jerk)?;
             let least = range / (most * cycle_s);
             if jerk < least * (1.0 - 1e-9) {
-                // Rounded up, so that what the message says can be used.
+                // Rounded up, so that the value in the message is valid.
                 let least = Given((least * 1e6).ceil() / 1e6);
                 let expected = format!(
                     "at least {least}, to be kept by commands that are spread over 2 s (lower the {accelerations} for less)"
@@ -88,28 +90,28 @@ impl Limits {
 }
 
 impl Robot {
-    /// Time by which a robot with limits of jerk is behind its reference \[s\]; 0 without them.
+    /// Time by which a robot with jerk limits lags behind its reference \[s\]; 0 without limits.
     pub fn smoothing_lag_s(&self) -> f64 {
         let cycles = self.limits.smoothing_cycles(self.cycle_s);
         0.5 * (cycles - 1) as f64 * self.cycle_s
     }
 }
 
-/// The reference of the last cycles, of which a command is the mean.
+/// The reference velocities of the last cycles, whose mean is the command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommandWindow {
-    /// As many as are averaged, the oldest first.
+    /// The velocities that are averaged, the oldest first.
     references: VecDeque<Velocity>,
 }
 
 impl CommandWindow {
-    /// That of a robot at rest; `None` for a robot whose commands are not averaged.
+    /// The window of a robot at rest; `None` for a robot whose commands are not averaged.
     pub fn of(robot: &Robot) -> Option<Self> {
         let cycles = robot.limits.smoothing_cycles(robot.cycle_s);
         (cycles > 1).then(|| Self { references: VecDeque::from(vec![Velocity::ZERO; cycles]) })
     }
 
-    /// The present velocity of the reference.
+    /// The current velocity of the reference.
     pub fn reference(&self) -> Velocity {
         self.references.back().copied().unwrap_or(Velocity::ZERO)
     }
@@ -123,41 +125,42 @@ impl CommandWindow {
         self.references.iter().fold(Velocity::ZERO, |sum, &velocity| plus(sum, velocity, 1.0))
     }
 
-    /// Goes on for a cycle at whose end the reference has a velocity; the command of that cycle.
+    /// Advances by a cycle at whose end the reference has this velocity; returns the command of
+    /// that cycle.
     pub fn push(&mut self, reference: Velocity) -> Velocity {
         self.references.pop_front();
         self.references.push_back(reference);
         self.command()
     }
 
-    /// Begins anew with a robot that drives with a velocity.
+    /// Restarts with a robot that drives at this velocity.
     pub fn refill(&mut self, velocity: Velocity) {
         self.references.iter_mut().for_each(|reference| *reference = velocity);
     }
 
-    /// Those velocities of the reference that are still averaged.
+    /// The velocities of the reference that are still averaged.
     pub(crate) fn references(&self) -> impl Iterator<Item = Velocity> {
         self.references.iter().copied()
     }
 
-    /// True if it has as many velocities as another one, and all are numbers.
+    /// True if both windows have the same length, and all velocities of this one are finite.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         let is_number = |velocity: Velocity| velocity.v.is_finite() && velocity.omega.is_finite();
         self.references.len() == other.references.len() && self.references().all(is_number)
     }
 
-    /// True if nothing is left of any motion.
+    /// True if every velocity counts as stationary.
     pub(crate) fn is_still(&self, robot: &Robot) -> bool {
         self.references().all(|velocity| robot.stands(velocity))
     }
 
-    /// True if every velocity of it is 0.
+    /// True if every velocity is 0.
     pub(crate) fn is_zero(&self) -> bool {
         self.references().all(|velocity| velocity == Velocity::ZERO)
     }
 
-    /// The coming commands, while the reference has some velocities, and then stands, until nothing
-    /// of it is left.
+    /// The coming commands, while the reference follows some velocities and then stays at rest,
+    /// until the commands are 0, too.
     pub(crate) fn commands<I>(&self, coming: I) -> impl Iterator<Item = Velocity>
     where
         I: Iterator<Item = Velocity> + Clone,
@@ -174,13 +177,13 @@ impl CommandWindow {
             }
             sum = plus(sum, entering.unwrap_or(Velocity::ZERO), 1.0);
             sum = plus(sum, leaving.next().unwrap_or(Velocity::ZERO), -1.0);
-            // Nothing is left, not a rounding error.
+            // The last command is exactly 0, not a rounding error.
             Some(if left == 1 { Velocity::ZERO } else { mean(sum, cycles) })
         })
     }
 
-    /// Pose of the reference, for a robot at a pose with a velocity: on a straight, and on an arc,
-    /// a robot whose reference stopped there at once would stop there.
+    /// Pose of the reference, for a robot at a pose with a velocity. If the reference stopped
+    /// instantly, the robot would come to rest at this pose, on a straight and on an arc.
     pub(crate) fn reference_pose(&self, pose: Pose, velocity: Velocity, cycle_s: f64) -> Pose {
         if self.is_zero() {
             return pose;
@@ -188,7 +191,7 @@ impl CommandWindow {
         let follow = |(pose, from): (Pose, Velocity), to| (pose.after_ramp(from, to, cycle_s), to);
         let stop = std::iter::once(Velocity::ZERO);
         let (end, _) = self.commands(stop).fold((pose, velocity), follow);
-        // A velocity changes linearly in a cycle: at once is half of one earlier.
+        // The velocity changes linearly in a cycle, so an instant stop is half a cycle earlier.
         end.after_arc(self.reference(), -0.5 * cycle_s)
     }
 }

@@ -1,9 +1,9 @@
-//! Closed forms; limits and ways of commands, for any decisions.
+//! Closed forms; limits and travelled distances of commands, for arbitrary decisions.
 
 use super::*;
 use proptest::prelude::*;
 
-/// A robot with limits of jerk [m/s³, rad/s³].
+/// A robot with jerk limits [m/s³, rad/s³].
 fn robot(name: &str, jerk_mps3: f64, angular_jerk_radps3: f64) -> Robot {
     let mut robot = Robot::by_name(name).unwrap();
     robot.limits.jerk_mps3 = Some(jerk_mps3);
@@ -22,7 +22,7 @@ fn windows_are_as_long_as_the_limits_ask_for() {
     {
         assert_eq!(cycles(&robot("jackal", jerk_mps3, angular)), expected, "{jerk_mps3} {angular}");
     }
-    // A robot that does not back up never decelerates into an acceleration backwards.
+    // A robot that does not back up never changes from deceleration to backward acceleration.
     let mut uneven = robot("small", 1.0, 100.0);
     (uneven.limits.acceleration_mps2, uneven.limits.deceleration_mps2) = (0.2, 0.8);
     assert_eq!(cycles(&uneven), 10);
@@ -43,7 +43,8 @@ fn limits_that_cannot_be_kept_are_refused() {
     assert_eq!(text(0.0, 6.0), "limits.jerk_mps3 must be a positive number, got 0");
     assert!(text(f64::NAN, 6.0).contains("limits.jerk_mps3 must be a positive number"));
     assert!(text(6.0, f64::INFINITY).contains("limits.angular_jerk_radps3 must be finite"));
-    // Cycles that do not fit into 2 s: the message can be used, and a cycle is never too long.
+    // With cycles that do not divide 2 s, the value in the message is valid, and no cycle is too
+    // long.
     let mut slow = robot("small", 0.1, 100.0);
     slow.cycle_s = 0.3;
     assert!(slow.validate().unwrap_err().to_string().contains("at least 0.555556, "));
@@ -64,7 +65,7 @@ fn a_step_becomes_a_ramp() {
     assert!(window.reference() == Velocity::ZERO && window.command().omega == -1.5);
     window.refill(Velocity::new(0.3, 0.0));
     assert_eq!(window.push(Velocity::new(0.3, 0.0)), Velocity::new(0.3, 0.0));
-    // What is to come, in advance: the mean of what is there and of 1, 0.5, 0.
+    // Predicted commands: the mean of the current references and of 1, 0.5, 0.
     let coming = [1.0, 0.5, 0.0].map(|v| Velocity::new(v, 0.0));
     let speeds: Vec<f64> = window.commands(coming.into_iter()).map(|it| it.v).collect();
     for (speed, expected) in speeds.iter().zip([0.475, 0.525, 0.45, 0.375, 0.125, 0.0]) {
@@ -73,7 +74,7 @@ fn a_step_becomes_a_ramp() {
     assert_eq!((speeds.len(), speeds[5]), (6, 0.0));
 }
 
-/// At a constant velocity the reference is ahead by the lag, on the arc.
+/// At a constant velocity the reference is ahead by the lag, along the arc.
 #[test]
 fn the_reference_is_ahead_on_the_arc() {
     let robot = robot("jackal", 10.0, 20.0);
@@ -106,13 +107,13 @@ fn robots() -> impl Strategy<Value = Robot> {
     )
 }
 
-/// Velocities that are asked for, each for some cycles, in parts of the limits.
+/// Requested velocities as fractions of the limits, each for some cycles.
 fn asked() -> impl Strategy<Value = Vec<(f64, f64, usize)>> {
     prop::collection::vec((-1.5..1.5f64, -1.5..1.5f64, 1..15usize), 1..12)
 }
 
 proptest! {
-    /// Whatever is decided, commands keep the limits, and what comes is what was foretold.
+    /// Commands keep the limits for every decision, and they are as predicted.
     #[test]
     fn commands_keep_the_limits(robot in robots(), asked in asked()) {
         prop_assert_eq!(robot.validate(), Ok(()));
@@ -158,8 +159,8 @@ proptest! {
         }
     }
 
-    /// On a straight, and turning on the spot, the robot comes as far as its reference, and the
-    /// place of the reference says at any time where that is.
+    /// On a straight, and turning in place, the robot travels as far as its reference, and
+    /// `reference_pose` gives the pose of the reference at any time.
     #[test]
     fn nothing_of_the_way_is_lost(robot in robots(), asked in asked(), turns in any::<bool>()) {
         let Robot { limits, cycle_s, .. } = &robot;

@@ -1,16 +1,21 @@
-//! A robot of which only its size and its speed are known.
+//! A robot that is derived from its size and its speed.
 
 use super::{Footprint, Limits, RangeSensor, Robot};
 use std::f64::consts::TAU;
 
 impl Robot {
-    /// A robot of this footprint and top speed \[m/s\], with everything else as of usual robots of
-    /// that kind: a control cycle of 0.1 s, half of it from 1 m/s on; brakes and accelerations that
-    /// reach the top speed within a second, between 0.5 and 2.5 m/s²; a turn rate at which its
-    /// outermost point is as fast as the top speed, between 0.5 and 3 rad/s, reached within half a
-    /// second; no driving backwards; and a lidar at its centre that sees all around, as far as the
-    /// robot comes in 8 s, between 5 and 20 m, with a beam for each degree, or more where it would
-    /// miss something narrow within the way to stop.
+    /// A robot with this footprint and top speed \[m/s\]. All other values are typical of robots
+    /// of that kind:
+    ///
+    /// - a control cycle of 0.1 s, or half of that from 1 m/s on;
+    /// - an acceleration and deceleration that take one second to the top speed, between 0.5 and
+    ///   2.5 m/s²;
+    /// - a turn rate at which its outermost point is as fast as the top speed, between 0.5 and 3
+    ///   rad/s, reached within half a second;
+    /// - no driving backwards;
+    /// - a lidar at its centre with a field of view of 360 degrees. Its range is the distance
+    ///   driven in 8 s, between 5 and 20 m. It has one beam per degree, or more if it could miss a
+    ///   narrow object within the stopping distance.
     ///
     /// ```
     /// use keyway::robot::{Footprint, Robot};
@@ -51,8 +56,8 @@ impl Robot {
     }
 }
 
-/// A lidar that sees all around; its robot stops within this length \[m\], and the time in which it
-/// reacts.
+/// A 360 degree lidar for a robot that stops within this length \[m\] plus the distance of its
+/// reaction time.
 fn lidar(v_max_mps: f64, stops_m: f64) -> RangeSensor {
     const REACTS_S: f64 = 0.5;
     let range_m = (8.0 * v_max_mps).clamp(5.0, 20.0);
@@ -67,12 +72,12 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Whatever size and speed a robot may have, what follows from them can be used.
+        /// Every size and speed gives a valid robot.
         #[test]
         fn a_derived_robot_is_a_robot(radius_m in 0.0..3.0, v_max_mps in 1e-3..20.0) {
             let robot = Robot::derived(Footprint::circle(radius_m).unwrap(), v_max_mps);
             prop_assert_eq!(robot.validate(), Ok(()));
-            // It stops within what it sees.
+            // It stops within its sensor's range.
             prop_assert!(v_max_mps > 5.0 || robot.sight_mps() > v_max_mps);
             let long = Footprint::rectangle(2.0 * radius_m + 0.1, radius_m + 0.05).unwrap();
             prop_assert_eq!(Robot::derived(long, v_max_mps).validate(), Ok(()));

@@ -1,8 +1,9 @@
-//! The drive model: how a robot moves, brakes and stops. A differential drive, the only one so far.
+//! The drive model: motion, braking and stopping of a robot. A differential drive, the only one so
+//! far.
 //!
-//! Here is what velocity a robot reaches in a cycle, how it brakes, when it stands, and its motion
-//! until it does. Dynamic windows, the search through space and time, the stop rule and the motions
-//! of recoveries compute places of (v, omega) by formulas of their own.
+//! It gives the velocity that a robot reaches in a cycle, its braking, the test for standstill,
+//! and its motion until it stops. Dynamic windows, the space-time search, the stop rule and the
+//! recovery motions integrate (v, omega) with formulas of their own.
 
 use super::{Limits, Robot};
 use crate::ConfigError;
@@ -25,7 +26,7 @@ pub struct Ramp {
 
 impl Robot {
     /// The motion of a robot that is given a command and brakes from the next cycle on, cycle by
-    /// cycle, until it stands: at least one cycle. Braking it stays on its arc.
+    /// cycle, until it stops: at least one cycle. While braking, it stays on its arc.
     pub fn motion_to_stop(
         &self,
         pose: Pose,
@@ -40,32 +41,32 @@ impl Robot {
         })
     }
 
-    /// Pose at which a robot stands that is given a command and brakes from the next cycle on.
+    /// Pose at which a robot stops that is given a command and brakes from the next cycle on.
     pub(crate) fn stop_pose(&self, pose: Pose, velocity: Velocity, command: Velocity) -> Pose {
         self.motion_to_stop(pose, velocity, command).fold(pose, |_, motion| motion.end)
     }
 
-    /// The motion of the next cycle when a command is given.
+    /// The motion of the next cycle under a command.
     pub fn ramp(&self, pose: Pose, from: Velocity, command: Velocity) -> Ramp {
         let to = self.limits.reached(from, command, self.cycle_s);
         Ramp { start: pose, from, to, end: pose.after_ramp(from, to, self.cycle_s) }
     }
 
-    /// True if it stands: what its odometry shows then is noise.
+    /// True if the robot is stationary: so small a velocity is odometry noise.
     pub(crate) fn stands(&self, velocity: Velocity) -> bool {
         let standing = self.standing();
         velocity.v.abs() <= standing.v && velocity.omega.abs() <= standing.omega
     }
 
-    /// The largest speed and turn rate that odometry shows of a robot that stands.
+    /// The largest speed and turn rate that the odometry of a stationary robot shows.
     pub(crate) fn standing(&self) -> Velocity {
         let (limits, cycle_s) = (&self.limits, self.cycle_s);
         let standing_radps = 0.1 * limits.angular_deceleration_radps2 * cycle_s;
         Velocity::new(limits.standing_mps(cycle_s), standing_radps)
     }
 
-    /// The longest time from a scan to rest, if the robot backs up at full speed for one more
-    /// cycle \[s\].
+    /// The longest time from a scan to rest \[s\], if the robot backs up at full speed for one
+    /// more cycle.
     pub(crate) fn backing_s(&self) -> f64 {
         let stop_s = -self.limits.v_min_mps / self.limits.deceleration_mps2;
         self.actuation_delay_s + 2.0 * self.cycle_s + stop_s + 2.0 * self.smoothing_lag_s()
@@ -78,13 +79,13 @@ impl Robot {
 pub struct CycleCount {
     /// Whole cycles.
     pub whole: usize,
-    /// The rest, as a part of a cycle.
+    /// The remainder, as a fraction of a cycle.
     pub part: f64,
 }
 
 impl CycleCount {
-    /// A time in cycles: 0.3 s are three cycles of 0.1 s although their quotient is rounded to
-    /// less.
+    /// A time in cycles: 0.3 s are three cycles of 0.1 s, although rounding makes their quotient
+    /// smaller.
     pub fn of(duration_s: f64, cycle_s: f64) -> Self {
         let count = duration_s / cycle_s;
         let nearest = count.round();
@@ -96,8 +97,8 @@ impl CycleCount {
 }
 
 impl Limits {
-    /// The velocity within the limits that is nearest to another one, component by component; 0 for
-    /// what is not a number.
+    /// The nearest velocity within the limits, component by component; 0 for a component that is
+    /// NaN.
     pub fn clamped(&self, velocity: Velocity) -> Velocity {
         let known = |value: f64| if value.is_nan() { 0.0 } else { value };
         Velocity::new(
@@ -106,8 +107,8 @@ impl Limits {
         )
     }
 
-    /// The velocity after `duration_s` when `command` is requested: each component moves towards
-    /// the command as far as its limits and accelerations allow.
+    /// The velocity after `duration_s` if `command` is requested: each component moves towards the
+    /// command as far as its limits and accelerations allow.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
         let Velocity { v, omega, .. } = self.clamped(command);
         Velocity::new(
@@ -122,17 +123,17 @@ impl Limits {
         )
     }
 
-    /// Forward speeds up to this are noise of a standing robot: a tenth of what it sheds in
-    /// `cycle_s`, but at most a hundredth of its full speed.
+    /// Forward speeds up to this are noise of a stationary robot: a tenth of the speed that it
+    /// loses in `cycle_s` of braking, but at most a hundredth of its full speed.
     pub(crate) fn standing_mps(&self, cycle_s: f64) -> f64 {
         (0.1 * self.deceleration_mps2 * cycle_s).min(0.01 * self.v_max_mps)
     }
 
-    /// The longest that a robot may take to stop \[s\].
+    /// Maximum time to stop \[s\].
     const LONGEST_STOP_S: f64 = 60.0;
 
-    /// Refuses brakes that are too weak: all that looks ahead looks as far as the robot needs to
-    /// stop.
+    /// Refuses brakes that are too weak: every look-ahead covers the distance that the robot needs
+    /// to stop.
     pub(super) fn check_stopping(&self) -> Result<(), ConfigError> {
         let checks = [
             ("limits.deceleration_mps2", self.deceleration_mps2, self.v_max_mps, "v_max_mps"),
@@ -148,7 +149,7 @@ impl Limits {
             .into_iter()
             .find(|(_, brakes, fastest, _)| fastest / brakes > Self::LONGEST_STOP_S * (1.0 + 1e-9));
         let Some((field, brakes, fastest, fastest_name)) = weak else { return Ok(()) };
-        // Rounded up, so that what the message says can be used.
+        // Rounded up, so that the value in the message is valid.
         let least = Given((fastest / Self::LONGEST_STOP_S * 1e6).ceil() / 1e6);
         let expected =
             format!("at least {least}, to stop from limits.{fastest_name} within a minute");
@@ -161,44 +162,44 @@ impl Limits {
             .max(self.omega_max_radps / self.angular_deceleration_radps2)
     }
 
-    /// Way to stop from full speed \[m\].
+    /// Braking distance from full speed \[m\].
     pub fn stop_m(&self) -> f64 {
         self.v_max_mps * self.v_max_mps / (2.0 * self.deceleration_mps2)
     }
 
-    /// The way on which the robot brakes to a stop in whole cycles ([`Self::braked`]) is never
-    /// longer than what it covers in this time at the velocity from which it brakes: half of the
-    /// time to stop and half of a cycle \[s\].
+    /// Upper bound of the braking distance, as a time \[s\]: braking to a stop in whole cycles
+    /// ([`Self::braked`]) takes at most the distance that the initial velocity covers in this
+    /// time. It is half of the time to stop plus half of a cycle.
     ///
     /// Braking from the velocity u scales it: after k cycles of duration c it is g(k c) u, with
     /// g(t) = max(0, 1 - t / T) and the time to stop T; in between it changes linearly. Speed and
-    /// turn rate fall in proportion, so the robot stays on its arc and covers of it what u covers
-    /// in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ...
-    /// = c / 2 + c (g(c) + g(2 c) + ...). As g falls, c g(k c) is at most the integral of g over
-    /// the k-th cycle, so S <= c / 2 + T / 2. Both terms are needed: a robot that could stop at
-    /// once still needs a cycle, in which it drives half as far as at u.
+    /// turn rate fall in proportion, so the robot stays on its arc and covers the part of it that
+    /// u covers in the time S = c (g(0) + g(c)) / 2 + c (g(c) + g(2 c)) / 2 + ... = c / 2 + c
+    /// (g(c) + g(2 c) + ...). As g falls, c g(k c) is at most the integral of g over the k-th
+    /// cycle, so S <= c / 2 + T / 2. Both terms are needed: even a robot that could stop instantly
+    /// needs a cycle, in which it drives half as far as at u.
     pub fn brakes_within_s(&self, cycle_s: f64) -> f64 {
         0.5 * (self.stop_s() + cycle_s)
     }
 
-    /// The largest speed that a robot may have at the end of a cycle, when it had `from_mps` at its
-    /// beginning, to stand within `within_m` of there, driving straight and braking in whole cycles
-    /// \[m/s\]; 0 where none is small enough.
+    /// The largest speed at the end of a cycle, after `from_mps` at its beginning, from which the
+    /// robot stops within `within_m` of its position at the beginning \[m/s\]. It drives straight
+    /// and brakes in whole cycles; 0 if no speed is small enough.
     pub(crate) fn stoppable_mps(&self, from_mps: f64, within_m: f64, cycle_s: f64) -> f64 {
         stoppable(from_mps, within_m, self.deceleration_mps2, cycle_s)
     }
 
-    /// The same of turning on the spot \[rad/s\].
+    /// As [`Self::stoppable_mps`], for turning in place \[rad/s\].
     pub(crate) fn stoppable_radps(&self, from_radps: f64, within_rad: f64, cycle_s: f64) -> f64 {
         stoppable(from_radps, within_rad, self.angular_deceleration_radps2, cycle_s)
     }
 
-    /// The velocity after braking for `duration_s` as hard as the curvature of the present arc
-    /// allows: speed and turn rate fall in proportion, so that the robot stays on its arc.
+    /// The velocity after braking for `duration_s` as hard as the curvature of the current arc
+    /// allows: speed and turn rate fall in proportion, so the robot stays on its arc.
     pub fn braked(&self, from: Velocity, duration_s: f64) -> Velocity {
         let stop_s = (from.v.abs() / self.deceleration_mps2)
             .max(from.omega.abs() / self.angular_deceleration_radps2);
-        // The last step of an even number of them ends at rest, not a rounding error before it.
+        // The last of several equal steps ends at rest, not a rounding error before it.
         if stop_s <= duration_s * (1.0 + 1e-9) {
             return Velocity::ZERO;
         }
@@ -208,14 +209,14 @@ impl Limits {
 }
 
 /// The largest velocity at the end of a cycle from which a stop is possible in whole cycles. A
-/// velocity the other way at its beginning counts as one ahead.
+/// velocity in the opposite direction at its beginning counts as one ahead.
 ///
-/// In a cycle c a deceleration of b sheds b c. From the velocity v = (n + f) b c, n whole and 0 <=
-/// f < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it (`from` + v) c / 2.
-/// Solved for n and f.
+/// In a cycle c, a deceleration of b reduces the velocity by b c. From the velocity v = (n + f) b
+/// c, n integer and 0 <= f < 1, braking covers b c² (n² + 2 n f + f) / 2, and the cycle before it
+/// (`from` + v) c / 2. Solved for n and f.
 fn stoppable(from: f64, within: f64, deceleration: f64, cycle_s: f64) -> f64 {
     let shed = deceleration * cycle_s;
-    // What is left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
+    // The distance left for v, in units of b c² / 2, is n² + n + f (2 n + 2).
     let left = (2.0 * within / cycle_s - from.abs()) / shed;
     if left == f64::INFINITY {
         return left;
@@ -226,7 +227,7 @@ fn stoppable(from: f64, within: f64, deceleration: f64, cycle_s: f64) -> f64 {
     shed * (whole + part)
 }
 
-/// `from` moved towards `to`; speeding up and slowing down have limits of their own.
+/// Moves `from` towards `to`; speeding up and slowing down have separate limits.
 fn approach(from: f64, to: f64, acceleration: f64, deceleration: f64, duration_s: f64) -> f64 {
     let slower = to.abs() < from.abs() || to * from < 0.0;
     let step = if slower { deceleration } else { acceleration } * duration_s;
@@ -290,7 +291,7 @@ mod tests {
             let within_s = limits.brakes_within_s(cycle_s);
             let needed_s = driven_m / limits.v_max_mps;
             assert!(needed_s <= within_s, "{needed_s} {within_s}");
-            // Not by much: c (n - 1/2 - n (n - 1) c / (2 T)) with n whole cycles.
+            // The bound is tight; exact: c (n - 1/2 - n (n - 1) c / (2 T)) with n whole cycles.
             let stop_s = limits.stop_s();
             let n = (stop_s / cycle_s - 1e-9).ceil();
             let exact_s = cycle_s * (n - 0.5 - n * (n - 1.0) * cycle_s / (2.0 * stop_s));
@@ -298,8 +299,8 @@ mod tests {
         }
     }
 
-    /// The way that a robot drives in a cycle that takes it from one speed to another, and then
-    /// until it stands \[m\].
+    /// The distance that a robot drives in a cycle that takes it from one speed to another, and
+    /// then until it stops \[m\].
     fn driven_m(limits: &Limits, from_mps: f64, to_mps: f64, cycle_s: f64) -> f64 {
         let (mut v, mut driven_m) = (to_mps, 0.5 * (from_mps + to_mps) * cycle_s);
         while v > 0.0 {

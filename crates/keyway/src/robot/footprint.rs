@@ -1,4 +1,4 @@
-//! The ground that a robot covers.
+//! The footprint of a robot.
 
 use crate::geometry::{Point, Segment, holds_point, outline};
 use crate::given::Given;
@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
 use thiserror::Error;
 
-/// The ground that a robot covers, seen from above in its own frame: x ahead, y left, the centre of
-/// rotation at (0, 0).
+/// The ground area that a robot covers, in its own frame: x ahead, y left, the centre of rotation
+/// at (0, 0).
 ///
-/// # Which clearance to plan with
-/// Planners and smoothers treat a robot as a disc whose radius is the clearance asked for:
+/// # Choosing the clearance
+/// Planners and smoothers treat a robot as a disc whose radius is the requested clearance:
 ///
-/// - The *circumscribed* radius is safe at every heading, also while turning on the spot, but
-///   closes passages that a long robot fits through lengthwise.
-/// - The *inscribed* radius opens them, but promises nothing: then check the path.
-///   [`Self::is_free`] at its samples judges the poses on the way
-///   ([`crate::geometry::Path::samples_and_joints`]; a robot moves on between two samples, so plan
-///   with a margin of their spacing). Where the heading jumps, the robot turns on the spot between
-///   two samples: [`Self::is_free_turn`] judges all headings in between.
+/// - The *circumscribed* radius is safe at every heading, also while turning in place, but closes
+///   passages that a long robot fits through lengthwise.
+/// - The *inscribed* radius opens them, but guarantees nothing: the path has to be checked.
+///   [`Self::is_free`] checks the poses at its samples
+///   ([`crate::geometry::Path::samples_and_joints`]; the robot moves between two samples, so plan
+///   with a margin of their spacing). At a heading jump the robot turns in place between two
+///   samples: [`Self::is_free_turn`] checks all headings in between.
 ///
-/// `examples/driveable_path.rs` does all of it.
+/// `examples/driveable_path.rs` does all of this.
 ///
 /// ```
 /// use keyway::robot::Footprint;
@@ -51,7 +51,7 @@ pub struct Circle {
     radius_m: f64,
 }
 
-/// A simple polygon, convex or not, with the distances that quick tests need.
+/// A simple polygon, convex or not, with its radii for quick tests.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Point>", into = "Vec<Point>")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "Vec<[f64; 2]>"))]
@@ -61,7 +61,7 @@ pub struct Polygon {
     circumscribed_radius_m: f64,
 }
 
-/// Why a radius or points do not make a footprint.
+/// Reason why a radius or vertices do not make a footprint.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FootprintError {
@@ -91,34 +91,35 @@ pub enum FootprintError {
         "vertex {index} of the footprint must lie within 1000 m, got ({}, {})", Given(*.x), Given(*.y)
     )]
     Vertex {
-        /// Which one.
+        /// Index of the vertex.
         index: usize,
         /// Its x \[m\].
         x: f64,
         /// Its y \[m\].
         y: f64,
     },
-    /// Two successive vertices coincide, as where the first one is repeated as the last.
+    /// Two successive vertices coincide, for example if the first one is repeated as the last.
     #[error(
         "vertices {0} and {1} of the footprint coincide; leave one out (the last vertex is joined to the first)"
     )]
     Repeated(usize, usize),
-    /// Two successive edges lie on each other, as in a spike or where all vertices lie on one line.
+    /// Two successive edges overlap, as in a spike or if all vertices are collinear.
     #[error("the footprint covers no ground at vertex {0}")]
     Degenerate(usize),
-    /// Two edges that are not neighbours meet.
+    /// Two edges that are not neighbours touch or cross.
     #[error("edges {0} and {1} of the footprint meet")]
     SelfIntersecting(usize, usize),
 }
 
-/// No part of a footprint is farther than this from the centre of rotation \[m\].
+/// Maximum distance of any part of a footprint from the centre of rotation \[m\].
 const FARTHEST_M: f64 = 1000.0;
 
 impl Circle {
     /// The disc of this radius \[m\].
     ///
     /// # Errors
-    /// When the radius is negative, not finite, or larger than a kilometre.
+    /// Returns [`FootprintError`] if the radius is negative, not finite, or larger than a
+    /// kilometre.
     pub fn new(radius_m: f64) -> Result<Self, FootprintError> {
         if (0.0..=FARTHEST_M).contains(&radius_m) {
             Ok(Self { radius_m })
@@ -134,20 +135,21 @@ impl Circle {
 }
 
 impl Polygon {
-    /// Vertices nearer than this to each other or to an edge count as touching \[m\].
+    /// Vertices closer than this to each other or to an edge count as touching \[m\].
     const LEAST_LENGTH_M: f64 = 1e-6;
 
-    /// No polygon has more vertices: every distance to an obstacle takes time in proportion to
-    /// them, and so does every decision of a local planner. No convex hull is taken of them,
-    /// because a robot may be a fork that an obstacle goes into.
+    /// Maximum number of vertices: the time of every distance computation, and so of every
+    /// decision of a local planner, is proportional to it. The convex hull is not used instead,
+    /// because a robot may be a fork that an obstacle can enter.
     pub const MOST_VERTICES: usize = 100;
 
-    /// The polygon with these vertices \[m\], in either direction around. The last one is joined to
-    /// the first, which is not repeated.
+    /// The polygon with these vertices \[m\], in either orientation. The last one is connected to
+    /// the first, which must not be repeated.
     ///
     /// # Errors
-    /// When they are fewer than 3, more than [`Self::MOST_VERTICES`], or do not bound one piece of
-    /// ground, or when one is not within a kilometre of the centre of rotation.
+    /// Returns [`FootprintError`] if there are fewer than 3 vertices or more than
+    /// [`Self::MOST_VERTICES`], if they do not bound a single area, or if one is not within a
+    /// kilometre of the centre of rotation.
     pub fn new(vertices: Vec<Point>) -> Result<Self, FootprintError> {
         if vertices.len() < 3 {
             return Err(FootprintError::TooFewVertices(vertices.len()));
@@ -199,7 +201,8 @@ impl Footprint {
     /// A box of this length and width \[m\] around the centre of rotation.
     ///
     /// # Errors
-    /// When one of them is not a positive length of up to a kilometre.
+    /// Returns [`FootprintError::Rectangle`] unless both are positive lengths of up to a
+    /// kilometre.
     pub fn rectangle(length_m: f64, width_m: f64) -> Result<Self, FootprintError> {
         let is_side = |side_m: f64| side_m > 0.0 && side_m <= FARTHEST_M;
         if !(is_side(length_m) && is_side(width_m)) {
@@ -218,7 +221,7 @@ impl Footprint {
         Polygon::new(vertices).map(Self::Polygon)
     }
 
-    /// Its reach ahead of the centre of rotation \[m\].
+    /// Its extent ahead of the centre of rotation \[m\].
     pub(crate) fn foremost_m(&self) -> f64 {
         match self {
             Self::Circle(circle) => circle.radius_m(),
@@ -228,8 +231,8 @@ impl Footprint {
         }
     }
 
-    /// True if the footprint covers a place in the robot's frame \[m\]. Of a place on the edge of a
-    /// polygon, either may be said.
+    /// True if the footprint covers a point in the robot's frame \[m\]. For a point on the edge of
+    /// a polygon, the result may be either.
     pub fn covers(&self, place: Point) -> bool {
         match self {
             Self::Circle(circle) => place.norm() <= circle.radius_m(),
@@ -239,9 +242,9 @@ impl Footprint {
         }
     }
 
-    /// The footprint scaled around the centre of rotation so that its inscribed radius is smaller
-    /// by `by_m`: all of its outline moves inwards, nowhere by less than `by_m` \[m\]. `None` when
-    /// there would be nothing left, or for a length that is not a number of at least 0.
+    /// The footprint scaled around the centre of rotation so that its inscribed radius shrinks by
+    /// `by_m`: all of its outline moves inwards, everywhere by at least `by_m` \[m\]. `None` if
+    /// nothing would remain, or if the length is not a number of at least 0.
     #[must_use]
     pub fn smaller_by(&self, by_m: f64) -> Option<Self> {
         let radius_m = self.inscribed_radius_m();
@@ -257,7 +260,7 @@ impl Footprint {
         }
     }
 
-    /// Radius of the largest disc around the centre of rotation inside the footprint \[m\]; 0 when
+    /// Radius of the largest disc around the centre of rotation inside the footprint \[m\]; 0 if
     /// the centre lies outside.
     pub const fn inscribed_radius_m(&self) -> f64 {
         match self {
@@ -275,8 +278,7 @@ impl Footprint {
     }
 }
 
-/// Refuses edges without length, and edges that touch another one elsewhere than at a common
-/// vertex.
+/// Refuses edges without length, and edges that touch each other anywhere but at a common vertex.
 fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
     let least_sq = Polygon::LEAST_LENGTH_M * Polygon::LEAST_LENGTH_M;
     if let Some(i) = edges.iter().position(|edge| (edge.b - edge.a).norm_sq() < least_sq) {
@@ -284,7 +286,7 @@ fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
     }
     for (i, edge) in edges.iter().enumerate() {
         let next = &edges[(i + 1) % edges.len()];
-        // The far end of one neighbour on the other one: a spike, or no ground at all.
+        // The far end of one edge lies on its neighbour: a spike, or no area at all.
         let folds = next.distance_sq_to_point(edge.a) < least_sq
             || edge.distance_sq_to_point(next.b) < least_sq;
         if folds {
@@ -300,7 +302,7 @@ fn check_edges(edges: &[Segment]) -> Result<(), FootprintError> {
     Ok(())
 }
 
-/// True when two segments cross or touch.
+/// True if two segments cross or touch.
 fn meet(one: &Segment, other: &Segment) -> bool {
     let side = |line: &Segment, point: Point| (line.b - line.a).cross(point - line.a);
     let crosses = side(one, other.a) * side(one, other.b) < 0.0
@@ -314,7 +316,7 @@ fn meet(one: &Segment, other: &Segment) -> bool {
         || touches(other, one.b)
 }
 
-/// The radius, or the length and width of a polygon.
+/// Formats the radius, or the length and width of a polygon.
 impl Display for Footprint {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
@@ -360,7 +362,7 @@ impl From<Polygon> for Vec<Point> {
     }
 }
 
-/// The vertices of a star around a point: at each radius in turn, evenly spread.
+/// The vertices of a star around a point: one at each radius in turn, at equal angles.
 #[cfg(test)]
 pub(crate) fn star(radii: &[f64], around: (f64, f64)) -> Vec<Point> {
     let step_rad = std::f64::consts::TAU / radii.len() as f64;

@@ -24,18 +24,18 @@ pub use sensor::RangeSensor;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
-    /// The ground that it covers: `radius_m` of a disc, or `vertices_m` of a polygon.
+    /// The ground area that it covers: `radius_m` of a disc, or `vertices_m` of a polygon.
     pub footprint: Footprint,
     /// Control cycle \[s\]: time between two commands, from 0.001 to 10.
     pub cycle_s: f64,
-    /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant at
-    /// which its command acts, and simulated motors are as late. Where it is wrong, a robot learns
-    /// it while it drives.
+    /// Time from a command to its effect \[s\], up to 10. The controller decides for the instant
+    /// at which its command takes effect, and simulated motors have the same delay. If the value
+    /// is wrong, the robot estimates the delay while it drives.
     #[serde(default)]
     pub actuation_delay_s: f64,
     /// Safety margin: the distance kept from obstacles in addition to the footprint \[m\], from
-    /// 0.0001 to 10. Routes, the parameters of stacks for a robot and the stop rule follow from it.
-    /// Unless it is given, it is a tenth of what the robot drives in a cycle at full speed.
+    /// 0.0001 to 10. Routes, the stop rule and a stack's parameters for a robot are derived from
+    /// it. Default: a tenth of the distance driven in a cycle at full speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safety_margin_m: Option<f64>,
     /// Velocity and acceleration limits.
@@ -56,30 +56,31 @@ pub struct Limits {
     pub v_max_mps: f64,
     /// Largest turn rate to either side \[rad/s\], from 0.0001 to 100.
     pub omega_max_radps: f64,
-    /// Acceleration \[m/s²\], like those below from 0.0001 to 10000.
+    /// Acceleration \[m/s²\], from 0.0001 to 10000 like those below.
     pub acceleration_mps2: f64,
     /// Deceleration \[m/s²\], positive; the robot stops from full speed within a minute.
     pub deceleration_mps2: f64,
     /// Angular acceleration \[rad/s²\].
     pub angular_acceleration_radps2: f64,
-    /// Angular deceleration \[rad/s²\], positive; from the full turn rate, too.
+    /// Angular deceleration \[rad/s²\], positive; the robot stops from the full turn rate within a
+    /// minute, too.
     pub angular_deceleration_radps2: f64,
-    /// Largest change of the acceleration of its commands, per time \[m/s³\]; none unless it is
-    /// given. Commands are then the mean over some cycles ([`CommandWindow`]), 2 s at most.
+    /// Largest jerk of the commands \[m/s³\]; by default unlimited. With a limit, commands are the
+    /// mean over some cycles ([`CommandWindow`]), at most 2 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub jerk_mps3: Option<f64>,
-    /// The same of turning \[rad/s³\].
+    /// Largest angular jerk \[rad/s³\], in the same way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angular_jerk_radps3: Option<f64>,
 }
 
 impl Robot {
-    /// Checks every value. A footprint was checked when it was made.
+    /// Checks every value. A footprint was checked on construction.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with the values that can. No robot on wheels is
-    /// near the ends of these ranges; beyond them a simulation would take minutes for a second, or
-    /// numbers would lose their meaning.
+    /// Names the first invalid field, with the values that are valid. The ranges are wider than
+    /// any wheeled robot needs; beyond them a simulation would take minutes per second, or lose
+    /// numerical accuracy.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
         let Limits { acceleration_mps2, deceleration_mps2, .. } = self.limits;
@@ -125,22 +126,22 @@ impl Robot {
 }
 
 impl Robot {
-    /// The distance that routes keep from obstacles where they can: the circumscribed radius, with
-    /// which the robot can turn on the spot anywhere, and a cycle of driving at full speed, or the
-    /// safety margin where that is more \[m\].
+    /// The distance that routes keep from obstacles if possible \[m\]: the circumscribed radius,
+    /// which lets the robot turn in place anywhere, plus the distance of a cycle at full speed, or
+    /// the safety margin if that is larger.
     pub fn preferred_clearance_m(&self) -> f64 {
         let cycle_m = self.limits.v_max_mps * self.cycle_s;
         self.footprint.circumscribed_radius_m() + cycle_m.max(self.safety_margin_m())
     }
 
-    /// The safety margin: that of the robot, or a tenth of what it drives in a cycle at full speed
-    /// \[m\].
+    /// The safety margin \[m\]: that of the robot, or a tenth of the distance driven in a cycle at
+    /// full speed.
     pub fn safety_margin_m(&self) -> f64 {
         self.safety_margin_m.unwrap_or(0.1 * self.limits.v_max_mps * self.cycle_s)
     }
 
-    /// What is farther away than this hardly matters in one cycle: as far as any part of the robot
-    /// comes at full speed in a cycle and twice the time to stop \[m\].
+    /// Distance beyond which obstacles hardly matter within one cycle \[m\]: the reach of any part
+    /// of the robot at full speed in a cycle plus twice the time to stop.
     pub fn decision_reach_m(&self) -> f64 {
         let drive_s = self.cycle_s + 2.0 * self.limits.stop_s();
         self.footprint.circumscribed_radius_m() + self.limits.v_max_mps * drive_s

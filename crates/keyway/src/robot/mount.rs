@@ -1,4 +1,4 @@
-//! The place of a sensor on a robot.
+//! The mounting pose of a sensor on a robot.
 
 use crate::ConfigError;
 use crate::geometry::Pose;
@@ -10,17 +10,17 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct Mount {
-    /// Ahead of the centre of rotation \[m\], from -1000 to 1000.
+    /// Distance ahead of the centre of rotation \[m\], from -1000 to 1000.
     pub x_m: f64,
-    /// To the left of the centre of rotation \[m\], from -1000 to 1000.
+    /// Distance to the left of the centre of rotation \[m\], from -1000 to 1000.
     pub y_m: f64,
-    /// Direction in which the middle of the field of view looks \[deg\], counter-clockwise from
-    /// straight ahead, from -360 to 360.
+    /// Direction of the centre of the field of view \[deg\], counter-clockwise from straight
+    /// ahead, from -360 to 360.
     pub yaw_deg: f64,
 }
 
 impl Mount {
-    /// At the centre of rotation, looking ahead.
+    /// At the centre of rotation, facing ahead.
     pub const CENTRE: Self = Self { x_m: 0.0, y_m: 0.0, yaw_deg: 0.0 };
 
     /// Pose of the sensor in the robot's frame.

@@ -10,24 +10,26 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RangeSensor {
-    /// Its place on the robot; by default its centre of rotation, looking ahead.
+    /// Mounting pose on the robot; by default at its centre of rotation, facing ahead.
     #[serde(default, skip_serializing_if = "Mount::is_centre")]
     pub mount: Mount,
     /// Number of beams, spread evenly over the field of view.
     pub beams: u32,
-    /// Field of view, centred where it looks (`mount.yaw_deg`) \[deg\]; 360 is all around.
+    /// Field of view, centred on `mount.yaw_deg` \[deg\]; 360 is all around.
     pub field_of_view_deg: f64,
     /// Range \[m\], from 0.001 to 10000.
     pub range_m: f64,
-    /// Shortest range \[m\]: a shorter one says nothing. From 0, the default, to below `range_m`.
+    /// Smallest valid range \[m\]: a shorter reading carries no information. From 0, the default,
+    /// to below `range_m`.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub range_min_m: f64,
-    /// Time from one scan to the next \[s\], from 0.001 to 60; without it the control cycle. In the
-    /// cycles between two scans the controller expects none.
+    /// Scan period \[s\], from 0.001 to 60; by default the control cycle. The controller expects
+    /// no scan in the cycles between two scans.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// The sensor is silent when no beam has said anything for this long \[s\], from 0.001 to 3600;
-    /// without it three periods, but at least 0.5 s. The robot stops when all are.
+    /// Time without a valid reading of any beam after which the sensor counts as silent \[s\],
+    /// from 0.001 to 3600; by default three periods, but at least 0.5 s. The robot stops if all
+    /// sensors are silent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timeout_s: Option<f64>,
 }
@@ -38,8 +40,9 @@ fn is_zero(value: &f64) -> bool {
 }
 
 impl RangeSensor {
-    /// A sensor with this many beams over a field of view \[deg\] that sees so far \[m\]: at the
-    /// robot's centre of rotation, looking ahead, from there on, and once in every control cycle.
+    /// A sensor with this many beams over a field of view \[deg\] and this range \[m\]. It is
+    /// mounted at the robot's centre of rotation, faces ahead, has no minimum range, and scans
+    /// once in every control cycle.
     pub const fn new(beams: u32, field_of_view_deg: f64, range_m: f64) -> Self {
         let (range_min_m, period_s, timeout_s) = (0.0, None, None);
         let mount = Mount::CENTRE;
@@ -49,7 +52,7 @@ impl RangeSensor {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with the values that can.
+    /// Names the first invalid field, with the values that are valid.
     pub(super) fn validate(&self) -> Result<(), ConfigError> {
         let Self { beams, field_of_view_deg, range_m, range_min_m, period_s, timeout_s, .. } =
             *self;
@@ -79,33 +82,32 @@ impl RangeSensor {
 }
 
 impl RangeSensor {
-    /// Things that are as wide as this are not to be missed between two beams \[m\].
+    /// Width of an object that must not be missed between two beams \[m\].
     pub const NARROWEST_M: f64 = 0.06;
 
-    /// As far as its beams miss nothing that is as wide as [`Self::NARROWEST_M`] \[m\]: its range,
-    /// or less where they are far apart.
+    /// Distance up to which its beams miss no object as wide as [`Self::NARROWEST_M`] \[m\]: its
+    /// range, or less if the beams are far apart.
     pub fn sees_everything_m(&self) -> f64 {
-        // All around, the last beam is as far from the first one as from the one before it.
+        // With 360 degrees, the gap between the last beam and the first is a gap like any other.
         let gaps =
             if self.field_of_view_deg >= 360.0 { self.beams } else { self.beams.saturating_sub(1) };
         let step_rad = self.field_of_view_deg.to_radians() / f64::from(gaps);
         self.range_m.min(Self::NARROWEST_M / step_rad)
     }
 
-    /// Time from one scan to the next \[s\] on a robot with this control cycle:
-    /// [`Self::period_s`], or the cycle.
+    /// Scan period \[s\] on a robot with this control cycle: [`Self::period_s`], or the cycle.
     pub fn period_in_s(&self, cycle_s: f64) -> f64 {
         self.period_s.unwrap_or(cycle_s)
     }
 
-    /// Time without a scan that says anything after which the sensor is silent \[s\], on a robot
-    /// with this control cycle: [`Self::timeout_s`], or three periods, but at least 0.5 s.
+    /// Time without a valid reading after which the sensor counts as silent \[s\], on a robot with
+    /// this control cycle: [`Self::timeout_s`], or three periods, but at least 0.5 s.
     pub fn timeout_in_s(&self, cycle_s: f64) -> f64 {
         const LEAST_S: f64 = 0.5;
         self.timeout_s.unwrap_or_else(|| (3.0 * self.period_in_s(cycle_s)).max(LEAST_S))
     }
 
-    /// True if a place in the robot's frame lies in the field of view, however far away.
+    /// True if a point in the robot's frame lies in the field of view, at any distance.
     pub(crate) fn looks_at(&self, place: Point) -> bool {
         let mount = self.mount.pose();
         let bearing_rad = (place - mount.point()).heading() - mount.theta;
@@ -115,7 +117,7 @@ impl RangeSensor {
 }
 
 impl Robot {
-    /// Most sensors of a robot.
+    /// Maximum number of sensors of a robot.
     pub const MOST_SENSORS: usize = 8;
 
     pub(super) fn validate_sensors(&self) -> Result<(), ConfigError> {
@@ -128,19 +130,19 @@ impl Robot {
         })
     }
 
-    /// Longest time from one scan of a sensor to its next \[s\].
+    /// Longest scan period of the robot's sensors \[s\].
     pub fn scan_period_s(&self) -> f64 {
         let periods = self.sensors.iter().map(|sensor| sensor.period_in_s(self.cycle_s));
         periods.reduce(f64::max).unwrap_or(self.cycle_s)
     }
 
-    /// True if the sensors together look in all directions. What hides behind the robot's own
-    /// body between them does not count.
+    /// True if the fields of view together cover all directions. Occlusion by the robot's own body
+    /// is ignored.
     pub(crate) fn sees_all_around(&self) -> bool {
         let turn = |deg: f64| deg.rem_euclid(360.0);
         let starts =
             |sensor: &RangeSensor| turn(sensor.mount.yaw_deg - 0.5 * sensor.field_of_view_deg);
-        // Nobody's field of view ends where no other one goes on.
+        // Every field of view ends inside another one.
         let goes_on = |end: &RangeSensor| {
             let end_deg = turn(starts(end) + end.field_of_view_deg);
             let covers = |other: &&RangeSensor| {
@@ -154,7 +156,7 @@ impl Robot {
             || !self.sensors.is_empty() && self.sensors.iter().all(goes_on)
     }
 
-    /// Distance from the centre of rotation as far as the sensors that look ahead miss nothing
+    /// Distance from the centre of rotation up to which the sensors that face ahead miss nothing
     /// \[m\].
     fn sees_ahead_m(&self) -> f64 {
         let far = Point::new(1e6, 0.0);
@@ -162,9 +164,9 @@ impl Robot {
         ahead.map(|sensor| sensor.mount.x_m + sensor.sees_everything_m()).fold(0.0, f64::max)
     }
 
-    /// As far as any part of the robot comes until it stands, when it drives ahead at full speed,
-    /// goes on for two cycles, a delay and three periods of its sensor (so many scans may be lost),
-    /// and then brakes \[m\].
+    /// Reach of any part of the robot until it stops \[m\]: it drives ahead at full speed,
+    /// continues for a delay, two cycles, the smoothing lag and three scan periods (so many scans
+    /// may be lost), and then brakes.
     pub(crate) fn looks_ahead_m(&self) -> f64 {
         let reacts_s = self.actuation_delay_s
             + 2.0 * self.cycle_s
@@ -175,14 +177,14 @@ impl Robot {
             + self.limits.stop_m()
     }
 
-    /// The fastest speed from which the robot still stops within what its sensor surely sees
-    /// ([`RangeSensor::sees_everything_m`]) \[m/s\]: from a
-    /// scan that is as old as it may be, after another cycle and a delay, with its foremost point.
-    /// It may be more than the robot drives; 0 where no speed is slow enough.
+    /// The largest speed from which the robot still stops within the range that its sensors
+    /// certainly cover ([`RangeSensor::sees_everything_m`]) \[m/s\]. The foremost point counts,
+    /// and braking begins as late as possible: after a scan period, another cycle and a delay. The
+    /// speed may be larger than the robot's top speed; it is 0 if no speed is low enough.
     ///
-    /// From the speed v it needs v² / (2 b) + v t, with the deceleration b and the time t of those:
-    /// of the scan's period, the delay, a cycle, half of one in which it brakes less, as it brakes
-    /// in whole cycles, and the time by which it is behind its reference.
+    /// From the speed v the robot needs v² / (2 b) + v t, with the deceleration b and the reaction
+    /// time t: the scan period, the delay, one cycle, half of another one, in which it brakes less
+    /// because it brakes in whole cycles, and the time by which it lags behind its reference.
     pub fn sight_mps(&self) -> f64 {
         let react_s =
             self.scan_period_s().max(self.cycle_s) + self.actuation_delay_s + 1.5 * self.cycle_s;
@@ -217,7 +219,7 @@ mod tests {
         // 3.5 m - 0.18 m - 0.02 m = v² / (2 * 0.5) + v (0.1 + 0.15).
         let v = robot.sight_mps();
         assert!((v * v + 0.25 * v - 3.3).abs() < 1e-12, "{v}");
-        // Until it stands it comes no farther, whole cycles included.
+        // It drives no farther until it stops, whole cycles included.
         let (mut at_m, mut now) = (2.0 * robot.cycle_s * v, v);
         while now > 0.0 {
             let slower =
@@ -232,7 +234,7 @@ mod tests {
         assert_eq!(robot.sight_mps(), 0.0);
     }
 
-    /// 36 beams are 6 cm apart at 0.344 m.
+    /// 36 beams are 6 cm apart at a distance of 0.344 m.
     #[test]
     fn few_beams_see_everything_near_the_robot_only() {
         let mut robot = Robot::small();
@@ -240,7 +242,8 @@ mod tests {
         robot.sensors = vec![RangeSensor::new(36, 360.0, 5.0)];
         let far_m = robot.sensors[0].sees_everything_m();
         assert!((far_m - 0.06 / 10f64.to_radians()).abs() < 1e-12);
-        // The first and the last of few beams look to both sides; one beam sees no width.
+        // The first and the last of few beams bound the field of view; a single beam covers no
+        // width.
         let in_a_quarter = |beams| RangeSensor::new(beams, 90.0, 5.0).sees_everything_m();
         assert!((in_a_quarter(10) - far_m).abs() < 1e-12);
         assert_eq!([in_a_quarter(1), in_a_quarter(0)], [0.0, 0.0]);
@@ -267,7 +270,7 @@ mod tests {
         assert!(error(|sensor| sensor.timeout_s = Some(f64::NAN)).contains("sensors[0].timeout_s"));
     }
 
-    /// A sensor that looks from there.
+    /// A sensor mounted at `mount`.
     fn mounted(mount: (f64, f64, f64), field_of_view_deg: f64) -> RangeSensor {
         let (x_m, y_m, yaw_deg) = mount;
         let mount = Mount { x_m, y_m, yaw_deg };
@@ -285,15 +288,15 @@ mod tests {
             |deg| robot([0.0, 120.0, -120.0].map(|yaw| mounted((0.0, 0.0, yaw), deg)).to_vec());
         assert!(thirds(121.0).sees_all_around() && !thirds(119.0).sees_all_around());
         assert!(!Robot::jackal().sees_all_around() && Robot::small().sees_all_around());
-        // Two that look the same way do not see behind.
+        // Two sensors that face the same direction do not see behind the robot.
         let same = robot(vec![mounted((0.0, 0.0, 0.0), 270.0), mounted((0.1, 0.0, 0.0), 270.0)]);
         assert!(!same.sees_all_around());
-        // A place beside the sensor, not beside the robot's centre.
+        // A point beside the sensor, not beside the robot's centre.
         let corner = mounted((0.3, 0.2, 0.0), 180.0);
         assert!(
             corner.looks_at(Point::new(0.31, -0.2)) && !corner.looks_at(Point::new(0.29, -0.2))
         );
-        // Who looks back does not see ahead.
+        // A sensor that faces backwards does not see ahead.
         let back = robot(vec![mounted((-0.3, 0.0, 180.0), 180.0)]);
         assert_eq!(back.sees_ahead_m(), 0.0);
         assert_eq!(corners(270.0).sees_ahead_m(), 5.3);

@@ -1,18 +1,19 @@
-//! How the positions of a route are joined to the cells of its path.
+//! Rules that join the start and goal positions of a route to the cells of its path.
 
 use crate::geometry::{Point, Segment};
 use crate::map::{Cell, Clearance, SearchMap};
 use crate::plan::{PathEnd, PlanError, check_end};
 
-/// How a position is joined to the cells of a path.
+/// Rule that joins a position to a cell of the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum EndRule {
-    /// By the cell in which it lies; the planner refuses a blocked one.
+    /// The cell that contains the position; the planner refuses a blocked one.
     #[default]
     OwnCell,
-    /// By the cell in which it lies if that is free, otherwise by the nearest free one, if a disc
-    /// can go there straight. Where the disc has no room even at the position (a cell was sensed
-    /// too near), the way may not come nearer than that.
+    /// The cell that contains the position if it is free, otherwise the nearest free cell if a
+    /// disc can reach it in a straight line. If the disc lacks clearance even at the position (a
+    /// cell was sensed too close), the connection may not come closer to obstacles than the
+    /// position itself.
     NearestFree {
         /// Radius of the disc \[m\].
         radius_m: f64,
@@ -23,7 +24,7 @@ impl EndRule {
     /// The cell at which a route from (or to) a position meets the grid.
     ///
     /// # Errors
-    /// Why the position's own cell cannot be used, where no other can be.
+    /// Returns the error of the position's own cell if no other cell can be used either.
     pub(super) fn cell(
         &self,
         map: &SearchMap,
@@ -39,8 +40,8 @@ impl EndRule {
         if map.clearance().is_clear(way, room_m) { Ok(cell) } else { Err(why) }
     }
 
-    /// Room that a straight way from (or to) a position must keep \[m\], for a route that keeps
-    /// `clearance_m`.
+    /// Clearance that a straight connection from (or to) a position must keep \[m\], for a route
+    /// that keeps `clearance_m`.
     pub(super) fn room_m(
         &self,
         clearance: Clearance<'_>,
@@ -53,8 +54,8 @@ impl EndRule {
         }
     }
 
-    /// What the smoothed line keeps where the path does: where cells are too coarse for a lane,
-    /// shortcuts must still fit the disc.
+    /// Clearance that the smoothed line keeps wherever the path does \[m\]. On cells that are too
+    /// coarse for a lane, shortcuts must still fit the disc.
     pub(super) fn clearance_m(&self, map: &SearchMap) -> f64 {
         match *self {
             Self::OwnCell => map.config().clearance_m,

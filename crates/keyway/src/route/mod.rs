@@ -1,10 +1,9 @@
 //! The pipeline: two positions -> a plan -> a line -> a smoothed route.
 //!
-//! [`plan_route`] is all of it. Where single steps are wanted (to plan once and to smooth in
-//! several ways, or to take a plan from elsewhere), they are [`RouteQuery::search`],
-//! [`RouteQuery::line`], [`smooth_line`] and [`Route::of_plan`]; `plan_route` consists of them.
-//! Nothing here reads a clock: a [`StageObserver`] learns when a search or a smoothing begins and
-//! ends.
+//! [`plan_route`] runs all of it. Its steps are also available one by one, for example to smooth
+//! one plan in several ways or to use a plan from elsewhere: [`RouteQuery::search`],
+//! [`RouteQuery::line`], [`smooth_line`] and [`Route::of_plan`]. Nothing here reads a clock: a
+//! [`StageObserver`] is told when a search or a smoothing begins and ends.
 //!
 //! ```
 //! use keyway::geometry::Point;
@@ -42,10 +41,10 @@ use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::{Smoothed, Smoother};
 use serde::{Deserialize, Serialize};
 
-/// How far the line of a route may be from the curve that it stands for \[cells\].
+/// Largest distance between the line of a route and the curve that it approximates \[cells\].
 pub const CHORD_CELLS: f64 = 0.05;
 
-/// A planned way from one position to another.
+/// A planned route from one position to another.
 ///
 /// Serialised without the planner's path.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -54,32 +53,32 @@ pub struct Route {
     /// The planner's path.
     #[serde(skip)]
     pub plan: Plan,
-    /// The same as a line from position to position \[m\].
+    /// The path as a line from position to position \[m\].
     pub line: PlannedLine,
-    /// The smoothed path, and what was done to the line.
+    /// The smoothed path, and the statistics of the smoothing.
     pub smoothing: Smoothed,
-    /// The smoothed path as a line; of a curve, chords along it.
+    /// The smoothed path as a line; a curve is approximated by chords.
     pub smoothed: Polyline,
-    /// What the smoothed line keeps from obstacles wherever the path did \[m\].
+    /// Clearance that the smoothed line keeps wherever the path did \[m\].
     pub clearance_m: f64,
 }
 
-/// Which route is wanted.
+/// A route request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RouteQuery {
-    /// Where it begins \[m\].
+    /// Start position \[m\].
     pub start: Point,
-    /// Where it ends \[m\].
+    /// Goal position \[m\].
     pub goal: Point,
-    /// How start and goal are joined to the cells of the path.
+    /// Rule that joins start and goal to the cells of the path.
     pub ends: EndRule,
     /// Give up after this many expanded nodes.
     pub budget: Option<u64>,
-    /// What to do when no path leads to the goal.
+    /// Behaviour if no path leads to the goal.
     pub if_unreachable: IfUnreachable,
 }
 
-/// A step of the pipeline whose time is worth knowing.
+/// A step of the pipeline that is worth timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
@@ -89,7 +88,7 @@ pub enum Stage {
     Smoothing,
 }
 
-/// Learns when the stages of a route begin and end, to measure them; `()` is the silent one.
+/// Observes when the stages of a route begin and end, to measure them; `()` does nothing.
 pub trait StageObserver {
     /// A stage begins.
     fn begin(&mut self, _stage: Stage) {}
@@ -100,12 +99,13 @@ pub trait StageObserver {
 
 impl StageObserver for () {}
 
-/// Plans a path, draws it as a line between the two positions, and smooths that. The smoothed line
-/// keeps the clearance of the map's layers, and the radius of [`EndRule::NearestFree`] where that
-/// is larger.
+/// Plans a path, draws it as a line between the two positions, and smooths the line. The smoothed
+/// line keeps the clearance of the map's layers, or the radius of [`EndRule::NearestFree`] if
+/// that is larger.
 ///
 /// # Errors
-/// As for [`GlobalPlanner::plan_into`]; and when a blocked end cannot be joined to a free cell.
+/// As for [`GlobalPlanner::plan_into`]; also if a blocked start or goal cannot be joined to a
+/// free cell.
 pub fn plan_route(
     map: &SearchMap,
     planner: &dyn GlobalPlanner,
@@ -120,8 +120,7 @@ pub fn plan_route(
 }
 
 impl RouteQuery {
-    /// From `start` to `goal` and nowhere else, each of which lies in a free cell; without a
-    /// budget.
+    /// A query from `start` to exactly `goal`, both of which must lie in free cells; no budget.
     pub const fn new(start: Point, goal: Point) -> Self {
         Self {
             start,
@@ -132,10 +131,10 @@ impl RouteQuery {
         }
     }
 
-    /// The same between the cells of the path's ends.
+    /// The same query between the cells of start and goal.
     ///
     /// # Errors
-    /// When a blocked end cannot be joined to a free cell.
+    /// Returns [`PlanError`] if a blocked start or goal cannot be joined to a free cell.
     pub fn on_cells(&self, map: &SearchMap) -> Result<Query, PlanError> {
         let start = self.ends.cell(map, PathEnd::Start, self.start)?;
         let goal = self.ends.cell(map, PathEnd::Goal, self.goal)?;
@@ -162,8 +161,8 @@ impl RouteQuery {
         result
     }
 
-    /// A plan for this query as a line from position to position. Where the goal was not reached,
-    /// it ends at the centre of the cell that was reached in its place.
+    /// A plan for this query as a line from position to position. If the goal was not reached,
+    /// the line ends at the centre of the cell that was reached instead.
     pub fn line(&self, map: &SearchMap, plan: &Plan) -> PlannedLine {
         let goal = self.ends.cell(map, PathEnd::Goal, self.goal).ok();
         let in_its_place = plan.reached().filter(|&cell| Some(cell) != goal);
@@ -188,13 +187,13 @@ impl Route {
         Self { plan, line, smoothing, smoothed, clearance_m }
     }
 
-    /// Where the route ends; `None` for a route without points.
+    /// The end of the route; `None` for a route without points.
     pub fn end(&self) -> Option<Point> {
         self.line.polyline().points().last().copied()
     }
 }
 
-/// Smooths a line so that it keeps `clearance_m` wherever it did.
+/// Smooths a line so that it keeps `clearance_m` wherever it did before.
 pub fn smooth_line(
     map: &SearchMap,
     smoother: &dyn Smoother,

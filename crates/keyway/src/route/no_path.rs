@@ -1,24 +1,25 @@
-//! Why no path joins a start and a goal.
+//! The reason why no path joins a start and a goal.
 
 use crate::map::{
     Cell, Connectivity, LayerConfig, OccupancyGrid, SearchMap, Separation, UnknownPolicy,
 };
 use std::fmt::{self, Display, Formatter};
 
-/// What separates a start and a goal that no path joins.
+/// Separation of a start and a goal that no path joins.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NoPath {
-    /// The clearance that would leave a path, or how the two are parted.
+    /// The clearance at which a path would exist, or the separation of the two.
     pub separation: Separation,
-    /// True if there would be a path if unknown cells were not obstacles.
+    /// True if a path would exist if unknown cells were free.
     pub is_joined_through_unknown: bool,
 }
 
-/// What separates two cells; `None` where a path joins them, or one of them is blocked. `grid` is
-/// what the layers of `map` were derived from.
+/// The separation of two cells; `None` if a path joins them or one of them is blocked. `grid` is
+/// the map from which the layers of `map` were derived.
 ///
-/// Costs several times as much as a search: for a user who wants to know, not for a control cycle.
+/// Costs several times as much as a search: meant for diagnostics on request, not for a control
+/// cycle.
 pub fn why_no_path(
     map: &SearchMap,
     grid: &OccupancyGrid,

@@ -1,11 +1,11 @@
-//! Why there is no room at an end of a route, in positions.
+//! The reason why a start or goal has too little clearance, in positions.
 
 use crate::geometry::Point;
 use crate::map::SearchMap;
 use crate::plan::{PathEnd, PlanError};
 
-/// Why a start or goal \[m\] cannot be used, with its position, its cell and the nearest free
-/// position; `None` for every other error. Planners know cells alone.
+/// The reason why a start or goal \[m\] cannot be used, with its position, its cell and the
+/// nearest free position; `None` for every other error. Planners report cells only.
 pub fn why_no_room(
     map: &SearchMap,
     [start, goal]: [Point; 2],

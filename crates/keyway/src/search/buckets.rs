@@ -1,17 +1,18 @@
-//! Unsorted entries in numbered buckets, which share their memory.
+//! Unsorted entries in numbered buckets with shared memory.
 
-/// Entries of a chunk: with its two numbers, a chunk is 256 bytes.
+/// Entries of a chunk: together with its two numbers, a chunk is 256 bytes.
 const CHUNK_ENTRIES: usize = 15;
 const NONE: u32 = u32::MAX;
 
-/// Buckets as lists of chunks from one store. What one bucket gives back serves any other, so that
-/// the memory of a search fits every search that holds no more entries, wherever these lie.
+/// Buckets as linked lists of chunks from one pool. A chunk freed by one bucket serves any other,
+/// so the memory of one search is enough for every search with no more entries, however these are
+/// distributed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Buckets {
     chunks: Vec<Chunk>,
-    /// The first chunk of each bucket, the only one that may have room.
+    /// The first chunk of each bucket, the only one that may have free entries.
     heads: Vec<u32>,
-    /// The first chunk that is not used.
+    /// The first unused chunk.
     free: Option<u32>,
 }
 
@@ -23,11 +24,11 @@ struct Chunk {
 }
 
 impl Buckets {
-    /// Makes sure that there are this many buckets.
+    /// Ensures that there are at least `count` buckets.
     pub(super) fn provide(&mut self, count: usize) {
         if self.heads.len() < count {
             self.heads.resize(count, NONE);
-            // A chunk for each: reserved, but not touched before it is used.
+            // One chunk for each: reserved, but not touched before use.
             self.chunks.reserve(count);
         }
     }
@@ -43,7 +44,7 @@ impl Buckets {
         }
     }
 
-    /// A chunk with its first entry; what else it holds has no meaning.
+    /// A chunk with its first entry; the other entries are undefined.
     fn new_chunk(&mut self, entry: u128, next: u32) -> u32 {
         let Some(free) = self.free else {
             self.chunks.push(Chunk { entries: [entry; CHUNK_ENTRIES], len: 1, next });
@@ -63,7 +64,7 @@ impl Buckets {
         chunks.flat_map(|chunk| chunk.entries[..chunk.len as usize].iter().copied())
     }
 
-    /// Empties a bucket, whose memory may then be used by any other.
+    /// Clears a bucket; its memory may then be used by any other.
     pub(super) fn clear(&mut self, bucket: usize) {
         let first = std::mem::replace(&mut self.heads[bucket], NONE);
         let mut last = first;

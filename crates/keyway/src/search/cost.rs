@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use std::f64::consts::SQRT_2;
 use std::ops::Add;
 
-/// The cost of a path: its numbers of straight and of diagonal steps. Nothing is rounded.
+/// The cost of a path: its numbers of straight and diagonal steps, without rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Cost {
     /// Steps to one of the four side neighbours, each of length 1.
@@ -19,24 +19,23 @@ impl Cost {
     /// ratio is the best approximation of sqrt(2) by fractions with denominators up to the larger
     /// one.
     ///
-    /// Two costs that differ by (a, b) steps are ordered by a + b sqrt(2), their keys by
-    /// a q + b p with p / q = `KEY_DIAGONAL` / `KEY_STRAIGHT`. Both have the same sign as long as
-    /// |b| < q: a fraction -a / b between p / q and sqrt(2) would have a denominator of at least
-    /// q. So **keys order exactly every pair of paths with fewer than 93,222,358 diagonal steps**,
-    /// as all shortest paths on maps of up to 13,600 x 13,600 cells have (steps into penalised
-    /// cells count as often as their penalty says); beyond that, paths whose lengths differ by less
-    /// than 1e-8 cells may be misordered.
+    /// Two costs that differ by (a, b) steps are ordered by a + b sqrt(2), their keys by a q + b p
+    /// with p / q = `KEY_DIAGONAL` / `KEY_STRAIGHT`. Both have the same sign as long as |b| < q: a
+    /// fraction -a / b between p / q and sqrt(2) would have a denominator of at least q. So **keys
+    /// order exactly every pair of paths with fewer than 93,222,358 diagonal steps**. All shortest
+    /// paths on maps of up to 13,600 x 13,600 cells are within this limit (a step into a penalised
+    /// cell counts as many times as its penalty factor). Beyond it, paths whose lengths differ by
+    /// less than 1e-8 cells may be misordered.
     pub const KEY_STRAIGHT: u64 = 93_222_358;
     /// See [`Self::KEY_STRAIGHT`].
     pub const KEY_DIAGONAL: u64 = 131_836_323;
 
-    /// This many straight and diagonal steps.
+    /// A cost of `straight` straight and `diagonal` diagonal steps.
     pub const fn new(straight: u64, diagonal: u64) -> Self {
         Self { straight, diagonal }
     }
 
-    /// The octile distance of two cells: the cost of a shortest path between them where nothing
-    /// stands in the way.
+    /// The octile distance between two cells: the cost of a shortest path without obstacles.
     pub const fn octile(dx: u32, dy: u32) -> Self {
         let (long, short) = if dx > dy { (dx, dy) } else { (dy, dx) };
         Self { straight: (long - short) as u64, diagonal: short as u64 }
@@ -47,7 +46,7 @@ impl Cost {
         self.straight as f64 + self.diagonal as f64 * SQRT_2
     }
 
-    /// The order-preserving fixed-point value that searches use, see [`Self::KEY_STRAIGHT`].
+    /// The order-preserving fixed-point value used by searches, see [`Self::KEY_STRAIGHT`].
     pub const fn key(self) -> u64 {
         self.straight * Self::KEY_STRAIGHT + self.diagonal * Self::KEY_DIAGONAL
     }
@@ -66,7 +65,7 @@ impl PartialOrd for Cost {
     }
 }
 
-/// The exact order of the lengths, in integer arithmetic.
+/// The exact order of the lengths, by integer arithmetic.
 impl Ord for Cost {
     fn cmp(&self, other: &Self) -> Ordering {
         let a = i128::from(self.straight) - i128::from(other.straight);
@@ -114,7 +113,7 @@ mod tests {
                                      c in 0u64..90_000_000, d in 0u64..90_000_000) {
             let (left, right) = (Cost::new(a, b), Cost::new(c, d));
             prop_assert_eq!(left.cmp(&right), left.key().cmp(&right.key()));
-            // The hardest opponent: the number of straight steps nearest to the same length.
+            // The hardest case: the number of straight steps nearest to the same length.
             let near = Cost::new((left.cells() - d as f64 * SQRT_2).max(0.0).round() as u64, d);
             prop_assert_eq!(left.cmp(&near), left.key().cmp(&near.key()));
         }

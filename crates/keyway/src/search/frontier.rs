@@ -4,24 +4,25 @@ use super::open_list::{Entry, OpenList};
 use super::{GridStep, Observer, Rule, Side, SideStatistics, Successors};
 use crate::map::{Cell, CellIndex, SearchMap};
 
-/// The node that was just taken from the open list.
+/// A node that was just taken from the open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Expanded {
     /// The cell.
     pub(crate) at: CellIndex,
-    /// Its value, for most rules the cost of its path, as a [`super::Cost::key`].
+    /// Its value g: for most rules the cost of its path, as a [`super::Cost::key`].
     pub(crate) g: u64,
 }
 
 /// The open list and the nodes of one side of a search.
 ///
-/// The open list is ordered by key, then larger g, then lower cell index, and dropped lazily: an
-/// improved node is put in again and the older entry skipped. Nodes are 16 bytes in one array per
-/// map; they carry the epoch of their query, so a new query clears nothing, and pages that no query
-/// touches are never touched.
+/// The open list is ordered by key, then larger g, then lower cell index. Deletion is lazy: an
+/// improved node is reinserted and the older entry is skipped. Nodes are 16 bytes in one array per
+/// map. They carry the epoch of their query, so a new query clears nothing, and pages without
+/// nodes are never touched.
 ///
-/// A search takes the best node ([`Self::take_best`]) and puts its successors in: a one-sided one
-/// all of them ([`Self::expand`]), a bidirectional one those that it wants ([`Self::offer`]).
+/// A search takes the best node ([`Self::take_best`]) and inserts its successors: a one-sided
+/// search inserts all of them ([`Self::expand`]), a bidirectional one selects them
+/// ([`Self::offer`]).
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frontier {
     /// g, and parent << 32 | epoch << 1 | closed. Plain arrays, because only those are allocated
@@ -37,7 +38,7 @@ pub(crate) struct Frontier {
 impl Frontier {
     const MAX_EPOCH: u32 = (1 << 31) - 1;
 
-    /// Forgets the last query and puts `root` into the open list, with g = 0.
+    /// Clears the last query and inserts `root` into the open list, with g = 0.
     pub(crate) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         if self.nodes.len() != map.index_count() {
             self.nodes = vec![[0; 2]; map.index_count()];
@@ -54,7 +55,7 @@ impl Frontier {
         self.open.push(root, 0, key);
     }
 
-    /// What was done since [`Self::start`].
+    /// Counters since [`Self::start`].
     pub(crate) const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
@@ -65,12 +66,12 @@ impl Frontier {
         size_of::<[u64; 2]>() * self.nodes.capacity() + self.open.memory_bytes() + renewed
     }
 
-    /// Entries of the open list, those out of date included.
+    /// The number of entries in the open list, outdated ones included.
     pub(crate) fn open_len(&self) -> usize {
         self.open.len()
     }
 
-    /// Puts the successors of a node that was just taken into the open list.
+    /// Inserts the successors of a node that was just taken from the open list.
     pub(crate) fn expand(
         &mut self,
         map: &SearchMap,
@@ -89,8 +90,8 @@ impl Frontier {
         });
     }
 
-    /// The smallest key of the nodes in the open list, `None` when it is empty. Nodes for which
-    /// `is_dropped` holds no longer count, and are dropped.
+    /// The smallest key in the open list; `None` if the list is empty. Nodes for which
+    /// `is_dropped` holds are ignored and dropped.
     pub(crate) fn best_key(&mut self, is_dropped: impl Fn(CellIndex) -> bool) -> Option<u64> {
         loop {
             let entry = self.open.peek()?;
@@ -101,9 +102,9 @@ impl Frontier {
         }
     }
 
-    /// Takes the best node from the open list and closes it; `None` when the list is empty.
+    /// Takes the best node from the open list and closes it; `None` if the list is empty.
     ///
-    /// Closed nodes are not opened again unless the rule says so: with a consistent key their path
+    /// Closed nodes are not reopened unless the rule requires it: with a consistent key their path
     /// cost is final.
     pub(crate) fn take_best(&mut self) -> Option<Expanded> {
         loop {
@@ -118,8 +119,8 @@ impl Frontier {
         }
     }
 
-    /// Records the way over `step` from an expanded node, if the rule prefers it to the one that is
-    /// known. Returns the node's new value, or `None` when the known way stays.
+    /// Records the path over `step` from an expanded node, if the rule prefers it to the known
+    /// path. Returns the node's new value, or `None` if the known path is kept.
     pub(crate) fn offer<R: Rule>(
         &mut self,
         from: Expanded,
@@ -137,13 +138,13 @@ impl Frontier {
         self.set(step.to, g, from.at, false);
         self.statistics.generated += 1;
         if !is_reached || g != known {
-            // A closed node that is better now is open again.
+            // A closed node that was improved is reopened.
             self.open.push(step.to, g, rule.key(step.to, g));
         }
         Some(g)
     }
 
-    /// Computes the keys of all open nodes again. O(n log n) for n entries of the open list.
+    /// Recomputes the keys of all open nodes. O(n log n) for n entries of the open list.
     pub(crate) fn renew_keys(&mut self, rule: &impl Rule) {
         while let Some(entry) = self.open.pop() {
             if self.is_current(entry) {
@@ -162,19 +163,19 @@ impl Frontier {
         self.is_of_this_query(state).then_some(g)
     }
 
-    /// Where the known way to a node that was reached in this query comes from; the root is its own
-    /// parent.
+    /// The parent of a node that was reached in this query; the root is its own parent.
     pub(crate) fn parent(&self, at: CellIndex) -> CellIndex {
         CellIndex((self.nodes[at.as_usize()][1] >> 32) as u32)
     }
 
-    /// The node that the known way to a node of this query comes from; the root comes from itself.
+    /// The parent of a node that was reached in this query, with its g; the root is its own
+    /// parent.
     pub(crate) fn came_from(&self, at: CellIndex) -> Expanded {
         let parent = self.parent(at);
         Expanded { at: parent, g: self.nodes[parent.as_usize()][0] }
     }
 
-    /// Gives a closed node another parent, which must be closed, and the value that goes with it.
+    /// Gives a closed node another parent, which must be closed, and the corresponding value.
     pub(crate) fn reparent(&mut self, at: CellIndex, parent: CellIndex, g: u64) {
         self.set(at, g, parent, true);
     }
@@ -184,7 +185,7 @@ impl Frontier {
         self.nodes[at.as_usize()][1] as u32 == self.epoch << 1 | 1
     }
 
-    /// The cells from the root to `at`, both included, in `path` (which is cleared first).
+    /// Writes the cells from the root to `at`, both included, to `path` (which is cleared first).
     pub(crate) fn path_into(&self, map: &SearchMap, at: CellIndex, path: &mut Vec<Cell>) {
         path.clear();
         self.append_path_back(map, at, path);
@@ -204,7 +205,7 @@ impl Frontier {
         }
     }
 
-    /// False for an entry whose node was closed or improved since.
+    /// False for an entry whose node was closed or improved since its insertion.
     fn is_current(&self, entry: Entry) -> bool {
         let [g, state] = self.nodes[entry.at().as_usize()];
         state as u32 == self.epoch << 1 && entry.has_g(g)
@@ -220,7 +221,7 @@ impl Frontier {
     }
 }
 
-/// A fixed-point cost in cells, for observers.
+/// Converts a fixed-point cost to cells, for observers.
 pub(crate) fn cells(g: u64) -> f64 {
     g as f64 / super::Cost::KEY_STRAIGHT as f64
 }

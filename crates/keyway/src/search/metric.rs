@@ -3,17 +3,17 @@
 use super::Cost;
 use crate::map::{Cell, CellIndex, SearchMap};
 
-/// A distance between two cells: a search's estimate of the cost still to come.
+/// A distance between two cells: the heuristic of a search.
 ///
-/// A search that never reopens closed nodes finds shortest paths when the metric is *consistent*:
-/// no step makes the distance to the goal smaller by more than it costs. Costs and distances are
+/// A search that never reopens closed nodes finds shortest paths if the metric is *consistent*: no
+/// step reduces the distance to the goal by more than the step costs. Costs and distances are
 /// compared as integers, so this must hold after rounding, too.
 pub(crate) trait Metric: Copy {
-    /// The distance over this many columns and rows, as a [`Cost::key`].
+    /// The distance over `dx` columns and `dy` rows, as a [`Cost::key`].
     fn length(self, dx: u32, dy: u32) -> u64;
 }
 
-/// Nothing is known: A* becomes Dijkstra's algorithm.
+/// The zero estimate: A* becomes Dijkstra's algorithm.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Zero;
 
@@ -21,21 +21,21 @@ pub(crate) struct Zero;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Octile;
 
-/// The straight line, rounded down; consistent for 8 and for 4 neighbours.
+/// The straight-line distance, rounded down; consistent for 8 and for 4 neighbours.
 ///
 /// Proof: a straight step costs q = [`Cost::KEY_STRAIGHT`], a diagonal one p > q sqrt(2). By the
-/// triangle inequality the unrounded distances e (in units of 1/q cell) keep e(n) <= c + e(m) for a
-/// step of cost c from n to m. As c is an integer, floor(e(n)) <= floor(c + e(m)) = c +
+/// triangle inequality the unrounded distances e (in units of 1/q cell) satisfy e(n) <= c + e(m)
+/// for a step of cost c from n to m. As c is an integer, floor(e(n)) <= floor(c + e(m)) = c +
 /// floor(e(m)).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Euclidean;
 
-/// Columns and rows; consistent for 4 neighbours, too large for 8.
+/// The sum of column and row distances; consistent for 4 neighbours, inadmissible for 8.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Manhattan;
 
-/// Half of [`Euclidean`] and half of [`Manhattan`], rounded down \[You2021, eq. (3)\]; consistent
-/// for 4 neighbours, too large for 8 (a diagonal step: 1.707 for 1.414).
+/// The mean of [`Euclidean`] and [`Manhattan`], rounded down \[You2021, eq. (3)\]; consistent for
+/// 4 neighbours, inadmissible for 8 (a diagonal step: 1.707 for 1.414).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mean;
 
@@ -54,8 +54,8 @@ impl Metric for Octile {
 impl Metric for Euclidean {
     fn length(self, dx: u32, dy: u32) -> u64 {
         let sum_of_squares = u64::from(dx).pow(2) + u64::from(dy).pow(2);
-        // floor(q sqrt(n)) = floor(sqrt(q^2 n)): floating point gives it up to its rounding, which
-        // exact squares then correct.
+        // floor(q sqrt(n)) = floor(sqrt(q^2 n)): floating point gives it up to a rounding error,
+        // which exact squares then correct.
         let exact = u128::from(Cost::KEY_STRAIGHT).pow(2) * u128::from(sum_of_squares);
         let square = |root: u64| u128::from(root) * u128::from(root);
         let mut root = ((sum_of_squares as f64).sqrt() * Cost::KEY_STRAIGHT as f64) as u64;
@@ -81,28 +81,28 @@ impl Metric for Mean {
     }
 }
 
-/// The distance of any cell to one target.
+/// Distances from any cell to one target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DistanceTo<M> {
     metric: M,
     target: Cell,
     stride: u32,
-    /// 2^64 / stride, rounded up: a division by multiplying, exact for all products of a dividend
-    /// and the divisor below 2^64.
+    /// 2^64 / stride, rounded up: division by multiplication, exact as long as the product of
+    /// dividend and divisor is below 2^64.
     reciprocal: u64,
 }
 
 impl<M: Metric> DistanceTo<M> {
-    /// To `target`, for cells of `map`.
+    /// Distances to `target` for the cells of `map`.
     pub(crate) fn new(map: &SearchMap, metric: M, target: Cell) -> Self {
         let stride = map.blocked().stride() as u32;
         Self { metric, target, stride, reciprocal: u64::MAX / u64::from(stride) + 1 }
     }
 
-    /// From a cell, as a [`Cost::key`].
+    /// The distance from a cell, as a [`Cost::key`].
     pub(crate) fn from(&self, at: CellIndex) -> u64 {
         let row = ((u128::from(self.reciprocal) * u128::from(at.0)) >> 64) as u32;
-        // Cells have one row and one column of padding before them.
+        // One row and one column of padding precede the cells.
         let (x, y) = ((at.0 - row * self.stride) as i32 - 1, row as i32 - 1);
         self.metric.length(x.abs_diff(self.target.x), y.abs_diff(self.target.y))
     }
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// The largest distance that a step may take off, per metric and kind of step.
+    /// True if a step reduces the distance by no more than it costs.
     fn is_consistent(metric: impl Metric, x: i32, y: i32, dx: i32, dy: i32) -> bool {
         let cost = if dx != 0 && dy != 0 { Cost::KEY_DIAGONAL } else { Cost::KEY_STRAIGHT };
         let here = metric.length(x.unsigned_abs(), y.unsigned_abs());
@@ -155,7 +155,8 @@ mod tests {
         #[test]
         fn no_step_takes_off_more_than_it_costs(x in -90_000i32..90_000, y in -90_000i32..90_000,
                                                 near in 0i32..4, direction in 0usize..8) {
-            // Every second time near the target or on an axis, where distances are tight.
+            // Three of four cases are near the target or on an axis or diagonal, where distances
+            // are tight.
             let (x, y) = match near { 0 => (x % 8, y % 8), 1 => (x, 0), 2 => (x, x), _ => (x, y) };
             let (dx, dy) = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)][direction];
             prop_assert!(is_consistent(Zero, x, y, dx, dy));

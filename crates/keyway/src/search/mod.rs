@@ -1,13 +1,12 @@
-//! The engine under every planner: exact costs, steps between cells, memory, observers.
+//! The search engine of all planners: exact costs, steps between cells, memory, observers.
 //!
 //! A one-sided search is a loop over one frontier; a bidirectional one is a loop over two. The
 //! policies (neighbour rule, step cost, observer) are type parameters, so that a search compiles
-//! to one loop without indirect calls; they are chosen by name at the edge, in
-//! [`crate::plan`].
+//! to one loop without indirect calls. They are chosen by name in [`crate::plan`].
 //!
-//! What is public is what a caller of a planner needs ([`Query`], [`Workspace`], [`Observer`]), and
-//! what a planner of your own is written with: [`Neighbours`], [`Sight`], [`Cost`], and its own
-//! memory ([`SearchMemory`]). The example `own_planner` is one.
+//! The public items are those for callers of planners ([`Query`], [`Workspace`], [`Observer`]),
+//! and those for writing your own planner: [`Neighbours`], [`Sight`], [`Cost`], and memory of its
+//! own ([`SearchMemory`]). The example `own_planner` is one.
 
 pub(crate) mod bit_scan;
 mod buckets;
@@ -46,32 +45,32 @@ pub use workspace::{SearchMemory, Workspace};
 
 use crate::map::Cell;
 
-/// What is asked of a planner.
+/// A planning query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Query {
-    /// Where the path begins.
+    /// The start of the path.
     pub start: Cell,
-    /// Where it ends.
+    /// The goal of the path.
     pub goal: Cell,
-    /// Give up after this many expanded nodes.
+    /// The maximum number of expanded nodes; the search gives up beyond it.
     pub budget: Option<u64>,
-    /// What to do when the goal is blocked, or no path leads there.
+    /// The behaviour if the goal is blocked or no path leads there.
     pub if_unreachable: IfUnreachable,
 }
 
-/// What to do about a goal on the map that cannot be reached.
+/// The behaviour for an unreachable goal on the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IfUnreachable {
-    /// Report why there is no path.
+    /// Report the reason why there is no path.
     #[default]
     Fail,
-    /// Go to the cell that can be reached whose centre is nearest to the goal's centre (ties: lower
-    /// row, then lower column). The plan's last cell says where that is.
+    /// Plan to the reachable cell whose centre is nearest to the goal's centre (ties: lower row,
+    /// then lower column). It is the last cell of the plan.
     NearestReachable,
 }
 
 impl Query {
-    /// From `start` to `goal` and nowhere else, without a budget.
+    /// A query from `start` to exactly `goal`, without a budget.
     pub const fn new(start: Cell, goal: Cell) -> Self {
         Self { start, goal, budget: None, if_unreachable: IfUnreachable::Fail }
     }

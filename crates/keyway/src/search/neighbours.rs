@@ -1,25 +1,25 @@
-//! What is reached from a cell in one step, and what the step costs.
+//! The steps from a cell and their costs.
 
 use super::{Cost, pattern};
 use crate::map::{BitGrid, CellIndex, Connectivity, SearchMap};
 use serde::{Deserialize, Serialize};
 
-/// May a diagonal step pass blocked side neighbours?
+/// The rule for diagonal steps past blocked side neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum CornerRule {
-    /// No: both cells beside a diagonal step must be free (the rule of the MovingAI benchmarks,
-    /// and the only one that is safe for a robot with a size).
+    /// Corners are not cut: both cells beside a diagonal step must be free (the rule of the
+    /// MovingAI benchmarks, and the only one that is safe for a robot of non-zero size).
     #[default]
     Forbid,
-    /// Yes, even between two blocked cells: only the target must be free.
+    /// Corners may be cut, even between two blocked cells: only the target cell must be free.
     Allow,
 }
 
 impl CornerRule {
-    /// Its name, as in configs and reports.
+    /// Name in configs and reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Forbid => "forbid",
@@ -27,7 +27,7 @@ impl CornerRule {
         }
     }
 
-    /// What its steps reach.
+    /// Connectivity of the steps under this rule.
     pub const fn connectivity(self) -> Connectivity {
         match self {
             Self::Forbid => Connectivity::Four,
@@ -39,25 +39,25 @@ impl CornerRule {
 /// One step of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridStep {
-    /// Where it leads.
+    /// The target cell.
     pub to: CellIndex,
-    /// What it costs, as a [`Cost::key`].
+    /// The cost of the step, as a [`Cost::key`].
     pub cost: u64,
 }
 
-/// What is reached from a cell.
+/// The steps from each cell.
 pub trait Successors {
     /// Calls `visit` for every step from `at`, in a fixed order.
     fn for_each(&self, at: CellIndex, visit: impl FnMut(GridStep));
 }
 
-/// What a step costs, as a factor on its length.
+/// The cost of steps, as a factor on their length.
 pub trait StepCost {
-    /// The factor of a step between two neighbours.
+    /// The cost factor of a step between two neighbours.
     fn factor(&self, from: CellIndex, to: CellIndex) -> u64;
 }
 
-/// Every step costs its length.
+/// The uniform cost: every step costs its length.
 #[derive(Clone, Copy, Debug)]
 pub struct Uniform;
 
@@ -75,7 +75,7 @@ pub struct UnknownCost<'m> {
 }
 
 impl<'m> UnknownCost<'m> {
-    /// The penalised cells of a map and the factor of its config; `None` when it has none.
+    /// The penalised cells of a map and the factor of its config; `None` if the map has none.
     pub fn of(map: &'m SearchMap) -> Option<Self> {
         let factor = u64::from(map.config().unknown_penalty);
         map.penalised().map(|penalised| Self { penalised, factor })
@@ -89,7 +89,7 @@ impl StepCost for UnknownCost<'_> {
     }
 }
 
-/// Costs for a search from the goal: its step from a to b stands for the robot's step from b to a.
+/// Costs for a search from the goal: its step from a to b is the robot's step from b to a.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reversed<C>(pub(crate) C);
 
@@ -99,7 +99,7 @@ impl<C: StepCost> StepCost for Reversed<C> {
     }
 }
 
-/// Which steps there are.
+/// The available steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moves {
     /// To the 4 side neighbours.
@@ -113,14 +113,14 @@ pub enum Moves {
 pub struct Neighbours<'m, C> {
     words: &'m [u64],
     stride: usize,
-    /// Which of the 8 directions are open, for each pattern of the 3 x 3 cells around a cell.
+    /// The open directions among all 8, for each pattern of the 3 x 3 cells around a cell.
     open_directions: &'static [u8; 512],
     offsets: [i32; 8],
     cost: C,
 }
 
 impl<'m, C> Neighbours<'m, C> {
-    /// The neighbours on a map.
+    /// Creates the neighbour iteration for a map.
     pub fn new(map: &'m SearchMap, moves: Moves, cost: C) -> Self {
         let stride = map.blocked().stride();
         let s = stride as i32;
@@ -157,7 +157,7 @@ static WITHOUT_CUTTING: [u8; 512] = open_directions(Moves::Eight(CornerRule::For
 static WITH_CUTTING: [u8; 512] = open_directions(Moves::Eight(CornerRule::Allow));
 static STRAIGHT_ONLY: [u8; 512] = open_directions(Moves::Four);
 
-/// For every pattern of blocked cells the open directions, bit k for direction k.
+/// For every pattern of blocked cells, the open directions: bit k for direction k.
 const fn open_directions(moves: Moves) -> [u8; 512] {
     let mut table = [0; 512];
     let mut pattern = 0;

@@ -1,16 +1,17 @@
-//! Steps to all cells of the 5 x 5 around a cell.
+//! Steps to all cells of the 5 x 5 block around a cell.
 
 use super::neighbours::{CornerRule, GridStep, Successors};
 use super::{Cost, Euclidean, Metric, pattern};
 use crate::map::{CellIndex, SearchMap};
 
-/// The 24 cells of the 5 x 5 around a cell that can be reached from it in a straight line: 16
-/// directions, 8 of them with a second, longer step. In the order of rows, the lowest first.
+/// The 24 cells of the 5 x 5 block around a cell that can be reached from it in a straight line:
+/// 16 directions, 8 of them with a second, longer step. They are ordered by rows, the lowest
+/// first.
 ///
 /// Every cell that the line sweeps must be free. A *knight's* step (2, 1) sweeps (1, 0) and (1, 1)
 /// and touches no corner. A double step sweeps the cell in its middle; a diagonal one keeps the
-/// corner rule on both halves. Without corner cutting those are the cells whose closed squares the
-/// line meets, with it those whose inside it meets.
+/// corner rule on both halves. Without corner cutting, the swept cells are those whose closed
+/// squares the line meets; with it, those whose interior it meets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Neighbours24<'m> {
     words: &'m [u64],
@@ -18,20 +19,20 @@ pub(crate) struct Neighbours24<'m> {
     reaches: [Reach; 24],
 }
 
-/// A step, and what it takes.
+/// A step and its conditions.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
-    /// Cells of the 3 x 3 around the first one that must be free, as a [`pattern`].
+    /// Cells of the 3 x 3 block around the start of the step that must be free, as a [`pattern`].
     near: usize,
-    /// Cells beyond them that must be free, as distances of indices; looked at only when the near
-    /// ones are free, so that they are on the map or in the padding next to it.
+    /// Cells outside that block that must be free, as index offsets. They are tested only if the
+    /// near ones are free, so they are on the map or in the padding next to it.
     far: [i32; 3],
     to: i32,
     cost: u64,
 }
 
 impl<'m> Neighbours24<'m> {
-    /// The neighbours on a map, which has one cost for all cells.
+    /// The neighbours on a map with one cost for all cells.
     pub(crate) fn new(map: &'m SearchMap, corners: CornerRule) -> Self {
         let stride = map.blocked().stride();
         let rows = (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (dx, dy)));
@@ -79,8 +80,8 @@ impl Successors for Neighbours24<'_> {
     }
 }
 
-/// The cells that must be free for a step, some of them named more than once: at most 3 of them lie
-/// outside the 3 x 3.
+/// The cells that must be free for a step, possibly with repetitions: at most 3 of them lie
+/// outside the 3 x 3 block.
 fn swept(dx: i32, dy: i32, corners: CornerRule) -> [(i32, i32); 7] {
     let (sx, sy) = (dx.signum(), dy.signum());
     // The middle of a double step, or the first cell of a knight's step and then (1, 1).
@@ -92,7 +93,7 @@ fn swept(dx: i32, dy: i32, corners: CornerRule) -> [(i32, i32); 7] {
     }
 }
 
-/// The length of a step, as a [`Cost::key`]; a knight's step is rounded down.
+/// The length of a step, as a [`Cost::key`]; that of a knight's step is rounded down.
 fn length(dx: i32, dy: i32) -> u64 {
     let (dx, dy) = (dx.unsigned_abs(), dy.unsigned_abs());
     if dx == 0 || dy == 0 || dx == dy {
@@ -135,7 +136,7 @@ mod tests {
         assert_eq!([length(2, 1), length(-1, 2)], [208_451_529; 2]);
     }
 
-    /// Around (2, 2), with (3, 2) blocked: everything is gone that passes it.
+    /// Around (2, 2), with (3, 2) blocked: all steps past it are gone.
     #[test]
     fn a_blocked_neighbour() {
         let rows = [".....", ".....", "...#.", ".....", "....."];
@@ -151,7 +152,8 @@ mod tests {
     }
 
     /// True if the segment from the centre of (0, 0) to that of `to` meets the square of a cell:
-    /// its inside, or with `closed` its border as well. All numbers are quarters, so exact.
+    /// its interior, or with `closed` its border as well. All numbers are multiples of 1/4, so
+    /// exact.
     fn meets(to: (i32, i32), cell: (i32, i32), closed: bool) -> bool {
         let (mut low, mut high) = (0.0f64, 1.0f64);
         let mut inside = true;
@@ -175,7 +177,7 @@ mod tests {
         fn a_step_is_a_free_segment(width in 1i32..8, height in 1i32..8, columns in 0i32..130,
                                     bits: u64, at in (0i32..8, 0i32..8)) {
             let at = Cell::new(at.0 % width + columns, at.1 % height);
-            // Free columns to the left move the place within its words.
+            // Free columns on the left vary the bit position within its words.
             let is_free = |x: i32, y: i32| {
                 let (x, inside) = (x - columns, x >= 0 && y >= 0 && x < width + columns && y < height);
                 let is_at = (x + columns, y) == (at.x, at.y);

@@ -1,4 +1,4 @@
-//! The open list of a search: a queue of nodes in a total order.
+//! The open list of a search: a priority queue of nodes in a total order.
 
 use super::buckets::Buckets;
 use crate::map::CellIndex;
@@ -7,18 +7,18 @@ use std::collections::BinaryHeap;
 
 /// Nodes to be expanded, ordered by key, then larger g, then lower cell index.
 ///
-/// An entry is one 128-bit number, so that comparing two is one operation: the key, then g from
+/// An entry is one 128-bit number, so that a comparison is one operation: the key, then g from
 /// large to small in units of 2^20 (of a [`super::Cost::key`]: 1/89 of a cell), then the index.
 /// Equal keys whose g differ by less than such a unit are ordered by index.
 ///
-/// Keys hardly ever decrease during a search, and about half of the entries are never taken out. So
-/// only those with keys up to a *horizon* are kept in a heap, which stays small; the others wait
-/// unsorted in buckets of equal width (a ring) until the horizon comes to them, those too far ahead
-/// in one list. Whatever the keys are, entries come out in exact order: all keys in the heap lie
-/// below the horizon and all others beyond.
+/// Keys hardly ever decrease during a search, and about half of the entries are never taken out.
+/// So only entries with keys up to a *horizon* are kept in a heap, which stays small. The others
+/// wait unsorted in buckets of equal width (a ring) until the horizon reaches them; those too far
+/// ahead wait in one list. Whatever the keys are, entries leave in exact order: all keys in the
+/// heap lie below the horizon and all others beyond.
 ///
-/// Entries are never changed. A node that is improved is put in again, and whoever takes an entry
-/// out sees by [`Entry::has_g`] whether it is out of date.
+/// Entries are never changed. An improved node is reinserted, and [`Entry::has_g`] detects its
+/// outdated entries when they are taken out.
 #[derive(Clone, Debug)]
 pub(crate) struct OpenList {
     /// Entries of buckets up to `horizon`.
@@ -36,12 +36,12 @@ pub(crate) struct OpenList {
     len: usize,
 }
 
-/// What was put into an [`OpenList`].
+/// An entry of an [`OpenList`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry(u128);
 
 impl Entry {
-    /// Bits of g that do not take part in the order.
+    /// The low bits of g that are ignored in the order.
     const G_UNIT_BITS: u32 = 20;
 
     fn new(at: CellIndex, g: u64, key: u64) -> Self {
@@ -53,17 +53,17 @@ impl Entry {
         !u32::try_from(g >> Self::G_UNIT_BITS).unwrap_or(u32::MAX)
     }
 
-    /// The cell.
+    /// The cell of the node.
     pub(crate) const fn at(self) -> CellIndex {
         CellIndex(self.0 as u32)
     }
 
-    /// The value by which it is ordered first.
+    /// The primary order.
     pub(crate) const fn key(self) -> u64 {
         (self.0 >> 64) as u64
     }
 
-    /// False when it was put in with another g.
+    /// False if the entry was inserted with another g.
     pub(crate) fn has_g(self, g: u64) -> bool {
         (self.0 >> 32) as u32 == Self::rank(g)
     }
@@ -84,7 +84,7 @@ impl Default for OpenList {
 }
 
 impl OpenList {
-    /// Buckets that are held at a time.
+    /// Number of buckets in the ring.
     const BUCKETS: usize = 1024;
     /// Width of a bucket, as a power of two: 1/44 of a cell, so that most buckets hold one value of
     /// f; all buckets together span 23 cells, more than a step adds to f (2.8 without penalties).
@@ -94,7 +94,7 @@ impl OpenList {
         key >> Self::WIDTH_BITS
     }
 
-    /// Empties the list, keeping its memory.
+    /// Clears the list and keeps its memory.
     pub(crate) fn clear(&mut self) {
         self.near.clear();
         while let Some(slot) = self.next_filled(0) {
@@ -106,15 +106,16 @@ impl OpenList {
         self.len = 0;
     }
 
-    /// Puts a node in. O(1) beyond the horizon, else O(log n) for n entries in the heap; an entry
-    /// too far ahead for the buckets is looked at again each time the ring has turned.
+    /// Inserts a node. O(1) beyond the horizon, else O(log n) for n entries in the heap. An entry
+    /// too far ahead for the buckets is checked again after each turn of the ring.
     pub(crate) fn push(&mut self, at: CellIndex, g: u64, key: u64) {
         if self.len == 0 {
             self.horizon = Self::bucket(key);
             self.buckets.provide(Self::BUCKETS);
         }
         self.len += 1;
-        // All entries may come to lie in the heap: it has room for as many as there ever were.
+        // All entries may end up in the heap: its capacity is the largest number of entries so
+        // far.
         if self.len > self.near.capacity() {
             self.near.reserve(self.len - self.near.len());
         }
@@ -135,7 +136,7 @@ impl OpenList {
         }
     }
 
-    /// Takes the first entry out.
+    /// Takes out the first entry.
     pub(crate) fn pop(&mut self) -> Option<Entry> {
         if self.near.is_empty() {
             self.advance();
@@ -145,7 +146,7 @@ impl OpenList {
         Some(Entry(entry))
     }
 
-    /// The first entry.
+    /// The first entry, which stays in the list.
     pub(crate) fn peek(&mut self) -> Option<Entry> {
         if self.near.is_empty() {
             self.advance();
@@ -153,7 +154,7 @@ impl OpenList {
         self.near.peek().map(|&Reverse(entry)| Entry(entry))
     }
 
-    /// Moves the horizon to the first bucket behind it that holds anything; the heap must be empty.
+    /// Moves the horizon to the first non-empty bucket behind it; the heap must be empty.
     fn advance(&mut self) {
         let next = self.next_bucket();
         let first = next.unwrap_or(u64::MAX).min(self.first_far);
@@ -172,7 +173,7 @@ impl OpenList {
         }
     }
 
-    /// Puts those far entries that now belong there into the heap and the buckets.
+    /// Moves the far entries that are now within the ring to the heap and the buckets.
     fn sort_in_far(&mut self) {
         self.first_far = u64::MAX;
         let mut i = 0;
@@ -189,7 +190,7 @@ impl OpenList {
         }
     }
 
-    /// The number of the first bucket after the horizon that is not empty.
+    /// The number of the first non-empty bucket after the horizon.
     fn next_bucket(&self) -> Option<u64> {
         let next = self.horizon + 1;
         let from = next as usize % Self::BUCKETS;
@@ -197,7 +198,7 @@ impl OpenList {
         Some(next + ((slot + Self::BUCKETS - from) % Self::BUCKETS) as u64)
     }
 
-    /// The first bucket that is not empty, from a slot to the end of the ring.
+    /// The first non-empty bucket from a slot to the end of the ring.
     fn next_filled(&self, from: usize) -> Option<usize> {
         let first = self.filled[from / 64] & u64::MAX << (from % 64);
         let words = self.filled[from / 64 + 1..].iter().copied();
@@ -206,7 +207,7 @@ impl OpenList {
         Some(word * 64 + bits.trailing_zeros() as usize)
     }
 
-    /// Entries, those out of date included.
+    /// The number of entries, outdated ones included.
     pub(crate) const fn len(&self) -> usize {
         self.len
     }
@@ -248,7 +249,7 @@ mod tests {
         assert!(beyond.has_g(u64::MAX - 1));
     }
 
-    /// Every kind of key: near the last one taken out, in the buckets, far ahead, and behind.
+    /// All kinds of keys: near the last one taken out, in the buckets, far ahead, and behind.
     fn any_key_offset() -> impl Strategy<Value = i64> {
         prop_oneof![
             4 => 0i64..1 << 22,
@@ -267,7 +268,7 @@ mod tests {
         fn entries_come_in_order(steps in prop::collection::vec(
             (any_key_offset(), 0u64..4, 0u32..50, any::<bool>()), 1..300)) {
             let mut open = OpenList::default();
-            // The list is emptied and used again.
+            // The list is cleared and reused.
             for _ in 0..2 {
                 let mut expected = BinaryHeap::new();
                 let mut last = 1i64 << 40;
@@ -284,7 +285,7 @@ mod tests {
                     }
                     prop_assert_eq!(open.len(), expected.len());
                 }
-                // Half of what is left, in order; the rest is dropped.
+                // Half of the remaining entries are taken in order; the rest is dropped.
                 for _ in 0..expected.len() / 2 {
                     let Reverse((key, _, at)) = expected.pop().unwrap();
                     let taken = open.pop().map(|entry| (entry.key(), entry.at().0));

@@ -1,5 +1,5 @@
-//! Which of the 3 x 3 cells around a cell are blocked, as a number of 9 bits: the row below in bits
-//! 0 to 2, its own in 3 to 5, the row above in 6 to 8, each from left to right.
+//! The pattern of blocked cells among the 3 x 3 around a cell, as a number of 9 bits: the row
+//! below in bits 0 to 2, its own row in 3 to 5, the row above in 6 to 8, each from left to right.
 
 /// The pattern around the cell whose bit is `index`, in padded rows of `stride` bits.
 #[inline]

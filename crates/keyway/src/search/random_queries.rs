@@ -1,15 +1,15 @@
-//! Queries to try a planner with.
+//! Random queries for testing planners.
 
 use super::Query;
 use crate::map::{Cell, Connectivity, SearchMap};
 use crate::random::Random;
 
-/// Random queries on a map, the same for the same seed: the start is any free cell from which
-/// another one can be reached, the goal any other free cell that can be reached from there. None
-/// when there is no such cell.
+/// Random queries on a map, the same for the same seed. The start is any free cell from which
+/// another free cell is reachable, the goal any other free cell reachable from it. Empty if no
+/// such cell exists.
 ///
-/// Every free cell is as likely a start as any other; so most queries are in the largest component,
-/// and none asks for the impossible. Lists the free cells: 12 bytes each.
+/// Every eligible cell is equally likely as a start, so most queries are in the largest component,
+/// and all of them have a path. Lists these cells: 12 bytes each.
 pub fn random_queries(
     map: &SearchMap,
     connectivity: Connectivity,
@@ -21,7 +21,7 @@ pub fn random_queries(
     let component = |cell| (components.of_free(cell), cell);
     let is_joined = |&(component, _): &(u32, Cell)| components.sizes()[component as usize] > 1;
     let mut cells: Vec<(u32, Cell)> = free.map(component).filter(is_joined).collect();
-    // Stable: the cells of a component stay in the order of the map.
+    // A stable sort: the cells of a component stay in the order of the map.
     cells.sort_by_key(|&(component, _)| component);
     if cells.is_empty() {
         return Vec::new();
@@ -32,7 +32,7 @@ pub fn random_queries(
         let component = cells[start].0;
         let first = cells.partition_point(|&(other, _)| other < component);
         let size = components.sizes()[component as usize];
-        // Of the other cells: the last one stands in for the start.
+        // Chosen among the other cells: the last one substitutes for the start.
         let mut goal = first + random.below(size - 1) as usize;
         if goal == start {
             goal = first + size as usize - 1;
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn ends_are_free_different_and_connected() {
-        // Two rooms, and a cell alone between them in the corner.
+        // Two rooms, and an isolated cell between them in the corner.
         let map = map(&["..#.", "..##", "##..", "...."]);
         let queries = random_queries(&map, Connectivity::Four, 600, 7);
         let room = |cell: Cell| u8::from(cell.y >= 2);

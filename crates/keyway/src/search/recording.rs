@@ -1,4 +1,4 @@
-//! What a search did, event by event, to be looked at afterwards.
+//! A recording of a search, event by event, for later inspection.
 
 use super::{Observer, SearchStatistics, Side};
 use crate::map::Cell;
@@ -8,21 +8,21 @@ use crate::map::Cell;
 pub enum SearchEvent {
     /// A node was taken from the open list.
     Expanded {
-        /// The side whose list it was.
+        /// The side of the open list.
         side: Side,
         /// The node.
         at: Cell,
     },
-    /// A node was put into the open list, or improved there.
+    /// A node was inserted into the open list, or improved there.
     Generated {
-        /// The side whose list it is.
+        /// The side of the open list.
         side: Side,
         /// The node.
         at: Cell,
-        /// Where the way to it comes from.
+        /// The parent of the node.
         parent: Cell,
     },
-    /// The way to a node that is just expanded was found to come from another parent.
+    /// A node that is being expanded got another parent.
     Reparented {
         /// The side of the node.
         side: Side,
@@ -31,16 +31,16 @@ pub enum SearchEvent {
         /// Its new parent.
         parent: Cell,
     },
-    /// A jump point search looked along a line.
+    /// A jump point search scanned a line.
     Scanned {
-        /// The side that looked.
+        /// The side that scanned.
         side: Side,
-        /// Where from.
+        /// The first cell of the line.
         from: Cell,
-        /// Up to where.
+        /// The last cell of the line.
         to: Cell,
     },
-    /// A node was linked to a far one.
+    /// A node was linked to a distant one.
     Linked {
         /// The side of the node.
         side: Side,
@@ -51,12 +51,12 @@ pub enum SearchEvent {
     },
     /// The two sides met.
     Met {
-        /// Where.
+        /// The meeting cell.
         at: Cell,
     },
 }
 
-/// Remembers all that a search reports, in order: for pictures, animations, and a closer look.
+/// Records all reports of a search, in order: for visualisation, animation and inspection.
 ///
 /// Memory: 20 bytes per event. A search of half a million expanded nodes with 8 neighbours reports
 /// about a million events.
@@ -90,13 +90,13 @@ impl Recording {
         &self.events
     }
 
-    /// The first `count` events, or all when there are fewer: the search as it was then.
+    /// The first `count` events, or all if there are fewer: the state of the search at that time.
     pub fn first(&self, count: usize) -> &[SearchEvent] {
         &self.events[..count.min(self.events.len())]
     }
 
-    /// Counts the nodes that were reported. A search counts its roots as generated, too, but does
-    /// not report them: its own statistics have one generated node more on each side that began.
+    /// Counts the reported nodes. A search counts its roots as generated, too, but does not report
+    /// them: its own statistics have one more generated node on each side that began.
     pub fn statistics(&self) -> SearchStatistics {
         let mut counted = SearchStatistics::default();
         for event in &self.events {
@@ -109,7 +109,7 @@ impl Recording {
         counted
     }
 
-    /// Forgets all events, and keeps their memory.
+    /// Clears all events and keeps the memory.
     pub fn clear(&mut self) {
         self.events.clear();
     }
@@ -184,7 +184,7 @@ mod tests {
         let query = Query::new(Cell::new(2, 1), Cell::new(6, 2));
         for name in PlannerConfig::NAMES {
             let config = match PlannerConfig::by_name(name).unwrap() {
-                // Its constraint leaves no way through so small a map.
+                // Its constraint leaves no path on so small a map.
                 PlannerConfig::Hsta(hsta) => {
                     PlannerConfig::Hsta(HstaConfig { l1_constraint: 0.0, ..hsta })
                 }

@@ -1,32 +1,31 @@
-//! What a node is worth, and which way to it is kept.
+//! The evaluation of nodes, and the choice between paths to a node.
 
 use super::GridStep;
 use super::metric::{DistanceTo, Euclidean, Metric};
 use crate::map::CellIndex;
 
-/// The rule of a best-first search: the value g that is recorded for a node, the key by which nodes
-/// are expanded, and which way to an open node is kept.
+/// The rule of a best-first search: the value g that is recorded for a node, the key by which
+/// nodes are expanded, and the choice between two paths to an open node.
 ///
-/// Closed nodes are not opened again, unless [`Self::reopens`]: every search ends, and as a parent
-/// is always closed before its children, parents never form a circle.
+/// Closed nodes are not reopened, unless [`Self::reopens`]. So every search terminates, and as a
+/// parent is always closed before its children, parents never form a cycle.
 pub(crate) trait Rule {
-    /// True if an open node takes over another way of the same value, and not only of a smaller
-    /// one.
+    /// True if an open node accepts another path of equal value, and not only of a smaller one.
     const TAKES_EQUAL: bool = false;
-    /// True if the search ends when the goal is put into the open list, and not only when it is
-    /// taken out.
+    /// True if the search ends when the goal is inserted into the open list, and not only when it
+    /// is taken out.
     const ENDS_AT_GENERATION: bool = false;
 
-    /// True if a closed node is opened again when a way of smaller value to it is found. Only for
-    /// rules whose values grow along every step: each node is then opened finitely often.
+    /// True if a closed node is reopened when a path of smaller value to it is found. Only for
+    /// rules whose values grow along every step: each node is then reopened finitely often.
     fn reopens(&self) -> bool {
         false
     }
 
-    /// The value of a node that is reached by `step` from one with value `g`.
+    /// The value of a node reached by `step` from a node with value `g`.
     fn value(&self, g: u64, step: GridStep) -> u64;
 
-    /// The value by which a node with value `g` is ordered.
+    /// The key of a node with value `g`.
     fn key(&self, at: CellIndex, g: u64) -> u64;
 }
 
@@ -46,9 +45,9 @@ impl<M: Metric> Rule for Accumulated<M> {
 
 /// f = g + h with g the straight line from the start \[Wang2019, eq. (3) and (4)\].
 ///
-/// A node's value does not depend on the way to it. An open node takes over a value that is
-/// "smaller or equal" (step 5 there), which here means: its parent is the neighbour that was
-/// expanded last. The search ends when the goal appears in the open list (step 3).
+/// A node's value does not depend on the path to it. An open node accepts a value that is "smaller
+/// or equal" (step 5 there); the effect is that its parent is the neighbour that was expanded
+/// last. The search ends when the goal appears in the open list (step 3).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StraightLine<M> {
     /// The distance from the start.
@@ -91,8 +90,8 @@ impl<R: Rule> Rule for AtGeneration<R> {
     }
 }
 
-/// f = h: greedy best-first search. g is the cost of the path, which decides between two ways to an
-/// open node.
+/// f = h: greedy best-first search. g is the cost of the path, which decides between two paths to
+/// an open node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Greedy<M>(pub(crate) DistanceTo<M>);
 

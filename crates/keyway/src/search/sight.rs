@@ -1,22 +1,23 @@
 //! Line of sight between the centres of two cells, exact.
 //!
-//! The line crosses the grid row by row, and in each row a run of cells. Whether a run is free is
-//! one test for up to 64 cells. Rows are taken along the line's longer axis, on the transposed map
-//! when that is the vertical one: so a line of n rows costs n tests, however long its runs are.
+//! The line crosses the grid row by row, and a run of cells in each row. One test decides about up
+//! to 64 cells of a run. Rows are taken along the line's longer axis, on the transposed map if
+//! that is the vertical one. So a line of n rows costs n tests, and long runs one more test per 64
+//! cells.
 //!
-//! # Which cells count
-//! A line between two centres meets a row's border at one point, which lies inside a column or is a
-//! corner of four cells. Through a corner it goes diagonally from one cell into the next, like a
-//! diagonal step, and the corner rule decides about the two cells beside it: under
+//! # Cells on the line
+//! A line between two centres meets a row's border at one point, which lies inside a column or is
+//! a corner of four cells. Through a corner it passes diagonally from one cell into the next, like
+//! a diagonal step, and the corner rule applies to the two cells beside it: under
 //! [`CornerRule::Forbid`] both must be free, under [`CornerRule::Allow`] they do not count. Cells
 //! whose interior the line crosses must be free in any case.
 //!
-//! Only integers are compared, so the answer is exact, and the same from both ends.
+//! Only integers are compared, so the result is exact, and the same in both directions.
 
 use super::CornerRule;
 use crate::map::{BitGrid, Cell, SearchMap};
 
-/// Decides which cells of a map see each other.
+/// The line-of-sight test between cells of a map.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight<'m> {
     blocked: &'m BitGrid,
@@ -25,13 +26,13 @@ pub struct Sight<'m> {
 }
 
 impl<'m> Sight<'m> {
-    /// On a map, under a corner rule.
+    /// Creates the test for a map under a corner rule.
     pub const fn new(map: &'m SearchMap, corners: CornerRule) -> Self {
         Self { blocked: map.blocked(), transposed: map.blocked_transposed(), corners }
     }
 
-    /// True if the straight line between the centres of two cells of the map is free. Between
-    /// neighbours it is free when there is a step from one to the other.
+    /// True if the straight line between the centres of two cells of the map is free. For
+    /// neighbours this is the case if and only if there is a step from one to the other.
     pub fn is_free(&self, a: Cell, b: Cell) -> bool {
         let is_steep = a.y.abs_diff(b.y) > a.x.abs_diff(b.x);
         let turned = |cell: Cell| Cell::new(cell.y, cell.x);
@@ -49,11 +50,11 @@ fn is_line_free(blocked: &BitGrid, left: Cell, right: Cell, corners: CornerRule)
     let words = blocked.words();
     let stride = blocked.stride().cast_signed();
     let to_next_row = if right.y > left.y { stride } else { -stride };
-    // The bit of column 0 of the line in its row, and the first column of the row's run.
+    // The bit of the line's column 0 in the current row, and the first column of the row's run.
     let mut row = (left.y + 1) as usize * blocked.stride() + (left.x + 1) as usize;
     let mut first = 0;
     for crossing in Crossings::new(width, height) {
-        // The last column of this row's run, and the first one of the next row's.
+        // The last column of this row's run, and the first column of the next row's run.
         let (last, next) = match (crossing.is_corner, corners) {
             (true, CornerRule::Forbid) => (crossing.column, crossing.column - 1),
             (true, CornerRule::Allow) => (crossing.column - 1, crossing.column),
@@ -68,35 +69,35 @@ fn is_line_free(blocked: &BitGrid, left: Cell, right: Cell, corners: CornerRule)
     is_run_free(words, row + first, row + width)
 }
 
-/// Where a line passes from one row into the next.
+/// A crossing of a line from one row into the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Crossing {
-    /// The column, counted from that in which the line begins.
+    /// The column, counted from the first column of the line.
     column: usize,
     /// True if it is the corner between that column and the one before.
     is_corner: bool,
 }
 
-/// The crossings of a line of this many columns and rows, at most as high as it is wide.
+/// The crossings of a line of `width` columns and `height` rows, at most as high as it is wide.
 ///
 /// With the origin in the centre of its first cell, the line leaves row k at x = width (2k + 1) /
-/// (2 height), which is in column floor(x + 1/2) and, when nothing is left over, on the border
-/// before that column. From row to row x grows by width / height.
+/// (2 height). This is in column floor(x + 1/2), or, if the remainder is 0, on the border before
+/// that column. From row to row x grows by width / height.
 struct Crossings {
     rows_left: usize,
-    /// x + 1/2, in units of 1 / (2 height): its floor, and what is left over.
+    /// x + 1/2, in units of 1 / (2 height): its floor, and the remainder.
     column: usize,
     rest: usize,
     /// 2 height.
     unit: usize,
-    /// width / height: its floor, and what is left over, in units.
+    /// width / height: its floor, and the remainder, in units.
     slope: usize,
     slope_rest: usize,
 }
 
 impl Crossings {
     fn new(width: usize, height: usize) -> Self {
-        // A level line crosses nothing, so any divisor will do.
+        // A level line has no crossings, so any divisor is valid.
         let divisor = height.max(1);
         let unit = 2 * divisor;
         Self {
@@ -209,9 +210,9 @@ mod tests {
         assert_eq!(visible(Allow), [(0, 0), (1, 0), (0, 1), (1, 1), (2, 1), (0, 2), (2, 2)]);
     }
 
-    /// The definition: no blocked cell whose open square the segment meets, and, where corners are
-    /// not cut, none beside a corner that it passes through. Lengths are doubled, so centres are
-    /// odd numbers.
+    /// The definition: the segment meets no blocked cell's open square, and, if corners are not
+    /// cut, passes through no corner of a blocked cell. Lengths are doubled, so centres are odd
+    /// numbers.
     fn sees_by_geometry(map: &SearchMap, corners: CornerRule, a: Cell, b: Cell) -> bool {
         let double = |cell: Cell| [i64::from(2 * cell.x + 1), i64::from(2 * cell.y + 1)];
         let (a2, b2) = (double(a), double(b));
@@ -220,7 +221,8 @@ mod tests {
         for y in a.y.min(b.y)..=a.y.max(b.y) {
             for x in a.x.min(b.x)..=a.x.max(b.x) {
                 let (x2, y2) = (i64::from(2 * x), i64::from(2 * y));
-                // The box of the segment covers the cell's, so only its line can separate them.
+                // The box of the segment covers the cell's, so only the segment's line can
+                // separate them.
                 let sides = [(0, 0), (2, 0), (0, 2), (2, 2)].map(|(i, j)| side_of(x2 + i, y2 + j));
                 let is_left = sides.iter().all(|&side| side >= 0) && a != b;
                 let is_right = sides.iter().all(|&side| side <= 0) && a != b;
@@ -271,8 +273,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 3000, ..ProptestConfig::default() })]
 
-        /// A line with one blocked cell near it, on maps of several words a row: all slopes and
-        /// lengths.
+        /// A line with one blocked cell near it, on maps with several words per row: all slopes
+        /// and lengths.
         #[test]
         fn a_cell_near_the_line(a in (0i32..200, 0i32..140), b in (0i32..200, 0i32..140), seed: u64,
                                 allow: bool, near in 0i32..=1000, off in (-1i32..=1, -1i32..=1)) {
@@ -288,7 +290,7 @@ mod tests {
             prop_assert_eq!(sight.is_free(b, a), expected);
         }
 
-        /// Level and nearly level lines, whose runs begin and end at the borders of words.
+        /// Level and nearly level lines, with runs that begin and end at word boundaries.
         #[test]
         fn long_runs(left in 0i32..140, length in 0i32..260, rows in (0i32..3, 0i32..3),
                      blocked in (0i32..400, 0i32..3), turned: bool, allow: bool) {

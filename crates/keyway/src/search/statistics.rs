@@ -1,18 +1,18 @@
-//! How much a search did.
+//! Counters of a search.
 
 use super::Side;
 use serde::{Deserialize, Serialize};
 
-/// What one side of a search did.
+/// Counters of one side of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SideStatistics {
     /// Nodes taken from the open list.
     pub expanded: u64,
-    /// Nodes put into the open list, or improved there.
+    /// Nodes inserted into the open list, or improved there.
     pub generated: u64,
 }
 
-/// What a search did; a one-sided one is all forward.
+/// Counters of both sides of a search; a one-sided search uses the forward side only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SearchStatistics {
     /// The side from the start.
@@ -22,12 +22,12 @@ pub struct SearchStatistics {
 }
 
 impl SearchStatistics {
-    /// Of a one-sided search.
+    /// The counters of a one-sided search.
     pub const fn one_sided(forward: SideStatistics) -> Self {
         Self { forward, backward: SideStatistics { expanded: 0, generated: 0 } }
     }
 
-    /// What one side did.
+    /// The counters of one side.
     pub const fn side_mut(&mut self, side: Side) -> &mut SideStatistics {
         match side {
             Side::Forward => &mut self.forward,
@@ -40,7 +40,7 @@ impl SearchStatistics {
         self.forward.expanded + self.backward.expanded
     }
 
-    /// Nodes put into the open lists of both sides, or improved there.
+    /// Nodes inserted into the open lists of both sides, or improved there.
     pub const fn generated(&self) -> u64 {
         self.forward.generated + self.backward.generated
     }

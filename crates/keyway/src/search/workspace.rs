@@ -1,4 +1,4 @@
-//! Memory that searches work in.
+//! Reusable memory of searches.
 
 use super::Frontier;
 use std::any::Any;
@@ -7,31 +7,32 @@ use std::fmt::Debug;
 /// Reusable memory for searches. It holds no result and has no meaning between calls: a second
 /// query on the same map allocates nothing and clears next to nothing.
 ///
-/// Each planner keeps what it needs in a part of its own type ([`Self::part`]), and so can a
-/// planner outside this crate. Planners that keep the same type share it: those that expand cells
-/// in the order of a key all have the same two frontiers.
+/// Each planner keeps its data in a part of its own type ([`Self::part`]), and so can a planner
+/// outside this crate. Planners that use the same type share it: those that expand cells in the
+/// order of a key all share the same two frontiers.
 ///
-/// Memory: 16 bytes per cell of the padded map for each of these frontiers that is used, reserved
+/// Memory of each of these frontiers that is used: 16 bytes per cell of the padded map, reserved
 /// by its first query, and its open list: 266 kB and 17 to 300 bytes for each node that it held at
 /// once. A bidirectional jump point search has two frontiers of its own, with a quarter of a byte
-/// more per cell each. A one-sided jump point search has 1/8 byte per cell, 512 bytes for each page
-/// of 32 cells that its largest query touched, and an open list for which 1 byte per cell is
-/// reserved. A density of the remaining box takes 4 bytes per cell. A random tree has 4.4 bytes per cell, and
-/// 32 bytes for each sample that it may draw. What is reserved and not touched uses no memory.
+/// more per cell each. A one-sided jump point search has 1/8 byte per cell, 512 bytes for each
+/// page of 32 cells that its largest query touched, and an open list for which 1 byte per cell is
+/// reserved. A density of the remaining box takes 4 bytes per cell. A random tree has 4.4 bytes
+/// per cell, and 32 bytes for each sample that it may draw. Memory that is reserved but not
+/// touched uses no physical memory.
 #[derive(Debug, Default)]
 pub struct Workspace {
     parts: Vec<Box<dyn SearchMemory>>,
 }
 
-/// A part of a [`Workspace`]: what one kind of search keeps from query to query, so that it need
-/// not be allocated again.
+/// A part of a [`Workspace`]: the memory that one kind of search keeps between queries, so that it
+/// need not be allocated again.
 pub trait SearchMemory: Any + Debug + Send {
     /// Memory on the heap \[bytes\].
     fn memory_bytes(&self) -> usize;
 }
 
 impl Workspace {
-    /// The part of this type: as the last query left it, at first its default.
+    /// The part of this type: as the last query left it, initially its default.
     ///
     /// ```
     /// use keyway::search::{SearchMemory, Workspace};
@@ -73,7 +74,7 @@ impl Workspace {
     }
 }
 
-/// The frontiers of a search from both ends; a one-sided search has the forward one.
+/// The frontiers of a bidirectional search; a one-sided search uses the forward one.
 #[derive(Debug, Default)]
 pub(crate) struct Sides {
     pub(crate) forward: Frontier,

@@ -1,7 +1,7 @@
-//! From range scans to obstacles that no map shows: those that stand, as cells ([`SensedLayer`]),
-//! and those that move, as a list ([`Tracker`]). Each looks at the scan of a cycle as it was
-//! projected once ([`ProjectedScan`]). Points of other sensors ([`SensorPoints`]) are obstacles that
-//! stand.
+//! Detection of obstacles that the map does not have. Range scans yield stationary obstacles, as
+//! cells ([`SensedLayer`]), and moving ones, as a list ([`Tracker`]). Both use the same
+//! projection of a cycle's scan ([`ProjectedScan`]). Points of other sensors ([`SensorPoints`])
+//! are stationary obstacles.
 
 mod layer;
 mod mover;

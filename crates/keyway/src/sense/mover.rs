@@ -1,10 +1,11 @@
-//! Something that moves, as far as it is known, and where it may be in a while.
+//! Moving obstacles: their estimated state, and the area that they may reach in a given time.
 
 use crate::ConfigError;
 use crate::geometry::{Disc, Point};
 use serde::{Deserialize, Serialize};
 
-/// A round thing that moves, as estimated at one instant. Frames and units are those of the map.
+/// A moving obstacle of circular shape, as estimated at one instant. Frames and units are those
+/// of the map.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -29,49 +30,50 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mover {
-    /// The same thing has the same number from scan to scan; no other thing ever gets it.
+    /// Identifier: constant from scan to scan and never reused for another obstacle.
     pub id: u64,
-    /// Its centre \[m\].
+    /// Centre \[m\].
     pub centre: Point,
-    /// Its velocity \[m/s\].
+    /// Velocity \[m/s\].
     pub velocity_mps: Point,
-    /// Its radius \[m\].
+    /// Radius \[m\].
     pub radius_m: f64,
-    /// How long it has been followed \[s\].
+    /// Time since the start of the track \[s\].
     pub age_s: f64,
-    /// How long it has not been seen \[s\]; 0 when the last scan met it.
+    /// Time since it was last seen \[s\]; 0 if the last scan hit it.
     pub unseen_s: f64,
-    /// Its centre is no farther than this from `centre` \[m\].
+    /// Bound on the error of `centre` \[m\].
     pub position_uncertainty_m: f64,
-    /// Its velocity differs from `velocity_mps` by no more than this \[m/s\].
+    /// Bound on the error of `velocity_mps` \[m/s\].
     pub velocity_uncertainty_mps: f64,
 }
 
-/// A point of the surface of a mover, as a beam hit it \[m\], and a velocity that it may have.
+/// A point on the surface of a moving obstacle that a beam has hit \[m\], and a possible velocity
+/// of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingPoint {
     pub(crate) place: Point,
     pub(crate) velocity_mps: Point,
 }
 
-/// What movers can do at most.
+/// Bounds on the motion of moving obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MoverBounds {
-    /// No mover is faster than this \[m/s\].
+    /// Maximum speed \[m/s\].
     pub speed_mps: f64,
-    /// No mover changes its velocity faster than this \[m/s²\]. Without it a mover may turn around
-    /// at once, and its estimated velocity says nothing of where it goes.
+    /// Maximum acceleration \[m/s²\]. Without it, a moving obstacle may reverse instantly, and
+    /// its estimated velocity does not predict its motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration_mps2: Option<f64>,
 }
 
 impl MoverBounds {
-    /// Checks every value.
+    /// Checks every field.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns [`ConfigError`] for the first field that cannot be used.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_not_negative("speed_mps", self.speed_mps)?;
         let acceleration_mps2 = self.acceleration_mps2.unwrap_or_default();
@@ -80,7 +82,7 @@ impl MoverBounds {
 }
 
 impl Mover {
-    /// One that is known exactly, just seen for the first time, and stands.
+    /// A stationary obstacle of exactly known state, seen for the first time.
     pub const fn standing(id: u64, centre: Point, radius_m: f64) -> Self {
         Self {
             id,
@@ -94,8 +96,8 @@ impl Mover {
         }
     }
 
-    /// Where it is in a while when it goes on as estimated; less well known by what its velocity is
-    /// uncertain by.
+    /// Prediction at constant velocity. The position uncertainty grows with the velocity
+    /// uncertainty.
     pub(crate) fn after(&self, duration_s: f64) -> Self {
         Self {
             centre: self.centre + self.velocity_mps * duration_s,
@@ -105,32 +107,33 @@ impl Mover {
         }
     }
 
-    /// The ground that it may cover now.
+    /// The area that it may cover now.
     pub fn now(&self) -> Disc {
         Disc { centre: self.centre, radius_m: self.radius_m + self.position_uncertainty_m }
     }
 
-    /// The smallest disc that holds all ground it may cover after `duration_s`: what both
-    /// [`Self::by_speed`] and [`Self::by_estimate`] allow.
+    /// The smallest disc that contains the area it may cover after `duration_s`: the intersection
+    /// of [`Self::by_speed`] and [`Self::by_estimate`].
     pub fn at(&self, duration_s: f64, bounds: &MoverBounds) -> Disc {
         let by_speed = self.by_speed(duration_s, bounds);
         let Some(by_estimate) = self.by_estimate(duration_s, bounds) else { return by_speed };
-        // Centres first: then the body around them.
+        // Intersect the discs of the centre first, then add the body.
         let shrunk = |disc: Disc| Disc { radius_m: disc.radius_m - self.radius_m, ..disc };
         let centres = shrunk(by_speed).shared_with(&shrunk(by_estimate));
         Disc { radius_m: centres.radius_m + self.radius_m, ..centres }
     }
 
-    /// The ground that it may cover after `duration_s` by its speed alone: it may go in any
-    /// direction, at the speed of the bounds, or at its own where it seems to be faster.
+    /// The area that it may cover after `duration_s`, bounded by speed alone: any direction, at
+    /// the larger of the maximum speed and its estimated speed.
     pub fn by_speed(&self, duration_s: f64, bounds: &MoverBounds) -> Disc {
         let now = self.now();
         let spread_m = self.fastest_mps(bounds) * duration_s;
         Disc { radius_m: now.radius_m + spread_m, ..now }
     }
 
-    /// The ground that it may cover after `duration_s` when it goes on as estimated, but for the
-    /// velocity's uncertainty and what it can accelerate; `None` without a bound of that.
+    /// The area that it may cover after `duration_s` around the prediction at constant velocity,
+    /// given the velocity uncertainty and the maximum acceleration; `None` without a maximum
+    /// acceleration.
     pub fn by_estimate(&self, duration_s: f64, bounds: &MoverBounds) -> Option<Disc> {
         let now = self.now();
         let changed_mps = 0.5 * bounds.acceleration_mps2? * duration_s;
@@ -141,12 +144,12 @@ impl Mover {
         })
     }
 
-    /// The speed of the bounds, or its own where it seems to be faster \[m/s\].
+    /// The larger of the maximum speed and the estimated speed \[m/s\].
     pub(crate) fn fastest_mps(&self, bounds: &MoverBounds) -> f64 {
         bounds.speed_mps.max(self.velocity_mps.norm())
     }
 
-    /// True if every number is one, and no length is negative.
+    /// True if every number is finite and no length is negative.
     pub(crate) fn is_usable(&self) -> bool {
         let lengths = [self.radius_m, self.position_uncertainty_m, self.velocity_uncertainty_mps];
         self.centre.is_finite()
@@ -163,13 +166,13 @@ mod tests {
     #[test]
     fn shared_discs_by_hand() {
         let disc = |x: f64, radius_m: f64| Disc { centre: Point::new(x, 0.0), radius_m };
-        // Circles of 5 and 5, 8 apart, cross 3 above and below the middle.
+        // Circles of radius 5 and 5, 8 apart, intersect 3 above and below the middle.
         let shared = disc(0.0, 5.0).shared_with(&disc(8.0, 5.0));
         assert!((shared.centre.x - 4.0).abs() < 1e-12 && (shared.radius_m - 3.0).abs() < 1e-12);
         assert_eq!(disc(0.0, 5.0).shared_with(&disc(1.0, 2.0)), disc(1.0, 2.0));
         assert_eq!(disc(0.0, 5.0).shared_with(&disc(0.0, 2.0)), disc(0.0, 2.0));
         assert_eq!(disc(0.0, 1.0).shared_with(&disc(9.0, 2.0)), disc(0.0, 1.0), "nothing");
-        // More than half of the smaller one.
+        // The intersection covers more than half of the smaller one.
         assert_eq!(disc(0.0, 5.0).shared_with(&disc(4.5, 2.0)), disc(4.5, 2.0));
     }
 
@@ -184,7 +187,8 @@ mod tests {
     }
 
     proptest! {
-        /// A mover that changes its velocity at random within the bounds is always inside.
+        /// A moving obstacle that changes its velocity at random within the bounds always stays
+        /// inside.
         #[test]
         fn a_mover_is_where_it_may_be(
             off in (-1.0..1.0f64, -1.0..1.0f64), velocity_off in (-1.0..1.0f64, -1.0..1.0f64),
@@ -203,7 +207,7 @@ mod tests {
                 ..Mover::standing(1, at + within(off, 0.1), 0.2)
             };
             for (step, &(towards, strength)) in pushes.iter().enumerate() {
-                // Velocity jumps at the beginning of a step only when nothing bounds that.
+                // Velocity jumps at the start of a step only if the acceleration is unbounded.
                 let before = velocity;
                 velocity = match acceleration_mps2 {
                     Some(most) => velocity + direction(towards) * (strength * most * 0.1),

@@ -1,4 +1,4 @@
-//! Measurements of a robot.
+//! Measurements of a robot in one cycle.
 
 use super::{Ranges, RangesRef, Scan, SensorPoints};
 use crate::geometry::{Pose, Velocity};
@@ -7,25 +7,25 @@ use crate::robot::{Mount, Robot};
 /// Measurements of a robot: its pose and velocity at a time, and the scans and points that have
 /// arrived since the last observation.
 ///
-/// All stamps are by the same clock, which may have begun at any time. They say when something was
-/// measured, not when it arrived.
+/// All stamps are of the same clock, of any epoch. They are times of measurement, not of arrival.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
-    /// Time at which the pose and the velocity were measured \[s\].
+    /// Time of the pose and the velocity \[s\].
     pub stamp_s: f64,
     /// Pose in the world frame.
     pub pose: Pose,
     /// Velocity.
     pub velocity: Velocity,
-    /// Scans, in the order in which they were made; empty where none has arrived.
+    /// Scans, in the order in which they were made; empty if none has arrived.
     pub scans: &'a [SensorScan<'a>],
-    /// Points of other sensors, in the order in which they were measured; empty where none have
+    /// Points of other sensors, in the order in which they were measured; empty if none have
     /// arrived.
     pub points: &'a [SensorPoints<'a>],
 }
 
 impl<'a> Observation<'a> {
-    /// Measurements of a robot with lidars alone: its pose and velocity at a time \[s\], and scans.
+    /// Measurements of a robot with lidars only: its pose and velocity at a time \[s\], and
+    /// scans.
     pub const fn new(
         stamp_s: f64,
         pose: Pose,
@@ -45,7 +45,7 @@ impl<'a> Observation<'a> {
 /// A scan, and the sensor that made it.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorScan<'a> {
-    /// Time at which it was made \[s\].
+    /// Time of the scan \[s\].
     pub stamp_s: f64,
     /// Index of the sensor among those of the robot
     /// ([`Robot::sensors`](crate::robot::Robot::sensors)).
@@ -57,16 +57,16 @@ pub struct SensorScan<'a> {
 }
 
 impl<'a> SensorScan<'a> {
-    /// A scan that the sensor of this index on a robot made at a time \[s\]; its last sensor where
-    /// it has not as many.
+    /// A scan of the robot's sensor of this index, made at a time \[s\]; an index that is too
+    /// large means the last sensor.
     pub fn of<R: Ranges>(robot: &Robot, sensor: usize, stamp_s: f64, scan: &'a Scan<R>) -> Self {
         let sensor = sensor.min(robot.sensors.len().saturating_sub(1));
         let mount = robot.sensors.get(sensor).map_or(Mount::CENTRE, |sensor| sensor.mount);
         Self { stamp_s, sensor, mount: mount.pose(), scan: scan.borrowed() }
     }
 
-    /// A scan that the first sensor made at a time \[s\], at the centre of rotation and looking
-    /// ahead.
+    /// A scan of the first sensor, made at a time \[s\], at the centre of rotation and facing
+    /// forward.
     pub fn centred<R: Ranges>(stamp_s: f64, scan: &'a Scan<R>) -> Self {
         Self { stamp_s, sensor: 0, mount: Pose::default(), scan: scan.borrowed() }
     }

@@ -1,52 +1,52 @@
-//! Points that other sensors than lidars have met.
+//! Points from sensors other than lidars.
 
 use crate::geometry::{Point, Pose};
 use std::f64::consts::TAU;
 
-/// Places at which a depth camera, a sonar or a bumper has met something: what it shows of a world
-/// at the height of the robot, as points on the ground.
+/// Points detected by a depth camera, a sonar or a bumper: obstacles at the height of the robot,
+/// projected to the ground.
 ///
-/// They mark cells that the robot must not touch, and clear others only where the sensor says that
-/// it sees everything. They take no part in following what moves, and a robot that drives only on
-/// ground that it has seen still needs its lidar for that.
+/// They mark cells that the robot must not touch, and clear others only within the field of view
+/// that the sensor declares. They are not used for tracking, and a robot that drives only on
+/// observed free space still needs its lidar for that.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorPoints<'a> {
-    /// Time at which they were measured \[s\].
+    /// Time of the measurement \[s\].
     pub stamp_s: f64,
-    /// Number of the sensor among those that give points, below [`Self::MOST_SENSORS`]: what one
-    /// of them has met is cleared by itself alone.
+    /// Index among the sensors that give points, below [`Self::MOST_SENSORS`]. Points of a sensor
+    /// are cleared by that sensor alone.
     pub sensor: usize,
     /// Pose of the sensor in the robot's frame.
     pub mount: Pose,
-    /// Places that it has met, in its own frame \[m\]. Those that are not finite say nothing, nor
-    /// does the origin, which is what many drivers write where they have met nothing.
+    /// Detected points in the sensor's frame \[m\]. Points that are not finite are ignored, and
+    /// so is the origin, which many drivers write for no detection.
     pub points: &'a [Point],
-    /// The ground in which it sees everything that stands, if there is such ground: what it had met
-    /// there and meets no more has gone.
+    /// Area in which the sensor sees every obstacle, if there is one: an earlier point there that
+    /// is no longer detected is cleared.
     pub clears: Option<FieldOfView>,
 }
 
 impl SensorPoints<'_> {
-    /// Most sensors of a robot that give points.
+    /// Maximum number of sensors that give points.
     pub const MOST_SENSORS: usize = 8;
 }
 
-/// Ground in which a sensor sees everything that stands and is not hidden.
+/// Area in which a sensor sees every obstacle that is not occluded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldOfView {
-    /// Bearing of its right edge in the sensor's frame \[rad\]: 0 where the sensor looks,
+    /// Bearing of the right edge in the sensor's frame \[rad\]: 0 is straight ahead,
     /// counter-clockwise.
     pub from_rad: f64,
-    /// Bearing of its left edge \[rad\], at most a turn beyond the right one.
+    /// Bearing of the left edge \[rad\], at most one turn beyond the right one.
     pub to_rad: f64,
-    /// The sensor is blind nearer than this \[m\].
+    /// Minimum range \[m\].
     pub range_min_m: f64,
-    /// As far as this it sees \[m\].
+    /// Maximum range \[m\].
     pub range_max_m: f64,
 }
 
 impl FieldOfView {
-    /// True if there is such ground.
+    /// True if the area is valid and not empty.
     pub fn is_usable(&self) -> bool {
         let width_rad = self.to_rad - self.from_rad;
         let is_angle = self.from_rad.is_finite() && width_rad > 0.0 && width_rad <= TAU * 1.001;

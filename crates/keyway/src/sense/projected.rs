@@ -1,4 +1,4 @@
-//! A scan where it was made: what each beam says and where it ends, computed once per cycle.
+//! A scan in the world frame: the reading and the end of each beam, computed once per cycle.
 
 use super::layer::says_something;
 use super::{FieldOfView, Ranges, Reading, Scan, SensorScan};
@@ -8,11 +8,11 @@ use crate::robot::Footprint;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// A scan made by a sensor of a robot at a pose on a grid. Everything that looks at a scan looks at
-/// this: the tracker, the sensed layer, the seen ground.
+/// A scan made by a sensor of a robot at a pose on a grid. It is the common input of the tracker,
+/// the sensed layer and the observed free space.
 ///
-/// Nothing but the robot can be where the robot is: a beam that ends inside the footprint has
-/// met a post of the housing, a cable or a gripper, and says nothing.
+/// A beam that ends inside the footprint has hit the robot itself (a post of the housing, a
+/// cable, a gripper) and is ignored.
 ///
 /// Memory: 48 bytes per beam.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -31,30 +31,30 @@ struct Beam {
     hit: Option<Hit>,
 }
 
-/// The end of a beam at something.
+/// The end of a beam at an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Hit {
-    /// Place in the world frame \[m\].
+    /// Position in the world frame \[m\].
     pub point: Point,
     /// The cell that it marks; `None` outside the map.
     pub cell: Option<Cell>,
 }
 
-/// Length along a beam by which a hit is advanced before its cell is looked up \[cells\]. A hit
-/// exactly on a square's face then marks the square behind the face, rounded or not, and not the
-/// free cell before it. A square that the beam crosses for less than this, or at a flatter angle
-/// than rounding allows, may still be mistaken for its neighbour.
+/// Length along a beam by which a hit is advanced before its cell is looked up \[cells\]. Despite
+/// rounding, a hit exactly on a square's face then marks the square behind the face, not the free
+/// cell before it. A square that the beam crosses for less than this, or at a flatter angle than
+/// rounding allows, may still be mistaken for its neighbour.
 const HIT_ADVANCE_CELLS: f64 = 1e-6;
 
-/// A place this near to a beam is on it, rounded or not \[beams\].
+/// Tolerance for a point to lie on a beam, despite rounding \[beams\].
 const ON_A_BEAM: f64 = 1e-6;
 
-/// A beam that ends this little beyond a place ends at it, rounded or not \[m\].
+/// Tolerance for a beam to end at a point, despite rounding \[m\].
 const AT_PLACE_M: f64 = 1e-6;
 
 impl ProjectedScan {
-    /// A scan made at `pose` (world frame) by a robot of this footprint, with a sensor at its
+    /// A scan made at `pose` (world frame) by a robot of this footprint with a sensor at its
     /// centre of rotation.
     pub fn new<R: Ranges>(
         frame: &GridFrame,
@@ -68,7 +68,7 @@ impl ProjectedScan {
     }
 
     /// Replaces the scan by another one, made by a robot of this footprint at `robot` (world
-    /// frame). Allocates nothing where that is not longer.
+    /// frame). Does not allocate unless the new scan is longer.
     pub fn project(
         &mut self,
         frame: &GridFrame,
@@ -105,7 +105,7 @@ impl ProjectedScan {
         (self.angle_min_rad, self.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
     }
 
-    /// Moves it with the robot that has made it, to where that turns out to be.
+    /// Moves the scan along with a correction of the robot's pose.
     pub(crate) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
         (self.robot, self.pose) = (shift.pose(self.robot), shift.pose(self.pose));
         let from = frame.grid_from_world(self.pose.point());
@@ -118,9 +118,10 @@ impl ProjectedScan {
         }
     }
 
-    /// Becomes the view of a sensor at a pose (world frame) that has met points (its own frame):
-    /// beams of half a degree, each as far as to the nearest point. A point hides what is behind a
-    /// disc of a cell. Allocates nothing where it has not more beams than before.
+    /// Becomes the view of a sensor at a pose (world frame) that has detected points (in its own
+    /// frame): beams half a degree apart, each as long as the distance to the nearest point. A
+    /// point occludes everything behind a disc of the width of a cell. Does not allocate unless
+    /// there are more beams than before.
     pub(super) fn look_around(
         &mut self,
         pose: Pose,
@@ -138,7 +139,7 @@ impl ProjectedScan {
         (self.angle_min_rad, self.angle_increment_rad) = (view.from_rad, width_rad / steps);
         for &point in points.iter().filter(|&&point| says_something(point)) {
             let (away_m, place) = (point.norm(), pose.world_from_body(point));
-            // At least the two beams beside it, however far away it is.
+            // At least the two beams beside it, at any distance.
             let half_m = (0.5 * cell_m).max(away_m * self.step_rad());
             for beam in self.beams_towards(place, half_m) {
                 let Some(beam) = self.beams.get_mut(beam) else { continue };
@@ -148,13 +149,13 @@ impl ProjectedScan {
         }
     }
 
-    /// Becomes a scan without beams, as where a sensor has made none.
+    /// Becomes a scan without beams, as if the sensor had made none.
     pub fn clear(&mut self, robot: Pose) {
         (self.robot, self.pose) = (robot, robot);
         self.beams.clear();
     }
 
-    /// Becomes equal to another one; allocates nothing where that is not longer.
+    /// Copies another scan; does not allocate unless that is longer.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let mut beams = std::mem::take(&mut self.beams);
         beams.clone_from(&other.beams);
@@ -162,12 +163,12 @@ impl ProjectedScan {
         *self = Self { robot, pose, angle_min_rad, angle_increment_rad, range_max_m, beams };
     }
 
-    /// Pose of the robot when it was made, in the world frame.
+    /// Pose of the robot at the time of the scan, in the world frame.
     pub const fn robot(&self) -> Pose {
         self.robot
     }
 
-    /// Pose of the sensor when it was made, in the world frame.
+    /// Pose of the sensor at the time of the scan, in the world frame.
     pub const fn pose(&self) -> Pose {
         self.pose
     }
@@ -182,18 +183,18 @@ impl ProjectedScan {
         self.beams.is_empty()
     }
 
-    /// True if no beam says anything.
+    /// True if no beam is valid.
     pub fn is_silent(&self) -> bool {
         self.beams.iter().all(|beam| beam.reading.is_none())
     }
 
-    /// As far as this nothing stands along a beam \[m\]; `None` when there is no such beam, or it
-    /// says nothing.
+    /// Length of a beam that is free of obstacles \[m\]; `None` if the beam does not exist or is
+    /// invalid.
     pub fn free_m(&self, beam: usize) -> Option<f64> {
         self.beams.get(beam)?.reading.map(Reading::free_m)
     }
 
-    /// The hit of a beam, if it met something.
+    /// The hit of a beam, if it has one.
     pub fn hit(&self, beam: usize) -> Option<Hit> {
         self.beams.get(beam)?.hit
     }
@@ -203,8 +204,8 @@ impl ProjectedScan {
         self.beams.iter().enumerate().filter_map(|(number, beam)| Some((number, beam.hit?)))
     }
 
-    /// Notes the places near a point at which it met something: the hits, and what lies between
-    /// those of two neighbouring beams that are no farther apart than `joined_m`.
+    /// Collects the hits near a point, and samples between the hits of two neighbouring beams
+    /// that are at most `joined_m` apart.
     pub(crate) fn note_places(
         &self,
         centre: Point,
@@ -230,35 +231,36 @@ impl ProjectedScan {
         }
     }
 
-    /// Hits that are just joined have this many places less one in between.
+    /// Number of intervals between two hits that are exactly `joined_m` apart.
     const PLACES_JOINED: f64 = 15.0;
 
-    /// The direction in which a beam looks, in the world frame, of length 1.
+    /// Direction of a beam in the world frame, of length 1.
     pub(super) fn direction(&self, beam: usize) -> Point {
         let bearing_rad = self.angle_min_rad + beam as f64 * self.angle_increment_rad;
         let (sin, cos) = libm::sincos(self.pose.theta + bearing_rad);
         Point::new(cos, sin)
     }
 
-    /// Angle between two neighbouring beams \[rad\], whichever way they go.
+    /// Angle between two neighbouring beams \[rad\], regardless of the direction of rotation.
     pub(super) const fn step_rad(&self) -> f64 {
         self.angle_increment_rad.abs()
     }
 
-    /// The number of beams in a turn, if the sensor looks all around. The last beam may look where
-    /// the first one does: then there is one beam more.
+    /// The number of beams per turn, if the sensor sees all around. The last beam may point the
+    /// same way as the first one; the scan then has one beam more.
     fn beams_of_a_turn(&self) -> Option<f64> {
         let count = self.beams.len() as f64;
         let is_full_turn = self.step_rad() * (count + 0.5) >= TAU;
         is_full_turn.then(|| (TAU / self.step_rad()).round().min(count))
     }
 
-    /// The number of the beam that looks at a place: a fraction between two of them; below 0 or
-    /// beyond the last one outside the field of view. `None` where no beam looks anywhere.
+    /// The fractional index of the beam towards a point: between two beams, or below 0 or beyond
+    /// the last one outside the field of view. `None` if all beams have the same bearing or the
+    /// point is not finite.
     pub(super) fn beam_towards(&self, place: Point) -> Option<f64> {
         let step_rad = self.angle_increment_rad;
         let is_usable = step_rad != 0.0 && place.is_finite();
-        // A bearing from the middle beam, so that the seam lies opposite to it.
+        // Bearing from the middle beam, so that the seam is opposite to it.
         let half = 0.5 * (self.beams.len() as f64 - 1.0);
         let middle_rad = self.angle_min_rad + half * step_rad;
         let heading_rad = (place - self.pose.point()).heading();
@@ -266,7 +268,7 @@ impl ProjectedScan {
         is_usable.then(|| half + from_middle_rad / step_rad)
     }
 
-    /// The beams that look at a disc, in order; all around where the sensor is inside it.
+    /// The beams that intersect a disc, in order; all beams if the sensor is inside it.
     pub(super) fn beams_towards(
         &self,
         centre: Point,
@@ -279,7 +281,7 @@ impl ProjectedScan {
         let low = (middle - half_rad / step_rad).ceil();
         let high = (middle + half_rad / step_rad).floor();
         let last = count as f64 - 1.0;
-        // Also where a bearing is no number.
+        // Also handles a NaN bearing.
         let looks = low <= high && count > 0;
         let turn = self.beams_of_a_turn();
         let (low, high) = match turn {
@@ -292,15 +294,15 @@ impl ProjectedScan {
         (low as i64..=high as i64).map(move |beam| (beam as f64).rem_euclid(turn) as usize)
     }
 
-    /// True if nothing of this width \[m\] stands at a place: the beams to both sides go on beyond
-    /// it, and one of them passes so near that it would have met it.
+    /// True if no obstacle of this width \[m\] is at a point: the beams to both sides continue
+    /// beyond it, and one of them passes so close that it would have hit the obstacle.
     pub(crate) fn shows_free(&self, place: Point, width_m: f64) -> bool {
         let off = self.beam_towards(place).map_or(f64::NAN, |beam| beam - beam.round());
         let away_m = place.distance(self.pose.point());
         off.abs() * self.step_rad() * away_m <= 0.5 * width_m && self.sees_through(place)
     }
 
-    /// True if the beams to both sides of a place go on beyond it.
+    /// True if the beams to both sides of a point continue beyond it.
     pub(crate) fn sees_through(&self, place: Point) -> bool {
         let away_m = place.distance(self.pose.point());
         if away_m.is_nan() || away_m > self.range_max_m {
@@ -313,7 +315,7 @@ impl ProjectedScan {
         let count = self.beams.len() as f64;
         beside.into_iter().all(|beam| {
             let beam = self.beams_of_a_turn().map_or(beam, |turn| beam.rem_euclid(turn));
-            // A number that is none is no beam, either.
+            // A NaN index is no beam, either.
             let is_there = beam >= 0.0 && beam < count;
             let free_m = if is_there { self.free_m(beam as usize) } else { None };
             free_m.is_some_and(|free_m| free_m > away_m + AT_PLACE_M)
@@ -334,7 +336,7 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
 
-    /// Ahead, to the left, behind, to the right.
+    /// Beams ahead, to the left, behind and to the right.
     fn scan(ranges_m: [f64; 4]) -> Scan {
         Scan {
             angle_min_rad: 0.0,
@@ -364,7 +366,7 @@ mod tests {
                 assert_eq!(seen.hit(beam).is_some(), !own && beam < 3, "{footprint} {beam}");
             }
         }
-        // A point has no body.
+        // A point robot has no body.
         let near = Scan { ranges_m: vec![1e-9; 4], ..scan };
         let seen = ProjectedScan::new(&frame(), &Footprint::POINT, Pose::default(), &near);
         assert!((0..4).all(|beam| seen.free_m(beam) == Some(1e-9)) && !seen.is_silent());
@@ -396,7 +398,7 @@ mod tests {
         assert_eq!((lost.hits().count(), lost.sees_through(Point::new(0.0, 0.0))), (0, false));
     }
 
-    /// Across the seam of a whole turn, and for a sensor that turns the other way.
+    /// Across the seam of a full turn, and for a sensor that rotates the other way.
     #[test]
     fn a_place_is_seen_through_between_any_two_beams() {
         let seen =
@@ -419,7 +421,7 @@ mod tests {
         }
     }
 
-    /// Beams of 10 degrees, 0.35 m apart at 2 m.
+    /// Beams 10 degrees apart: 0.35 m at a distance of 2 m.
     #[test]
     fn what_is_narrower_than_the_gap_between_two_beams_may_be_there() {
         let scan = Scan {
@@ -439,7 +441,7 @@ mod tests {
         assert!(!seen.shows_free(Point::new(f64::NAN, 0.0), 1.0));
     }
 
-    /// 361 beams of a degree: the first and the last look back.
+    /// 361 beams one degree apart: the first and the last point backwards.
     #[test]
     fn across_a_seam_that_two_beams_share() {
         let mut ranges_m = vec![f64::INFINITY; 361];

@@ -1,8 +1,8 @@
-//! The ranges of a scan, where a driver keeps them.
+//! The ranges of a scan, read in place from a driver's memory.
 
-/// Ranges of all beams of a scan \[m\], its own or borrowed, in single or double precision.
+/// Ranges of all beams of a scan \[m\], owned or borrowed, in single or double precision.
 pub trait Ranges {
-    /// The ranges, where they are.
+    /// Borrows the ranges.
     fn as_ranges(&self) -> RangesRef<'_>;
 }
 
@@ -29,7 +29,7 @@ impl RangesRef<'_> {
         self.len() == 0
     }
 
-    /// Range of a beam \[m\]; `None` when there is no such beam.
+    /// Range of a beam \[m\]; `None` if the beam does not exist.
     pub fn get(self, beam: usize) -> Option<f64> {
         match self {
             Self::F32(ranges_m) => ranges_m.get(beam).copied().map(f64::from),

@@ -1,4 +1,4 @@
-//! One turn of a range sensor.
+//! One scan of a range sensor.
 
 use super::{Ranges, RangesRef};
 use crate::geometry::{Point, Pose};
@@ -9,70 +9,70 @@ use thiserror::Error;
 
 /// Ranges measured at one instant by a sensor, as in ROS `sensor_msgs/LaserScan`.
 ///
-/// Beam i looks at bearing `angle_min_rad + i * angle_increment_rad` (0 where the sensor looks,
-/// counter-clockwise): a sensor that turns clockwise has a negative increment.
+/// Beam i has the bearing `angle_min_rad + i * angle_increment_rad` (0 is straight ahead,
+/// counter-clockwise): a sensor that rotates clockwise has a negative increment.
 ///
-/// The ranges are its own, or those that a driver keeps elsewhere, in either precision
-/// ([`Ranges`]).
+/// The ranges are owned or borrowed from a driver, in either precision ([`Ranges`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scan<R = Vec<f64>> {
     /// Bearing of the first beam \[rad\].
     pub angle_min_rad: f64,
-    /// Bearing from one beam to the next \[rad\], negative where they go clockwise.
+    /// Bearing from one beam to the next \[rad\], negative for clockwise rotation.
     pub angle_increment_rad: f64,
-    /// A shorter range says nothing \[m\]: the sensor is blind so near, or has seen its own
-    /// housing. 0 when it sees from its centre on.
+    /// Minimum range \[m\]. Shorter ranges are discarded: the sensor is blind there or sees its
+    /// own housing. 0 if it sees from its centre on.
     pub range_min_m: f64,
-    /// A longer range says nothing \[m\], except infinity: nothing was met as far as this.
+    /// Maximum range \[m\]. Longer ranges are discarded, except infinity: no return within this
+    /// range.
     pub range_max_m: f64,
-    /// Range of every beam \[m\]. As in ROS, what is not between [`Self::range_min_m`] and
-    /// [`Self::range_max_m`] is discarded, NaN and 0 as well; infinity means that nothing was met.
-    /// A driver that writes another number where it met nothing (0, or one beyond the range) has to
-    /// write infinity instead, or the sensor's free ground stays unknown.
+    /// Range of every beam \[m\]. As in ROS, values outside [`Self::range_min_m`] to
+    /// [`Self::range_max_m`] are discarded, also NaN and 0; infinity means no return. A driver
+    /// that writes another number for no return (0, or one beyond the range) must write infinity
+    /// instead, or the sensor's free space stays unknown.
     pub ranges_m: R,
 }
 
-/// The reason why the beams of a scan cannot be true.
+/// Reason why the beams of a scan are invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ScanError {
-    /// There is none.
+    /// The scan has no beams.
     #[error("a scan has at least one beam")]
     NoBeams,
-    /// The first one looks nowhere.
+    /// The bearing of the first beam is out of range.
     #[error(
         "the bearing of the first beam must be a number from -2 pi to 2 pi, got {0}; is it in degrees?"
     )]
     FirstBearing(f64),
-    /// They all look the same way, or nowhere.
+    /// The increment is zero or not finite.
     #[error("the angle from one beam to the next must be a number other than 0, got {0}")]
     Increment(f64),
-    /// They turn around more than once.
+    /// The beams span more than one turn.
     #[error(
         "{beams} beams with {increment_rad} rad from one to the next turn around more than once; is the angle in degrees?"
     )]
     Turns {
-        /// Their number.
+        /// Number of beams.
         beams: usize,
-        /// From one to the next \[rad\].
+        /// Angle between neighbouring beams \[rad\].
         increment_rad: f64,
     },
 }
 
-/// A turn, up to rounding; the first and the last beam may look the same way.
+/// One turn, up to rounding; the first and the last beam may point the same way.
 const ONE_TURN_RAD: f64 = TAU * 1.001;
 
-/// What a beam says.
+/// The valid reading of a beam.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reading {
-    /// Something stands so far away, and nothing before it \[m\].
+    /// Obstacle at this distance, free before it \[m\].
     Hit(f64),
-    /// Nothing stands as far as this \[m\].
+    /// Free up to this distance \[m\].
     Free(f64),
 }
 
 impl Reading {
-    /// As far as this nothing stands \[m\].
+    /// Length of the beam that is free of obstacles \[m\].
     pub const fn free_m(self) -> f64 {
         match self {
             Self::Hit(range_m) | Self::Free(range_m) => range_m,
@@ -81,9 +81,9 @@ impl Reading {
 }
 
 impl Scan {
-    /// What a sensor measures where it meets nothing. All around (360 degrees), beam 0 looks back
-    /// (-180 degrees) and the others follow evenly; with a smaller field of view the first and the
-    /// last beam look along its edges. A single beam looks straight ahead.
+    /// The scan of a sensor without any returns. All around (360 degrees), beam 0 points
+    /// backwards (-180 degrees) and the others follow evenly; with a smaller field of view, the
+    /// first and the last beam point along its edges. A single beam points straight ahead.
     pub fn of_nothing(sensor: &RangeSensor) -> Self {
         let count = f64::from(sensor.beams);
         let field_rad = sensor.field_of_view_deg.to_radians();
@@ -101,14 +101,14 @@ impl Scan {
 }
 
 impl<R: Ranges> Scan<R> {
-    /// The same scan, whose ranges stay where they are.
+    /// The same scan with borrowed ranges.
     pub fn borrowed(&self) -> Scan<RangesRef<'_>> {
         let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
         let ranges_m = self.ranges_m.as_ranges();
         Scan { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, ranges_m }
     }
 
-    /// The same scan with ranges of its own.
+    /// The same scan with owned ranges.
     pub fn owned(&self) -> Scan {
         let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
         let ranges_m = self.ranges_m.as_ranges().iter().collect();
@@ -120,10 +120,11 @@ impl<R: Ranges> Scan<R> {
         self.ranges_m.as_ranges().len()
     }
 
-    /// Refuses bearings that cannot be true, as of angles in degrees.
+    /// Checks that the bearings are plausible; angles in degrees, for example, are not.
     ///
     /// # Errors
-    /// Without beams, and where the bearings are not finite, all the same or more than one turn.
+    /// Returns [`ScanError`] without beams, or if the bearings are not finite, all the same, or
+    /// span more than one turn.
     pub fn check(&self) -> Result<(), ScanError> {
         let (first_rad, increment_rad) = (self.angle_min_rad, self.angle_increment_rad);
         let beams = self.beams();
@@ -145,30 +146,31 @@ impl<R: Ranges> Scan<R> {
         self.angle_min_rad + beam as f64 * self.angle_increment_rad
     }
 
-    /// Angle between two neighbouring beams \[rad\], whichever way they go.
+    /// Angle between two neighbouring beams \[rad\], regardless of the direction of rotation.
     const fn step_rad(&self) -> f64 {
         self.angle_increment_rad.abs()
     }
 
-    /// True if no beam says anything.
+    /// True if no beam is valid.
     pub fn says_nothing(&self) -> bool {
         (0..self.beams()).all(|beam| self.reading(beam).is_none())
     }
 
-    /// What a beam says; `None` when there is no such beam, or it says nothing.
+    /// The reading of a beam; `None` if the beam does not exist or is invalid.
     pub fn reading(&self, beam: usize) -> Option<Reading> {
         let range_m = self.ranges_m.as_ranges().get(beam)?;
         if range_m == f64::INFINITY {
             let is_known = self.range_max_m > 0.0 && self.range_max_m.is_finite();
             return is_known.then_some(Reading::Free(self.range_max_m));
         }
-        // A lower end that is not a number excludes nothing: an obstacle is not ignored for it.
+        // A minimum range that is NaN excludes nothing, so that no obstacle is ignored because of
+        // it.
         let is_too_near = range_m < self.range_min_m;
         let is_hit = range_m > 0.0 && range_m <= self.range_max_m && !is_too_near;
         is_hit.then_some(Reading::Hit(range_m))
     }
 
-    /// The places \[m\] where beams of a sensor at `pose` met something, in the order of the beams.
+    /// The hit points of a sensor at `pose` \[m\], in the order of the beams.
     pub fn hits(&self, pose: Pose) -> impl Iterator<Item = Point> + '_ {
         (0..self.beams()).filter_map(move |beam| {
             let Some(Reading::Hit(range_m)) = self.reading(beam) else { return None };
@@ -213,8 +215,8 @@ mod tests {
         let expected = [hit(0.1), none, none, none, none, none, hit(3.0), none, none, free, none];
         assert_eq!(readings, expected);
         assert_eq!((Reading::Hit(1.0).free_m(), Reading::Free(3.0).free_m()), (1.0, 3.0));
-        // What is seen is not ignored for an end that is not a number; how far it is free is then
-        // unknown.
+        // A hit is not discarded for a range limit that is NaN or infinite; the length of free
+        // space is then unknown.
         let blind = Scan { range_min_m: nan, ..scan.clone() };
         assert_eq!((blind.reading(0), blind.reading(9)), (hit(0.1), free));
         let endless = Scan { range_max_m: inf, ..scan };

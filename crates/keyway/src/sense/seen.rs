@@ -1,4 +1,4 @@
-//! The ground in which the robot has looked.
+//! The free space that the robot has observed.
 
 use super::ProjectedScan;
 use super::spread::{Spread, Walls};
@@ -8,101 +8,103 @@ use crate::robot::{Footprint, RangeSensor, Robot};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
-/// The cells in which nothing stands, as far as a robot has looked: see [`SeenGround`].
+/// The cells observed to be free of obstacles: see [`SeenGround`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SeenCells<'a> {
-    /// Cells over which it may drive ahead so fast that it could not stop before; `None`: anywhere.
+    /// Cells within which the robot must be able to stop when driving forward; `None`: anywhere.
     pub ahead: Option<&'a BitGrid>,
-    /// Cells over which it may back up; `None`: anywhere.
+    /// Cells over which it may drive backwards; `None`: anywhere.
     pub behind: Option<&'a BitGrid>,
-    /// The latest scans, which know better than cells where they met something; empty: only cells
-    /// are known.
+    /// The latest scans, which locate hits more exactly than cells do; empty: only cells are
+    /// available.
     pub scans: &'a [ProjectedScan],
 }
 
 impl SeenCells<'_> {
-    /// No cell need be seen.
+    /// No constraint: no cell has to be observed.
     pub const ANYWHERE: Self = Self { ahead: None, behind: None, scans: &[] };
 }
 
-/// Which seen ground is kept ([`SeenGround::new`]).
+/// The observed free space to keep ([`SeenGround::new`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeenWanted {
-    /// That over which a robot may back up.
+    /// The cells over which a robot may drive backwards.
     Behind,
-    /// That within which it must be able to stop, too.
+    /// Also the cells within which it must be able to stop when driving forward.
     AheadAndBehind,
 }
 
-/// Cells whose centres lie between beams that go on beyond them, or which the robot has covered:
-/// nothing stands in them, except what has been met there as well. One of the beams passes so near
-/// that it would have met a thing as wide as [`RangeSensor::NARROWEST_M`], or as a cell, if that is
-/// larger.
+/// Observed free space: cells whose centres lie between beams that continue beyond them, or which
+/// the robot has covered. No obstacle is in them, except those that were sensed there as well.
+/// One of the beams passes so close that it would have hit an obstacle as wide as
+/// [`RangeSensor::NARROWEST_M`], or as a cell if that is larger.
 ///
-/// - A robot that drives **ahead** must be able to stop within them: what stands beyond them would
-///   be met too late, whether it is beyond the sensor's range, behind a corner, or where no beam
-///   says anything.
-/// - A robot whose sensor does not see all around may not drive **backwards** elsewhere: what
-///   stands there would be touched before it is met.
+/// - A robot that drives **forward** must be able to stop within them: an obstacle beyond them
+///   would be detected too late, whether it is out of range, behind a corner, or in the direction
+///   of invalid beams.
+/// - A robot whose sensor does not see all around may drive **backwards** only within them: an
+///   obstacle elsewhere would be touched before it is detected.
 ///
-/// They are kept as far around the robot as it comes before it stands, ahead and backwards.
+/// They are kept as far around the robot as it can travel before it stops, forward and backwards.
 ///
-/// # Where somebody walks
-/// Ground behind the robot that was seen a while ago may not be free any more. With walkers of up
-/// to V, unseen ground spreads into what is out of view at that speed, from cell to cell, but not
-/// through [`Walls`]; what is farther away than somebody walks in a second counts as unseen.
-/// [`SeenCells::behind`] are then those to which nobody can come before a robot has stopped that
-/// backs up, whether or not he was ever seen. Cells count as covered by whoever covers their
-/// centres; who is less wide than a cell's diagonal may be missed.
+/// # Pedestrians
+/// Space behind the robot that was observed a while ago may no longer be free. With pedestrians
+/// of up to V, unobserved space spreads at that speed into cells that are out of view, from cell
+/// to cell, but not through [`Walls`]. Cells farther away than a pedestrian walks in one second
+/// count as unobserved. [`SeenCells::behind`] are then the cells that no pedestrian, tracked or
+/// not, can reach before a robot that drives backwards has stopped. A cell counts as covered if
+/// its centre is covered; a pedestrian narrower than a cell's diagonal may be missed.
 ///
-/// Memory: a bit per cell, three where somebody walks. An update looks at the cells around the
-/// robot that are not known to be free, about 30 ns each.
+/// Memory: one bit per cell, three with pedestrians. An update visits the cells around the robot
+/// that are not known to be free, about 30 ns each.
 #[derive(Clone, Debug)]
 pub struct SeenGround {
-    /// By anything that stands.
+    /// Cells observed to be free of stationary obstacles.
     seen: BitGrid,
     footprint: Footprint,
-    /// As far as cells are looked at from the robot \[m\].
+    /// Radius around the robot within which cells are updated \[m\].
     reach_m: f64,
     looks_ahead: bool,
     backs_up: bool,
     walkers: Option<Walkers>,
 }
 
-/// Who may walk over seen ground while nobody looks.
+/// Pedestrians that may enter observed free space while it is out of view.
 #[derive(Clone, Debug)]
 struct Walkers {
     speed_mps: f64,
-    /// Until a robot stands that backs up \[s\].
+    /// Time until a robot that drives backwards has stopped \[s\].
     stop_s: f64,
-    /// As far as cells are looked at from the robot \[m\].
+    /// Radius around the robot within which cells are updated \[m\].
     reach_m: f64,
-    /// All that is known is inside of it.
+    /// Window that contains all cells in use.
     window: CellWindow,
-    /// Seen cells to which nobody can have come by now.
+    /// Observed cells that no pedestrian can have reached by now.
     left: BitGrid,
-    /// Those to which nobody can come until a robot stands that backs up.
+    /// Observed cells that no pedestrian can reach before a robot that drives backwards has
+    /// stopped.
     free: BitGrid,
     spread: Spread,
 }
 
-/// The cells of seen ground.
+/// The observed free space in serialised form.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SeenStored {
     seen: BitGrid,
-    /// Window, and the cells to which nobody can have come by now, and until a robot has stopped.
+    /// Window, the cells that no pedestrian can have reached by now, and those until a robot has
+    /// stopped.
     walkers: Option<(CellWindow, BitGrid, BitGrid)>,
 }
 
 impl SeenGround {
-    /// Its cells.
+    /// The cells in serialised form.
     pub(crate) fn stored(&self) -> SeenStored {
         let cells =
             |walkers: &Walkers| (walkers.window, walkers.left.clone(), walkers.free.clone());
         SeenStored { seen: self.seen.clone(), walkers: self.walkers.as_ref().map(cells) }
     }
 
-    /// The same ground with the cells that were stored; false where those are of another size.
+    /// Restores stored cells; false if they are of another size.
     pub(crate) fn restore(&mut self, stored: SeenStored) -> bool {
         let size = |bits: &BitGrid| (bits.width(), bits.height(), bits.padding());
         let own = size(&self.seen);
@@ -126,12 +128,12 @@ impl SeenGround {
         true
     }
 
-    /// Somebody's walk for so long is looked at around the robot \[s\].
+    /// Walking time by which the window extends around the robot \[s\].
     const WALK_S: f64 = 1.0;
 
-    /// Nothing seen, on a grid of `frame`'s size, among walkers of up to `walker_mps`, 0 where
-    /// nobody walks. `None` where nothing has to be seen: behind a robot that does not drive
-    /// backwards, or sees all around with a single sensor.
+    /// Nothing observed yet, on a grid of `frame`'s size, with pedestrians of up to `walker_mps`,
+    /// 0 for none. `None` if no space has to be observed: a robot that does not drive backwards,
+    /// or sees all around with a single sensor, needs no free space behind it.
     pub fn new(
         frame: &GridFrame,
         robot: &Robot,
@@ -139,7 +141,7 @@ impl SeenGround {
         wanted: SeenWanted,
     ) -> Option<Self> {
         let limits = &robot.limits;
-        // One of several sensors may be lost, and the robot drives on.
+        // One of several sensors may fail while the robot drives on.
         let always_sees_behind = robot.sensors.len() == 1 && robot.sees_all_around();
         let backs_up = limits.v_min_mps < 0.0 && !always_sees_behind;
         let looks_ahead = wanted == SeenWanted::AheadAndBehind;
@@ -159,7 +161,7 @@ impl SeenGround {
             free: seen.clone(),
             spread: Spread::default(),
         });
-        // The front stops before the end of what is seen, and cells are whole.
+        // The front stops before the end of the observed space; cells count as a whole.
         let cells_m = 2.0 * frame.resolution_m();
         let ahead_m = if looks_ahead { robot.looks_ahead_m() + cells_m } else { 0.0 };
         let behind_m = walkers.as_ref().map_or(back_m, |walkers| walkers.reach_m);
@@ -168,8 +170,8 @@ impl SeenGround {
         Some(Self { seen, footprint, reach_m, looks_ahead, backs_up, walkers })
     }
 
-    /// Cells that have been seen; behind the robot, where somebody walks, those of them that are
-    /// still free when the robot has backed up there, and stopped.
+    /// The observed cells. Behind the robot, with pedestrians, only those that are still free
+    /// when the robot has backed up there and stopped.
     pub fn cells(&self) -> SeenCells<'_> {
         let behind = self.walkers.as_ref().map_or(&self.seen, |walkers| &walkers.free);
         SeenCells {
@@ -179,8 +181,8 @@ impl SeenGround {
         }
     }
 
-    /// Takes in a scan made `elapsed_s` after the last one, 0 for another sensor's of the same
-    /// time, on the frame given to [`Self::new`], with the walls that are known. A pose that is not
+    /// Takes in a scan made `elapsed_s` after the last one (0 for a scan of another sensor at the
+    /// same time), on the frame given to [`Self::new`], with the known walls. A pose that is not
     /// finite shows nothing.
     pub fn update(
         &mut self,
@@ -193,7 +195,7 @@ impl SeenGround {
         let narrowest_m = RangeSensor::NARROWEST_M.max(frame.resolution_m());
         let window = CellWindow::around(frame, pose.point(), self.reach_m);
         if let Some(walkers) = &mut self.walkers {
-            // Of two scans of the same time only the first finds time that has passed.
+            // Of two scans of the same time, only the first advances time.
             let around = CellWindow::around(frame, pose.point(), walkers.reach_m);
             if elapsed_s > 0.0 || walkers.window != around {
                 walkers.walk((frame, walls), pose, elapsed_s);
@@ -217,7 +219,7 @@ impl SeenGround {
         }
     }
 
-    /// Nothing has been seen any more.
+    /// Resets all cells to unobserved.
     pub(crate) fn clear(&mut self) {
         let nothing = BitGrid::new(self.seen.width(), self.seen.height(), false);
         if let Some(walkers) = &mut self.walkers {
@@ -226,8 +228,8 @@ impl SeenGround {
         self.seen = nothing;
     }
 
-    /// Brings the cells to the present, `age_s` after the last scan: somebody may have come
-    /// farther.
+    /// Predicts the cells to the present, `age_s` after the last scan: pedestrians may have come
+    /// closer.
     pub fn look_ahead(&mut self, frame: &GridFrame, walls: Walls<'_>, age_s: f64) {
         if let Some(walkers) = &mut self.walkers {
             walkers.foresee((frame, walls), age_s);
@@ -236,7 +238,7 @@ impl SeenGround {
 }
 
 impl Walkers {
-    /// What was seen may be walked on meanwhile.
+    /// Removes the cells that pedestrians may have entered meanwhile.
     fn walk(&mut self, (frame, walls): (&GridFrame, Walls<'_>), pose: Pose, elapsed_s: f64) {
         let window = CellWindow::around(frame, pose.point(), self.reach_m);
         for y in self.window.low.y..=self.window.high.y {
@@ -250,8 +252,8 @@ impl Walkers {
         let _ = (0..steps).find(|_| !self.spread.step(&mut self.left, walls, &window));
     }
 
-    /// Finds the seen cells that stay free until a robot has stopped that was told of them `age_s`
-    /// late.
+    /// Finds the observed cells that stay free until a robot has stopped that receives them
+    /// `age_s` late.
     fn foresee(&mut self, (frame, walls): (&GridFrame, Walls<'_>), age_s: f64) {
         for y in self.window.low.y..=self.window.high.y {
             self.free.copy_row(y, &self.left);
@@ -261,10 +263,11 @@ impl Walkers {
         let _ = (0..steps).find(|_| !spread.step(free, walls, window));
     }
 
-    /// Cells that somebody may come farther in a time.
+    /// Number of cells that a pedestrian may advance in a time.
     ///
-    /// A place that he covers then is as far from one that he covers now as he walks; and from
-    /// there a centre that he covers, too, is no farther than a cell's diagonal if he is as wide.
+    /// A point that it covers at the end is one walking distance from a point that it covers now.
+    /// From there, a covered cell centre is at most a cell's diagonal away if the pedestrian is
+    /// that wide.
     fn steps(&self, frame: &GridFrame, duration_s: f64) -> u64 {
         (self.speed_mps * duration_s / frame.resolution_m() + SQRT_2) as u64
     }

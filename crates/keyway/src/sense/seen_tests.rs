@@ -16,7 +16,7 @@ fn open() -> BitGrid {
     BitGrid::new(200, 200, false)
 }
 
-/// Where all is known.
+/// Walls on a map without unknown cells.
 fn walls(obstacles: &BitGrid) -> Walls<'_> {
     static KNOWN: std::sync::LazyLock<BitGrid> = std::sync::LazyLock::new(open);
     Walls { obstacles, unknown: &KNOWN }
@@ -32,7 +32,7 @@ fn the_blind_sector_is_unseen_until_it_is_looked_at() {
     let robot = Robot::jackal();
     let mut seen = SeenGround::new(&frame, &robot, 0.0, SeenWanted::Behind).unwrap();
     let mut scan = Scan::of_nothing(&robot.sensors[0]);
-    // A wall on its left, 0.5 m away.
+    // A wall to the left, 0.5 m away.
     for beam in 0..scan.ranges_m.len() {
         let sin = libm::sin(scan.bearing_rad(beam));
         if sin > 0.1 {
@@ -63,7 +63,8 @@ fn who_sees_all_around_or_does_not_back_up_needs_none() {
     assert!(SeenGround::new(&frame, &robot, 1.0, SeenWanted::Behind).is_none());
 }
 
-/// How long the ground 0.18 m behind a robot counts as free after it has turned away from it.
+/// Time for which the space 0.18 m behind a robot counts as free after the robot has turned away
+/// from it.
 fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
     let frame = frame();
     let robot = Robot::jackal();
@@ -80,14 +81,14 @@ fn free_s(walker_mps: f64, walls: Walls<'_>) -> f64 {
 
 #[test]
 fn seen_ground_is_walked_on() {
-    // What is farther away than a walk of 1.27 s from the ground that is looked at counts as
-    // unseen; it is free until somebody from there may be there within 0.27 s. Cells are whole, and
-    // walkers take two in a cycle.
+    // Space more than a walk of 1.27 s from the area in use counts as unobserved. A cell there
+    // stays free until a pedestrian from outside could reach it within 0.27 s. Cells count as a
+    // whole, and a fast pedestrian advances two per cycle.
     assert!(free_s(0.0, walls(&open())) > 4.9);
     let (fast_s, slow_s) = (free_s(1.5, walls(&open())), free_s(0.5, walls(&open())));
     assert!((0.4..1.3).contains(&fast_s), "{fast_s}");
     assert!((0.6..2.5).contains(&slow_s), "{slow_s}");
-    // A room closed by walls, 1 m wide: nobody comes in.
+    // A room closed by walls, 1 m wide: no pedestrian enters.
     let mut room = open();
     for cell in 90..=110 {
         for wall in [90, 110] {
@@ -96,7 +97,7 @@ fn seen_ground_is_walked_on() {
         }
     }
     assert!(free_s(1.5, walls(&room)) > 4.9);
-    // With a door it is no better than a yard, nor with a wall of which nothing is known.
+    // With a door it is no better than open space, nor with a wall cell that is unknown.
     let mut unknown = open();
     unknown.set(Cell::new(90, 100), true);
     assert!(free_s(1.5, Walls { obstacles: &room, unknown: &unknown }) < 1.5);
@@ -111,7 +112,7 @@ fn what_is_far_away_is_forgotten() {
     let (all, mut nothing) =
         (Scan::of_nothing(&robot.sensors[0]), Scan::of_nothing(&robot.sensors[0]));
     nothing.ranges_m.fill(0.0);
-    // Where nobody walks what was seen stays seen.
+    // Without pedestrians, observed cells stay observed.
     for (walker_mps, is_known) in [(0.0, true), (1e-6, false)] {
         let mut seen = SeenGround::new(&frame, &robot, walker_mps, SeenWanted::Behind).unwrap();
         for (x, scan) in [(2.0, &all), (8.0, &nothing), (2.0, &nothing)] {
@@ -146,13 +147,13 @@ fn an_update_allocates_nothing() {
         seen.update(&frame, &projected, walls, 0.05);
     };
     look(0.1);
-    // Around it there are more and more of them.
+    // More and more of them lie around the robot.
     for x in [1.0, 4.0, 5.0] {
         assert_eq!(allocation_counter::measure(|| look(x)).count_total, 0, "{x}");
     }
 }
 
-/// Where somebody walks, how wide he is, and how much of the speed he uses.
+/// Route of a pedestrian, its radius, and the share of the maximum speed that it walks at.
 type Walk = (Vec<(f64, f64)>, f64, f64);
 
 fn walkers() -> impl Strategy<Value = Vec<Walk>> {
@@ -163,15 +164,15 @@ fn walkers() -> impl Strategy<Value = Vec<Walk>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// The robot drives and turns as it likes, and scans are lost; walkers go through each other.
-    /// Until one touches it.
+    /// The robot drives and turns at random and some scans are lost; pedestrians pass through
+    /// each other. Ends when one touches the robot.
     #[test]
     fn nobody_comes_to_free_ground_in_time(
         walkers in walkers(), turns in prop::collection::vec((-1.0..1.0f64, -3.0..3.0f64, 1u32..3), 30), is_slow: bool,
     ) {
         const SPEED_MPS: f64 = 1.5;
         let centre = Point::new(5.0, 5.0);
-        // Each goes around its points.
+        // Each one walks around its points in a loop.
         let discs_at = |now_s: f64| -> Vec<(Point, f64)> {
             let disc = |(points, radius_m, share): &Walk| {
                 let points = points.iter().map(|&(x, y)| centre + Point::new(x, y));
@@ -212,7 +213,7 @@ proptest! {
     }
 }
 
-/// One of several sensors may be lost: what they see together is not enough.
+/// One of several sensors may fail: it is not enough that they see all around together.
 #[test]
 fn only_a_single_sensor_that_sees_all_around_needs_no_seen_ground_behind() {
     let frame = GridFrame::new(9, 9, 1.0, Pose::default()).unwrap();

@@ -1,14 +1,14 @@
-//! How unseen ground spreads into seen ground.
+//! Spread of unobserved space into observed free space.
 
 use crate::map::{BitGrid, CellWindow};
 
-/// What nobody walks through: obstacles, but for what is only unknown.
+/// Cells that pedestrians do not walk through: obstacles, except unknown cells.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Walls<'a> {
-    /// All cells that are obstacles.
+    /// All obstacle cells.
     pub obstacles: &'a BitGrid,
-    /// Those of them, or others, of which nothing is known.
+    /// All unknown cells, obstacles or not.
     pub unknown: &'a BitGrid,
 }
 
@@ -18,19 +18,19 @@ impl Walls<'_> {
     }
 }
 
-/// Steps of unseen ground, a cell each.
+/// Spreads unobserved space by one cell per step.
 ///
 /// Memory: three rows of a window.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spread {
-    /// Of the row that is looked at and those below and above it: which cells are open and unseen.
+    /// Open and unobserved cells of the current row and of the rows below and above it.
     rows: [Vec<u64>; 3],
 }
 
 impl Spread {
-    /// Makes the seen cells of a window unseen that share a side or a corner with an unseen cell
-    /// which is no wall. Outside the window no cell is seen. Whether there were such cells. Costs a
-    /// few instructions for every 64 cells.
+    /// Marks as unobserved every observed cell of a window that shares a side or a corner with an
+    /// unobserved cell that is not a wall. All cells outside the window count as unobserved.
+    /// Returns true if any cell changed. Costs a few instructions for every 64 cells.
     pub(super) fn step(
         &mut self,
         seen: &mut BitGrid,
@@ -44,7 +44,7 @@ impl Spread {
         let (first, last) = (word(window.low.x), word(window.high.x));
         let fill = |row: &mut Vec<u64>, seen: &BitGrid, y: i32| {
             row.clear();
-            // For all windows to come.
+            // Enough for every later window.
             row.reserve(seen.row(y).len());
             row.extend((first..=last).map(|word| !(seen.row(y)[word] | walls.word(y, word))));
         };
@@ -64,7 +64,7 @@ impl Spread {
         changed
     }
 
-    /// The cells of a word which a step reaches; those beside the window are unseen.
+    /// The cells of a word that a step reaches; cells beside the window count as unobserved.
     fn reached(&self, word: usize) -> u64 {
         let open = |word: Option<usize>| {
             let word = word.filter(|&word| word < self.rows[1].len());
@@ -85,7 +85,8 @@ mod tests {
     const HEIGHT: u32 = 4;
 
     proptest! {
-        /// Against the definition, cell by cell; windows reach the borders and the ends of words.
+        /// Compared with the definition, cell by cell; windows reach the borders and the ends of
+        /// words.
         #[test]
         fn a_step_reaches_the_neighbours_of_open_unseen_cells(
             width in 60u32..135, from in (0i32..70, 0i32..4), size in (0i32..134, 0i32..4),

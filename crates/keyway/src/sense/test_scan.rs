@@ -1,17 +1,17 @@
-//! Scans for tests: what a sensor without noise measures among cells and discs.
+//! Scans for tests: the ranges of a noise-free sensor among cells and discs.
 
 use super::{ProjectedScan, Scan};
 use crate::geometry::{Point, Pose};
 use crate::map::{BitGrid, GridFrame, RayCells};
 use crate::robot::{Footprint, RangeSensor};
 
-/// A scan of a robot without a body.
+/// A scan of a point robot.
 pub(crate) fn projected(frame: &GridFrame, pose: Pose, scan: &Scan) -> ProjectedScan {
     ProjectedScan::new(frame, &Footprint::POINT, pose, scan)
 }
 
-/// Distances from the sensor to the first occupied cell or disc. A disc is its centre and its
-/// radius \[m\].
+/// Distances from the sensor to the first occupied cell or disc. A disc is given by its centre
+/// and its radius \[m\].
 pub(crate) fn scan_among(
     (frame, occupied): (&GridFrame, &[&BitGrid]),
     discs: &[(Point, f64)],
@@ -30,7 +30,7 @@ pub(crate) fn scan_among(
     scan
 }
 
-/// Cell by cell; on maps that are not turned.
+/// Cell by cell; only for maps that are not rotated.
 fn to_cell_m(frame: &GridFrame, occupied: &BitGrid, (from, along): (Point, Point)) -> f64 {
     assert_eq!(frame.origin().theta, 0.0);
     let mut cells = RayCells::new(frame, frame.grid_from_world(from), along, f64::INFINITY);

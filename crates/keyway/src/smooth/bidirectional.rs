@@ -1,10 +1,10 @@
-//! Bidirectional smoothing \[S1\]: a line -> the same line with its detours cut off, from the start
-//! and then from the goal.
+//! Bidirectional smoothing \[S1\]: a line -> the same line with its detours cut off, from the
+//! start and then from the goal.
 //!
 //! The line is cut into points at a small spacing, and each kept point is connected with the
-//! farthest later one that can be reached safely. A connection may therefore begin and end anywhere
-//! on the line, not only at its corners as in [`super::LineOfSight`]; the run from the goal removes
-//! what the run from the start has left.
+//! farthest later one that can be reached safely. A connection may therefore begin and end
+//! anywhere on the line, not only at its corners as in [`super::LineOfSight`]. The pass from the
+//! goal removes detours that the pass from the start has left.
 //!
 //! # Source
 //! \[S1\]: bidirectional smoothing, steps 1 to 3. There are no equations.
@@ -15,23 +15,22 @@
 //! | safety distance | [`BidirectionalSmoothingConfig::safety_distance_cells`] | cells | none is given |
 //!
 //! # Where this differs from the paper
-//! - The paper takes "the node that is collision-free and farthest from the obstacle". Read as the
-//!   farthest along the line; [`Select::LargestClearance`] is the letter of the paper: of the
-//!   points that can be reached, the one whose own distance from obstacles is largest, and the
-//!   farthest of several. (Along the line no two points are equally far, so there are no ties to
-//!   break otherwise.)
+//! - The paper takes "the node that is collision-free and farthest from the obstacle". This is
+//!   read as the farthest along the line. [`Select::LargestClearance`] follows the wording of the
+//!   paper: of the reachable points it takes the one with the largest distance from obstacles, and
+//!   the farthest of several. (Along the line no two points are equally far, so there are no other
+//!   ties to break.)
 //! - Spacing and safety distance are half a cell, which is a reading.
 //! - Each straight stretch is cut into equal parts, none longer than the spacing, and its ends are
 //!   points too: otherwise the connection to the next point could cut a corner of the line.
-//! - A connection keeps the safety distance, or the clearance that is asked for where that is
-//!   larger. The next point can always be reached, so where the line itself is nearer, it stays as
-//!   it was.
+//! - A connection keeps the safety distance, or the required clearance if that is larger. The next
+//!   point can always be reached, so the line stays as it was wherever it is closer than that.
 //! - The paper smooths once in each direction. A second run cuts the new line into new points, so
 //!   it can shorten it further, and may need more points for that.
-//!
 //! # Errors / cost
-//! [`ConfigError`]. At most n tests per kept point for n points at the spacing; few of them, as
-//! whole stretches lie in the shadow of an obstacle that was found before ([`Visibility`]).
+//! [`ConfigError`]. At most n tests per kept point for n points at the spacing. Few tests are
+//! needed in practice, because whole stretches lie in the shadow of an obstacle that was found
+//! before ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -49,7 +48,7 @@ const LEAST_SPACING_CELLS: f64 = 0.01;
 /// A straight stretch is never cut into more parts than this.
 const MAX_PARTS: f64 = 1e6;
 
-/// Which of the points that can be reached comes next.
+/// Selects the next point among those that can be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -57,11 +56,11 @@ const MAX_PARTS: f64 = 1e6;
 pub enum Select {
     /// The farthest along the line.
     Farthest,
-    /// The one that is farthest from obstacles.
+    /// The one with the largest distance from obstacles.
     LargestClearance,
 }
 
-/// In which directions the line is smoothed.
+/// Directions in which the line is smoothed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -80,12 +79,12 @@ pub enum Passes {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalSmoothingConfig {
-    /// The line is cut into points that are at most this far apart; at least 0.01 \[cells\].
+    /// Maximum spacing of the points that the line is cut into; at least 0.01 \[cells\].
     pub spacing_cells: f64,
-    /// Which point comes next: the `farthest` along the line that can be reached, or of those the
-    /// one with the `largest-clearance`.
+    /// Selects the next point: the `farthest` reachable one along the line, or the reachable one
+    /// with the `largest-clearance`.
     pub select: Select,
-    /// What a connection keeps from obstacles \[cells\].
+    /// Distance that a connection keeps from obstacles \[cells\].
     pub safety_distance_cells: f64,
     /// Directions: `both` as in the paper, `forward` from the start alone, or `backward` from the
     /// goal alone.
@@ -93,7 +92,7 @@ pub struct BidirectionalSmoothingConfig {
 }
 
 impl BidirectionalSmoothingConfig {
-    /// The paper's method, as read above; all numbers are readings.
+    /// The paper's method, as read above; all values are readings.
     pub const PAPER: Self = Self {
         spacing_cells: 0.5,
         select: Select::Farthest,
@@ -121,7 +120,7 @@ impl BidirectionalSmoothing {
     /// The smoother with these parameters.
     ///
     /// # Errors
-    /// When the spacing or the safety distance cannot be used; the error names it.
+    /// [`ConfigError`] if the spacing or the safety distance is invalid; the error names it.
     pub fn new(config: BidirectionalSmoothingConfig) -> Result<Self, ConfigError> {
         let spacing = config.spacing_cells;
         if !(spacing >= LEAST_SPACING_CELLS && spacing.is_finite()) {
@@ -179,7 +178,7 @@ impl Smoother for BidirectionalSmoothing {
             }
         };
         let backwards = |line: &Polyline| reversed(&one_way(&reversed(line)));
-        // Step 1; then step 2, step 3, or one after the other.
+        // Step 1; then step 2, step 3, or both in sequence.
         let merged = line.merged();
         let smooth = match self.config.passes {
             Passes::Both => backwards(&one_way(&merged)),
@@ -194,10 +193,10 @@ fn reversed(line: &Polyline) -> Polyline {
     Polyline::new(line.points().iter().rev().copied().collect())
 }
 
-/// Step 2, first half: points at a fixed spacing, corners included; and which of them are corners
-/// or ends.
+/// Step 2, first half: points at a fixed spacing, including the corners, and the indices of the
+/// corners and end points among them.
 fn cut(line: &Polyline, spacing_m: f64) -> (Vec<Point>, Vec<usize>) {
-    // A little less, so that rounding adds no part.
+    // A little less, so that rounding does not add a part.
     let parts_of = |stretch: Segment| {
         (stretch.length() / spacing_m * (1.0 - 1e-9)).ceil().min(MAX_PARTS) as u32
     };
@@ -214,7 +213,7 @@ fn cut(line: &Polyline, spacing_m: f64) -> (Vec<Point>, Vec<usize>) {
     (points, ends)
 }
 
-/// Step 2, second half: from each kept point straight on to the `next` one.
+/// Step 2, second half: from each kept point straight to the `next` one.
 fn connected(points: &[Point], mut next: impl FnMut(usize) -> usize) -> Polyline {
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let mut at = 0;
@@ -236,13 +235,13 @@ fn roomiest(
     next.chain(reachable(points, from, required)).max_by(by_clearance).unwrap_or(from + 1)
 }
 
-/// The points beyond the next one to which a safe connection leads, in order.
+/// The points beyond the next one that a safe connection leads to, in order.
 fn reachable<'a>(
     points: &'a [Point],
     from: usize,
     required: &'a RequiredClearance<'_>,
 ) -> impl Iterator<Item = usize> + 'a {
-    // From a point that is too near to something no connection is safe.
+    // No connection is safe from a point that is itself too close to an obstacle or the border.
     let beyond = if required.is_safe_point(points[from]) { from + 2..points.len() } else { 0..0 };
     beyond.filter(move |&to| required.is_safe(Segment::new(points[from], points[to])))
 }
@@ -300,7 +299,7 @@ mod tests {
 
     #[test]
     fn points_on_a_straight_stretch_change_nothing() {
-        // (1.7, 0.5) is not a place to go to: the points of the stretch are 1 m apart, from (1.5,
+        // (1.7, 0.5) is never a candidate: the points of the stretch are 1 m apart, from (1.5,
         // 0.5) on.
         let more = [BELOW[0], BELOW[1], [1.7, 0.5], BELOW[2], BELOW[3], BELOW[4]];
         for select in [Select::Farthest, Select::LargestClearance] {
@@ -330,7 +329,7 @@ mod tests {
 
     #[test]
     fn forward_and_then_backward_by_hand() {
-        // Forward, the farthest point that is seen from (0.5, 1.5) is (3.5, 0.5), on a line that
+        // Forward, the farthest point visible from (0.5, 1.5) is (3.5, 0.5), along a line that
         // touches the square at (2, 1), and from there the goal.
         let grid = OccupancyGrid::from_ascii(&ONE);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
@@ -341,12 +340,12 @@ mod tests {
         let forward = connected(&points, |at| visibility.farthest_safe(&stretches, at, &required));
         assert_eq!(forward, line(&[[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]));
         // Backward, its points are (4, 1), (3.5, 0.5), (2.75, 0.75), (2, 1), (1.25, 1.25), (0.5,
-        // 1.5). From the goal (2.75, 0.75) is seen, at (3, 0.857), but not (2, 1).
+        // 1.5). From the goal (2.75, 0.75) is visible, at (3, 0.857), but not (2, 1).
         let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
         assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
-        // Backward alone, the points of the line are 0.707 m and 1 m apart: from the goal (1.5,
-        // 0.5) is seen, not (1, 1), and from there the start.
+        // Backward alone, the points of the line are 0.707 m and 1 m apart: (1.5, 0.5) is visible
+        // from the goal, (1, 1) is not, and from (1.5, 0.5) the start is.
         let one_way = |passes| {
             run(&BidirectionalSmoothingConfig { passes, ..config(Select::Farthest, 0.0) }, 0.0).0
         };
@@ -356,10 +355,10 @@ mod tests {
 
     #[test]
     fn a_second_run_can_shorten_further() {
-        // From (0, 0) the square hides (4, 1.5) and the goal. From the goal the farthest of the
-        // points 0.806 m apart is (3.2, 0.4); (2.4, 0.3) lies behind the square, at (3, 1.125). The
-        // second run cuts the new stretch in three, and from (0, 0) sees (3.467, 1.1), at (3,
-        // 0.952) below the square.
+        // From (0, 0) the square hides (4, 1.5) and the goal. From the goal, the farthest visible
+        // of the points 0.806 m apart is (3.2, 0.4); (2.4, 0.3) lies behind the square, at (3,
+        // 1.125). The second run cuts the new stretch into three parts. From (0, 0) it sees
+        // (3.467, 1.1): the line passes below the square, at (3, 0.952).
         let (once, _) =
             run_on(&[[0.0, 0.0], [4.0, 0.5], [4.0, 2.5]], &config(Select::Farthest, 0.0), 0.0);
         let (twice, _) = run_on(&once, &config(Select::Farthest, 0.0), 0.0);
@@ -378,15 +377,16 @@ mod tests {
         let (points, done) = run(&config(Select::Farthest, 0.5), 0.0);
         assert_eq!((points, done.shortfall_m), (expected.to_vec(), None));
         assert_eq!(run(&config(Select::Farthest, 0.0), 0.5).0, expected, "the larger of both");
-        // More than the line itself keeps: it stays, and that is reported.
+        // More than the line itself keeps: the line stays as it was, and the shortfall is
+        // reported.
         let (points, done) = run(&config(Select::Farthest, 0.6), 0.0);
         assert_eq!((points, done.shortfall_m), (expected.to_vec(), Some(0.5)));
     }
 
     #[test]
     fn the_largest_clearance_by_hand() {
-        // Clearances of the seven points: 1.5, 1, 0.707, 0.5, 0.707, 1, 1.5. From the first, (1, 1)
-        // has the largest of those that are seen; from there (4, 1), along the square's edge.
+        // Clearances of the seven points: 1.5, 1, 0.707, 0.5, 0.707, 1, 1.5. Of those visible from
+        // the first, (1, 1) has the largest; from there (4, 1), along the square's edge.
         let (points, _) = run(&config(Select::LargestClearance, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [1.0, 1.0], [4.0, 1.0], [4.5, 1.5]]);
     }

@@ -1,4 +1,4 @@
-//! All smoothers by name: the one place where a new one is entered.
+//! The registry of smoothers by name. A new smoother is entered here.
 
 use super::parameters::SmootherParameters;
 use super::{
@@ -15,28 +15,28 @@ registry! {
     SmootherConfig by SmootherParameters;
     /// The line as planned, collinear points merged.
     None(UnsmoothedConfig) => Unsmoothed;
-    /// From each kept point straight on to the farthest point of the path that it can see.
+    /// From each kept point straight to the farthest visible point of the path.
     LineOfSight(LineOfSightConfig) => LineOfSight;
     /// Key points: the turning points, and points that keep the path away from obstacles.
     KeyPoints(KeyPointSmoothingConfig) => KeyPointSmoothing;
-    /// From the start and then from the goal, straight on to the farthest place of the path that
-    /// can safely be reached.
+    /// From the start and then from the goal, straight to the farthest point of the path that can
+    /// be reached safely.
     Bidirectional(BidirectionalSmoothingConfig) => BidirectionalSmoothing;
-    /// A point is dropped where those before and after it can be joined; in several passes.
+    /// Drops a point if its neighbours can be connected; runs several passes.
     Shortcut(ShortcutConfig) => Shortcut;
-    /// Straight stretches at a safe distance, joined by the bends of a cubic B-spline.
+    /// Straight stretches at a safe distance, joined by cubic B-spline bends.
     Hierarchical(HierarchicalSmoothingConfig) => HierarchicalSmoothing;
     /// The locally shortest path at the clearance, pulled tight like a string around the same
-    /// obstacles; its bends are arcs of the clearance's radius.
+    /// obstacles. Its bends are arcs with the clearance as radius.
     Taut(TautConfig) => Taut;
-    /// Line of sight, then every corner rounded by two cubic curves, with continuous curvature
+    /// Line of sight, then every corner rounded by two cubic curves with continuous curvature,
     /// within a turning limit.
     ContinuousCurvature(ContinuousCurvatureConfig) => ContinuousCurvature;
 }
 
 impl SmootherConfig {
-    /// The same with distances for a robot that keeps this safe distance \[m\], in the place of
-    /// those of papers, whose cells are 1 m wide.
+    /// Sets the safe distance of the smoother \[m\] to that of a robot. It replaces the distances
+    /// of papers, whose cells are 1 m wide.
     #[must_use]
     pub fn keeping(mut self, safe_distance_m: f64) -> Self {
         match &mut self {
@@ -50,13 +50,13 @@ impl SmootherConfig {
     /// The smoother.
     ///
     /// # Errors
-    /// When a parameter cannot be used, which the error names.
+    /// [`ConfigError`] if a parameter is invalid; the error names it.
     pub fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError> {
         self.parameters().build()
     }
 
-    /// The smoother's own safe distance to obstacles on a map with cells of this side \[m\]; 0 for
-    /// a smoother without one. It is kept where it is larger than the clearance.
+    /// The smoother's own safe distance to obstacles \[m\] on a map with cells of side `cell_m`; 0
+    /// for a smoother without one. It applies if it is larger than the clearance.
     pub fn safe_distance_m(&self, cell_m: f64) -> f64 {
         self.parameters().safe_distance_m(cell_m)
     }

@@ -1,24 +1,24 @@
 //! Continuous curvature: a line -> a path without corners that a robot can drive at speed.
 //!
 //! The line is shortened by line of sight, then each corner is cut by two cubic curves
-//! (`corner_blend`): their curvature rises from 0 on one edge to a peak that is known in closed
+//! (`corner_blend`). Their curvature rises from 0 on one edge to a peak that is known in closed
 //! form, and falls back to 0 on the other. Each cut is as long as edges, neighbours and clearance
-//! allow. A corner for which no curve within the turning limit fits stays sharp, and is reported: a
-//! differential drive turns on the spot there.
+//! allow. If no curve within the turning limit fits a corner, it stays sharp and is reported: a
+//! differential drive turns in place there.
 //!
-//! Two corners share the edge between them: each gets what the turning limit asks for, and half of
-//! what is left (half of the edge, where it is too short for both); then, in the order of the line,
-//! each that no obstacle limits takes what its neighbours left over. What is certified is the curve
-//! itself, not samples of it: [`Clearance::is_clear_curve`]. Why this method, and its proofs:
-//! `docs/smoothers.md`.
+//! Two corners share the edge between them. Each gets the length that the turning limit requires
+//! and half of the rest, or half of the edge if it is too short for both. Then, in the order of
+//! the line, each corner that no obstacle limits takes what its neighbours left over. The curve
+//! itself is certified, not samples of it: [`Clearance::is_clear_curve`]. `docs/smoothers.md`
+//! gives the reasons for this method and its proofs.
 //!
-//! # Once more
-//! The path depends on the shortened line alone, and that is not shortened again: smoothing it
-//! gives the same path. Points on the curves are another line: from them line of sight sees farther
-//! than from the corners, so smoothing them gives a shorter path, not the same one.
+//! # Idempotence
+//! The path depends on the shortened line alone, and that cannot be shortened further: smoothing
+//! it gives the same path. Points on the curves are another line: line of sight reaches farther
+//! from them than from the corners, so smoothing them gives a shorter path, not the same one.
 //!
 //! # Errors / cost
-//! [`ConfigError`]. At most 14 tests of a curve per corner, each a few scans of the cells near it.
+//! [`ConfigError`]. At most 14 curve tests per corner, each a few scans of the cells near it.
 
 use super::corner_blend::Corner;
 use super::line_of_sight::line_of_sight;
@@ -32,21 +32,20 @@ use crate::map::Clearance;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// No cut is shorter than this \[cells\].
+/// Minimum cut \[cells\].
 const SHORTEST_CUT_CELLS: f64 = 0.01;
 
-/// Curves use no more than this share of an edge: between two of them, and at the ends of the line,
-/// a little stays straight.
+/// Maximum share of an edge that curves use: a little stays straight between two curves, and at
+/// the ends of the line.
 const CURVED_SHARE: f64 = 0.999;
 
-/// A cut is known to this share of its range.
+/// Tolerance of a cut, as a share of its range.
 const CUT_TOLERANCE: f64 = 1e-3;
 
-/// The distance that a line keeps, where it does not keep the clearance, is known to this
-/// \[cells\].
+/// Tolerance \[cells\] of the distance that a line keeps if it does not keep the clearance.
 const DISTANCE_TOLERANCE_CELLS: f64 = 1e-5;
 
-/// Control points of the two curves of a corner: none of them is a point of the line.
+/// Number of control points of a corner's two curves: none of them is a point of the line.
 const CONTROL_POINTS: usize = 7;
 
 /// Parameters of [`ContinuousCurvature`].
@@ -54,20 +53,20 @@ const CONTROL_POINTS: usize = 7;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ContinuousCurvatureConfig {
-    /// No curve is sharper than a circle of this radius \[m\]; 0: no limit.
+    /// Radius of the tightest permitted curve \[m\]; 0: no limit.
     pub min_turning_radius_m: f64,
 }
 
 impl ContinuousCurvatureConfig {
-    /// For a robot that need not slow down below `speed_mps` on curves: it turns at its largest
-    /// turn rate there. Its largest speed where that is less.
+    /// The limit for a robot that need not slow down below `speed_mps` on curves, turning at its
+    /// largest turn rate. Its largest speed is used if that is less than `speed_mps`.
     pub fn for_robot(robot: &Robot, speed_mps: f64) -> Self {
         let speed_mps = speed_mps.min(robot.limits.v_max_mps);
         Self { min_turning_radius_m: speed_mps / robot.limits.omega_max_radps }
     }
 }
 
-/// Rounds the corners that line of sight leaves.
+/// Rounds the corners that remain after line of sight.
 #[derive(Clone, Debug, Default)]
 pub struct ContinuousCurvature {
     config: ContinuousCurvatureConfig,
@@ -80,7 +79,7 @@ impl ContinuousCurvature {
     /// The smoother with these parameters.
     ///
     /// # Errors
-    /// When the turning radius is not a number of at least 0.
+    /// [`ConfigError`] if the turning radius is not a number of at least 0.
     pub fn new(config: ContinuousCurvatureConfig) -> Result<Self, ConfigError> {
         let radius_m = config.min_turning_radius_m;
         ConfigError::unless_not_negative("min_turning_radius_m", radius_m)?;
@@ -117,11 +116,12 @@ impl Smoother for ContinuousCurvature {
             .collect();
         let passed: Vec<Point> = (0..points.len()).filter(sharp).map(|i| points[i]).collect();
         let pieces = rounding.pieces(points, &cuts_m);
-        // What was certified for the clearance keeps it.
+        // Pieces that were certified for the clearance need no second measurement.
         let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
         let required = RequiredClearance::new(clearance, clearance_m, 0.0);
         let shortfall_m = required.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
-        // Only coordinates so large that rounding tears the pieces apart give no path.
+        // There is no path only if the coordinates are so large that rounding tears the pieces
+        // apart.
         let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
             .unwrap_or_else(|_| Path::from(&short));
         Smoothed {
@@ -134,20 +134,20 @@ impl Smoother for ContinuousCurvature {
     }
 }
 
-/// A line whose corners are to be rounded. A cut belongs to a point of the line; that of its ends,
-/// and of a corner that stays, is 0.
+/// A line whose corners are to be rounded. Each point of the line has a cut; it is 0 for the ends
+/// and for a corner that stays sharp.
 struct Rounding<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// For the inner points, from the second on.
+    /// The corners at the inner points, from the second point on.
     corners: Vec<Corner>,
-    /// True if each edge keeps the clearance.
+    /// True for each edge that keeps the clearance.
     is_clear: Vec<bool>,
-    /// How much of each edge curves may use.
+    /// Length of each edge that curves may use.
     room_m: Vec<f64>,
     /// The shortest cut of each point within the turning limit.
     least_m: Vec<f64>,
-    /// The shortest cut that is worth it.
+    /// The shortest cut that is worth making.
     shortest_m: f64,
 }
 
@@ -181,7 +181,7 @@ impl<'a> Rounding<'a> {
             let limit_m = self.share_m(index, index - 1).min(self.share_m(index, index + 1));
             let longest_m = self.longest_cut_m(index, limit_m);
             cuts_m[index] = longest_m.unwrap_or(0.0);
-            // An obstacle that limits a cut leaves no use for a longer edge.
+            // A longer edge does not help if an obstacle limits the cut.
             has_room[index] = limit_m < self.least_m[index] || longest_m == Some(limit_m);
         }
         for index in (1..=self.corners.len()).filter(|&index| has_room[index]) {
@@ -194,11 +194,11 @@ impl<'a> Rounding<'a> {
         cuts_m
     }
 
-    /// What the corner at a point may use at first of the edge to a neighbour.
+    /// The share of the edge to a neighbour that the corner at `index` may use at first.
     fn share_m(&self, index: usize, neighbour: usize) -> f64 {
         let room_m = self.room_m[index.min(neighbour)];
         let left_m = room_m - self.least_m[index] - self.least_m[neighbour];
-        // The ends of the line need nothing of it.
+        // The ends of the line use none of it.
         if self.least_m[neighbour] == 0.0 {
             room_m
         } else if left_m >= 0.0 {
@@ -208,14 +208,14 @@ impl<'a> Rounding<'a> {
         }
     }
 
-    /// What the cuts of both neighbours leave.
+    /// The length that the cuts of both neighbours leave.
     fn left_m(&self, index: usize, cuts_m: &[f64]) -> f64 {
         let before_m = self.room_m[index - 1] - cuts_m[index - 1];
         before_m.min(self.room_m[index] - cuts_m[index + 1])
     }
 
-    /// The longest cut of a corner up to a limit: by halving, between one that fits and one that
-    /// does not. `None` where not even the shortest fits.
+    /// The longest cut of a corner up to a limit, by bisection between a cut that fits and one
+    /// that does not. `None` if not even the shortest fits.
     fn longest_cut_m(&self, index: usize, limit_m: f64) -> Option<f64> {
         let corner = &self.corners[index - 1];
         let least_m = self.least_m[index];
@@ -240,8 +240,8 @@ impl<'a> Rounding<'a> {
         Some(fits_m)
     }
 
-    /// True if the curves of a cut keep the clearance; where the line does not keep it, whether
-    /// they are no nearer to obstacles than the part of it that they replace.
+    /// True if the curves of a cut keep the clearance. If the line does not keep it: true if the
+    /// curves are no closer to obstacles than the part of the line that they replace.
     fn fits(&self, index: usize, cut_m: f64) -> bool {
         let corner = &self.corners[index - 1];
         let [from, to] = corner.ends(cut_m);
@@ -251,7 +251,7 @@ impl<'a> Rounding<'a> {
         let mut curves = curves.into_iter().map(PathPiece::Cubic);
         let is_clear = |&edge: &Segment| self.clearance.is_clear(edge, self.clearance_m);
         if self.is_clear_corner(index) || replaced.iter().all(is_clear) {
-            // Most cuts that are too long are so where the curves meet.
+            // Most cuts that are too long fail at the point where the curves meet.
             return self.clearance.is_clear_point(joint, self.clearance_m)
                 && curves.all(|curve| self.clearance.is_clear_curve(&curve, self.clearance_m));
         }
@@ -283,8 +283,8 @@ impl<'a> Rounding<'a> {
         SharpCorner { at: corner.at, why }
     }
 
-    /// What is left of the edges, and the curves between them; and which of these certainly keep
-    /// the clearance, as what they were made of does.
+    /// The remaining edges and the curves between them, each with a flag: true if it certainly
+    /// keeps the clearance because the edges that it comes from do.
     fn pieces(&self, points: &[Point], cuts_m: &[f64]) -> Vec<(PathPiece, bool)> {
         let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
             return Vec::new();

@@ -31,7 +31,7 @@ fn smoothed(rows: &[&str], points: &[[f64; 2]], clearance_m: f64, radius_m: f64)
     done
 }
 
-/// What holds for every line and map.
+/// Invariants for every line and map.
 fn check(
     line: &Polyline,
     done: &Smoothed,
@@ -78,11 +78,11 @@ fn a_right_angle_takes_both_edges() {
     let done = smoothed(&FIELD, &[[1.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.0, 0.0);
     assert_eq!(done.path.pieces().len(), 1, "nothing stands: {done:?}");
 
-    // The block is in the straight way. Its corner (4, 2) is sqrt(2) from the line's corner, on the
-    // bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's
+    // The block is in the straight path. Its corner (4, 2) is sqrt(2) from the line's corner, on
+    // the bisector, where the curve is nearest to it: at cut (289/640) / sqrt(2) from the line's
     // corner, for the longest cut of 0.999 * 2.5 m.
     let rows = ["####....", "####....", "........", "........"];
-    // (2, 1) is not a corner, and does not count as one that was removed.
+    // (2, 1) is not a corner, so it does not count as removed.
     let done = smoothed(&rows, &[[1.0, 1.0], [2.0, 1.0], [5.0, 1.0], [5.0, 3.5]], 0.1, 0.0);
     assert!(done.sharp_corners.is_empty());
     let cut_m = 0.999 * 2.5;
@@ -97,7 +97,8 @@ fn a_right_angle_takes_both_edges() {
 fn a_cut_stops_at_the_clearance() {
     // The bisector of the corner (5, 1) meets the block at (4, 2), sqrt(2) away, so the curve's
     // middle is at most sqrt(2) - 0.99 from the corner: cut at most (sqrt(2) - 0.99) sqrt(2) 640 /
-    // 289 = 1.329 m. It is less, for the curve is nearer to (4, 2) on both sides of the middle.
+    // 289 = 1.329 m. It is less, because the curve is nearer to (4, 2) on both sides of the
+    // middle.
     let rows = ["####....", "####....", "####....", "####....", "........", "........"];
     let line = [[1.0, 1.0], [5.0, 1.0], [5.0, 3.5]];
     let done = smoothed(&rows, &line, 0.99, 0.0);
@@ -110,7 +111,7 @@ fn a_cut_stops_at_the_clearance() {
     assert_eq!(why(0.77), []);
     let at = Point::new(5.0, 1.0);
     assert_eq!(why(0.84), [SharpCorner { at, why: WhySharp::TurningRadius }]);
-    // Around the corner of the block without any room.
+    // Around the corner of the block without any clearance.
     let touching = smoothed(&rows, &[[1.0, 1.0], [4.0, 2.0], [5.0, 4.5]], 0.0, 0.0);
     let at = Point::new(4.0, 2.0);
     assert_eq!(touching.sharp_corners, [SharpCorner { at, why: WhySharp::Clearance }]);
@@ -119,7 +120,8 @@ fn a_cut_stops_at_the_clearance() {
 #[test]
 fn a_line_that_just_keeps_the_clearance_is_rounded() {
     // The walls, and the map's border, are exactly 0.5 m from both edges. The corner itself is
-    // 0.707 m from the inner wall: room for a radius of at most (0.707 - 0.5) / 0.5098 = 0.406 m.
+    // 0.707 m from the inner wall, which leaves space for a radius of at most (0.707 - 0.5) /
+    // 0.5098 = 0.406 m.
     let rows = ["######.", "######.", "######.", "......."];
     let line = [[0.5, 0.5], [6.5, 0.5], [6.5, 3.5]];
     assert_eq!(smoothed(&rows, &line, 0.5, 0.3).sharp_corners, []);
@@ -137,7 +139,7 @@ fn two_corners_share_an_edge() {
     assert_eq!(whys, [WhySharp::TurningRadius; 2]);
 }
 
-/// The cuts of corners that nothing but edges and turning radius limits.
+/// The cuts of corners that only edges and turning radius limit.
 fn cuts_m(points: &[[f64; 2]], radius_m: f64) -> Vec<f64> {
     let grid = OccupancyGrid::from_ascii(&FIELD);
     let clearance = Clearance::new(grid.frame(), grid.occupied());
@@ -152,18 +154,18 @@ fn edges_are_shared_by_hand() {
         let is_same = cuts_m.iter().zip(expected_m).all(is_near);
         assert!(cuts_m.len() == expected_m.len() && is_same, "{cuts_m:?} {expected_m:?}");
     };
-    // Edges of 3.5, 4 and 2.4 m: each corner gets half of the one between, however long the others
-    // are.
+    // Edges of 3.5, 4 and 2.4 m: each corner gets half of the edge between them, regardless of the
+    // length of the other edges.
     let z = [[1.0, 0.0], [1.0, 3.5], [5.0, 3.5], [5.0, 1.1]];
     near(&cuts_m(&z, 0.0), &[0.0, 0.999 * 2.0, 0.999 * 2.0, 0.0]);
-    // 0.5, 4, 2.9 m: the second corner takes what the first one cannot use, and the other way
-    // around.
+    // 0.5, 4, 2.9 m: the second corner takes the length that the first one cannot use, and vice
+    // versa.
     let uneven = [[1.0, 0.5], [1.0, 1.0], [5.0, 1.0], [5.0, 3.9]];
     near(&cuts_m(&uneven, 0.0), &[0.0, 0.999 * 0.5, 0.999 * 2.9, 0.0]);
     let back = [uneven[3], uneven[2], uneven[1], uneven[0]];
     near(&cuts_m(&back, 0.0), &[0.0, 0.999 * 2.9, 0.999 * 0.5, 0.0]);
     // Right angles with a radius of 1.3 m need 1.597 * 1.3 = 2.08 m, more than half of 4 m. The
-    // first one has no room at all, so that the second one gets all that its other edge allows.
+    // first corner has no space at all, so the second one gets all that its other edge allows.
     near(&cuts_m(&uneven, 1.3), &[0.0, 0.0, 0.999 * 2.9, 0.0]);
 }
 
@@ -194,8 +196,9 @@ fn the_turning_radius_comes_first_when_an_edge_is_shared() {
 
 #[test]
 fn a_line_that_is_too_near_is_rounded_where_the_curve_is_no_nearer() {
-    // 0.5 m above an obstacle, or at first 0.5 m and then farther; the block 1.5 m from both edges
-    // keeps line of sight away. The curve goes up from the edge as soon as it begins.
+    // 0.5 m above an obstacle, or at first 0.5 m and then farther. The block 1.5 m from both edges
+    // keeps line of sight from cutting the corner. The curve rises from the edge as soon as it
+    // begins.
     for below in ["...#....", ".#......"] {
         let block = "####....";
         let rows = [block, block, block, "........", "........", below];
@@ -252,7 +255,7 @@ fn degenerate_lines() {
 
 #[test]
 fn corners_that_are_hardly_any_and_reversals() {
-    // A clearance that nothing keeps turns line of sight off.
+    // A clearance that no line keeps disables line of sight.
     let corners = |points: &[[f64; 2]]| smoothed(&FIELD, points, 9.0, 0.2).sharp_corners;
     let whys = |points: &[[f64; 2]]| corners(points).iter().map(|c| c.why).collect::<Vec<_>>();
     assert_eq!(whys(&[[1.0, 2.0], [5.0, 2.0], [2.0, 2.0]]), [WhySharp::Reversal]);
@@ -280,13 +283,13 @@ fn radii_are_checked_and_derived() {
         let error = ContinuousCurvature::new(radius(bad)).unwrap_err();
         assert_eq!(error.path, "min_turning_radius_m");
     }
-    // 0.3 m/s at 1.5 rad/s; not faster than 0.5 m/s.
+    // 0.3 m/s at 1.5 rad/s; at most 0.5 m/s.
     let small = Robot::small();
     assert_eq!(ContinuousCurvatureConfig::for_robot(&small, 0.3), radius(0.3 / 1.5));
     assert_eq!(ContinuousCurvatureConfig::for_robot(&small, 9.0), radius(0.5 / 1.5));
 }
 
-/// Smooths the planner's way between two cells, if there is one.
+/// Smooths the planner's path between two cells, if there is one.
 fn check_plan(
     map: &SearchMap,
     planner: &str,

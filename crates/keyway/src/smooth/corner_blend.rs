@@ -1,21 +1,21 @@
 //! A corner of a line -> two cubic curves that round it with continuous curvature, in closed form.
 //!
-//! Along both edges the curves begin at the distance `cut` from the corner and meet on its
-//! bisector, each the mirror image of the other. The control points of either lie on the edge at
-//! the fractions 1, (b + c) and c of the cut from the corner, the last one half-way between its c
-//! and that of the other edge, with a : b : c = 130 : 221 : 289.
+//! The curves begin on either edge at the distance `cut` from the corner and meet on its bisector,
+//! each the mirror image of the other. The control points of each curve lie on its edge at the
+//! fractions 1, (b + c) and c of the cut from the corner, and the last one midway between its c
+//! point and that of the other edge, with a : b : c = 130 : 221 : 289.
 //!
 //! With half the turn β and w = 1 - u, the first curve's curvature is
 //!
 //! κ(u) = 2/3 c sin β cos β u (a w + b u) / (((a w + 2 b u) w)² + 2 c q u² (a w + 2 b u) w + c² q
 //! u⁴)^(3/2) / cut, q = cos² β:
 //!
-//! 0 at the edge (u = 0), where three control points lie on a line, and 2/3 (b / c²) sin β / (q
-//! cut) at the joint (u = 1), the same for both by symmetry. There its derivative is 0 when 6 b² =
-//! 4 b c + a c, which holds. In between it only rises: the derivative's sign is that of w times a
-//! polynomial of degree 4 in u, linear in q, whose Bernstein coefficients are positive for q = 0
-//! and for q = 1 (a test works them out in whole numbers), hence for every corner. So the peak is
-//! at the joint.
+//! It is 0 at the edge (u = 0), because three control points are collinear, and 2/3 (b / c²) sin β
+//! / (q cut) at the joint (u = 1), the same for both curves by symmetry. There its derivative is 0
+//! if 6 b² = 4 b c + a c, which holds. In between it is monotonic: the derivative's sign is that
+//! of w times a polynomial of degree 4 in u, linear in q, whose Bernstein coefficients are
+//! positive for q = 0 and for q = 1 (a test computes them in integers), hence for every corner. So
+//! the peak is at the joint.
 //!
 //! # Source
 //! \[Yang2010\]: two mirrored cubic spirals per corner, after D. J. Walton and D. S. Meek.
@@ -28,33 +28,33 @@
 //! | κ max | [`Corner::peak_curvature`] |
 //!
 //! # Where this differs from the paper
-//! - The proportions g : h : k / cos β. The paper's follow from a number that is rounded to 7.2364,
-//!   at the edge of those whose curvature only rises: the largest curvature may be a little before
-//!   the joint. The fractions here are inside that edge, so that the bound holds as it is written;
-//!   it is 0.6 % larger.
+//! - The proportions g : h : k / cos β. The paper's follow from a number that is rounded to
+//!   7.2364, at the edge of those with monotonic curvature: the largest curvature may be a little
+//!   before the joint. The fractions here are inside that edge, so that the bound holds as it is
+//!   written; it is 0.6 % larger.
 
 use crate::geometry::{Cubic, Point};
 
 /// Share of the cut from its beginning to the second control point.
 const A: f64 = 130.0 / 640.0;
-/// From the second to the third.
+/// Share from the second control point to the third.
 const B: f64 = 221.0 / 640.0;
-/// From the third to the corner.
+/// Share from the third control point to the corner.
 const C: f64 = 289.0 / 640.0;
 
-/// Where the cosine of half the turn is less than this (a turn of more than 178.8 degrees), the
-/// line turns back.
+/// The line counts as reversing if the cosine of half the turn is less than this (a turn of more
+/// than 178.8 degrees).
 const REVERSAL_COSINE: f64 = 0.01;
 
 /// A corner of a line, and the curves that round it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
-    /// Where it is.
+    /// Position \[m\].
     pub(super) at: Point,
-    /// Unit vectors back along the line and on along it.
+    /// Unit vectors from the corner back along the line and onward along it.
     back: Point,
     ahead: Point,
-    /// Of half the turn.
+    /// Sine and cosine of half the turn.
     sin_half: f64,
     cos_half: f64,
 }
@@ -62,7 +62,7 @@ pub(super) struct Corner {
 impl Corner {
     /// The corner at the second of three points of a line, each different from the one before.
     pub(super) fn new([from, at, to]: [Point; 3]) -> Self {
-        // Points so near that their distance is 0 have no direction.
+        // Points that are so close that their distance rounds to 0 have no direction.
         let unit = |v: Point| if v.norm() > 0.0 { v * (1.0 / v.norm()) } else { Point::default() };
         let (back, ahead) = (unit(from - at), unit(to - at));
         let (sin_half, cos_half) = (0.5 * (back + ahead).norm(), 0.5 * (ahead - back).norm());
@@ -74,7 +74,7 @@ impl Corner {
         self.cos_half < REVERSAL_COSINE
     }
 
-    /// Where the curves of this cut leave and rejoin the line.
+    /// The points at which the curves of this cut leave and rejoin the line.
     pub(super) fn ends(&self, cut_m: f64) -> [Point; 2] {
         [self.at + self.back * cut_m, self.at + self.ahead * cut_m]
     }
@@ -91,14 +91,14 @@ impl Corner {
         ]
     }
 
-    /// The largest curvature of the curves \[1/m\]: where they meet.
+    /// The largest curvature of the curves \[1/m\], at the point where they meet.
     pub(super) fn peak_curvature(&self, cut_m: f64) -> f64 {
         2.0 * B * self.sin_half / (3.0 * C * C * self.cos_half * self.cos_half * cut_m)
     }
 
     /// The shortest cut whose curves are nowhere sharper than a circle of this radius.
     pub(super) fn cut_for_radius(&self, radius_m: f64) -> f64 {
-        // A hair more, so that rounding does not make them sharper.
+        // Slightly more, so that rounding does not make them sharper.
         self.peak_curvature(1.0) * radius_m * (1.0 + 1e-12)
     }
 }
@@ -183,7 +183,7 @@ mod tests {
         p.iter().enumerate().skip(1).map(|(i, a)| a * i as i128).collect()
     }
 
-    /// The proof that the curvature only rises, for every turn.
+    /// The proof that the curvature is monotonic up to the joint, for every turn.
     #[test]
     fn the_peak_is_at_the_joint() {
         let (a, b, c) = (130_i128, 221, 289);
@@ -197,7 +197,7 @@ mod tests {
                 s[i + 2] += 2 * c * q * k;
             }
             s[4] += c * c * q;
-            // Its derivative has the sign of 2 n' s - 3 n s'.
+            // The derivative has the sign of 2 n' s - 3 n s'.
             let (rise, fall) = (times(&slope(&n), &s), times(&n, &slope(&s)));
             let f: Vec<i128> = rise.iter().zip(&fall).map(|(r, f)| 2 * r - 3 * f).collect();
             assert_eq!(f.iter().sum::<i128>(), 0, "no slope at the joint");

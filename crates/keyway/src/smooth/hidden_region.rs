@@ -1,22 +1,22 @@
-//! The shadow of a box with rounded surroundings, as an eye sees it.
+//! The shadow that an inflated box casts for a viewpoint.
 
 use super::stretches::{Span, Stretches};
 use crate::geometry::Point;
 
-/// What lies behind a convex shape for an eye: in the wedge of the two tangents, beyond the
-/// connection of the points where they touch. That connection lies in the shape, and every straight
-/// way from the eye to what is hidden crosses it.
+/// The region behind a convex shape as seen from a viewpoint: the wedge between the two tangents,
+/// beyond the segment that connects the tangent points. That segment lies in the shape, and every
+/// line of sight to a hidden point crosses it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HiddenRegion {
-    /// Half-planes whose common part it is: a normal, and how far along it they begin.
+    /// Half-planes whose intersection is the region: a normal, and the offset along it.
     half_planes: [(Point, f64); 3],
 }
 
 impl HiddenRegion {
-    /// Everywhere: what an eye within the shape sees.
+    /// The whole plane: the region for a viewpoint within the shape.
     const ALL: Self = Self { half_planes: [(Point::new(0.0, 0.0), 0.0); 3] };
 
-    /// The shadow of all that is no farther from a box than a radius \[cells\].
+    /// The shadow of all points within a radius of a box \[cells\].
     pub(super) fn of_box(span: Span, radius: f64, eye: Point) -> Self {
         let radius_sq = radius * radius;
         if span.distance_sq_to_point(eye) <= radius_sq {
@@ -25,12 +25,12 @@ impl HiddenRegion {
         let tangents = span.corners().map(|corner| {
             let to = corner - eye;
             let (length_sq, aside) = (to.norm_sq(), Point::new(-to.y, to.x) * radius);
-            // Up to where the tangent touches the circle around the corner.
+            // Distance to the point at which the tangent touches the circle around the corner.
             let ahead = (length_sq - radius_sq).max(0.0).sqrt();
             let share = ahead / length_sq;
             [(to * ahead + aside) * share, (to * ahead - aside) * share]
         });
-        // All of the shape is seen within half a turn.
+        // Seen from outside, the shape spans less than half a turn.
         let [mut left, mut right] = tangents[0];
         for [to_left, to_right] in &tangents[1..] {
             if left.cross(*to_left) > 0.0 {
@@ -60,7 +60,8 @@ impl HiddenRegion {
         })
     }
 
-    /// The first hidden one of the points of a straight stretch of a line; the last one is hidden.
+    /// The first hidden point of those on a straight stretch of a line; the last one must be
+    /// hidden.
     pub(super) fn first_hidden(&self, line: &Stretches<'_>, first: usize, last: usize) -> usize {
         let is_hidden = |at: usize| self.hides(Span::of_two(line.cell(at), line.cell(at)));
         if is_hidden(first) {
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn behind_a_box_by_hand() {
-        // From (0, 0) the box from (2, -1) to (3, 1) hides what is between the rays through its
+        // From (0, 0) the box from (2, -1) to (3, 1) hides all between the rays through its
         // near corners, beyond x = 2.
         let shape = Span::of_two(Point::new(2.0, -1.0), Point::new(3.0, 1.0));
         let shadow = HiddenRegion::of_box(shape, 0.0, Point::default());
@@ -95,7 +96,7 @@ mod tests {
         assert!(!hides(4.0, 2.1) && !hides(4.0, -2.1) && !hides(1.9, 0.0) && !hides(-4.0, 0.0));
         let places = |top: f64| Span::of_two(Point::new(4.0, 0.0), Point::new(6.0, top));
         assert!(shadow.hides(places(1.9)) && !shadow.hides(places(2.1)));
-        // Within the shape everything is.
+        // For a viewpoint within the shape, everything is hidden.
         assert!(HiddenRegion::of_box(shape, 2.5, Point::default()).hides(places(9.0)));
     }
 

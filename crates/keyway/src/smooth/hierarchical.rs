@@ -2,9 +2,9 @@
 //! distance, joined by the bends of a cubic B-spline.
 //!
 //! The inner layer drops points that no obstacle requires. The outer layer puts a control node on
-//! either side of each corner that is left; the B-spline over the nodes is straight between
-//! corners, and its curvature is continuous. How far the nodes are from a corner says how round it
-//! becomes.
+//! either side of each remaining corner. The B-spline over the nodes is straight between corners,
+//! and its curvature is continuous. The distance of the nodes from a corner determines the
+//! roundness of its bend.
 //!
 //! # Source
 //! \[ZhuYin2024\]: section 1.3, equations (6) to (10).
@@ -19,32 +19,32 @@
 //!
 //! # Where this differs from the paper
 //! - d = 0.8 m, because the published clearances are 0.81 to 0.83 m; R = 1 m. A connection keeps d
-//!   when its distance is d or more (to 1e-9 m), from obstacles, not from the map's border. Where d
-//!   is less than the clearance that is asked for, that stands in for it.
-//! - Of the nodes that can be joined with one, the farthest is taken, and the search goes on from
-//!   there. The next node can always be joined, so where the line itself is nearer to an obstacle
-//!   than d, it stays as it was.
-//! - The control nodes are the start three times, A, corner and B of each corner, the goal three
-//!   times: so the curve begins at the start and ends at the goal. (Twice would begin it at (5 P0 +
-//!   P1) / 6.)
-//! - The paper does not say what the curve keeps from obstacles: R is at most half of the corner's
-//!   shorter edge, so that bends do not overlap. Where a bend is nearer to an obstacle than d and
-//!   than the corner's edges there, R is halved until it is not. A corner that would need less than
-//!   a 16th of it stays sharp, and so does a reversal. So a corner that an obstacle holds at its
-//!   distance, d or less, cannot be rounded: every bend cuts it. A line that keeps more than d, as
-//!   that of the paper's planner nearly does, has no such corners; with others
-//!   [`BendsKeep::Clearance`] rounds them.
+//!   if its distance is d or more (to 1e-9 m), from obstacles, not from the map's border. If d is
+//!   smaller than the required clearance, the clearance replaces it.
+//! - Of the nodes that one node can be joined with, the farthest is taken, and the search goes on
+//!   from there. The next node can always be joined, so the line stays as it was wherever it is
+//!   closer to an obstacle than d.
+//! - The control nodes are the start three times, A, corner and B of each corner, and the goal
+//!   three times, so the curve begins at the start and ends at the goal. (If repeated twice, it
+//!   would begin at (5 P0 + P1) / 6.)
+//! - The paper does not give the distance that the curve keeps from obstacles. Here R is at most
+//!   half of the corner's shorter edge, so that bends do not overlap. If a bend is closer to an
+//!   obstacle than both d and the corner's edges there, R is halved until it is not. A corner that
+//!   would need less than a 16th of R stays sharp, and so does a reversal.
+//! - As a consequence, a corner that an obstacle holds at its distance, d or less, cannot be
+//!   rounded: every bend cuts it. A line that keeps more than d, as that of the paper's planner
+//!   nearly does, has no such corners. For other lines, [`BendsKeep::Clearance`] rounds them.
 //! - The paper's paths have no non-smooth turns, heading changes of over 5 degrees within a
-//!   centimetre. A spline can have them all the same: a bend between edges at an angle of phi has a
-//!   curvature of 2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as much
-//!   before and after it where the edges are many times longer than R. A bend that would exceed 5
-//!   degrees per centimetre anywhere is not made: the corner stays sharp and is reported. So the
+//!   centimetre. A spline can still have them: a bend between edges at an angle of phi has a
+//!   curvature of 2 cos(phi / 2) / (R sin²(phi / 2)) at its middle, and up to several times as
+//!   much before and after it if the edges are many times longer than R. A bend that would exceed
+//!   5 degrees per centimetre anywhere is not made: the corner stays sharp and is reported. So the
 //!   non-smooth turns of a path are its sharp corners.
-//! - Stretches of the spline whose nodes lie on one edge are given as a straight segment.
+//! - Stretches of the spline whose nodes lie on one edge are returned as a straight segment.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. At most n tests per kept point for a line of n corners, most of them saved by
-//! [`Visibility`]; some certified distances of cubic curves for each corner and halving. Distances
+//! [`Visibility`], and a few certified distances of cubic curves per corner and halving. Distances
 //! of bends are certain to within 4e-5 cells.
 
 use super::parameters::SmootherParameters;
@@ -63,25 +63,25 @@ use std::iter::repeat_n;
 /// counts as non-smooth.
 const MAX_CURVATURE_PER_M: f64 = 5.0 * std::f64::consts::PI / 180.0 / 0.01;
 
-/// How often R is halved before a corner stays sharp.
+/// Maximum number of halvings of R before a corner stays sharp.
 const HALVINGS: u32 = 4;
 
-/// A bend that is nearer to an obstacle by less than this \[cells\] is not: a curve that touches a
-/// distance can be certified no better.
+/// A bend that is too close to an obstacle by less than this \[cells\] counts as clear: a curve
+/// that touches the distance cannot be certified more precisely.
 const CERTIFIED_CELLS: f64 = 1e-5;
 
-/// A turn whose sine is smaller than this, and that does not go on ahead, is a reversal.
+/// A turn backwards whose sine is smaller than this is a reversal.
 const REVERSAL_SINE: f64 = 1e-9;
 
-/// What a bend keeps from obstacles, where the corner's edges do.
+/// Distance that a bend keeps from obstacles, provided the corner's edges keep it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum BendsKeep {
-    /// The safe distance, as straight connections.
+    /// The safe distance, as straight connections do.
     SafeDistance,
-    /// The clearance that is asked for: bends may cut corners that are held at the safe distance.
+    /// The required clearance: bends may cut corners that are held at the safe distance.
     Clearance,
 }
 
@@ -90,12 +90,13 @@ pub enum BendsKeep {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct HierarchicalSmoothingConfig {
-    /// Safe distance d: what connections and bends keep from obstacles, where the line does \[m\].
+    /// Safe distance d \[m\]: kept from obstacles by connections and bends wherever the line keeps
+    /// it.
     pub safe_distance_m: f64,
-    /// R: how far the control nodes are from their corner; at most half of its shorter edge, and
-    /// halved where the bend would come too near to an obstacle \[m\].
+    /// R \[m\]: distance of the control nodes from their corner. At most half of its shorter edge,
+    /// and halved if the bend would come too close to an obstacle.
     pub control_distance_m: f64,
-    /// What bends keep: the `safe-distance`, or only the `clearance` that is asked for, which
+    /// Distance that bends keep: the `safe-distance`, or only the required `clearance`, which
     /// rounds more corners.
     pub bends_keep: BendsKeep,
 }
@@ -125,7 +126,7 @@ impl HierarchicalSmoothing {
     /// The smoother with these parameters.
     ///
     /// # Errors
-    /// When a distance cannot be used; the error names it.
+    /// [`ConfigError`] if a distance is invalid; the error names it.
     pub fn new(config: HierarchicalSmoothingConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("safe_distance_m", config.safe_distance_m)?;
         ConfigError::unless_positive("control_distance_m", config.control_distance_m)?;
@@ -181,7 +182,7 @@ impl Smoother for HierarchicalSmoothing {
     }
 }
 
-/// Points where the direction changes, and of those the ones that the safe distance needs.
+/// The points at which the direction changes, reduced to those that the safe distance needs.
 fn inner_layer(
     line: &Polyline,
     clearance: &Clearance<'_>,
@@ -197,13 +198,13 @@ fn inner_layer(
         at = visibility.farthest_safe(&stretches, at, required);
         kept.push(points[at]);
     }
-    // Where a line comes back to a place, what is left can repeat a point, or go straight on over
-    // it.
+    // If a line passes through a point twice, the result can repeat a point, or have one on a
+    // straight stretch.
     Polyline::new(kept).merged().points().to_vec()
 }
 
-/// The distance that is kept for certain, where that is less than what is asked for by more than
-/// what can be certified.
+/// The distance that is certainly kept, if it falls short of the required one by more than the
+/// certification tolerance.
 fn shortfall_m(
     path: &Path,
     clearance: &Clearance<'_>,
@@ -213,10 +214,10 @@ fn shortfall_m(
     required.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
 }
 
-/// The outer layer: start, corners and goal, and how far each corner's control nodes are from it.
+/// The outer layer: start, corners and goal, and the distance of each corner's control nodes.
 struct Bends<'a> {
     nodes: &'a [Point],
-    /// R of each corner \[m\], or why it stays sharp.
+    /// R of each corner \[m\], or the reason why it stays sharp.
     radii: Vec<Result<f64, WhySharp>>,
 }
 
@@ -228,7 +229,7 @@ impl<'a> Bends<'a> {
             }
             let shorter_m = node[0].distance(node[1]).min(node[1].distance(node[2]));
             let radius_m = control_distance_m.min(0.5 * shorter_m);
-            // Nothing is rounded by control nodes that cannot be told from the corner.
+            // Control nodes that coincide with the corner numerically round nothing.
             let is_corner = |to: Point| towards(node[1], to, radius_m) == node[1];
             if is_corner(node[0]) || is_corner(node[2]) {
                 return Err(WhySharp::TurningRadius);
@@ -238,9 +239,9 @@ impl<'a> Bends<'a> {
         Self { nodes, radii: nodes.windows(3).map(radius).collect() }
     }
 
-    /// The same without bends that turn too sharply, and with every bend as far from obstacles as
-    /// its edges, or `kept_m`: R of the others is halved. All at once, until none is left, for each
-    /// bend depends on the nodes of its neighbours too.
+    /// Removes bends that turn too sharply, and halves R of the bends that are closer to obstacles
+    /// than both their edges and `kept_m`, until none is left. All bends are changed at once,
+    /// because each depends on the nodes of its neighbours too.
     fn kept_clear(mut self, clearance: &Clearance<'_>, kept_m: f64) -> Self {
         let widest = self.radii.clone();
         // A bend depends on its own nodes and those of the corners next to it.
@@ -265,7 +266,7 @@ impl<'a> Bends<'a> {
         }
     }
 
-    /// What has to become of R of a corner; `None` where it can stay.
+    /// The new R of a corner; `None` if it need not change.
     fn changed(
         &self,
         control: &[Point],
@@ -292,7 +293,7 @@ impl<'a> Bends<'a> {
         Some(if is_least { Err(WhySharp::Clearance) } else { Ok(half_m) })
     }
 
-    /// Start and goal three times each, and for each corner A, itself and B.
+    /// The start three times, then A, the corner and B for each corner, then the goal three times.
     fn control_nodes(&self) -> Vec<Point> {
         let (start, goal) = (self.nodes[0], self.nodes[self.nodes.len() - 1]);
         let corners = self.nodes.windows(3).zip(&self.radii).flat_map(|(node, &radius)| {
@@ -312,13 +313,13 @@ impl<'a> Bends<'a> {
         kept_m: f64,
     ) -> bool {
         let at = self.nodes[corner + 1];
-        // The edges that the bend stands in for.
+        // The edges that the bend replaces.
         let edges = [Segment::new(bend[0].start, at), Segment::new(at, bend[1].end())];
         let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
         clearance.keep_distance_of(bend, edges, kept_m, slack_m)
     }
 
-    /// The B-spline: straight from bend to bend.
+    /// The B-spline, as straight segments between bends.
     fn path(&self) -> Path {
         let control = self.control_nodes();
         let mut pieces = Vec::new();
@@ -335,7 +336,7 @@ impl<'a> Bends<'a> {
             }
         }
         pieces.push(PathPiece::Segment(Segment::new(at, self.nodes[self.nodes.len() - 1])));
-        // Only coordinates too large for a micrometre leave a gap.
+        // Gaps occur only if the coordinates are too large to resolve a micrometre.
         Path::new(pieces).unwrap_or_else(|_| Path::from(&Polyline::new(self.nodes.to_vec())))
     }
 
@@ -353,10 +354,10 @@ impl<'a> Bends<'a> {
     }
 }
 
-/// The two pieces of the spline that are not straight, those whose four control nodes have A,
-/// corner and B of a corner among them. Eq. (8) to (10).
+/// The two curved pieces of the spline: those whose four control nodes include A, corner and B of
+/// a corner. Eq. (8) to (10).
 fn bend(control: &[Point], corner: usize) -> [Cubic; 2] {
-    // Before A of the first corner stands the start, three times.
+    // A of the first corner is preceded by the start, three times.
     let piece = |first: usize| {
         let four = [0, 1, 2, 3].map(|k| control[first + k]);
         Cubic::uniform_b_spline(four)
@@ -364,7 +365,7 @@ fn bend(control: &[Point], corner: usize) -> [Cubic; 2] {
     [piece(3 * corner + 2), piece(3 * corner + 3)]
 }
 
-/// The point at a distance from another, in the direction of a third.
+/// The point at a distance from `from` in the direction of `to`.
 fn towards(from: Point, to: Point, distance_m: f64) -> Point {
     from.lerp(to, distance_m / from.distance(to))
 }

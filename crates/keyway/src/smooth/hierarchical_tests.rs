@@ -1,4 +1,4 @@
-//! Splines by hand, continuity, and corners without room.
+//! Splines by hand, continuity, and corners without space for a bend.
 
 use super::*;
 use crate::map::OccupancyGrid;
@@ -35,7 +35,7 @@ fn is_near(a: Point, b: [f64; 2]) -> bool {
 
 #[test]
 fn the_inner_layer_by_hand() {
-    // The square from (3, 1) to (4, 2); the way below it is 0.5 m away.
+    // The square from (3, 1) to (4, 2); the path below it is 0.5 m away.
     let grid = OccupancyGrid::from_ascii(&["......", "...#..", "......"]);
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let line = Polyline::new(points_of(&[
@@ -48,10 +48,10 @@ fn the_inner_layer_by_hand() {
     ]));
     let kept =
         |safe_m| inner_layer(&line, &clearance, &RequiredClearance::new(&clearance, 0.0, safe_m));
-    // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, the corner (3, 1) 0.5 /
-    // sqrt(17) = 0.121 m away. (0.5, 0.5) - (5.5, 1.5) touches it, the way to (5.5, 2.5) is
-    // blocked. (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, the corner (4, 1) 1.5 / sqrt(5) = 0.671 m
-    // away.
+    // (1.5, 0.5) is not a corner. (0.5, 1.5) - (4.5, 0.5) is x + 4 y = 6.5, 0.5 / sqrt(17) = 0.121
+    // m from the corner (3, 1). (0.5, 0.5) - (5.5, 1.5) touches it, and the connection to (5.5,
+    // 2.5) is blocked. (4.5, 0.5) - (5.5, 2.5): 2 x - y = 8.5, 1.5 / sqrt(5) = 0.671 m from the
+    // corner (4, 1).
     assert_eq!(kept(0.5), points_of(&[[0.5, 1.5], [0.5, 0.5], [4.5, 0.5], [5.5, 2.5]]));
     assert_eq!(kept(0.7).len(), 5, "0.5 m is too near, but the next node is always joined");
     for safe_m in [0.1, 0.5, 0.7] {
@@ -64,11 +64,11 @@ fn the_inner_layer_by_hand() {
         );
     }
     assert_eq!(kept(0.1), points_of(&[[0.5, 1.5], [4.5, 0.5], [5.5, 2.5]]));
-    // Past the square there is no safe way, so that the line only comes back to its start first.
+    // No safe path leads past the square, so the line only comes back to its start first.
     let line = Polyline::new(points_of(&[[0.5, 0.5], [0.5, 2.5], [0.5, 0.5], [5.5, 0.5]]));
     let required = RequiredClearance::new(&clearance, 0.0, 0.7);
     assert_eq!(inner_layer(&line, &clearance, &required), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
-    // What is kept is reported, however little it falls short.
+    // The distance that is kept is reported, however small the shortfall.
     let reported_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
     assert!(reported_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{reported_m:?}");
 }
@@ -117,8 +117,8 @@ fn the_control_distance_is_at_most_half_an_edge() {
     let nodes = points_of(&[[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [8.0, 1.0]]);
     assert_eq!(Bends::new(&nodes, 1.0).radii, [Ok(0.5), Ok(0.5)]);
     assert_eq!(Bends::new(&nodes, 0.3).radii, [Ok(0.3), Ok(0.3)]);
-    // Nothing is rounded where A and B cannot be told from the corner, and a straight line is not a
-    // reversal.
+    // Nothing is rounded if A and B coincide with the corner numerically, and a straight line is
+    // not a reversal.
     assert_eq!(Bends::new(&nodes, 1e-17).radii, [Err(WhySharp::TurningRadius); 2]);
     assert_eq!(Bends::new(&points_of(&[[1.0, 1.0], [5.0, 1.0], [9.0, 1.0]]), 1.0).radii, [Ok(1.0)]);
     // B of the first corner and A of the second one are the same point, and the path goes on.
@@ -145,10 +145,10 @@ fn a_bend_that_comes_too_near_is_halved() {
     assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
 }
 
-/// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20), and is too near to (800, 80)
-/// where that is less than 800, except for a few metres, over which it hardly leaves the edge: for
-/// c = 972 R has to be 20 m, a 16th of 320 m; for c = 956 that is 13 m too early, and half of it 7
-/// m.
+/// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20). It is too close to the
+/// point (800, 80) if that x is less than 800, except for a few metres, over which it hardly
+/// leaves the edge. For c = 972, R has to be 20 m, a 16th of 320 m; for c = 956 that is 13 m too
+/// early, and half of it 7 m.
 #[test]
 fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
     let frame =
@@ -168,8 +168,8 @@ fn a_corner_that_needs_less_than_a_16th_stays_sharp() {
 
 #[test]
 fn a_bend_may_be_as_near_as_either_of_its_edges() {
-    // (6, 3) is 1.12 m from (5.5, 2), where the bend with R = 1 m leaves the edge: farther away
-    // from there on.
+    // (6, 3) is 1.12 m from (5.5, 2), the point at which the bend with R = 1 m leaves the edge;
+    // from there on it is farther away.
     let free = "........";
     let grid = OccupancyGrid::from_ascii(&[free, free, free, free, "......#.", free, free, free]);
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
@@ -193,8 +193,8 @@ fn a_corner_without_room_stays_sharp() {
     );
     assert_eq!(done.path.length_m(), 10.0);
     assert!((done.shortfall_m.unwrap() - 0.5).abs() < 1e-9);
-    // Where bends only keep the clearance, here 0, it is rounded. Its middle is (A + 4 corner + B)
-    // / 6 = (5.5 - 1/6, 0.5 + 1/6), 1/3 m to the right of and below the wall's corner (5, 1).
+    // It is rounded if bends only keep the clearance, here 0. Its middle is (A + 4 corner + B) / 6
+    // = (5.5 - 1/6, 0.5 + 1/6), 1/3 m to the right of and below the wall's corner (5, 1).
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
     let done = smooth_with(BendsKeep::Clearance, &grid, &line, 0.8, 1.0);
     assert_eq!((done.sharp_corners.len(), done.inserted_points), (0, 2));
@@ -224,9 +224,9 @@ fn a_corner_stays_sharp_where_its_bend_would_turn_too_sharply() {
     assert_eq!(why(&turned(128.0)), Some(WhySharp::TurningRadius));
 }
 
-/// Where the edges are long, the curvature peaks beside the middle: for a turn by 120 degrees, R =
-/// 1 m and a control node s before A it is 6.93 / m in the middle, but at most 7.44 / m for s = 10
-/// m and 9.48 / m for s = 30 m, evaluated from the quotient of polynomials at 20,000 points.
+/// With long edges, the curvature peaks beside the middle. For a turn by 120 degrees, R = 1 m and
+/// a control node s before A it is 6.93 / m in the middle, but at most 7.44 / m for s = 10 m and
+/// 9.48 / m for s = 30 m, evaluated from the quotient of polynomials at 20,000 points.
 #[test]
 fn long_edges_sharpen_a_bend() {
     let sine = 0.75f64.sqrt();
@@ -240,7 +240,7 @@ fn long_edges_sharpen_a_bend() {
     }
 }
 
-/// Control nodes along the x axis, and B where a turn by 120 degrees leads.
+/// Control nodes along the x axis, and B after a turn by 120 degrees.
 fn bend_of(x: [f64; 4], y: [f64; 4]) -> Cubic {
     let [a, b, c] = [0, 1, 2].map(|i| Point::new(x[i], y[i]));
     Cubic::uniform_b_spline([a, b, c, Point::new(-0.5, y[3])])

@@ -1,10 +1,10 @@
 //! Key-point optimisation \[You2021\]: a line -> its turning points, and points that keep it away
 //! from obstacles.
 //!
-//! Jump points are dropped one after another while the line past them is free; where what is left
-//! passes an obstacle too closely, the jump point that gives the shortest safe detour is put back.
-//! Unlike [`super::LineOfSight`] it does not look for the farthest visible point, but stops at
-//! the first one that cannot be seen.
+//! Jump points are dropped one after another while the connection past them is free. If the result
+//! passes an obstacle too closely, the jump point with the shortest safe detour is put back.
+//! Unlike [`super::LineOfSight`], it does not search for the farthest visible point, but stops at
+//! the first point that is not visible.
 //!
 //! # Source
 //! \[You2021\]: section 1.4, steps 1 to 4. Its distances have no equation numbers.
@@ -15,28 +15,29 @@
 //! | U = `u_1`, `u_2`, ... | the points that are kept | m | |
 //! | d | the distance of a connection from the obstacles' squares | m | |
 //! | D | [`KeyPointSmoothingConfig::safe_distance_m`] | m | 0.5 |
-//! | L | the length of the way over a point that is put back | m | |
+//! | L | the length of the path over a point that is put back | m | |
 //!
 //! # Where this differs from the paper
-//! - Jump points are what [`Plan::jump_points`](crate::plan::Plan::jump_points) says: for the
-//!   paper's planner, the nodes of both searches, straight and diagonal jump points and the node in
-//!   which the sides met. A planner without jump points has the turning points of its path. Start
-//!   and goal need not be centres of cells; then those centres are jump points, too.
+//! - Jump points are those of [`Plan::jump_points`](crate::plan::Plan::jump_points): for the
+//!   paper's planner, the nodes of both searches, straight and diagonal jump points and the node
+//!   at which the two sides met. For a planner without jump points, the turning points of its path
+//!   are used. If start and goal are not cell centres, the centres of their cells are jump points,
+//!   too.
 //! - [`KeyPointCandidates::Cells`] is not in the paper: Q then holds every cell of the path, even
 //!   those between jump points. `docs/lab/findings.md` compares the two.
-//! - A line is free when it keeps the clearance that is asked for. Where D is less than that, the
-//!   clearance stands in for D.
+//! - A connection is free if it keeps the required clearance. If D is smaller than that, the
+//!   clearance replaces D.
 //! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would
 //!   refuse every point there. D is kept from obstacles, not from the map's border.
-//! - Where no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
-//!   reports what is kept of D. Of points with the same L the first one is taken.
-//! - A second run can shorten the line further, because fewer points are in its way.
+//! - If no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
+//!   reports the distance that is kept. Of several points with the same L, the first is taken.
+//! - A second run can shorten the line further, because it has fewer points to stop at.
 //!
 //! # Errors / cost
-//! [`ConfigError`] for a distance that is not a number of at least 0. Step 2 tests the
-//! connections with a straight stretch together, as a triangle, and halves it where something is
-//! near. Step 3 skips what is not shorter than the best so far, or lies behind an obstacle that was
-//! found before ([`Visibility`]).
+//! [`ConfigError`] for a distance that is not a number of at least 0. Step 2 tests the connections
+//! with a straight stretch together, as a triangle, and halves the stretch if an obstacle is
+//! close. Step 3 skips candidates that are not shorter than the best so far, or that lie behind an
+//! obstacle that was found before ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -48,7 +49,7 @@ use crate::geometry::{PlannedLine, Point, Polyline, Segment};
 use crate::map::Clearance;
 use serde::{Deserialize, Serialize};
 
-/// Which points of a path the key points are chosen from.
+/// The points of a path that key points are chosen from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -65,16 +66,16 @@ pub enum KeyPointCandidates {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyPointSmoothingConfig {
-    /// Q, the points that key points are chosen from: the `jump-points` of the path (for a planner
-    /// without them, its turning points), or all its `cells`.
+    /// Q, the points that key points are chosen from: the `jump-points` of the path (its turning
+    /// points for a planner without jump points), or all its `cells`.
     pub candidates: KeyPointCandidates,
-    /// Safe distance D: where a connection is nearer to an obstacle, a point of Q is put back if
-    /// that helps \[m\].
+    /// Safe distance D \[m\]: if a connection is closer to an obstacle, a point of Q is put back,
+    /// provided one gives a safe detour.
     pub safe_distance_m: f64,
 }
 
 impl KeyPointSmoothingConfig {
-    /// The paper's choice.
+    /// The paper's values.
     pub const PAPER: Self =
         Self { candidates: KeyPointCandidates::JumpPoints, safe_distance_m: 0.5 };
 }
@@ -98,7 +99,7 @@ impl KeyPointSmoothing {
     /// The smoother with these parameters.
     ///
     /// # Errors
-    /// When the safe distance is not a number of at least 0.
+    /// [`ConfigError`] if the safe distance is not a number of at least 0.
     pub fn new(config: KeyPointSmoothingConfig) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("safe_distance_m", config.safe_distance_m)?;
         Ok(Self { config })
@@ -142,7 +143,8 @@ impl Smoother for KeyPointSmoothing {
     }
 }
 
-/// Step 2: the indices of the points past which the line is not free, and of both ends.
+/// Step 2: the indices of the points that cannot be skipped because the connection past them is
+/// not free, and of both ends.
 fn turning_points(q: &Stretches<'_>, required: &RequiredClearance<'_>) -> Vec<usize> {
     let count = q.points().len();
     let mut u: Vec<usize> = (0..count.min(1)).collect();
@@ -155,7 +157,7 @@ fn turning_points(q: &Stretches<'_>, required: &RequiredClearance<'_>) -> Vec<us
     u
 }
 
-/// The first point after the next one to which the line is not free.
+/// The first point after the next one that has no free connection.
 fn first_not_free(
     q: &Stretches<'_>,
     from: usize,
@@ -174,7 +176,8 @@ fn first_not_free(
     None
 }
 
-/// The same for some points on a straight stretch. All connections with them lie in a triangle.
+/// As [`first_not_free`], for points on a straight stretch. All connections to them lie in a
+/// triangle.
 fn first_not_free_of(
     q: &Stretches<'_>,
     from: usize,
@@ -193,7 +196,8 @@ fn first_not_free_of(
         .or_else(|| first_not_free_of(q, from, (middle + 1, last), required))
 }
 
-/// Step 3: between each pair that is too near to an obstacle, the point of the best safe detour.
+/// Step 3: between each pair whose connection is too close to an obstacle, the point of the best
+/// safe detour.
 fn with_safe_detours(
     q: &Stretches<'_>,
     u: &[usize],
@@ -211,8 +215,8 @@ fn with_safe_detours(
     kept
 }
 
-/// The point `q_i` between `u_j` and `u_j+1` over which the way is safe and L, its length, least;
-/// the first one of several.
+/// The point `q_i` between `u_j` and `u_j+1` over which the path is safe and its length L
+/// smallest; the first one of several.
 fn shortest_safe_detour(
     q: &Stretches<'_>,
     from: usize,
@@ -258,8 +262,8 @@ mod tests {
     #[test]
     fn step_2_drops_points_past_which_the_line_is_free() {
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
-        // From (0.5, 1.5) the way to (2.5, 0.5) is free, and so is that to (3.5, 0.5), which
-        // touches the square at (2, 1), but not that to (4.5, 1.5), along y = 1.5.
+        // From (0.5, 1.5) the connection to (2.5, 0.5) is free, and so is that to (3.5, 0.5),
+        // which touches the square at (2, 1), but not that to (4.5, 1.5), along y = 1.5.
         let (points, done) = run(&line, 0.0);
         assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
         // (2.5, 0.5) is not a corner.
@@ -269,8 +273,8 @@ mod tests {
     #[test]
     fn step_3_puts_the_shortest_safe_detour_back() {
         // (0.5, 1.5) - (3.5, 0.5) touches the square. Over (1.5, 0.5): the first leg is x + y = 2,
-        // its distance from (2, 1) 1 / sqrt(2), the second one y = 0.5, 0.5 m away; L = 3.414 m.
-        // Over (2.5, 0.5): x + 2 y = 3.5, 0.5 / sqrt(5) = 0.224 m.
+        // at a distance of 1 / sqrt(2) from (2, 1); the second is y = 0.5, 0.5 m away; L = 3.414
+        // m. Over (2.5, 0.5): x + 2 y = 3.5, 0.5 / sqrt(5) = 0.224 m.
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.5);
         assert_eq!(points, [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]]);
@@ -283,16 +287,17 @@ mod tests {
 
     #[test]
     fn step_2_stops_at_the_first_point_that_is_hidden() {
-        // From (0.5, 1.5) both ends of the last stretch are seen, past the square on either side,
-        // but not (4.5, 1.5) between them.
+        // Both ends of the last stretch are visible from (0.5, 1.5), past the square on either
+        // side, but (4.5, 1.5) between them is not.
         let line = [[0.5, 1.5], [2.5, 0.1], [4.5, 0.1], [4.5, 1.5], [4.5, 2.9]];
         assert_eq!(run(&line, 0.0).0, [line[0], line[2], line[4]]);
     }
 
     #[test]
     fn of_detours_of_the_same_length_the_first_is_taken() {
-        // y = 0.5 is 0.5 m below the square. Over (1.5, 0.2) the second leg is 0.65 m below (3, 1),
-        // over (3.5, 0.2) the first one as far below (2, 1), and both are as long.
+        // y = 0.5 is 0.5 m below the square. Over (1.5, 0.2) the second leg is 0.65 m below (3,
+        // 1). Over (3.5, 0.2) the first leg is as far below (2, 1), and both detours are equally
+        // long.
         let line = [[0.5, 0.5], [1.5, 0.2], [3.5, 0.2], [4.5, 0.5]];
         assert_eq!(run(&line, 0.6).0, [line[0], line[1], line[3]]);
         let back = [line[3], line[2], line[1], line[0]];
@@ -301,7 +306,7 @@ mod tests {
 
     #[test]
     fn a_pair_without_a_safe_detour_stays_and_is_reported() {
-        // The way below the square is 0.5 m from it.
+        // The path below the square is 0.5 m from it.
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.6);
         assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
@@ -310,8 +315,9 @@ mod tests {
 
     #[test]
     fn a_second_run_can_drop_more() {
-        // (3.5, 1.5) cannot be seen from the start, so (3.5, 0.5) is kept, although the goal can:
-        // at y = 0.5 + (x - 0.5) / 8 below the square. (3.5, 1.5) itself is dropped.
+        // (3.5, 1.5) is not visible from the start, so (3.5, 0.5) is kept, although the goal is
+        // visible: the connection is at y = 0.5 + (x - 0.5) / 8, below the square. (3.5, 1.5)
+        // itself is dropped.
         let (once, _) = run(&[[0.5, 0.5], [3.5, 0.5], [3.5, 1.5], [4.5, 1.0]], 0.0);
         assert_eq!(once, [[0.5, 0.5], [3.5, 0.5], [4.5, 1.0]]);
         assert_eq!(run(&once, 0.0).0, [[0.5, 0.5], [4.5, 1.0]]);
@@ -329,7 +335,7 @@ mod tests {
         }
     }
 
-    /// Steps 2 and 3, each connection tried.
+    /// Steps 2 and 3, with every connection tried.
     fn by_trying(points: &[Point], required: &RequiredClearance<'_>) -> Vec<usize> {
         let way = |i: usize, k: usize| Segment::new(points[i], points[k]);
         let mut u = vec![0];

@@ -1,13 +1,14 @@
 //! Line of sight: a line -> the same line with its needless detours cut off.
 //!
-//! From each kept point the line goes straight to the farthest later point that can be seen from
-//! there: the straight connection stays on the map and keeps the clearance from every obstacle
-//! square (exactly, see [`Clearance::is_clear`]; no sampling). The next point of the line is always
-//! accepted, so where the line itself is too close to an obstacle it stays as it was.
+//! From each kept point the result goes straight to the farthest visible later point: the straight
+//! connection stays on the map and keeps the clearance from every obstacle square (exactly, see
+//! [`Clearance::is_clear`]; no sampling). The next point of the line is always accepted, so the
+//! line stays as it was wherever it is too close to an obstacle itself.
 //!
 //! # Errors / cost
-//! None. From each kept point the line is searched back from its end; whole stretches of it lie in
-//! the shadow of an obstacle that was found before ([`Visibility`]), so few connections are tested.
+//! None. From each kept point the line is searched backwards from its end. Few connections are
+//! tested, because whole stretches lie in the shadow of an obstacle that was found before
+//! ([`Visibility`]).
 
 use super::parameters::SmootherParameters;
 use super::required_clearance::RequiredClearance;
@@ -25,7 +26,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct LineOfSightConfig {}
 
-/// Cuts off detours between points that see each other.
+/// Cuts off detours between points that are visible from each other.
 #[derive(Clone, Debug, Default)]
 pub struct LineOfSight;
 
@@ -53,8 +54,7 @@ impl Smoother for LineOfSight {
     }
 }
 
-/// The line without its detours, keeping `clearance_m` from obstacles wherever it keeps that
-/// itself.
+/// The line without its detours, keeping `clearance_m` from obstacles wherever the line keeps it.
 pub(super) fn line_of_sight(
     line: &Polyline,
     clearance: &Clearance<'_>,
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(smoothed(&rows, &line, 0.3), line);
     }
 
-    /// The same, each connection tried.
+    /// As [`line_of_sight`], with every connection tried.
     fn by_trying(line: &Polyline, clearance: &Clearance<'_>, clearance_m: f64) -> Polyline {
         let points = line.points();
         let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
@@ -137,8 +137,8 @@ mod tests {
             let frame = crate::map::GridFrame::new(40, 30, 0.1, crate::geometry::Pose::new(3.0, -2.0, yaw)).unwrap();
             let grid = OccupancyGrid::from_occupied(frame, &occupied);
             let clearance = Clearance::new(grid.frame(), grid.occupied());
-            // Straight stretches with points all along, through obstacles, too; some on lattice
-            // points.
+            // Straight stretches with intermediate points, some of them on lattice points; some
+            // stretches cross obstacles.
             let mut points = Vec::new();
             for pair in corners.windows(2) {
                 let ends = [pair[0], pair[1]].map(|(x, y)| Point::new(0.5 * f64::from(x), 0.5 * f64::from(y)));

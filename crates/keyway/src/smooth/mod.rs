@@ -1,5 +1,5 @@
-//! Smoothers: from the line of a plan to a shorter line that keeps its clearance; and how fast a
-//! path can be driven.
+//! Smoothers turn the polyline of a plan into a shorter path that keeps its clearance. Speed
+//! profiles give the fastest traversal of a path.
 //!
 //! ```
 //! use keyway::geometry::{Point, Polyline};
@@ -16,7 +16,7 @@
 //! # Ok::<(), keyway::ConfigError>(())
 //! ```
 //!
-//! A smoother of your own implements [`Smoother`].
+//! To write your own smoother, implement [`Smoother`].
 
 mod bidirectional;
 mod config;

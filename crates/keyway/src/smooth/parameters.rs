@@ -1,9 +1,9 @@
-//! What every smoother says of itself by its parameters.
+//! The interface of every smoother's parameters.
 
 use super::Smoother;
 use crate::ConfigError;
 
-/// What is known of a smoother by its parameters.
+/// Parameters of a smoother, and the properties that follow from them.
 pub(super) trait SmootherParameters {
     /// The smoother with these parameters.
     fn build(&self) -> Result<Box<dyn Smoother + Send + Sync>, ConfigError>;

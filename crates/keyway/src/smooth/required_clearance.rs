@@ -1,13 +1,13 @@
-//! What the connections that a smoother makes keep from obstacles and from the map's border.
+//! The clearance that a smoother's connections must keep from obstacles and from the map's border.
 
 use crate::geometry::{Path, PathPiece, Point, Segment, Square};
 use crate::map::{Clearance, Obstruction};
 
-/// Distances that fall short of a safe distance by less than this \[m\] keep it: beside a wall of 1
-/// m cells a path lies at exactly 0.5 m.
+/// Distances that fall short of a safe distance by less than this \[m\] still keep it: beside a
+/// wall of 1 m cells a path lies at exactly 0.5 m.
 const SAFE_TOLERANCE_M: f64 = 1e-9;
 
-/// The obstacles, the clearance that was asked for, and the smoother's own safe distance.
+/// The obstacles, the required clearance, and the smoother's own safe distance.
 ///
 /// The clearance is also kept from the map's border; the safe distance only from obstacles.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl<'a> RequiredClearance<'a> {
         self.safe_m
     }
 
-    /// What comes nearer to an obstacle than this is not safe \[m\].
+    /// A connection that comes closer to an obstacle than this is not safe \[m\].
     pub(super) const fn unsafe_within_m(&self) -> f64 {
         (self.safe_m - SAFE_TOLERANCE_M).max(self.clearance_m)
     }
@@ -38,13 +38,13 @@ impl<'a> RequiredClearance<'a> {
         self.clearance.is_clear(connection, self.clearance_m)
     }
 
-    /// True if all connections within a triangle are certainly free; they may be even when this is
-    /// false.
+    /// True if all connections within a triangle are certainly free. False does not mean that one
+    /// of them is not.
     pub(super) fn is_free_triangle(&self, corners: [Point; 3]) -> bool {
         self.clearance.is_clear_triangle(corners, self.clearance_m)
     }
 
-    /// True if the safe distance to obstacles is kept, whatever the clearance.
+    /// True if a connection keeps the safe distance from obstacles, whatever the clearance.
     pub(super) fn keeps_safe_distance(&self, connection: Segment) -> bool {
         self.too_near(connection).is_none()
     }
@@ -54,21 +54,21 @@ impl<'a> RequiredClearance<'a> {
         self.obstruction(connection).is_none()
     }
 
-    /// What keeps a connection from being safe.
+    /// The obstacle or border that keeps a connection from being safe.
     pub(super) fn obstruction(&self, connection: Segment) -> Option<Obstruction> {
         if self.unsafe_within_m() <= self.clearance_m {
             return self.clearance.obstruction(connection, self.clearance_m);
         }
-        // What keeps the larger distance from obstacles keeps the smaller one.
+        // A connection that keeps the larger distance from obstacles also keeps the smaller one.
         if !self.clearance.is_on_map(connection, self.clearance_m) {
             return Some(Obstruction::Border);
         }
         self.too_near(connection).map(Obstruction::Obstacle)
     }
 
-    /// The distance that the pieces of a path certainly keep, where one that was asked for is not
-    /// kept; the smaller of the two. Curves are known to `tolerance_m`, and what falls short by
-    /// less than `slack_m` is kept.
+    /// The distance that the pieces of a path certainly keep if a required distance is not kept:
+    /// the smaller of the two. The clearance of curves is known to `tolerance_m`, and a shortfall
+    /// of less than `slack_m` is ignored.
     pub(super) fn shortfall_m<'p>(
         &self,
         pieces: impl IntoIterator<Item = &'p PathPiece>,
@@ -86,9 +86,10 @@ impl<'a> RequiredClearance<'a> {
         self.obstacle_shortfall_of(&self.not_clear(path.pieces().iter()), tolerance_m, 0.0)
     }
 
-    /// The pieces that may not keep what was asked for.
+    /// The pieces that may violate the required distance.
     fn not_clear<'p>(&self, pieces: impl Iterator<Item = &'p PathPiece>) -> Vec<&'p PathPiece> {
-        // Where a piece is not clear, what is too near to its end is too near to the next one, too.
+        // An obstacle that is too close to the end of one piece is also too close to the next
+        // piece.
         let (mut was_clear, mut near) = (true, None);
         let mut is_clear = |piece: &PathPiece| {
             if near.is_some_and(|square| self.is_too_near(square, piece.start(), piece.end())) {
@@ -111,7 +112,7 @@ impl<'a> RequiredClearance<'a> {
         pieces.filter(|piece| !is_clear(piece)).collect()
     }
 
-    /// True if a square is certainly nearer to one of two points than what was asked for.
+    /// True if a square is certainly closer to one of two points than the required distance.
     fn is_too_near(&self, square: Square, one: Point, other: Point) -> bool {
         let cells = |at| self.clearance.frame().grid_from_world(at);
         let too_near_sq = self.clearance.margin(self.safe_m).powi(2);
@@ -137,7 +138,7 @@ impl<'a> RequiredClearance<'a> {
         self.is_short(at_least_m, self.safe_m, slack_m).then_some(at_least_m)
     }
 
-    /// The safe distance does not hold at the border, so what is asked for there is the clearance.
+    /// The safe distance does not apply at the border, so only the clearance is required there.
     fn border_shortfall_of(
         &self,
         pieces: &[&PathPiece],
@@ -150,8 +151,8 @@ impl<'a> RequiredClearance<'a> {
         self.is_short(kept_m, self.clearance_m, slack_m).then_some(kept_m)
     }
 
-    /// True if a distance falls short by more than rounding, as [`Clearance::is_clear`] allows for
-    /// it.
+    /// True if a distance falls short by more than the rounding that [`Clearance::is_clear`]
+    /// allows for.
     fn is_short(&self, kept_m: f64, asked_m: f64, slack_m: f64) -> bool {
         let scale_m = asked_m + self.clearance.frame().resolution_m();
         kept_m < asked_m - slack_m.max(SAFE_TOLERANCE_M * scale_m.max(1.0))

@@ -1,8 +1,8 @@
-//! Grandparent shortcuts \[Wang2019\]: a line -> the same line without points past which it is
-//! free.
+//! Grandparent shortcuts \[Wang2019\]: a line -> the same line without the points that a free
+//! connection can skip.
 //!
-//! Walking back from the goal, a point is dropped when its predecessor and its successor can be
-//! joined. A pass leaves at least every second point; a few passes straighten most of a path.
+//! Going back from the goal, a point is dropped if its predecessor and its successor can be
+//! joined. A pass keeps at least every second point; a few passes straighten most of a path.
 //!
 //! # Source
 //! \[Wang2019\]: third improvement (path generation), equations (16), (17); the fourth one for the
@@ -14,17 +14,17 @@
 //! | expanded obstacles | [`ShortcutConfig::expansion_cells`] | cells | 1 |
 //!
 //! # Where this differs from the paper
-//! - The paper looks at the line's points between two x values (16), (17). That misses vertical
-//!   lines and cells that the line only clips. Here every cell that the line touches must be free,
-//!   even if only a corner is touched.
-//! - In the paper the expansion is one of the map, and the search and the shortcuts see the same
-//!   one. Here a smoother is given obstacles and distances, not the layers of a search, so the
-//!   expansion is a parameter: [`ShortcutConfig::for_layers`] takes that of the search. Where the
-//!   line itself leads through expanded cells, as it may when the search had fewer, it stays as it
-//!   was, which [`Smoothed::shortfall_m`] reports: n expanded cells are a distance of n cells.
-//! - A second run is that many more passes, so it can drop further points; when a run ends because
-//!   a pass has dropped none, a second one changes nothing.
-//! - Besides, a line is only free when it keeps the clearance that is asked for.
+//! - The paper tests the line's points between two x values (16), (17). That misses vertical lines
+//!   and cells that the line only clips. Here every cell that the line touches must be free, even
+//!   if only a corner is touched.
+//! - In the paper the expansion belongs to the map, which the search and the shortcuts share. Here
+//!   a smoother is given obstacles and distances, not the layers of a search, so the expansion is
+//!   a parameter; [`ShortcutConfig::for_layers`] takes that of the search. A part of the line that
+//!   leads through expanded cells, as it may if the search had a smaller expansion, stays as it
+//!   was. [`Smoothed::shortfall_m`] reports it: n expanded cells are a distance of n cells.
+//! - A second run adds that many passes, so it can drop further points. If a run ended because a
+//!   pass dropped no point, a second run changes nothing.
+//! - In addition, a connection is free only if it keeps the required clearance.
 //!
 //! # Errors / cost
 //! None. One test per point and pass.
@@ -42,18 +42,18 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ShortcutConfig {
-    /// How often the line is walked back.
+    /// Number of passes back along the line.
     pub passes: u32,
-    /// A shortcut touches no cell that is at most this many rows and columns away from an obstacle;
-    /// the same number as the search's `map.published.expansion_cells` \[cells\].
+    /// A shortcut must not touch cells that are at most this many rows and columns away from an
+    /// obstacle; the same number as the search's `map.published.expansion_cells` \[cells\].
     pub expansion_cells: u32,
 }
 
 impl ShortcutConfig {
-    /// The paper's choice.
+    /// The paper's values.
     pub const PAPER: Self = Self { passes: 2, expansion_cells: 1 };
 
-    /// The paper's passes, with the expansion of the map on which the line was planned.
+    /// The paper's passes, with the expansion of the map that the line was planned on.
     pub const fn for_layers(layers: &LayerConfig) -> Self {
         Self { expansion_cells: layers.published.expansion_cells, ..Self::PAPER }
     }
@@ -121,7 +121,7 @@ impl Smoother for Shortcut {
     }
 }
 
-/// One pass. Where the parent is dropped it goes on from the grandparent, otherwise from the
+/// One pass. It continues from the grandparent if the parent was dropped, otherwise from the
 /// parent.
 fn walked_back(points: &[Point], is_free: impl Fn(Segment) -> bool) -> Vec<Point> {
     let mut kept: Vec<Point> = points.last().copied().into_iter().collect();
@@ -159,10 +159,10 @@ mod tests {
         let at = |kept: &[usize]| kept.iter().map(|&x| along[x].into()).collect::<Vec<Point>>();
         let all = points_of(&along);
         assert_eq!(walked_back(&all, |_| true), at(&[0, 2, 4, 6]));
-        // From 6 over 4 to 2, and there is no grandparent of 2.
+        // From 6 over 4 to 2, which has no grandparent.
         assert_eq!(walked_back(&at(&[0, 2, 4, 6]), |_| true), at(&[0, 2, 6]));
-        // Only 5 and 3 cannot be joined: 6 to 4, 4 to 2, 2 to 0 can. Only 6 and 4 cannot: then 5 to
-        // 3, 3 to 1, and on to the start.
+        // If only 5 and 3 cannot be joined: 6 to 4, 4 to 2, 2 to 0 can. If only 6 and 4 cannot:
+        // then 5 to 3, 3 to 1, and from there to the start.
         let only_not = |x: f64| move |shortcut: Segment| shortcut.a.x != x;
         assert_eq!(walked_back(&all, only_not(5.0)), at(&[0, 2, 4, 6]));
         assert_eq!(walked_back(&all, only_not(6.0)), at(&[0, 1, 3, 5, 6]));
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn expanded_cells_by_hand() {
-        // The obstacle (3, 3), and with one cell around it everything from (2, 2) to (5, 4).
+        // The obstacle (3, 3), which expands by one cell to everything from (2, 2) to (5, 4).
         let grid = OccupancyGrid::from_ascii(&["...#...", ".......", ".......", "......."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line =
@@ -218,7 +218,7 @@ mod tests {
         // 1).
         assert_eq!(done.path, (&line).into());
         assert_eq!(done.shortfall_m, Some(0.5));
-        // Expanded cells are cells, whatever their size.
+        // The expansion is in cells, whatever their size.
         let frame =
             crate::map::GridFrame::new(5, 3, 0.1, crate::geometry::Pose::default()).unwrap();
         let small = Clearance::new(&frame, grid.occupied());
@@ -231,8 +231,8 @@ mod tests {
             None,
             "1.5 cells away"
         );
-        // The clearance that is asked for holds as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below
-        // the corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
+        // The required clearance applies as well: (0.5, 0.5) - (4.5, 2.5) is at 1.75 below the
+        // corner (3, 2), 0.25 cos(26.6 degrees) = 0.224 m from it.
         let line = Polyline::new(points_of(&[[0.5, 0.5], [2.5, 0.5], [4.5, 2.5]]));
         let none = ShortcutConfig { passes: 1, expansion_cells: 0 };
         assert_eq!(smooth(&none, &line, &clearance, 0.2).path.pieces().len(), 1);

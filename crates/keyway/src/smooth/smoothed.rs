@@ -1,55 +1,56 @@
-//! What a smoother returns.
+//! The result of a smoother.
 
 use super::required_clearance::RequiredClearance;
 use crate::geometry::{Path, Point, Polyline};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// A path to drive, and what was done to the line that it comes from.
+/// A drivable path, and the changes from the line that it was made from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Smoothed {
-    /// The path: begins and ends where the line does.
+    /// The path. It has the same start and goal as the line.
     pub path: Path,
-    /// Points of the line, repeated and collinear ones left out, over which the path does not lead.
+    /// Number of points of the line, without repeated and collinear ones, that the path does not
+    /// pass through.
     pub removed_points: usize,
-    /// Corners and control points of the path that are not points of the line.
+    /// Number of corners and control points of the path that are not points of the line.
     pub inserted_points: usize,
-    /// Corners that were to be rounded and were not.
+    /// Corners that could not be rounded.
     pub sharp_corners: Vec<SharpCorner>,
-    /// The distance that the path certainly keeps \[m\], where that is less than was asked for;
-    /// `None` where it is kept. The clearance is to be kept from obstacles and from the map's
-    /// border, a smoother's own safe distance from obstacles only; where neither is kept it is the
-    /// smaller distance, 0 in an obstacle and outside the map.
+    /// The certified clearance of the path \[m\] if it is less than required; `None` if the
+    /// requirement is met. The clearance is required from obstacles and from the map's border, a
+    /// smoother's own safe distance from obstacles only. If neither is kept, this is the smaller
+    /// distance; it is 0 in an obstacle and outside the map.
     pub shortfall_m: Option<f64>,
 }
 
-/// A corner that stayed as it was.
+/// A corner that was not rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SharpCorner {
-    /// Where \[m\].
+    /// Position of the corner \[m\].
     pub at: Point,
-    /// Why.
+    /// Reason why it was not rounded.
     pub why: WhySharp,
 }
 
-/// Why a corner was not rounded.
+/// Reason why a corner was not rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum WhySharp {
-    /// Every rounder way comes too near to an obstacle.
+    /// Every curve around the corner comes too close to an obstacle.
     Clearance,
     /// The path turns back on itself.
     Reversal,
-    /// There is only room for a curve that is sharper than the turning limit, or for none at all
-    /// because the edges are too short. A smoother without a turning limit of its own bends at most
-    /// 5 degrees within a centimetre.
+    /// Only a curve sharper than the turning limit fits, or none at all because the edges are too
+    /// short. A smoother without a configurable turning limit bends by at most 5 degrees within a
+    /// centimetre.
     TurningRadius,
 }
 
 impl Smoothed {
-    /// How finely the distances of a curve are measured \[m\].
+    /// Tolerance for the clearance of curves \[m\].
     pub(super) const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
     /// A path of straight segments over the points of `smooth`.
@@ -68,7 +69,7 @@ impl Smoothed {
         done.judged(required)
     }
 
-    /// The same with its shortfall measured.
+    /// Returns `self` with its shortfall measured.
     pub(super) fn judged(self, required: &RequiredClearance<'_>) -> Self {
         let shortfall_m =
             required.shortfall_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
@@ -76,13 +77,13 @@ impl Smoothed {
     }
 }
 
-/// How many of some points are not among some others.
+/// The number of points that are not among `others`.
 pub(super) fn count_others(points: &[Point], others: &[Point]) -> usize {
     let others: HashSet<[u64; 2]> = others.iter().map(bits).collect();
     points.iter().filter(|point| !others.contains(&bits(point))).count()
 }
 
-/// The same for equal points: 0 and -0 are one number.
+/// Bit patterns that are the same for equal points: 0 and -0 are one number.
 fn bits(point: &Point) -> [u64; 2] {
     [point.x, point.y].map(|x| (x + 0.0).to_bits())
 }
@@ -97,7 +98,8 @@ mod tests {
         let grid = OccupancyGrid::from_ascii(&[".....", "..#..", "....."]);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         let line = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
-        // (1.5, 0.5) lies on the way to (2.5, 0.5) and is not a point of its own.
+        // (1.5, 0.5) lies on the segment to (2.5, 0.5), so it does not count as a point of its
+        // own.
         let before = line(&[[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 1.5], [4.5, 1.5]]);
         let after = line(&[[0.5, 0.5], [3.5, 0.75], [4.5, 1.5]]);
         let zeros = [[0.0, -0.0], [-0.0, 0.0], [0.0, 1.0]].map(Point::from);

@@ -1,11 +1,11 @@
-//! What every smoother is: a line -> a path that keeps a clearance.
+//! The smoother interface: a line -> a path that keeps a clearance.
 
 use super::Smoothed;
 use crate::geometry::PlannedLine;
 use crate::map::Clearance;
 use std::fmt::Debug;
 
-/// Smooths lines. A smoother is an immutable configuration, checked when it was made.
+/// Smooths lines. A smoother is an immutable configuration that was validated on construction.
 ///
 /// ```
 /// use keyway::geometry::{Path, PlannedLine, Point, Polyline};
@@ -33,8 +33,8 @@ use std::fmt::Debug;
 /// assert_eq!(done.path.length_m(), 13f64.sqrt());
 /// ```
 pub trait Smoother: Debug {
-    /// The smoothing itself, for [`Self::smooth`]: the points of the line are finite and no two
-    /// successive ones are equal, its ends are jump points, and the clearance is a number of at
+    /// The smoothing itself, called by [`Self::smooth`]. The points of the line are finite,
+    /// successive points differ, both ends are jump points, and `clearance_m` is a number of at
     /// least 0.
     fn smooth_distinct(
         &self,
@@ -43,18 +43,20 @@ pub trait Smoother: Debug {
         clearance_m: f64,
     ) -> Smoothed;
 
-    /// Smooths the line of a plan, or another one (`PlannedLine::from(polyline)`); points that are
-    /// not finite are left out, and so are repeated ones. The result begins and ends where the line
-    /// does, is never longer, and keeps `clearance_m` (or the smoother's own safe distance, if that
-    /// is larger; with [`BendsKeep::Clearance`](super::BendsKeep::Clearance), only straight
-    /// stretches do) wherever the line did; where that is not kept, [`Smoothed::shortfall_m`] says
-    /// what is. A negative clearance counts as none.
+    /// Smooths the line of a plan, or any other line (`PlannedLine::from(polyline)`). Non-finite
+    /// and repeated points are dropped. The result has the same start and goal as the line and is
+    /// never longer.
+    ///
+    /// It keeps `clearance_m`, or the smoother's own safe distance if that is larger (with
+    /// [`BendsKeep::Clearance`](super::BendsKeep::Clearance), only straight stretches keep the
+    /// safe distance), wherever the line did. Otherwise [`Smoothed::shortfall_m`] reports the
+    /// distance that is kept. A negative clearance counts as 0.
     fn smooth(&self, line: &PlannedLine, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         self.smooth_distinct(&distinct(line), clearance, clearance_m.max(0.0))
     }
 }
 
-/// The line without points that are not finite and without repeated ones; its ends are jump points.
+/// The line without non-finite and repeated points; its ends are jump points.
 fn distinct(line: &PlannedLine) -> PlannedLine {
     let mut waypoints: Vec<_> = line.waypoints().filter(|(point, _)| point.is_finite()).collect();
     waypoints.dedup_by(|(point, is_jump_point), (kept, keeps)| {

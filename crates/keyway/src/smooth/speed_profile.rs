@@ -1,24 +1,25 @@
-//! Speed profile: a path and a robot's limits -> the fastest way to drive along it, and its time.
+//! Speed profile: a path and a robot's limits -> the fastest traversal of the path, and its time.
 //!
-//! At every place the square of the speed stays below a ceiling, which speed, turn rate and lateral
-//! acceleration set there: v <= `v_max_mps`, |curvature| v <= `omega_max_radps`, |curvature| v² <=
-//! `lateral_acceleration_mps2`. Along the path it grows by at most 2 a and falls by at most 2 b per
-//! metre. One pass backward and one forward cut off what cannot be reached; no other profile is
-//! faster anywhere.
+//! Along the path, the squared speed stays below a ceiling set by speed, turn rate and lateral
+//! acceleration: v <= `v_max_mps`, |curvature| v <= `omega_max_radps`, |curvature| v² <=
+//! `lateral_acceleration_mps2`. It grows by at most 2 a and falls by at most 2 b per metre, with
+//! acceleration a and deceleration b. One backward and one forward pass cut off the speeds that
+//! cannot be reached; no other profile is faster anywhere.
 //!
-//! At a corner, where the heading jumps, the robot stops and turns on the spot, as fast as turn
+//! At a corner, where the heading jumps, the robot stops and turns in place, as fast as turn
 //! rate, angular acceleration and deceleration allow. A reversal is a turn by pi: nothing is driven
 //! backwards.
 //!
-//! # What the time is good for
-//! It is a lower bound of the time of any run along this path under these limits: angular
-//! acceleration is ignored on curves, turning towards the path's first heading takes no time, and
-//! only a robot that leaves the path may be faster. Curvature is read at the samples; in between,
-//! the ceiling of the squared speed is a straight line. For segments and arcs that is exact at any
-//! spacing. For cubic curves the error of the time, to either side, shrinks with the square of the
-//! spacing; at 1 cm it was about 1e-5 of the time on a spline with bends of half a metre. A bend
-//! that is shorter than the spacing is not passed faster than its turn takes at the largest turn
-//! rate.
+//! # Accuracy
+//! The time is a lower bound for any run along this path under these limits: angular acceleration
+//! is ignored on curves, and turning towards the path's first heading takes no time. Only a robot
+//! that leaves the path may be faster.
+//!
+//! Curvature is evaluated at the samples; in between, the ceiling of the squared speed is linear.
+//! That is exact at any spacing for segments and arcs. For cubic curves the error of the time, in
+//! either direction, shrinks with the square of the spacing; at 1 cm it was about 1e-5 of the time
+//! on a spline with bends of half a metre. A bend shorter than the spacing takes at least the time
+//! of its turn at the largest turn rate.
 //!
 //! # Source
 //! \[Bobrow1985\], for limits that do not depend on the speed; textbook material since.
@@ -33,16 +34,16 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
 use thiserror::Error;
 
-/// Between two samples, a turn that exceeds what their curvatures explain by more than this \[rad\]
-/// has a peak of curvature that both have missed.
+/// A turn between two samples that exceeds the turn explained by their curvatures by more than
+/// this \[rad\] has a curvature peak that both samples have missed.
 const MISSED_TURN_RAD: f64 = 1e-6;
 
-/// What a profile assumes besides the robot's limits.
+/// Parameters of a speed profile, besides the robot's limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct SpeedProfileConfig {
-    /// Largest acceleration to the side on curves \[m/s²\]; none: no such limit.
+    /// Largest lateral acceleration on curves \[m/s²\]; none: unlimited.
     pub lateral_acceleration_mps2: Option<f64>,
     /// Speed at the beginning \[m/s\].
     pub start_mps: f64,
@@ -55,8 +56,7 @@ pub struct SpeedProfileConfig {
 }
 
 impl SpeedProfileConfig {
-    /// Refuses a spacing at which a path has over a million samples, for whoever takes it from a
-    /// user.
+    /// Checks a spacing given by a user: it must not need more than a million samples for a path.
     ///
     /// # Errors
     /// [`SpeedProfileError::TooFine`].
@@ -82,22 +82,22 @@ impl Default for SpeedProfileConfig {
     }
 }
 
-/// Why there is no profile.
+/// Reason why there is no profile.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SpeedProfileError {
     /// A value of the config or of the limits cannot be used.
     #[error("speed profile: {0}")]
     Config(#[from] ConfigError),
-    /// The path bends, has a corner, or ends too soon for the speed at its beginning.
+    /// The path bends, has a corner, or ends too soon for its start speed.
     #[error("the path can begin with at most {at_most_mps} m/s, got {start_mps} m/s")]
     StartTooFast {
-        /// The speed asked for \[m/s\].
+        /// The requested start speed \[m/s\].
         start_mps: f64,
-        /// The largest speed that is possible \[m/s\].
+        /// The largest possible start speed \[m/s\].
         at_most_mps: f64,
     },
-    /// More samples than anybody wants: a mistake in the spacing.
+    /// The spacing needs too many samples, which is most likely a mistake.
     #[error("over a million samples of a path of {length_m:.3} m; choose at least {least_m:.6}")]
     TooFine {
         /// Length of the path \[m\].
@@ -107,10 +107,10 @@ pub enum SpeedProfileError {
     },
 }
 
-/// Samples of a profile, at most.
+/// Maximum number of samples of a profile.
 const MAX_SAMPLES: f64 = 1e6;
 
-/// What keeps the robot from being faster at a place.
+/// The constraint that limits the speed at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SpeedLimit {
@@ -120,15 +120,15 @@ pub enum SpeedLimit {
     TurnRate,
     /// The largest lateral acceleration, on a curve.
     LateralAcceleration,
-    /// The acceleration since a slower place.
+    /// The acceleration since a slower point.
     Acceleration,
-    /// The deceleration before a slower place.
+    /// The deceleration before a slower point.
     Deceleration,
-    /// A stop to turn on the spot.
+    /// A stop to turn in place.
     Corner,
-    /// The speed at the beginning.
+    /// The start speed.
     Start,
-    /// The largest speed at the end.
+    /// The largest speed at the end of the path.
     End,
 }
 
@@ -148,44 +148,44 @@ impl SpeedLimit {
     }
 }
 
-/// A place on the path, and when and how fast the robot passes it.
+/// A point on the path, with the time and the speed at which the robot passes it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SpeedSample {
-    /// The place.
+    /// The point on the path.
     #[serde(flatten)]
     pub at: PathSample,
     /// Time since the beginning \[s\].
     pub t_s: f64,
     /// Speed \[m/s\].
     pub v_mps: f64,
-    /// What keeps the robot from being faster here.
+    /// The constraint that limits the speed here.
     pub limit: SpeedLimit,
 }
 
 impl SpeedSample {
-    /// Turn rate on the curve, positive to the left \[rad/s\]; 0 where the robot turns on the spot.
+    /// Turn rate on the curve, positive to the left \[rad/s\]; 0 at a turn in place.
     pub fn omega_radps(&self) -> f64 {
         self.at.curvature_per_m * self.v_mps
     }
 }
 
-/// The fastest way to drive along a path.
+/// The fastest traversal of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SpeedProfile {
-    /// Samples in order, joints of the path's pieces among them. The arc length grows from each to
-    /// the next, except at a corner that needs a stop: that is listed twice, and the robot arrives
-    /// at the time of the first and leaves at that of the second. At another joint heading and
-    /// curvature are those of the piece that begins there.
+    /// Samples in order, including the joints of the path's pieces. The arc length increases
+    /// strictly, except at a corner that needs a stop: it is listed twice, with the times of
+    /// arrival and departure. At any other joint, heading and curvature are those of the piece
+    /// that begins there.
     pub samples: Vec<SpeedSample>,
     /// Time for the whole path \[s\].
     pub time_s: f64,
-    /// The part of it that is spent turning on the spot \[s\].
+    /// The part of it that is spent turning in place \[s\].
     pub turning_s: f64,
 }
 
-/// A bound of the squared speed at a place \[m²/s²\], and what sets it.
+/// An upper bound of the squared speed at a point \[m²/s²\], and the constraint that sets it.
 #[derive(Clone, Copy)]
 struct Bound {
     v_sq: f64,
@@ -199,10 +199,11 @@ impl Bound {
 }
 
 impl SpeedProfile {
-    /// The fastest way along `path` from `start_mps` to at most `end_mps`.
+    /// The fastest traversal of `path` from `start_mps` to at most `end_mps`.
     ///
     /// # Errors
-    /// When a value cannot be used, or the robot cannot slow down in time from `start_mps`.
+    /// Returns [`SpeedProfileError`] if a value is invalid, or if the robot cannot slow down in
+    /// time from `start_mps`.
     pub fn of_path(
         path: &Path,
         limits: &Limits,
@@ -219,7 +220,8 @@ impl SpeedProfile {
                 let turn_rad = corner_rad(&samples[before], &at, config);
                 let is_joint = samples[before].s_m == at.s_m && turn_rad == 0.0;
                 let arrival = if is_joint { profile.samples.pop() } else { None };
-                // Over no distance nothing is sped up: what limits the piece before does.
+                // At a joint no distance is covered to accelerate over: the limit of the piece
+                // before applies.
                 if let Some(arrival) = arrival.filter(|_| limit == SpeedLimit::Acceleration) {
                     limit = arrival.limit;
                 }
@@ -237,7 +239,7 @@ impl SpeedProfile {
     }
 
     /// The samples as comma-separated values: a header with units, then one line per sample. Every
-    /// number reads back as the same number.
+    /// number is parsed back to exactly the same number.
     pub fn to_csv(&self) -> String {
         let mut text =
             String::from("s_m,x_m,y_m,heading_rad,curvature_per_m,t_s,v_mps,omega_radps,limit\n");
@@ -255,7 +257,7 @@ impl SpeedProfile {
     }
 }
 
-/// What the path's curvature allows at each sample.
+/// The speed ceiling at each sample, from the path's curvature.
 fn ceilings(samples: &[PathSample], limits: &Limits, config: &SpeedProfileConfig) -> Vec<Bound> {
     let mut curvatures: Vec<f64> = samples.iter().map(|s| s.curvature_per_m.abs()).collect();
     for (i, pair) in samples.windows(2).enumerate() {
@@ -263,7 +265,7 @@ fn ceilings(samples: &[PathSample], limits: &Limits, config: &SpeedProfileConfig
         let turned_rad = driven_turn_rad(&pair[0], &pair[1]);
         let explained_rad = curvatures[i].max(curvatures[i + 1]) * driven_m;
         if turned_rad > explained_rad + MISSED_TURN_RAD {
-            // A peak between the two: on average it is at least as sharp as this.
+            // A peak between the two samples: its curvature is at least the mean curvature.
             let mean = turned_rad / driven_m;
             curvatures[i] = curvatures[i].max(mean);
             curvatures[i + 1] = curvatures[i + 1].max(mean);
@@ -275,14 +277,14 @@ fn ceilings(samples: &[PathSample], limits: &Limits, config: &SpeedProfileConfig
         let bound = Bound { v_sq: limits.v_max_mps.powi(2), limit: SpeedLimit::Speed }
             .lower(turn_rate_sq, SpeedLimit::TurnRate)
             .lower(lateral_sq, SpeedLimit::LateralAcceleration);
-        // Never quite 0: the sharpest curve is passed at last.
+        // Never exactly 0, so that even the sharpest curve is passed in finite time.
         Bound { v_sq: bound.v_sq.max(f64::MIN_POSITIVE), ..bound }
     };
     curvatures.iter().map(ceiling).collect()
 }
 
-/// The largest squared speed at each sample that can be reached from the beginning, and from which
-/// the robot can slow down for all that follows.
+/// The largest squared speed at each sample that can be reached from the start, and from which the
+/// robot can still slow down for the rest of the path.
 fn reachable(
     samples: &[PathSample],
     ceilings: &[Bound],
@@ -306,7 +308,7 @@ fn reachable(
     }
     if let Some(first) = bounds.first_mut() {
         let (start_mps, at_most_mps) = (config.start_mps, first.v_sq.sqrt());
-        // What a computed speed loses when it is squared and its root taken is not an excess.
+        // The rounding error of squaring a computed speed and taking its root is not an excess.
         if start_mps > at_most_mps * (1.0 + 1e-12) {
             return Err(SpeedProfileError::StartTooFast { start_mps, at_most_mps });
         }
@@ -319,8 +321,8 @@ fn reachable(
     Ok(bounds)
 }
 
-/// The heading change over a distance between two samples \[rad\]; 0 at a joint, where nothing is
-/// driven.
+/// The heading change over the distance between two samples \[rad\]; 0 at a joint, where the
+/// distance is 0.
 fn driven_turn_rad(before: &PathSample, after: &PathSample) -> f64 {
     if after.s_m == before.s_m {
         return 0.0;
@@ -328,18 +330,18 @@ fn driven_turn_rad(before: &PathSample, after: &PathSample) -> f64 {
     wrap_angle(after.heading_rad - before.heading_rad).abs()
 }
 
-/// The heading jump at a joint that needs a stop \[rad\]; 0 where there is none.
+/// The heading jump at a joint that needs a stop \[rad\]; 0 if it needs none.
 fn corner_rad(before: &PathSample, after: &PathSample, config: &SpeedProfileConfig) -> f64 {
     let turn_rad = wrap_angle(after.heading_rad - before.heading_rad).abs();
     if after.s_m == before.s_m && turn_rad > config.smooth_turn_rad { turn_rad } else { 0.0 }
 }
 
-/// The shortest time for a distance between two samples \[s\]; `ends` are squared speed and ceiling
-/// at either.
+/// The shortest time for the distance between two samples \[s\]. `ends` are the squared speed and
+/// its ceiling at either sample.
 ///
-/// Over the distance, the squared speed under constant acceleration is a straight line, and so are
-/// the ceiling and the squared speed under constant deceleration. The fastest is the lowest of the
-/// three; where two of them cross, the acceleration changes.
+/// Over the distance, the squared speed is linear under constant acceleration and under constant
+/// deceleration, and so is the ceiling. The fastest profile is the lowest of the three lines; the
+/// acceleration changes where two of them cross.
 fn driving_time_s(distance_m: f64, ends: [(f64, f64); 2], limits: &Limits) -> f64 {
     if distance_m <= 0.0 {
         return 0.0;
@@ -359,16 +361,16 @@ fn driving_time_s(distance_m: f64, ends: [(f64, f64); 2], limits: &Limits) -> f6
             lines.iter().map(|(begin, slope)| begin + slope * s).fold(f64::INFINITY, f64::min);
         v_sq.max(0.0).sqrt()
     };
-    // Under constant acceleration the mean speed is that of the ends.
+    // Under constant acceleration, the mean speed is the mean of the two end speeds.
     let time_s = |pair: &[f64]| 2.0 * (pair[1] - pair[0]) / (speed_at(pair[0]) + speed_at(pair[1]));
     let times_s = places.windows(2).filter(|pair| pair[1] > pair[0]).map(time_s);
     times_s.fold(0.0, |sum, time_s| sum + time_s)
 }
 
-/// The shortest time to turn on the spot, from rest to rest \[s\].
+/// The shortest time to turn in place, from rest to rest \[s\].
 fn turning_time_s(turn_rad: f64, limits: &Limits) -> f64 {
     let (up, down) = (limits.angular_acceleration_radps2, limits.angular_deceleration_radps2);
-    // The turn rate at which speeding up and slowing down make up the whole turn.
+    // The turn rate at which accelerating and decelerating make up the whole turn.
     let peak_radps = (2.0 * turn_rad * up * down / (up + down)).sqrt();
     let rate_radps = peak_radps.min(limits.omega_max_radps);
     let ramps_s = rate_radps / up + rate_radps / down;

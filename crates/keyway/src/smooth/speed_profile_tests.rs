@@ -34,7 +34,8 @@ fn spline(control: &[[f64; 2]]) -> Path {
 
 #[test]
 fn a_straight_line_by_hand() {
-    // 1 s and 0.25 m up to 0.5 m/s, the same down, 1.5 m in between: 1 + 3 + 1 s, at any spacing.
+    // 1 s and 0.25 m up to 0.5 m/s, the same for slowing down, 1.5 m in between: 1 + 3 + 1 s, at
+    // any spacing.
     for spacing_m in [0.001, 0.3, 0.7, 9.0] {
         let driven = profile(&line(&[[0., 0.], [2., 0.]]), &spaced(spacing_m));
         assert!((driven.time_s - 5.0).abs() < 1e-9, "{spacing_m}: {}", driven.time_s);
@@ -61,7 +62,8 @@ fn a_straight_line_by_hand() {
 
 #[test]
 fn circles_by_hand() {
-    // Radius 0.25 m: 1.5 rad/s is 0.375 m/s. With 0.04 m/s² to the side, sqrt(0.01) = 0.1 m/s.
+    // Radius 0.25 m: 1.5 rad/s is 0.375 m/s. With a lateral acceleration of 0.04 m/s², sqrt(0.01)
+    // = 0.1 m/s.
     let path =
         Path::new(vec![PathPiece::Arc(Arc::new(Point::default(), 0.25, 0.0, -TAU))]).unwrap();
     let rolling = |v, lateral| SpeedProfileConfig {
@@ -99,13 +101,14 @@ fn corners_by_hand() {
     assert!((arrives.t_s - 5.0).abs() < 1e-9 && (leaves.t_s - 5.0 - turn_s).abs() < 1e-9);
     // A turn by 0.12 rad never gets to 1.5 rad/s: 2 sqrt(0.12 / 3) = 0.4 s.
     assert!((turning_time_s(0.12, &limits()) - 0.4).abs() < 1e-12);
-    // Back again is a turn by pi; a jump that counts as smooth takes no time.
+    // Straight back is a turn by pi; a jump that counts as smooth takes no time.
     let back = profile(&line(&[[0., 0.], [2., 0.], [0., 0.]]), &spaced(0.05));
     assert!((back.turning_s - 1.0 - (PI - 0.75) / 1.5).abs() < 1e-12);
     let through = SpeedProfileConfig { smooth_turn_rad: 1.6, ..spaced(0.05) };
     let driven = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &through);
     assert!(driven.turning_s == 0.0 && (driven.time_s - 9.0).abs() < 1e-9);
-    // A jump of just what counts as smooth is smooth; with a hair less allowed it is not.
+    // A jump of exactly the smooth limit counts as smooth; with a slightly smaller limit it does
+    // not.
     for (smooth_turn_rad, is_stop) in [(FRAC_PI_2, false), (FRAC_PI_2 - 1e-9, true), (1.0, true)] {
         let config = SpeedProfileConfig { smooth_turn_rad, ..spaced(0.05) };
         let turning_s = profile(&line(&[[0., 0.], [2., 0.], [2., 2.]]), &config).turning_s;
@@ -212,21 +215,21 @@ fn the_time_converges_with_the_square_of_the_spacing() {
     let exact_s = time_s(2e-4);
     let errors = [0.08, 0.04, 0.02, 0.01].map(|h| (time_s(h) - exact_s).abs() / (h * h));
     assert!(exact_s > path.length_m() / 0.5 + 1.0 && errors.iter().all(|&e| e < 1.5), "{errors:?}");
-    // The default spacing is good for a millisecond or so, and the finest is not the slowest.
+    // The default spacing is accurate to about a millisecond, and the finest is not the slowest.
     assert!((time_s(0.01) - exact_s).abs() < 1e-3, "{} {exact_s}", time_s(0.01));
     assert!(time_s(1e-3) <= time_s(0.01) + 1e-3);
 }
 
 #[test]
 fn a_cusp_between_two_samples_is_not_missed() {
-    // The curve goes 5/3 m ahead, turns around on the spot, 1/3 m back, turns around again: its
-    // curvature is 0 wherever it is sampled.
+    // The curve goes 5/3 m ahead, turns around in place, 1/3 m back, turns around again: its
+    // curvature is 0 at every sample.
     let control = [[0., 0.], [4., 0.], [-1., 0.], [3., 0.]].map(Point::from);
     let path = Path::new(vec![PathPiece::Cubic(Cubic::bezier(control))]).unwrap();
     let driven = profile(&path, &spaced(0.01));
     // Two turns by pi at 1.5 rad/s.
     assert!(driven.time_s > path.length_m() / 0.5 + 2.0 * PI / 1.5, "{}", driven.time_s);
-    // Both samples around a cusp are as slow as a turn by pi within a centimetre asks for.
+    // Both samples around a cusp are as slow as a turn by pi within a centimetre requires.
     let slowest_mps = 1.5 * 0.01 / PI;
     let slow = |sample: &&SpeedSample| sample.v_mps > 0.0 && sample.v_mps < 1.01 * slowest_mps;
     assert_eq!(driven.samples.iter().filter(slow).count(), 4);
@@ -262,7 +265,7 @@ fn a_circle_can_begin_at_its_largest_speed() {
     }
 }
 
-/// A bend half a millimetre long: both samples of it are known, its peak is one of them.
+/// A bend half a millimetre long: both of its samples are known, and its peak is one of them.
 #[test]
 fn a_bend_shorter_than_the_spacing_takes_the_time_of_its_turn() {
     let way = |points: [[f64; 2]; 4]| PathPiece::Cubic(Cubic::bezier(points.map(Point::from)));
@@ -286,7 +289,7 @@ fn a_bend_shorter_than_the_spacing_takes_the_time_of_its_turn() {
 }
 
 /// The least time over intervals of equal length, each with its own largest speed, from rest to
-/// rest: all constant accelerations between squared speeds on a grid are tried.
+/// rest. Tries all constant accelerations between squared speeds on a grid.
 fn brute_force_s(step_m: f64, v_max: &[f64], limits: &Limits) -> f64 {
     let changes = 8;
     let grid = 2.0 * limits.acceleration_mps2 * step_m / changes as f64;
@@ -312,7 +315,7 @@ fn tables_read_back_the_same() {
     let json = serde_json::to_string(&driven).unwrap();
     assert!(json.contains("\"limit\":\"turn-rate\"") || json.contains("\"limit\":\"speed\""));
     let read: SpeedProfile = serde_json::from_str(&json).unwrap();
-    // The text is exact, but this reader of JSON rounds the last bit of some numbers.
+    // The text is exact, but this JSON reader rounds the last bit of some numbers.
     assert_eq!(read.samples.len(), driven.samples.len());
     for (read, sample) in read.samples.iter().zip(&driven.samples) {
         assert_eq!(read.limit, sample.limit);

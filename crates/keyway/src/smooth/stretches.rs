@@ -1,24 +1,24 @@
-//! The straight stretches of a line, in a tree of the boxes around them.
+//! The straight stretches of a line, in a tree of bounding boxes.
 
 use crate::geometry::Point;
 use crate::map::{Clearance, GridFrame};
 use std::ops::RangeInclusive;
 
-/// Points that are this far from a straight line \[cells\] lie on it.
+/// Points within this distance of a straight line \[cells\] lie on it.
 const STRAIGHT_CELLS: f64 = 1e-8;
 
-/// A line, its straight stretches, and what they span.
+/// A line, its straight stretches, and their bounding boxes.
 pub(super) struct Stretches<'l> {
     points: &'l [Point],
     frame: &'l GridFrame,
-    /// The last point of each stretch, with which the next one begins; the first stretch is a
-    /// point.
+    /// The last point of each stretch, which is also the first point of the next one. The first
+    /// stretch is a single point.
     ends: Vec<usize>,
-    /// What each stretch spans, each two of them, each two of these, up to the whole line.
+    /// Bounding boxes of the stretches, of pairs of them, of pairs of these, up to the whole line.
     spans: Vec<Vec<Span>>,
 }
 
-/// One stretch (level 0), or 2^level of them, of which it is number `index`.
+/// One stretch (level 0), or the group of 2^level stretches with this index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     level: usize,
@@ -32,7 +32,8 @@ impl<'l> Stretches<'l> {
         Self::with_ends(points, ends_of_stretches(&cells), clearance)
     }
 
-    /// The same for a line whose stretches are known: their last points. The first one is a point.
+    /// As [`Self::new`], for a line whose stretches are known: `ends` are their last points. The
+    /// first stretch is a single point.
     pub(super) fn with_ends(
         points: &'l [Point],
         ends: Vec<usize>,
@@ -60,7 +61,7 @@ impl<'l> Stretches<'l> {
         self.frame.grid_from_world(self.points[at])
     }
 
-    /// All of the line, unless it has no point.
+    /// The whole line; `None` if it has no point.
     pub(super) fn whole(&self) -> Option<Part> {
         (!self.points.is_empty()).then_some(Part { level: self.spans.len() - 1, index: 0 })
     }
@@ -73,7 +74,7 @@ impl<'l> Stretches<'l> {
         Some(halves.filter(move |&index| index < count).map(move |index| Part { level, index }))
     }
 
-    /// The points of a part. Where two meet, the point belongs to the earlier one.
+    /// The points of a part. A point shared by two parts belongs to the earlier one.
     pub(super) fn points_of(&self, part: Part) -> RangeInclusive<usize> {
         let first = part.index << part.level;
         let next = ((part.index + 1) << part.level).min(self.ends.len());
@@ -81,18 +82,18 @@ impl<'l> Stretches<'l> {
         begin..=self.ends[next - 1]
     }
 
-    /// The last point of the straight stretch to which point `at` belongs.
+    /// The last point of the straight stretch that point `at` belongs to.
     pub(super) fn end_of_stretch(&self, at: usize) -> usize {
         self.ends[self.ends.partition_point(|&end| end < at)]
     }
 
-    /// The box around a part \[cells\].
+    /// The bounding box of a part \[cells\].
     pub(super) fn around(&self, part: Part) -> Span {
         self.spans[part.level][part.index]
     }
 }
 
-/// The last points of straight stretches; the first point is a stretch of its own.
+/// The last points of the straight stretches; the first point is a stretch of its own.
 fn ends_of_stretches(cells: &[Point]) -> Vec<usize> {
     let mut ends: Vec<usize> = (0..cells.len().min(1)).collect();
     let (mut from, mut ahead) = (0, Point::default());
@@ -111,7 +112,7 @@ fn ends_of_stretches(cells: &[Point]) -> Vec<usize> {
     ends
 }
 
-/// The smallest box that holds some points \[cells\].
+/// The bounding box of some points \[cells\].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     pub(super) low: Point,
@@ -161,7 +162,7 @@ mod tests {
             (0..7).map(|at| line.end_of_stretch(at)).collect::<Vec<_>>(),
             [0, 2, 2, 3, 5, 5, 6]
         );
-        // Five stretches, three pairs, two of these, and the whole line.
+        // Five stretches, three pairs, two pairs of these, and the whole line.
         assert_eq!(line.spans.iter().map(Vec::len).collect::<Vec<_>>(), [5, 3, 2, 1]);
         let whole = line.whole().unwrap();
         assert_eq!(line.points_of(whole), 0..=6);
@@ -175,7 +176,7 @@ mod tests {
         let last: Vec<Part> = line.halves(halves[1]).unwrap().collect();
         assert_eq!(last.iter().map(|&half| line.points_of(half)).collect::<Vec<_>>(), [6..=6]);
         assert!(Stretches::new(&[], &clearance).whole().is_none());
-        // A line that hardly bends at each point all the same leaves its straight stretch.
+        // A line that bends only slightly at each point still leaves its straight stretch.
         let ends = |y: [f64; 4]| {
             ends_of_stretches(&[0, 1, 2, 3].map(|k| Point::new(f64::from(k as u8), y[k])))
         };

@@ -1,11 +1,10 @@
-//! What an eye sees of a line: which points of it can be reached in a straight line, with a
-//! clearance.
+//! Visibility of a line from a viewpoint: finds the points of the line that can be reached in a
+//! straight line, with a clearance.
 //!
-//! An obstacle that stops one connection stops those to all points in its shadow. The shadow of a
-//! convex shape is convex ([`HiddenRegion`]): where both ends of a straight stretch of a line lie
-//! in it, everything between them does, too; and where the corners of a box do, so do all points in
-//! the box. The shapes are rows and columns of obstacle cells with all that is nearer to them than
-//! the clearance.
+//! An obstacle that blocks one connection blocks those to all points in its shadow. The shadow of
+//! a convex shape is convex ([`HiddenRegion`]): if it contains both ends of a straight stretch, it
+//! contains the whole stretch, and if it contains the corners of a box, it contains the whole box.
+//! The shapes are rows and columns of obstacle cells, inflated by the clearance.
 
 use super::hidden_region::HiddenRegion;
 use super::required_clearance::RequiredClearance;
@@ -13,32 +12,33 @@ use super::stretches::{Part, Span, Stretches};
 use crate::geometry::{Point, Segment, Square};
 use crate::map::{Cell, Clearance, Obstruction};
 
-/// Shapes are smaller by this on all sides \[cells\]: what they stop is stopped for certain.
+/// Shapes are shrunk by this on all sides \[cells\], so that whatever they block is certainly
+/// blocked.
 const INSIDE_CELLS: f64 = 1e-6;
 
 /// The longest column of obstacle cells that makes a box.
 const LONGEST_CELLS: i32 = 256;
 
-/// How many shapes are remembered.
+/// Maximum number of shapes that are remembered.
 const SOLIDS: usize = 8;
 
-/// What is known of the obstacles around an eye that goes along a line.
+/// Obstacles found so far around a viewpoint that moves along a line.
 pub(super) struct Visibility<'a> {
     clearance: &'a Clearance<'a>,
     clearance_m: f64,
-    /// What stops connections, and its shadow for the eye. The one that was found or used last
-    /// comes last.
+    /// Shapes that block connections, and their shadows for the viewpoint. The shape that was
+    /// found or used most recently comes last.
     solids: Vec<(Solid, HiddenRegion)>,
-    /// Where the eye is \[cells\].
+    /// Position of the viewpoint \[cells\].
     eye: Point,
-    /// Parts of the line that are still to be searched, the last one last.
+    /// Parts of the line that are still to be searched, the last part last.
     parts: Vec<Part>,
-    /// Where the last safe connection that was found ends: that point is safe.
+    /// End point of the last safe connection that was found: a safe connection can begin there.
     safe: Option<usize>,
 }
 
 impl<'a> Visibility<'a> {
-    /// Whatever comes nearer to an obstacle than the clearance has to count as stopped.
+    /// Every connection that comes closer to an obstacle than the clearance must count as blocked.
     pub(super) const fn new(clearance: &'a Clearance<'a>, clearance_m: f64) -> Self {
         Self {
             clearance,
@@ -50,9 +50,9 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// The point that is farthest along a line of those to which a safe connection leads from point
-    /// `eye`; the next one, whatever leads there, when there is none. `required` has the clearance
-    /// of this.
+    /// The farthest point along a line that a safe connection from point `eye` leads to. If there
+    /// is none, the next point, without any test. `required` must have the same clearance as
+    /// `self`.
     pub(super) fn farthest_safe(
         &mut self,
         line: &Stretches<'_>,
@@ -63,15 +63,16 @@ impl<'a> Visibility<'a> {
         if line.points().len() <= next + 1 {
             return next;
         }
-        // From a point that is too near to something no connection is safe.
+        // No connection is safe from a point that is itself too close to an obstacle or the
+        // border.
         let is_safe = self.safe == Some(eye) || required.is_safe_point(line.points()[eye]);
         let what_stops = |connection| required.obstruction(connection);
         self.safe = if is_safe { self.last_seen(line, eye, next + 1, what_stops) } else { None };
         self.safe.unwrap_or(next)
     }
 
-    /// The last point of a line, from number `least` on, that is seen from point `eye`: nothing
-    /// stops its connection.
+    /// The last point of a line, from index `least` on, that is visible from point `eye`: nothing
+    /// blocks its connection.
     pub(super) fn last_seen(
         &mut self,
         line: &Stretches<'_>,
@@ -99,7 +100,7 @@ impl<'a> Visibility<'a> {
         None
     }
 
-    /// The same for points on a straight stretch.
+    /// As [`Self::last_seen`], for points on a straight stretch.
     fn last_seen_of(
         &mut self,
         line: &Stretches<'_>,
@@ -143,7 +144,7 @@ impl<'a> Visibility<'a> {
         what_stops.is_none()
     }
 
-    /// From now on the shadows are those that this eye sees \[cells\].
+    /// Moves the viewpoint \[cells\] and updates the shadows.
     fn look_from(&mut self, eye: Point) {
         self.eye = eye;
         for (solid, shadow) in &mut self.solids {
@@ -151,14 +152,14 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// The shadow in which all of a box lies \[cells\].
+    /// The shadow that contains all of a box \[cells\].
     fn what_hides(&mut self, places: Span) -> Option<HiddenRegion> {
         let found = self.solids.iter().rposition(|(_, shadow)| shadow.hides(places))?;
         self.solids[found..].rotate_left(1);
         self.solids.last().map(|&(_, shadow)| shadow)
     }
 
-    /// True if something that is remembered stops a connection \[cells\].
+    /// True if a remembered shape blocks a connection \[cells\].
     fn is_stopped(&mut self, from: Point, to: Point) -> bool {
         let Some(found) = self.solids.iter().rposition(|(solid, _)| solid.stops(from, to)) else {
             return false;
@@ -167,7 +168,7 @@ impl<'a> Visibility<'a> {
         true
     }
 
-    /// The obstacle cells in a row, and in a column, with one that stopped a connection.
+    /// Remembers the row and the column of obstacle cells around one that blocked a connection.
     fn remember(&mut self, square: Square) {
         let obstacles = self.clearance.obstacles();
         let at = Cell::new(square.corner.x as i32, square.corner.y as i32);
@@ -191,7 +192,7 @@ impl<'a> Visibility<'a> {
     }
 }
 
-/// A box to which a connection may not be nearer than a radius \[cells\].
+/// A box with a radius \[cells\] that connections must keep from it.
 #[derive(Clone, Copy, Debug)]
 struct Solid {
     low: Point,
@@ -200,7 +201,7 @@ struct Solid {
 }
 
 impl Solid {
-    /// True if it stops the connection of two points.
+    /// True if it blocks the connection of two points.
     fn stops(&self, from: Point, to: Point) -> bool {
         let Self { low, high, radius } = *self;
         let apart = |by: f64| {
@@ -213,7 +214,8 @@ impl Solid {
         if apart(radius) {
             return false;
         }
-        // No side of the box around all is a separating line; the connection's own line is left.
+        // The sides of the inflated box are no separating lines; the connection's own line remains
+        // to be tested.
         let way = to - from;
         let off = way.cross((low + high) * 0.5 - from).abs();
         let half = (high - low) * 0.5;
@@ -224,8 +226,8 @@ impl Solid {
         off < shadow + radius * way.norm() && self.is_rounded_near(Segment::new(from, to))
     }
 
-    /// True if a connection past the box is nearer than the radius: then it is so at one of its
-    /// ends or at a corner.
+    /// True if a connection past the box comes closer than the radius. The closest point is then
+    /// one of its ends, or next to a corner of the box.
     fn is_rounded_near(&self, connection: Segment) -> bool {
         let Self { low, high, radius } = *self;
         let radius_sq = radius * radius;
@@ -239,7 +241,7 @@ impl Solid {
             || corners.into_iter().any(|at| connection.distance_sq_to_point(at) < radius_sq)
     }
 
-    /// What it hides from an eye.
+    /// The region that it hides from a viewpoint.
     fn shadow(&self, eye: Point) -> HiddenRegion {
         HiddenRegion::of_box(Span::of_two(self.low, self.high), self.radius, eye)
     }

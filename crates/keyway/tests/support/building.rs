@@ -13,7 +13,7 @@ pub(crate) fn blocks(rows: &[&str]) -> OccupancyGrid {
     OccupancyGrid::from_fn(frame, |cell| coarse.state(Cell::new(cell.x / 5, cell.y / 5)).unwrap())
 }
 
-/// A corridor with a recess, and a closed room that nobody can look into.
+/// A corridor with a recess, and a closed room that cannot be seen into.
 pub(crate) fn building() -> OccupancyGrid {
     blocks(&[
         "####################",

@@ -6,7 +6,7 @@ use keyway::map::OccupancyGrid;
 use keyway::navigate::{FittedStack, Goal, NavigateError, Navigator, Step};
 use keyway::sense::{Observation, Scan, SensorScan};
 
-/// A navigator on its way from a start to a goal.
+/// A navigator that drives from a start to a goal.
 pub(crate) fn bound_for(
     map: &OccupancyGrid,
     stack: &FittedStack,

@@ -1,5 +1,5 @@
-//! The truth about small maps: plain arrays, searched by relaxing all edges until nothing changes.
-//! It shares nothing with the planners but the types of the answer.
+//! The ground truth for small maps: plain arrays, searched by relaxing all edges until nothing
+//! changes. It shares nothing with the planners but the types of the answer.
 // Every test program uses its own part of this.
 #![allow(dead_code)]
 
@@ -18,7 +18,7 @@ pub(crate) struct Raw {
     pub(crate) states: Vec<CellState>,
 }
 
-/// What a step may do, and what it costs.
+/// The rules and costs of steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rules {
     pub(crate) corners: CornerRule,

@@ -18,7 +18,7 @@ fn away(a: P, b: P) -> f64 {
     ((a.0 - b.0).powi(2) + (a.1 - b.1).powi(2)).sqrt()
 }
 
-/// On which part of the algorithm the robot is.
+/// The part of the algorithm that the robot is in.
 enum Mode {
     Route,
     ToGa { x_j: P, st: f64 },
@@ -72,7 +72,7 @@ impl Whole {
         *self.corners.last().unwrap()
     }
 
-    /// The arc length of the point nearest to a place, of those from one arc length to another.
+    /// The arc length of the point nearest to a position, among those between two arc lengths.
     fn nearest(&self, place: P, from: f64, to: f64) -> f64 {
         let (mut begin, mut best, mut best_away) = (0.0, from, f64::INFINITY);
         for pair in self.corners.windows(2) {
@@ -161,7 +161,7 @@ impl Whole {
         window::best(world, state, target, [false, true], |all| window::guided(all, self.weights))
     }
 
-    /// The first node that something seen is too near to, and the nearest square there.
+    /// The first node that a seen square is too close to, and the nearest square there.
     fn detected(&self, world: &World, upto: f64) -> Option<(f64, P)> {
         for &(along, node) in &self.nodes {
             if along <= self.covered + 1e-9 || along > upto {
@@ -208,8 +208,8 @@ impl Whole {
     }
 }
 
-/// The fastest speed at the end of a cycle after which the robot stops within what is left, found
-/// by trying.
+/// The largest speed at the end of a cycle after which the robot still stops within the remaining
+/// distance, found by trying.
 fn stoppable(u: f64, left: f64) -> f64 {
     let needs = |v: f64| {
         let (mut v, mut way) = (v, 0.05 * (u + v));
@@ -259,7 +259,7 @@ fn is_free(world: &World, p: P) -> bool {
     border >= D - 1e-9 && world.squares().all(|square| to_square(p.0, p.1, square) >= D)
 }
 
-/// True if a line runs through the inside of a square: through the square without its rim.
+/// True if a line runs through the interior of a square, without its boundary.
 fn enters(a: P, b: P, square: &P) -> bool {
     let n = 4000;
     (0..=n).any(|i| {
@@ -316,8 +316,8 @@ fn joined(world: &World, theta: f64, x_ga: P, st: (f64, P), nodes: &[(f64, P)]) 
     best.unwrap_or(st)
 }
 
-/// Maps, routes that are smooth and keep well away from what is known, and something unknown on
-/// each.
+/// Maps, routes that are smooth and keep well away from the known obstacles, and an unknown
+/// obstacle on each.
 pub(crate) fn cases() -> Vec<(World, Polyline)> {
     let line = |points: &[[f64; 2]]| Polyline::new(points.iter().map(|&p| p.into()).collect());
     let hall = [".................."; 8];

@@ -1,4 +1,4 @@
-//! Which point is driven towards: key points of You 2021, local goals of S1.
+//! The target points of the guides: key points of You 2021, local goals of S1.
 
 use super::window::State;
 use keyway::geometry::Polyline;
@@ -31,7 +31,7 @@ impl KeyPoint {
     }
 }
 
-/// Every 2 m along the path one, and the goal; the next one within 0.5 m.
+/// A point every 2 m along the path, and the goal; the next one is taken within 0.5 m.
 pub(crate) struct LocalGoal {
     left: Vec<(f64, f64)>,
 }

@@ -2,12 +2,13 @@
 //! whole runs.
 //!
 //! The transcriptions are plain and slow: own rollouts by Euler steps, distances to all squares of
-//! the map one after the other, own normalisation, own search for the best. They share the map, the
-//! robot's limits and the state at the beginning of each cycle with the planners, and nothing else.
+//! the map one after the other, own normalisation, own search for the best. They share the map,
+//! the robot's limits and the state at the beginning of each cycle with the planners, and nothing
+//! else.
 //!
-//! Two commands are equal when neither component differs by more than 1e-9. Otherwise it is a tie
-//! when the planner's command is a candidate of the transcription with a score that is at most 1e-9
-//! below its best. In a cycle in which a candidate passes something at less than 0.2 mm, the
+//! Two commands are equal if neither component differs by more than 1e-9. Otherwise it is a tie if
+//! the planner's command is a candidate of the transcription with a score that is at most 1e-9
+//! below its best. In a cycle in which a candidate passes an obstacle at less than 0.2 mm, the
 //! commands may differ, because that candidate may be admissible or not. Both are counted, and at
 //! most one cycle of a hundred may be such a one.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
@@ -31,38 +32,38 @@ use keyway::robot::Robot;
 use window::{Evaluated, State, Terms};
 use world::World;
 
-/// What a cycle of a transcription wants.
+/// The command that a transcription expects in a cycle.
 pub(crate) enum Wanted {
     /// The best of the admissible candidates.
     BestOf {
         /// All of them, slowest first.
         all: Vec<Evaluated>,
-        /// True if a candidate passes something so near that it may be refused.
+        /// True if a candidate passes an obstacle so closely that it may be refused.
         has_doubt: bool,
     },
     /// This velocity, without any candidates.
     Exactly(State),
-    /// Nothing is admissible.
+    /// No velocity is admissible.
     Nothing,
 }
 
-/// What a run was.
+/// Counters of a run.
 #[derive(Debug, Default)]
 struct Tally {
     cycles: u32,
     ties: u32,
-    /// Cycles with another command, in which a candidate touches something or not within rounding.
+    /// Cycles with another command, in which a candidate touches an obstacle within rounding.
     doubts: u32,
     /// Cycles in which a dynamic window decided.
     windows: u32,
     /// Cycles without an admissible velocity.
     blocked: u32,
     arrived: u32,
-    /// Cycles on the way back from behind an obstacle.
+    /// Cycles of the return from behind an obstacle.
     back: u32,
 }
 
-/// Compares one decision with what a transcription wants.
+/// Compares a decision with the expectation of a transcription.
 fn compare(ours: Option<Velocity>, wanted: &Wanted, tally: &mut Tally, at: &str) {
     let is_same = |command: Velocity, v: f64, omega: f64| {
         (command.v - v).abs() <= 1e-9 && (command.omega - omega).abs() <= 1e-9
@@ -99,10 +100,10 @@ fn compare(ours: Option<Velocity>, wanted: &Wanted, tally: &mut Tally, at: &str)
     }
 }
 
-/// What decides in the transcription, from the state and the world as it is known.
+/// The decision rule of a transcription, for the state and the world as known so far.
 type Transcription<'a> = dyn FnMut(&World, State) -> Wanted + 'a;
 
-/// A whole run of a planner with its guide; every decision is compared.
+/// A whole run of a planner with its guide; compares every decision.
 fn run(
     world: &mut World,
     path: &Polyline,
@@ -193,13 +194,13 @@ fn cases() -> Vec<(World, Polyline)> {
         (World::new(&blocks, &[]), line(&[[1.5, 0.5], [5.0, 2.0], [9.0, 4.0], [10.5, 7.5]])),
         (World::new(&doorway, &[]), line(&[[0.7, 5.5], [3.5, 3.5], [5.5, 3.5], [10.5, 0.7]])),
         (World::new(&corridor, &[]), line(&[[8.5, 0.6], [8.5, 5.0], [7.0, 5.5], [0.8, 5.5]])),
-        // Straight ahead stands something that nobody knew.
+        // An unknown obstacle straight ahead.
         (World::new(&hall, &[(6, 2)]), line(&[[0.5, 2.5], [13.5, 2.5]])),
         (World::new(&hall, &[(6, 1), (7, 1)]), line(&[[0.5, 2.0], [13.2, 2.4]])),
     ]
 }
 
-/// Whole runs on all maps; the totals.
+/// Complete runs on all maps; returns the totals.
 fn runs<'p>(
     planner: &dyn LocalPlanner,
     guide: &dyn Guide,
@@ -293,9 +294,9 @@ fn adaptive_dwa() {
     assert!(tally.arrived >= 2, "{tally:?}");
 }
 
-/// The guidance with the published weights, and with such that keep the robot far from obstacles.
-/// With the published ones it stands still in front of what it should drive around: the point
-/// behind it is straight ahead.
+/// The guidance with the published weights, and with weights that keep the robot far from
+/// obstacles. With the published ones it stops in front of the obstacle that it should drive
+/// around: the point behind it is straight ahead.
 #[test]
 fn guided_dwa() {
     let guide = KeyPoints::new(KeyPointsConfig::PAPER).unwrap();
@@ -317,7 +318,7 @@ fn guided_dwa() {
     }
 }
 
-/// The window that the transcriptions assume.
+/// The window that the transcriptions assume is the published one.
 #[test]
 fn the_published_window() {
     let WindowConfig { horizon_s, prediction_step_s, v_step_mps, omega_step_radps, .. } =

@@ -17,8 +17,8 @@ const D_OMEGA: f64 = PI / 180.0;
 const STEPS: u32 = 30;
 const RANGE_M: f64 = 5.0;
 
-/// The planners count a stretch this short that they cannot show to be free as contact (0.1 mm), so
-/// a trajectory that passes something nearer than this may be refused.
+/// The planners count a stretch this short that they cannot show to be free as contact (0.1 mm),
+/// so a trajectory that passes an obstacle at less than this may be refused.
 const DOUBT_M: f64 = 2e-4;
 
 /// Differences of this size are rounding.
@@ -42,7 +42,7 @@ pub(crate) struct Evaluated {
     pub(crate) score: f64,
 }
 
-/// What is known of an admissible candidate before normalisation.
+/// The terms of an admissible candidate before normalisation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     pub(crate) v: f64,
@@ -68,7 +68,7 @@ impl State {
     }
 }
 
-/// Multiples of a step between two ends, and the ends.
+/// Multiples of a step between two bounds, and the bounds.
 fn between(low: f64, high: f64, step: f64) -> Vec<f64> {
     let mut values = vec![low];
     for k in -2000..=2000 {
@@ -92,9 +92,9 @@ fn angle_difference(a: f64) -> f64 {
     a
 }
 
-/// All admissible candidates, (5) to (8), and whether one of them, or one that was refused, is in
-/// doubt. `at_end`: whether dist of (7) and of the evaluation is that of the trajectory's end,
-/// otherwise of its nearest point.
+/// All admissible candidates, (5) to (8), and true if one of them, or a refused one, is in doubt.
+/// With `at_end`, dist of (7) and of the evaluation is that of the trajectory's end, otherwise
+/// that of its nearest point.
 fn admissible(
     world: &World,
     state: State,
@@ -118,14 +118,14 @@ fn admissible(
     (all, has_doubt)
 }
 
-/// (7), as it refuses.
+/// True if (7) refuses the candidate.
 fn is_refused(Terms { v, omega, stopping, .. }: &Terms) -> bool {
     let slow_enough = |decelerated: f64| (2.0 * stopping * decelerated).sqrt();
     *v > slow_enough(V_A) || (*v != 0.0 && omega.abs() > slow_enough(OMEGA_A))
 }
 
-/// Contact is what comes nearer than `contact_m`. Also whether rounding decides: whether (7)
-/// refuses it, or where the target is from a place on it.
+/// The terms of a candidate; contact is a distance below `contact_m`. The second result is true if
+/// rounding decides: if (7) refuses it, or in the direction of the target from a position on it.
 fn rolled_out(
     world: &World,
     state: State,

@@ -1,4 +1,4 @@
-//! A map of 1 m cells, what stands on it unknown, and what of that was seen.
+//! A map of 1 m cells, the unknown obstacles on it, and those that were seen.
 
 use keyway::geometry::Point;
 use keyway::map::{BitGrid, Cell, CellState, DistanceField, FieldConfig, OccupancyGrid};
@@ -9,19 +9,19 @@ pub(crate) struct World {
     /// Squares, by their lower left corners.
     pub(crate) known_squares: Vec<(f64, f64)>,
     unknown: Vec<(f64, f64)>,
-    /// Stands at the first place until the time is over, then at the second.
+    /// A moving obstacle: at the first position until its time is up, then at the second.
     mover: Option<[(f64, f64); 2]>,
-    /// Squares that are not on the map and were seen.
+    /// Seen squares that are not on the map.
     pub(crate) seen: Vec<(f64, f64)>,
     pub(crate) width: f64,
     pub(crate) height: f64,
 }
 
 impl World {
-    /// What a range sensor sees [m].
+    /// Range of the sensor [m].
     const RANGE_M: f64 = 5.0;
 
-    /// When what moves has moved on [s].
+    /// Time at which the moving obstacle has moved [s].
     const MOVES_AT_S: f64 = 12.0;
 
     pub(crate) fn new(rows: &[&str], unknown: &[(u8, u8)]) -> Self {
@@ -44,7 +44,7 @@ impl World {
         self
     }
 
-    /// Sees what is within range; what moved away is forgotten.
+    /// Sees all squares within range, and forgets those that moved away.
     pub(crate) fn sense(&mut self, position: Point, time_s: f64) {
         if let Some([first, second]) = self.mover {
             let (now, other) =
@@ -63,12 +63,12 @@ impl World {
         }
     }
 
-    /// All squares that are known or were seen.
+    /// All squares that are on the map or were seen.
     pub(crate) fn squares(&self) -> impl Iterator<Item = &(f64, f64)> {
         self.known_squares.iter().chain(&self.seen)
     }
 
-    /// What the planner is given.
+    /// The input of the planner.
     pub(crate) fn sensed(&self) -> BitGrid {
         let mut sensed =
             BitGrid::new(self.known.frame().width(), self.known.frame().height(), false);
@@ -78,7 +78,7 @@ impl World {
         sensed
     }
 
-    /// What the planner is given.
+    /// The input of the planner.
     pub(crate) fn field(&self) -> DistanceField {
         let sensed = self.sensed();
         let all = OccupancyGrid::from_fn(*self.known.frame(), |cell| {
@@ -96,8 +96,8 @@ pub(crate) fn to_square(x: f64, y: f64, &(left, low): &(f64, f64)) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }
 
-/// True if a straight line comes to a square that is so much larger on each side: by the part of
-/// the line between its sides.
+/// True if a straight line meets a square that is enlarged by this on each side: tested by the
+/// part of the line between its sides.
 pub(crate) fn meets(
     (x0, y0): (f64, f64),
     (x1, y1): (f64, f64),

@@ -1,4 +1,4 @@
-//! Smoothing what is already smooth changes nothing where it should not.
+//! Smoothing a smoothed path again changes nothing where it should not.
 
 use crate::support::{Raw, Rules, any_raw, query_on};
 use crate::taut::{planned, scenes};
@@ -11,7 +11,7 @@ use keyway::smooth::{
 };
 use proptest::prelude::*;
 
-/// How far a line of tangents lies outside the arcs that it stands for \[m\].
+/// Distance by which a line of tangents lies outside the arcs that it replaces \[m\].
 const OUTSIDE_M: f64 = 1e-7;
 
 /// Rounding of lengths \[m\].
@@ -39,7 +39,7 @@ fn corners_around(arc: &Arc) -> Vec<Point> {
     (0..parts).map(|part| around.at((f64::from(part) + 0.5) / f64::from(parts))).collect()
 }
 
-/// How much a path turns \[rad\].
+/// Total turning angle of a path \[rad\].
 fn turned_rad(path: &Path) -> f64 {
     let of_piece = |piece: &PathPiece| match piece {
         PathPiece::Arc(arc) => arc.sweep_rad.abs(),
@@ -48,8 +48,8 @@ fn turned_rad(path: &Path) -> f64 {
     path.pieces().iter().map(of_piece).sum()
 }
 
-/// Of a line over cells that keep the clearance; false when there is nothing to smooth. Between
-/// such cells a line of Theta* may come nearer, which is then what is kept.
+/// Checks a line over cells that keep the clearance; false if there is nothing to smooth. Between
+/// such cells a line of Theta* may come closer, and then its own distance is kept.
 fn check(map: &SearchMap, line: &Polyline) -> bool {
     let (clearance, clearance_m) = (map.clearance(), map.config().clearance_m);
     let smooth = |smoother: &dyn Smoother, line: &Polyline| {
@@ -59,7 +59,7 @@ fn check(map: &SearchMap, line: &Polyline) -> bool {
     let twice = smooth(&Taut, &tangents(&once.path));
     let (before_m, after_m) = (once.path.length_m(), twice.path.length_m());
     let context = || format!("{line:?}\n{once:?}\n{twice:?}");
-    // Where two obstacles leave just the room asked for, the tangents around one are too near to
+    // If two obstacles leave exactly the required space, the tangents around one are too close to
     // the other, whose radius is then smaller by as much.
     let may_differ_m = ROUNDING_M + 2.0 * OUTSIDE_M * turned_rad(&once.path);
     assert!((before_m - after_m).abs() <= may_differ_m, "{before_m} {after_m}\n{}", context());

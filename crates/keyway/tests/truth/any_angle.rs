@@ -27,8 +27,9 @@ pub(crate) fn length(a: Cell, b: Cell) -> f64 {
     f64::from(a.x - b.x).hypot(f64::from(a.y - b.y))
 }
 
-/// True if the line between two centres meets no blocked cell. It meets those whose open square is
-/// not all on one side of it; where corners are not cut, also those that it touches at a corner.
+/// True if the line between two centres meets no blocked cell. It meets a cell unless the cell's
+/// open square is all on one side of it. If corners must not be cut, it also meets cells that it
+/// touches at a corner.
 pub(crate) fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
     let columns = a.x.min(b.x)..=a.x.max(b.x);
     let cells = (a.y.min(b.y)..=a.y.max(b.y)).flat_map(|y| columns.clone().map(move |x| (x, y)));
@@ -44,7 +45,7 @@ pub(crate) fn sees(raw: &Raw, rules: &Rules, a: Cell, b: Cell) -> bool {
     })
 }
 
-/// The length of a shortest path of lines between cells that see each other.
+/// The length of a shortest path of lines between mutually visible cells.
 pub(crate) fn optimum(raw: &Raw, rules: &Rules, query: &Query) -> Option<f64> {
     let is_free = |cell: &Cell| raw.is_free(cell.x, cell.y, rules.unknown);
     if !is_free(&query.start) || !is_free(&query.goal) {
@@ -69,8 +70,8 @@ pub(crate) fn optimum(raw: &Raw, rules: &Rules, query: &Query) -> Option<f64> {
     None
 }
 
-/// A path's length, when it leads from the start to the goal over lines that are free, turns at
-/// every waypoint, and is as long as it says.
+/// A path's length. Checks that it leads from the start to the goal over lines that are free,
+/// turns at every waypoint, and has the reported length.
 fn checked_length(raw: &Raw, rules: &Rules, query: &Query, plan: &Plan) -> f64 {
     let cells = &plan.cells;
     assert_eq!((cells.first(), cells.last()), (Some(&query.start), Some(&query.goal)));
@@ -153,7 +154,7 @@ proptest! {
         for planner in [theta_star(rules.corners), lazy_theta_star(rules.corners)] {
             let answer = ask(&planner, &map, &query, &mut workspace);
             if rules.unknown == UnknownPolicy::Penalised {
-                // Unless the ends are reported first as blocked or not connected.
+                // Unless start or goal are first reported as blocked or not connected.
                 prop_assert!(answer.is_none_or(|answer| answer.is_err()));
                 continue;
             }
@@ -192,7 +193,7 @@ proptest! {
             Err(PlanError::NoPath { .. } | PlanError::Blocked { .. }) => prop_assert_eq!(optimum, None),
             Err(other) => prop_assert!(false, "{}", other),
         }
-        // The same seed, the same answer, whatever the memory holds.
+        // The same seed gives the same answer, whatever the memory holds.
         let other = Query::new(query.goal, query.start);
         let _ = ask(&planner, &map, &other, &mut workspace);
         prop_assert_eq!(ask(&planner, &map, &query, &mut workspace), Some(answer));

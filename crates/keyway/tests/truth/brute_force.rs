@@ -1,4 +1,4 @@
-//! Every planner against the relaxation of all edges.
+//! Every planner against relaxing all edges.
 
 use crate::planners::{ask, checked_cost, optimal};
 use crate::support::{Raw, Rules, any_raw, any_rules, query_on};
@@ -59,7 +59,7 @@ fn reopens(planner: &PlannerConfig) -> bool {
     matches!(planner, PlannerConfig::DensityAStar(config) if config.closed == Closed::Reopen)
 }
 
-/// Remembers what the search says it did.
+/// Records the search events.
 #[derive(Default)]
 struct Log {
     expanded: Vec<(Side, Cell)>,
@@ -75,7 +75,8 @@ impl Observer for Log {
     }
 }
 
-/// How many nodes a search begins with; `None` for planners that do not go from cell to cell.
+/// The number of nodes that a search begins with; `None` for planners that do not go from cell to
+/// cell.
 fn roots(planner: &PlannerConfig) -> Option<u64> {
     match planner.name() {
         "jps" | "prepared" | "rrt" => None,
@@ -84,7 +85,7 @@ fn roots(planner: &PlannerConfig) -> Option<u64> {
     }
 }
 
-/// What an observer sees is what the statistics say; no cell is expanded twice, except the one in
+/// The observed events agree with the statistics. No cell is expanded twice, except the one at
 /// which the sides of HSTA* meet.
 pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, query: &Query) {
     let Some(roots) = roots(planner) else { return };
@@ -94,7 +95,7 @@ pub(crate) fn check_observer(planner: &PlannerConfig, raw: &Raw, rules: &Rules, 
     let built = planner.build(&map).unwrap();
     let result = built.plan_into(&map, query, &mut workspace, Some(&mut log), &mut plan);
     if result.is_err() {
-        // The ends are not free or not connected, which is reported without a search.
+        // Start or goal is not free, or they are not connected: reported without a search.
         assert_eq!((log.expanded.len(), log.generated), (0, 0), "{planner:?}");
         return;
     }
@@ -162,8 +163,8 @@ proptest! {
     }
 }
 
-/// The cost of a way back differs from that of the way there where unknown cells are penalised: the
-/// start's own penalty is never paid, the goal's always.
+/// With penalised unknown cells, a path costs differently in the two directions: the start's own
+/// penalty is never paid, the goal's always.
 #[test]
 fn penalties_have_a_direction() {
     let raw = Raw {

@@ -1,4 +1,4 @@
-//! Maps and queries at the edge of what can be asked.
+//! Extreme maps and queries.
 
 use crate::planners::{ask, checked_cost, optimal};
 use crate::support::{Raw, Rules};
@@ -60,7 +60,7 @@ fn from_a_cell_to_itself() {
     }
 }
 
-/// Both positions in one cell: straight on, whatever plans and smooths.
+/// Both positions in one cell: a straight line, for every planner and smoother.
 #[test]
 fn from_a_position_to_another_in_the_same_cell() {
     let raw = raw(&["...", "...", "..."]);
@@ -71,7 +71,8 @@ fn from_a_position_to_another_in_the_same_cell() {
         let (start, goal) = (Point::new(1.05, 1.05), Point::new(1.2, 1.9));
         assert_eq!(plan.line(&map, start, goal).polyline().points(), [start, goal], "{planner:?}");
         assert_eq!(plan.line(&map, start, start).polyline().points(), [start], "{planner:?}");
-        // A route may begin in a cell beside that of the position: its centre is on the way.
+        // A route may begin in a cell beside that of the position; the cell's centre is on the
+        // path.
         let (beside, centre) = (Point::new(0.9, 1.2), Point::new(1.5, 1.5));
         assert_eq!(
             plan.line(&map, beside, goal).polyline().points(),
@@ -141,7 +142,7 @@ fn without_obstacles_the_cost_is_the_octile_distance() {
 
 #[test]
 fn along_the_border_of_the_map() {
-    // The way leads once around; no corner of it can be cut.
+    // The path leads once around; no corner of it can be cut.
     let ring = Raw::from_fn(70, 66, |x, y| x == 0 || y == 0 || x == 69 || y == 65);
     expect(&ring, &query((0, 0), (69, 65)), Some(Cost::new(69 + 65, 0)));
     expect(&ring, &query((0, 1), (0, 65)), Some(Cost::new(64, 0)));
@@ -167,7 +168,7 @@ fn blocked_everywhere_and_outside() {
     }
 }
 
-/// A budget that is just enough changes nothing; one less ends the search, and says so.
+/// A budget that is just enough changes nothing; one less ends the search, and is reported.
 #[test]
 fn budgets() {
     let raw = Raw::from_fn(30, 20, |x, y| x != 15 || y == 0);

@@ -1,5 +1,5 @@
-//! Every planner that has a name, under both corner rules: legal paths, no shorter than the best
-//! there is, and a path wherever there is one, unless the planner says that its method misses it.
+//! Every named planner, under both corner rules: legal paths, no shorter than the optimum, and a
+//! path wherever one exists, unless the planner's method is documented to miss it.
 
 use crate::any_angle::{self, length, sees};
 use crate::planners::ask;
@@ -85,12 +85,12 @@ proptest! {
         for (planner, corners) in all(rules.corners) {
             let rules = Rules { corners, diagonals: planner.name() != "astar4", ..rules };
             let Some(answer) = ask(&planner, &map, &query, &mut workspace) else {
-                // Only where cells differ in cost.
+                // Only if cells differ in cost.
                 prop_assert_eq!(rules.unknown, UnknownPolicy::Penalised, "{:?}", planner);
                 continue;
             };
             check(&planner, &raw, &rules, &query, &answer);
-            // The same again, on memory that another query has used.
+            // The same query again, on memory that another query has used.
             let back = Query::new(query.goal, query.start);
             _ = ask(&planner, &map, &back, &mut workspace);
             prop_assert_eq!(ask(&planner, &map, &query, &mut workspace), Some(answer));

@@ -6,7 +6,7 @@ use keyway::map::Cell;
 use keyway::search::{CornerRule, Cost, Query, Workspace};
 use proptest::prelude::*;
 
-/// Fixed point for the foreign search: enough digits to tell all paths of these maps apart.
+/// Fixed point for the foreign search, with enough digits to distinguish all paths of these maps.
 const STRAIGHT: u64 = 1_000_000_000_000_000;
 const DIAGONAL: u64 = 1_414_213_562_373_095;
 
@@ -43,11 +43,11 @@ enum Shape {
     Rooms,
     /// Diagonal walls, one cell thick.
     Diagonals,
-    /// Corridors, one cell wide, with some walls taken out.
+    /// Corridors, one cell wide, with some walls removed.
     Maze,
 }
 
-/// A map of a kind, from a seed; `percent` says how much of it is blocked.
+/// A map of a kind, from a seed; `percent` is the blocked share.
 fn map_of(shape: Shape, width: i32, height: i32, percent: u32, seed: u64) -> Raw {
     let chance = |x: i32, y: i32, salt: u64| hash(seed, x, y, salt) % 100;
     let percent = u64::from(percent);
@@ -116,8 +116,7 @@ proptest! {
     }
 }
 
-/// The kinds of maps are what they are called: neither all free nor all blocked, and mostly
-/// passable.
+/// The kinds of maps match their names: neither all free nor all blocked, and mostly passable.
 #[test]
 fn shapes_have_ways_and_walls() {
     for shape in [Shape::Noise, Shape::Blocks, Shape::Rooms, Shape::Diagonals, Shape::Maze] {

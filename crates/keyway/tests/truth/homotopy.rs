@@ -1,9 +1,9 @@
-//! Which way around the obstacles a line goes, and whether it is the shortest that goes this way.
-//! Exact: corners of cells and centres of cells are whole numbers of half cells.
+//! The homotopy class of a line, and the test that it is the shortest of its class. Exact: corners
+//! and centres of cells are whole numbers of half cells.
 //!
-//! The free plane with its way around each obstacle unrolled has no two locally shortest lines
-//! between the same ends. So a line is the shortest of its class if it is free, straight between
-//! corners of obstacles, and bends around each on the obstacle's side.
+//! In the universal cover of the free plane, no two locally shortest lines have the same ends. So
+//! a line is the shortest of its class if it is free, straight between corners of obstacles, and
+//! bends around each on the obstacle's side.
 
 use keyway::geometry::{Point, Polyline};
 use keyway::map::Cell;
@@ -13,7 +13,7 @@ pub(crate) struct Obstacles {
     width: i32,
     height: i32,
     blocked: Vec<bool>,
-    /// Where a ray upwards begins, one in each obstacle, from left to right, no two in a line.
+    /// Origins of the upward rays, one in each obstacle, from left to right, no two in a line.
     rays: Vec<(f64, f64)>,
 }
 
@@ -51,9 +51,9 @@ impl Obstacles {
         is_inside && self.blocked[(y * self.width + x) as usize]
     }
 
-    /// The rays that a line \[cells\] crosses, with the direction, those crossed to and fro left
-    /// out: two lines with the same ends can be pulled into each other if and only if these are the
-    /// same.
+    /// The rays that a line \[cells\] crosses, with the direction; crossings there and back again
+    /// cancel. Two lines with the same ends can be pulled into each other if and only if their
+    /// classes are equal.
     pub(crate) fn class(&self, line: &Polyline) -> Vec<(usize, bool)> {
         let mut word = Vec::new();
         for segment in line.segments() {
@@ -82,7 +82,7 @@ impl Obstacles {
         word
     }
 
-    /// What keeps a line \[cells\] from being the shortest of its class.
+    /// The reason why a line \[cells\] is not the shortest of its class.
     pub(crate) fn flaw(&self, line: &Polyline) -> Option<String> {
         let points: Vec<Half> =
             line.points().iter().map(|&p| Half::new(p)).collect::<Option<_>>()?;
@@ -123,7 +123,7 @@ impl Obstacles {
     }
 
     /// True if a straight line stays in the map, enters no obstacle, and does not pass between two
-    /// blocked cells that it touches in the same place.
+    /// blocked cells that it touches at the same point.
     fn is_free(&self, a: Half, b: Half) -> bool {
         let is_inside = |p: Half| {
             (0..=2 * i64::from(self.width)).contains(&p.x)
@@ -137,7 +137,7 @@ impl Obstacles {
 
     fn enters_nothing(&self, a: Half, b: Half) -> bool {
         if a.x == b.x {
-            // Exchanged, the line is one through columns.
+            // A vertical line enters nothing on the edge of a column; otherwise its column counts.
             let rows = a.y.min(b.y).div_euclid(2)..=(a.y.max(b.y) - 1).div_euclid(2);
             return a.x % 2 == 0
                 || rows.into_iter().all(|y| !self.is_blocked((a.x / 2) as i32, y as i32));
@@ -165,7 +165,8 @@ impl Obstacles {
                 let (x, y) = ((at.x + dx).div_euclid(2), (at.y + dy).div_euclid(2));
                 self.is_blocked(x as i32, y as i32)
             };
-            // Halfway between two corners along an edge, beyond the border is as good as blocked.
+            // For a point between two corners along an edge, a cell beyond the border counts as
+            // blocked.
             let beyond = |dx: i64, dy: i64| {
                 let (x, y) = ((at.x + dx).div_euclid(2) as i32, (at.y + dy).div_euclid(2) as i32);
                 x < 0 || y < 0 || x >= self.width || y >= self.height || self.is_blocked(x, y)

@@ -1,4 +1,4 @@
-//! What planners say about themselves.
+//! The self-description of planners.
 
 use keyway::map::{LayerConfig, OccupancyGrid, SearchMap};
 use keyway::plan::{
@@ -16,7 +16,7 @@ fn names_lead_to_planners_and_back() {
         let json = serde_json::to_value(&config).unwrap();
         assert_eq!(json["name"], name);
         assert_eq!(serde_json::from_value::<PlannerConfig>(json.clone()).unwrap(), config);
-        // Parameters have defaults, and only those that are there can be set.
+        // Parameters have defaults, and only existing ones can be set.
         let bare = serde_json::json!({ "name": name });
         assert_eq!(serde_json::from_value::<PlannerConfig>(bare).unwrap(), config);
         let wrong = serde_json::json!({ "name": name, "hueristic": "octile" });

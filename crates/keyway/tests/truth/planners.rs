@@ -1,4 +1,4 @@
-//! Which planners are tested, and how they are asked.
+//! The planners under test, and their queries.
 
 use crate::support::{Raw, Rules};
 use keyway::map::SearchMap;
@@ -8,8 +8,8 @@ use keyway::plan::{
 };
 use keyway::search::{CornerRule, Cost, Query, Workspace};
 
-/// Every planner that promises shortest paths under a corner rule: whatever has a name and says so,
-/// and the other parameters with which it does.
+/// Every planner that promises shortest paths under a corner rule: those registered by name, and
+/// further parameter sets that do.
 pub(crate) fn optimal(corners: CornerRule) -> Vec<PlannerConfig> {
     let named = PlannerConfig::NAMES.iter().filter_map(|name| PlannerConfig::by_name(name));
     let euclidean = AStarConfig { heuristic: Heuristic::Euclidean, ..AStarConfig::default() };
@@ -32,7 +32,7 @@ fn with_corners(planner: PlannerConfig, corners: CornerRule) -> Option<PlannerCo
     }
 }
 
-/// Asks a planner; `None` when it cannot work on this map.
+/// Runs a planner; `None` if it does not support this map.
 pub(crate) fn ask(
     planner: &PlannerConfig,
     map: &SearchMap,
@@ -49,7 +49,7 @@ pub(crate) fn ask(
     }
 }
 
-/// The cost of a planner's path, which is checked step by step; `None` when there is no path.
+/// The cost of a planner's path, which is checked step by step; `None` if there is no path.
 pub(crate) fn checked_cost(
     planner: &PlannerConfig,
     raw: &Raw,

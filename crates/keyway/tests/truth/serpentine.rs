@@ -1,4 +1,4 @@
-//! A way of more than half a million steps whose cost has a closed form.
+//! A path of more than half a million steps whose cost has a closed form.
 
 use crate::planners::{ask, optimal};
 use keyway::geometry::Pose;
@@ -27,7 +27,7 @@ fn expect(is_free: impl Fn(Cell) -> bool, ends: (Cell, Cell), expected: Cost) {
 /// Corridors one cell wide on the even rows, walls one cell thick on the odd ones, with an opening
 /// at the right and at the left end in turn.
 ///
-/// Each of the 750 corridors has 1499 steps; 749 openings lead on, two steps each.
+/// Each of the 750 corridors has 1499 steps; 749 openings connect them, two steps each.
 #[test]
 fn straight_corridors() {
     let is_free = |cell: Cell| {
@@ -46,11 +46,12 @@ fn straight_corridors() {
 /// change is one diagonal step. A corridor has three rows, the third of which is a wall with an
 /// opening at the corridor's end.
 ///
-/// In the columns 3k and 3k + 1 both rows are free (there the corridor changes), in 3k + 2 only the
-/// one in which it goes on: the upper one for even k, the lower one for odd k. A corridor is
-/// entered in its lower row and comes to its last block in the upper one, from where an opening
-/// leads on; so each of its 1499 changes of the column is straight except for one in every block
-/// before the last. Only the last corridor ends in its lower row, where the goal is.
+/// In the columns 3k and 3k + 1 both rows are free (there the corridor changes rows), in 3k + 2
+/// only the one in which it continues: the upper one for even k, the lower one for odd k. A
+/// corridor is entered in its lower row and reaches its last block in the upper one, from which an
+/// opening leads to the next corridor. So each of its 1499 changes of the column is straight
+/// except for one in every block before the last. Only the last corridor ends in its lower row, at
+/// the goal.
 #[test]
 fn corridors_with_diagonal_steps() {
     let corridors = SIZE / 3;

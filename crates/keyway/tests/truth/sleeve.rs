@@ -1,11 +1,11 @@
-//! The shortest line of a homotopy class, from the whole line at once: no string is led along it,
-//! and nothing is known about corners or the sides that they bend to.
+//! The shortest line of a homotopy class, from the whole line at once: no string is moved along
+//! it, and nothing is known about corners or the sides that they bend to.
 //!
 //! The free plane is cut into runs, the longest rows of free cells, which meet at gates, the edges
-//! that two runs share. Runs are convex and gates are straight, so two lines with the same ends can
-//! be pulled into each other if and only if they pass the same gates, those passed to and fro left
-//! out; and the shortest such line stays in the sleeve of these gates, where the funnel of Lee and
-//! Preparata \[Lee1984\] finds it. Exact, except for the sum of lengths.
+//! that two runs share. Runs are convex and gates are straight, so two lines with the same ends
+//! can be pulled into each other if and only if they pass the same gates, where passages there and
+//! back again cancel. The shortest such line stays in the sleeve of these gates, and the funnel of
+//! Lee and Preparata \[Lee1984\] finds it there. Exact, except for the sum of lengths.
 
 use crate::homotopy::Half;
 use keyway::geometry::Polyline;
@@ -17,7 +17,7 @@ pub(crate) struct Sleeves {
     /// The run of each cell, row by row; `None` for blocked ones.
     run_of: Vec<Option<usize>>,
     width: i64,
-    /// Those on each line between two rows, the border below first.
+    /// The gates on each line between two rows, the lower border first.
     gates: Vec<Vec<Gate>>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Gate {
     above: usize,
 }
 
-/// A gate, and whether it is passed upwards.
+/// A gate, and true if it is passed upwards.
 type Passage = (Gate, bool);
 
 impl Sleeves {
@@ -80,8 +80,8 @@ impl Sleeves {
         gates
     }
 
-    /// The gates that a line \[cells\] between centres of cells passes, those passed to and fro
-    /// left out. `None` when it enters an obstacle, or slips between two cells that touch at a
+    /// The gates that a line \[cells\] between centres of cells passes; passages there and back
+    /// again cancel. `None` if it enters an obstacle, or slips between two cells that touch at a
     /// corner.
     pub(crate) fn passages(&self, line: &Polyline) -> Option<Vec<Passage>> {
         let points: Vec<Half> =
@@ -93,7 +93,7 @@ impl Sleeves {
             let (a, way) = (pair[0], pair[1].from(pair[0]));
             let mut last = None;
             while let Some((share, of)) = self.runs[run].leaves(a, way) {
-                // Through a gate and back in one point is no way out of both runs.
+                // Through a gate and back in one point leads out of neither run.
                 if last.replace((share, of)).is_some_and(|(n, d)| n * of >= share * d) {
                     return None;
                 }
@@ -109,10 +109,10 @@ impl Sleeves {
         Some(passages)
     }
 
-    /// The gate by which a line leaves a run after a share of its way.
+    /// The gate through which a line leaves a run after a fraction of its length.
     fn way_out(&self, run: usize, a: Half, way: Half, (share, of): (i64, i64)) -> Option<Passage> {
         let bottom = self.runs[run].bottom;
-        // A line along the run's edge may only go on in the run on the other side of it.
+        // A line along the run's edge can only continue in the run on the other side of it.
         let is_up = if way.y == 0 { a.y > bottom } else { way.y > 0 };
         let y = if is_up { bottom + 2 } else { bottom };
         let at = (a.x * of + way.x * share, a.y * of + way.y * share);
@@ -126,11 +126,12 @@ impl Sleeves {
         self.gates[(y / 2) as usize].iter().find(is_it).map(|&gate| (gate, is_up))
     }
 
-    /// Length \[cells\] of the shortest line into which a line can be pulled; `None` as above.
+    /// Length \[cells\] of the shortest line that a line can be pulled into; `None` as for
+    /// [`Self::passages`].
     pub(crate) fn shortest(&self, line: &Polyline) -> Option<f64> {
         let (start, goal) =
             (Half::new(*line.points().first()?)?, Half::new(*line.points().last()?)?);
-        // Seen in the direction of the way: left and right.
+        // Left and right in the direction of travel.
         let ends = |&(gate, is_up): &Passage| {
             let (left, right) =
                 (Half { x: gate.left, y: gate.y }, Half { x: gate.right, y: gate.y });
@@ -150,7 +151,7 @@ impl Sleeves {
 }
 
 impl Run {
-    /// After which share of its way, as a fraction, a line that is in the run leaves it.
+    /// The fraction of its length after which a line that is in the run leaves it.
     fn leaves(&self, a: Half, way: Half) -> Option<(i64, i64)> {
         let until = |from: i64, way: i64, low: i64, high: i64| match way.signum() {
             1 => Some((high - from, way)),
@@ -171,7 +172,7 @@ fn funnel(gates: &[[Half; 2]]) -> Vec<Half> {
     let side_of = |apex: Half, end: Half, point: Half| end.from(apex).cross(point.from(apex));
     let mut turns = vec![gates[0][0]];
     let mut apex = gates[0][0];
-    // The ends of the funnel's sides, each with its gate.
+    // The end points of the funnel's sides, each with its gate.
     let mut sides = [(apex, 0); 2];
     let mut next = 1;
     'gates: while next < gates.len() {
@@ -214,7 +215,7 @@ fn shortest_lines_by_hand() {
     // Both ways around the ring.
     is(&[[0.5, 2.5], [2.5, 4.5], [4.5, 2.5]], 3.0 * root + 1.0);
     is(&[[0.5, 2.5], [2.5, 0.5], [4.5, 2.5]], 3.0 * root + 1.0);
-    // Over both and back; to and fro.
+    // Over both and back; there and back.
     is(&[[0.5, 2.5], [1.0, 4.5], [7.5, 4.5], [4.5, 2.5]], 3.0 * root + 1.0);
     let over_one_corner = 6.5f64.sqrt() + 2.5f64.sqrt();
     is(&[[0.5, 4.5], [7.5, 4.5], [7.5, 0.5], [7.5, 4.5], [4.5, 3.5]], over_one_corner);

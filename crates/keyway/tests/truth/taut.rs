@@ -1,5 +1,5 @@
-//! The taut path without clearance against the topology of the plane: it goes the same way around
-//! every obstacle as the line that it was pulled from, and is the shortest that does.
+//! The taut path without clearance against the topology of the plane: it passes every obstacle on
+//! the same side as the line that it was pulled from, and is the shortest line that does.
 
 use crate::homotopy::Obstacles;
 use crate::sleeve::Sleeves;
@@ -14,10 +14,10 @@ use keyway::smooth::{Smoother, Taut};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Of lengths, relative.
+/// Relative rounding of lengths.
 const ROUNDING: f64 = 1e-9;
 
-/// Two ways to tell classes apart, which share only the definition of a point.
+/// Two ways to distinguish classes, which share only the definition of a point.
 struct Classes {
     obstacles: Obstacles,
     sleeves: Sleeves,
@@ -47,7 +47,7 @@ pub(crate) fn planned(planner: &str, map: &SearchMap, query: &Query) -> Option<P
     Some(plan.line(map, centre(query.start), centre(query.goal)).into_polyline())
 }
 
-/// Pulls a line tight and checks that the result is the shortest line of its class. True where the
+/// Pulls a line tight and checks that the result is the shortest line of its class. True if the
 /// class is that of the shortest line of all.
 fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     let Classes { obstacles, sleeves } = classes;
@@ -81,7 +81,7 @@ fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     is_best
 }
 
-/// Where the bundled maps are.
+/// Folder of the bundled maps.
 pub(crate) fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../keyway-cli/scenes")
 }
@@ -109,7 +109,7 @@ fn the_scenarios_of_a_bundled_map() {
 fn pairs_on_a_map_of_a_house() {
     let grid = read_map(&scenes().join("small_house.yaml"), None).unwrap().grid;
     for clearance_m in [0.0, 0.2] {
-        // Around the cells that are blocked for a robot, a line of no width.
+        // A line of zero width around the cells that are blocked for a robot.
         let config = LayerConfig { clearance_m, ..LayerConfig::default() };
         let inflated = SearchMap::new(&grid, config).unwrap();
         let blocked = keyway::map::OccupancyGrid::from_fn(*grid.frame(), |cell| {

@@ -1,6 +1,6 @@
-//! Every one-sided planner against best-first search as the textbooks and \[Wang2019\] write it:
-//! two lists, searched from end to end. The same cells have to come out, and the same counts: so
-//! ties, which node is improved, what becomes of closed ones and where the search ends are all as
+//! Every one-sided planner against best-first search as written by the textbooks and \[Wang2019\]:
+//! two lists, searched from end to end. The same cells and the same counts must result, so ties,
+//! the improved node, the treatment of closed nodes and the end of the search are all as
 //! documented.
 
 use crate::planners::ask;
@@ -30,7 +30,7 @@ impl Line {
     }
 }
 
-/// What distinguishes the planners.
+/// The properties that distinguish the planners.
 #[derive(Clone, Copy)]
 struct Kind {
     g_is_straight: bool,
@@ -38,7 +38,7 @@ struct Kind {
     heuristic: Option<Heuristic>,
 }
 
-/// A distance as the documentation says: rounded down to fixed point.
+/// A distance as documented: rounded down to fixed point.
 fn distance(heuristic: Heuristic, a: Cell, b: Cell) -> u64 {
     let (dx, dy) = (u64::from(a.x.abs_diff(b.x)), u64::from(a.y.abs_diff(b.y)));
     let unit = u128::from(Cost::KEY_STRAIGHT);
@@ -116,7 +116,7 @@ fn path(open: &[Line], closed: &[Line], goal: Cell) -> Vec<Cell> {
     }
 }
 
-/// All one-sided planners of a corner rule, with what they are.
+/// All one-sided planners of a corner rule, with their properties.
 fn planners(rules: &Rules) -> Vec<(PlannerConfig, Kind, Rules)> {
     let corners = rules.corners;
     let kind = |g_is_straight, f_has_g, heuristic| Kind { g_is_straight, f_has_g, heuristic };
@@ -148,7 +148,7 @@ proptest! {
         prop_assume!(free(query.start) && free(query.goal));
         let (map, mut workspace) = (raw.search_map(&rules), Workspace::default());
         for (planner, kind, rules) in planners(&rules) {
-            // That there is no way is reported without a search.
+            // A missing path is reported without a search.
             let (path, statistics) = match search(&raw, &rules, &query, kind) {
                 (Some(path), statistics) => (Some(path), statistics),
                 (None, _) => (None, SideStatistics::default()),
@@ -163,8 +163,8 @@ proptest! {
     }
 }
 
-/// In the traditional A* of \[Wang2019\] an open cell always follows the neighbour expanded last,
-/// so its path is not a shortest one even in the open.
+/// In the traditional A* of \[Wang2019\] the parent of an open cell is always the neighbour
+/// expanded last, so its path is not a shortest one even in open space.
 #[test]
 fn the_traditional_g_makes_detours() {
     let raw = Raw::from_fn(9, 7, |x, y| !(x == 4 && (1..=5).contains(&y)));

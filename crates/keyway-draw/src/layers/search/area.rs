@@ -1,4 +1,4 @@
-//! Searches from cell to cell: the ground that they covered.
+//! Cell-by-cell searches: the area that they covered.
 
 use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
@@ -7,7 +7,7 @@ use crate::legend::{LegendEntry, LegendMark};
 use keyway::map::Cell;
 use keyway::search::{SearchEvent, Side};
 
-/// What a search did with each block of cells in view: one byte per block.
+/// Marks of a search on each block of cells in view: one byte per block.
 struct Marks {
     blocks: Blocks,
     of_blocks: Vec<u8>,
@@ -15,12 +15,12 @@ struct Marks {
 
 /// A cell that the search did not touch.
 const UNTOUCHED: u8 = 0;
-/// The mark of open cells of a side, after those of expanded ones.
+/// Mark of the open cells of a side, after those of expanded ones.
 const OPEN: u8 = SHADES;
-/// Marks of a side.
+/// Number of marks of a side.
 const MARKS_OF_SIDE: u8 = SHADES + 1;
 
-/// The first mark of a side: those of its expanded cells by shade.
+/// Returns the first mark of a side: its expanded cells are marked by shade.
 const fn first_mark(side: Side) -> u8 {
     1 + MARKS_OF_SIDE * shades::index(side) as u8
 }
@@ -59,7 +59,7 @@ pub(super) fn draw(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
     for side in SIDES {
         let first = first_mark(side);
         let expanded = first..first + SHADES;
-        // A ground under all shades, so that no white shows in the seams between two of them.
+        // A base under all shades, so that no white shows in the seams between two of them.
         if canvas.paint(shades::area(side, SHADES / 2), |i| expanded.contains(&marks[i])) {
             for shade in 0..SHADES {
                 canvas.paint(shades::area(side, shade), |i| marks[i] == first + shade);

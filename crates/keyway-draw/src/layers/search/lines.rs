@@ -1,4 +1,4 @@
-//! Searches whose nodes lie apart: jump points and the scans between them, trees.
+//! Searches with distant nodes: jump points and the scans between them, trees.
 
 use super::SearchTrace;
 use super::shades::{self, SHADES, SIDES};
@@ -12,11 +12,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Width of scans and links \[px\].
 const LINE_PX: f64 = 0.7;
-/// Radius of nodes \[px\]: smaller where there are many.
+/// Range of the radius of nodes \[px\]: smaller if there are many.
 const DOT_PX: (f64, f64) = (0.8, 2.4);
 const SAMPLE_DOT_PX: f64 = 1.6;
 
-/// By side and shade: ends of lines.
+/// Ends of lines, by side and shade.
 type Lines = [[Vec<(Cell, Cell)>; SHADES as usize]; 2];
 
 pub(super) fn draw_jump_points(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
@@ -50,7 +50,7 @@ pub(super) fn draw_tree(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>) {
     draw_lines(trace, canvas, &lines, "search tree, early to late");
 }
 
-/// Late lines first: early ones, which lead to all others, stay in front.
+/// Draws late lines first: early ones, which lead to all others, stay in front.
 fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, text: &str) {
     for side in SIDES {
         let mut is_drawn = false;
@@ -66,7 +66,7 @@ fn draw_lines(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, lines: &Lines, t
     }
 }
 
-/// Expanded nodes as dots, the other ones as rings.
+/// Draws expanded nodes as dots, the other ones as rings.
 pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text: &str) {
     let radius_px = dot_radius_px(trace, canvas);
     // Large enough to be seen in the legend.
@@ -89,7 +89,7 @@ pub(super) fn draw_nodes(trace: &SearchTrace<'_>, canvas: &mut Canvas<'_>, text:
     }
 }
 
-/// Cells of expanded and of all generated nodes of a side.
+/// Returns the cells of expanded and of all generated nodes of a side.
 fn nodes(trace: &SearchTrace<'_>, side: Side) -> (BTreeSet<Cell>, BTreeSet<Cell>) {
     let (mut expanded, mut generated) = (BTreeSet::new(), BTreeSet::new());
     for (event, _) in trace.events() {
@@ -102,7 +102,8 @@ fn nodes(trace: &SearchTrace<'_>, side: Side) -> (BTreeSet<Cell>, BTreeSet<Cell>
     (expanded, generated)
 }
 
-/// A part of the distance between nodes, if they were spread evenly over the picture.
+/// Returns a share of the mean distance between nodes, assuming that they are spread evenly over
+/// the picture.
 fn dot_radius_px(trace: &SearchTrace<'_>, canvas: &Canvas<'_>) -> f64 {
     let count = trace.recording.statistics().generated().max(1);
     let area = canvas.view().width_px() * canvas.view().height_px();

@@ -1,7 +1,7 @@
-//! What a search did, from its recording.
+//! Layers of a recorded search.
 //!
 //! Time is shown as shade, from dark to light: blues from the start, oranges from the goal, which
-//! colour-blind readers tell apart as well. How a recording is drawn depends on the kind of search,
+//! colour-blind readers can distinguish as well. The drawing style depends on the kind of search,
 //! see [`TraceStyle`].
 
 mod area;
@@ -15,7 +15,7 @@ use crate::marks::letter_mark;
 use keyway::map::Cell;
 use keyway::search::{Recording, SearchEvent, Side};
 
-/// How a search is drawn.
+/// Drawing style of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TraceStyle {
@@ -28,8 +28,8 @@ pub enum TraceStyle {
 }
 
 impl TraceStyle {
-    /// The style that suits a search: a tree where links were recorded, jump points where scans
-    /// were, cells otherwise.
+    /// Returns the style that suits a search: a tree if links were recorded, jump points if scans
+    /// were recorded, cells otherwise.
     pub fn of(recording: &Recording) -> Self {
         let has = |event: fn(&SearchEvent) -> bool| recording.events().iter().any(event);
         if has(|event| matches!(event, SearchEvent::Linked { .. })) {
@@ -42,7 +42,7 @@ impl TraceStyle {
     }
 }
 
-/// What a search did: all of it, or its beginning.
+/// Trace of a search: all of it, or its beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchTrace<'a> {
     recording: &'a Recording,
@@ -51,25 +51,25 @@ pub struct SearchTrace<'a> {
 }
 
 impl<'a> SearchTrace<'a> {
-    /// A search in the style that suits it.
+    /// Creates the trace of a search in the style that suits it.
     pub fn new(recording: &'a Recording) -> Self {
         let style = TraceStyle::of(recording);
         Self { recording, shown: recording.events().len(), style }
     }
 
-    /// Only its first events. Shades stay those of the whole search.
+    /// Shows only the first events. Shades stay those of the whole search.
     #[must_use]
     pub fn first(self, events: usize) -> Self {
         Self { shown: events, ..self }
     }
 
-    /// The same in another style.
+    /// Sets another style.
     #[must_use]
     pub fn style(self, style: TraceStyle) -> Self {
         Self { style, ..self }
     }
 
-    /// Where the two sides last met, in what is shown.
+    /// Returns the cell in which the two sides last met, among the shown events.
     fn meeting(&self) -> Option<Cell> {
         self.recording.first(self.shown).iter().rev().find_map(|event| match *event {
             SearchEvent::Met { at } => Some(at),
@@ -77,14 +77,14 @@ impl<'a> SearchTrace<'a> {
         })
     }
 
-    /// The shown events, each with its shade.
+    /// Returns the shown events, each with its shade.
     fn events(&self) -> impl Iterator<Item = (SearchEvent, u8)> {
         let all = self.recording.events().len();
         let shade = move |i: usize| shades::of_order(i, all);
         self.recording.first(self.shown).iter().enumerate().map(move |(i, &e)| (e, shade(i)))
     }
 
-    /// What the legend says of a side.
+    /// Returns the text of a side in the legend.
     fn label(&self, text: &str, side: Side) -> String {
         let is_backward = |event: &SearchEvent| {
             matches!(
@@ -115,8 +115,8 @@ impl Layer for SearchTrace<'_> {
     }
 }
 
-/// The nodes of a search whose nodes lie apart: jump points, and those of a tree. They stand in
-/// front of paths. Searches from cell to cell have none.
+/// Nodes of a search with distant nodes: jump points, and those of a tree. They are in front of
+/// paths. Cell-by-cell searches have none.
 #[derive(Clone, Copy, Debug)]
 pub struct SearchNodes<'a>(
     /// The search, or its beginning.
@@ -137,7 +137,7 @@ impl Layer for SearchNodes<'_> {
     }
 }
 
-/// Where the two sides of a search met: M. Nothing where they did not.
+/// Meeting point of the two sides of a search: M. Nothing is drawn if they did not meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting<'a>(
     /// The search, or its beginning.

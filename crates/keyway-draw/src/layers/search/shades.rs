@@ -3,14 +3,14 @@
 use crate::color::Rgb;
 use keyway::search::Side;
 
-/// Steps of a scale: too many to be told apart singly, few enough for a small picture.
+/// Steps of a scale: too many to be distinguished individually, few enough for a small picture.
 pub(super) const SHADES: u8 = 16;
 
 /// The sides in the order in which they are drawn.
 pub(super) const SIDES: [Side; 2] = [Side::Forward, Side::Backward];
 
-/// Blues and oranges (Cynthia Brewer's scales), dark to light. Their light ends are still far from
-/// white.
+/// Blues and oranges (Cynthia Brewer's scales), dark to light. Their light ends are still clearly
+/// darker than white.
 const SCALES: [[Rgb; 6]; 2] = [
     [
         Rgb(0x08, 0x30, 0x6b),
@@ -30,13 +30,13 @@ const SCALES: [[Rgb; 6]; 2] = [
     ],
 ];
 
-/// Generated and not expanded.
+/// Cells that were generated and not expanded.
 const OPEN: [Rgb; 2] = [Rgb(0xd6, 0xe8, 0xf5), Rgb(0xfe, 0xe3, 0xc8)];
 
-/// Lines end at this part of the scale: thin ones must be darker than areas to be seen.
+/// End of the scale for lines: thin lines must be darker than areas to be visible.
 const LINE_PART: f64 = 0.75;
 
-/// The place of a side in tables.
+/// Returns the index of a side in tables.
 pub(super) const fn index(side: Side) -> usize {
     match side {
         Side::Forward => 0,
@@ -44,28 +44,28 @@ pub(super) const fn index(side: Side) -> usize {
     }
 }
 
-/// The shade of the event at place `i` of `all`.
+/// Returns the shade of event `i` of `all`.
 pub(super) fn of_order(i: usize, all: usize) -> u8 {
     let shade = i as u64 * u64::from(SHADES) / all.max(1) as u64;
     (shade as u8).min(SHADES - 1)
 }
 
-/// The colour of cells of a shade.
+/// Returns the colour of cells of a shade.
 pub(super) fn area(side: Side, shade: u8) -> Rgb {
     scale(side, f64::from(shade) / f64::from(SHADES - 1))
 }
 
-/// The colour of lines of a shade.
+/// Returns the colour of lines of a shade.
 pub(super) fn line(side: Side, shade: u8) -> Rgb {
     scale(side, LINE_PART * f64::from(shade) / f64::from(SHADES - 1))
 }
 
-/// The colour of open cells.
+/// Returns the colour of open cells.
 pub(super) const fn open(side: Side) -> Rgb {
     OPEN[index(side)]
 }
 
-/// Samples for the legend, dark to light.
+/// Returns samples for the legend, dark to light.
 pub(super) fn samples(side: Side, color: fn(Side, u8) -> Rgb) -> [Rgb; 8] {
     [0, 2, 4, 6, 9, 11, 13, 15].map(|shade| color(side, shade))
 }

@@ -12,19 +12,19 @@ pub enum ScaleError {
     /// The map cannot be tiled to this side.
     #[error(transparent)]
     Side(FrameError),
-    /// The layers cannot be made, or leave no cell free.
+    /// The layers cannot be derived, or leave no cell free.
     #[error(transparent)]
     Layers(RobotLayersError),
     /// The planner cannot be used.
     #[error(transparent)]
     Planner(PlanError),
-    /// There is nowhere to plan.
+    /// The map has no free cell.
     #[error("no cell of the map is free")]
     NoFreeCell {
         /// True if the map has unknown cells, and they count as obstacles.
         is_unknown_blocked: bool,
     },
-    /// The largest component ends within one tile, so no way would grow with the side.
+    /// The largest component ends within one tile, so no path would grow with the side.
     #[error(
         "the tiles of this map do not connect, as no free cell of its largest room is at its border"
     )]

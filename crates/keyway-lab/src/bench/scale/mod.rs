@@ -1,8 +1,8 @@
-//! Time and memory of planners on one map, tiled to larger and larger ones.
+//! Time and memory of planners on one map, tiled to increasing sizes.
 //!
-//! Every planner plans every map in a process of its own. So its peak memory is its own, and its
+//! Every planner plans on every map in a separate process, so its peak memory is its own, and its
 //! memory is as fresh as at the first query of a program. The caller starts these processes: each
-//! calls [`ScaleRequest::measure_here`] and hands its row back.
+//! calls [`ScaleRequest::measure_here`] and returns its row.
 
 mod error;
 mod report;
@@ -20,7 +20,7 @@ use keyway::navigate::Stack;
 use row::measure;
 use tiled::tiled;
 
-/// Planners and sizes of a map to measure them on.
+/// Planners, and the sizes of a map on which they are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct ScaleRequest<'a> {
     /// The map that is tiled.
@@ -43,10 +43,11 @@ pub struct ScaleTask {
 }
 
 impl ScaleRequest<'_> {
-    /// Measures every planner on every side; `alone` carries out a task in a process of its own.
+    /// Measures every planner on every side; `alone` executes a task in a separate process.
     ///
     /// # Errors
-    /// When `alone` gives one, or the observer stops the measurement.
+    /// Returns the error of `alone`, or [`ScaleError::Stopped`] if the observer stops the
+    /// measurement.
     pub fn run<E: From<ScaleError>>(
         &self,
         mut alone: impl FnMut(ScaleTask) -> Result<ScaleRow, E>,
@@ -67,11 +68,11 @@ impl ScaleRequest<'_> {
         Ok(rows)
     }
 
-    /// Carries out a task in this process: plans once from corner to corner of the tiled map.
+    /// Executes a task in this process: plans once from corner to corner of the tiled map.
     ///
     /// # Errors
-    /// When the map cannot be tiled to this side, or the planner cannot be used there. A query
-    /// without a path is a result.
+    /// Returns [`ScaleError`] if the map cannot be tiled to this side, or the planner cannot be
+    /// used on it. A query without a path is a result.
     pub fn measure_here(&self, task: ScaleTask) -> Result<ScaleRow, ScaleError> {
         let grid = tiled(self.map, task.side_cells)?;
         measure(self, grid, task)

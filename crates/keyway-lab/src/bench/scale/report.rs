@@ -22,7 +22,7 @@ pub struct ScaleReport {
     pub files: Vec<String>,
 }
 
-/// A quantity against the side of the map.
+/// A quantity as a function of the side of the map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleCurves<'a> {
     /// Name of the quantity with its unit.
@@ -36,7 +36,7 @@ pub struct ScaleCurves<'a> {
 pub struct ScaleCurve<'a> {
     /// Name of the planner.
     pub planner: &'a str,
-    /// Side of each map \[cells\], and the value there.
+    /// Side of each map \[cells\], and the value of the quantity.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -47,8 +47,8 @@ impl ScaleReport {
         Self { schema, version, map, map_digest, rows, files: Vec::new() }
     }
 
-    /// Returns the times of query and preparation, and the memory: the peak where the platform
-    /// reports it for all, otherwise that of map and search.
+    /// Returns the times of query and preparation, and the memory: the peak if the platform
+    /// reports it for all rows, otherwise that of map and search.
     pub fn curves(&self) -> [ScaleCurves<'_>; 3] {
         let has_peak = self.rows.iter().all(|row| row.peak_resident_bytes.is_some());
         let memory_label = if has_peak { "peak memory [MB]" } else { "memory [MB]" };

@@ -1,4 +1,4 @@
-//! One planner on one tiled map.
+//! Result of one planner on one tiled map.
 
 use super::{ScaleError, ScaleRequest, ScaleTask};
 use crate::measure::timed;
@@ -24,9 +24,9 @@ pub struct ScaleRow {
     pub goal: Cell,
     /// Time of deriving the map's layers and its components \[ms\].
     pub preparation_ms: f64,
-    /// Wall clock of the query \[ms\].
+    /// Wall-clock time of the query \[ms\].
     pub wall_ms: f64,
-    /// CPU time of the query \[ms\]; `None` where the platform does not report it.
+    /// CPU time of the query \[ms\]; `None` if the platform does not report it.
     pub cpu_ms: Option<f64>,
     /// Nodes taken from the open list.
     pub expanded: u64,
@@ -38,8 +38,7 @@ pub struct ScaleRow {
     pub map_bytes: u64,
     /// Memory that the search reserved \[bytes\].
     pub workspace_bytes: u64,
-    /// Most memory of the process in use at once \[bytes\]; `None` where the platform does not
-    /// report it.
+    /// Peak resident memory of the process \[bytes\]; `None` if the platform does not report it.
     pub peak_resident_bytes: Option<u64>,
 }
 
@@ -59,7 +58,7 @@ pub(super) fn measure(
     // The peak memory is that of the planner alone.
     drop(grid);
     let last = side_cells as i32 - 1;
-    // The component has a cell, and so a nearest one.
+    // The component has a cell, so a nearest one exists.
     let corner =
         |cell| map.nearest_of_component(largest, cell, planner.connectivity()).unwrap_or(cell);
     let (start, goal) = (corner(Cell::new(0, 0)), corner(Cell::new(last, last)));
@@ -112,8 +111,7 @@ fn check_connected(base: &OccupancyGrid, ends: [Cell; 2], side: u32) -> Result<(
     if start != goal || side <= width.max(height) { Ok(()) } else { Err(ScaleError::Apart) }
 }
 
-/// Returns the most memory that this process ever had in use at once, where the system reports it
-/// (Linux).
+/// Returns the peak resident memory of this process so far, if the system reports it (Linux).
 fn peak_resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

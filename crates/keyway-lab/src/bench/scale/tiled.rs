@@ -3,8 +3,9 @@
 use super::ScaleError;
 use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
-/// Returns a square of `side` x `side` cells: the map, and beside and above it mirror images of it,
-/// so that what meets the border of a tile goes on in the next one. The last tiles are cut off.
+/// Returns a square of `side` x `side` cells: the map, with mirror images of it to the right and
+/// above, so that structures at the border of a tile continue in the next one. The last tiles are
+/// cut off.
 pub(super) fn tiled(base: &OccupancyGrid, side: u32) -> Result<OccupancyGrid, ScaleError> {
     let from = base.frame();
     let frame = GridFrame::new(side.into(), side.into(), from.resolution_m(), from.origin())

@@ -1,5 +1,5 @@
-//! Effect of each part of a method, from the method without it, and of a parameter, from the method
-//! with other values.
+//! Effect of each part of a method, compared with the method without it, and of each parameter,
+//! compared with other values.
 //!
 //! Nothing is judged here. All variants run on the same maps as the claims of their paper.
 
@@ -30,7 +30,7 @@ pub struct Ablation {
     pub experiment: &'static Experiment,
     /// The method as published.
     pub base: &'static str,
-    /// The varied parameter with its unit, and its value in each of the first methods; `None` where
+    /// The varied parameter with its unit, and its value in each of the first methods; `None` if
     /// parts are left out.
     pub parameter: Option<(&'static str, &'static [f64])>,
     /// Measures to compare.
@@ -48,7 +48,7 @@ pub struct AblationReport {
     pub about: &'static str,
     /// Method with which the others are compared.
     pub base: &'static str,
-    /// The varied parameter; `None` where parts are left out.
+    /// The varied parameter; `None` if parts are left out.
     pub parameter: Option<&'static str>,
     /// Values of the parameter, in the order of the first methods.
     pub values: &'static [f64],
@@ -58,9 +58,9 @@ pub struct AblationReport {
     pub left_out: usize,
     /// Change from the base, for each variant and each measure.
     pub figures: Vec<FamilyFigure>,
-    /// Number of reconstructed maps that count; 0 where there is no reconstruction.
+    /// Number of reconstructed maps that count; 0 without a reconstruction.
     pub reconstructed_maps: usize,
-    /// The same figures on reconstructed maps; empty where there are none.
+    /// The same figures on reconstructed maps; empty without any.
     pub reconstructed: Vec<FamilyFigure>,
 }
 
@@ -72,8 +72,7 @@ impl Ablation {
         papers.into_iter().flatten()
     }
 
-    /// Compares every variant with the base; without `times`, omits everything that a clock
-    /// measures.
+    /// Compares every variant with the base; without `times`, omits all timed measures.
     pub fn report(&self, family: &Family, times: bool) -> AblationReport {
         let (parameter, values) = self.parameter.unzip();
         let rows = &family.reconstructed;
@@ -99,7 +98,7 @@ impl Ablation {
             measures().map(|&measure| {
                 let figure = Figure::lower(measure, variant.name, self.base, None);
                 let finding = Finding::of(&figure, self.experiment, rows);
-                // Neither direction is expected.
+                // No direction is expected.
                 let figure = family_figure(&figure, &finding);
                 FamilyFigure { expected: "none", verdict: None, ..figure }
             })
@@ -121,7 +120,7 @@ impl AblationReport {
     }
 }
 
-/// Maps of another experiment, with other methods.
+/// Creates an experiment on the maps of another one, with other methods.
 const fn on_maps_of(
     name: &'static str,
     about: &'static str,
@@ -134,7 +133,7 @@ const fn on_maps_of(
     Experiment { name, about, family, kind, ends, methods, scene, reconstruction }
 }
 
-/// Variants of a parameter with other values.
+/// Creates an ablation whose variants are the method with other values of a parameter.
 const fn sweep(
     paper: &'static str,
     about: &'static str,

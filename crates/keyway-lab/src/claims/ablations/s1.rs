@@ -25,7 +25,7 @@ const fn search(config: DensityAStarConfig) -> PlannerConfig {
     PlannerConfig::DensityAStar(config)
 }
 
-/// Maps of the paper, with other methods.
+/// Creates an experiment on the maps of the paper, with other methods.
 const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
@@ -78,7 +78,7 @@ static FACTORS: Experiment = on_maps(
     ],
 );
 
-/// DWA of the paper with other parameters.
+/// Creates a method with the paper's DWA and other parameters.
 const fn driven(name: &'static str, local: AdaptiveDwaConfig) -> Method {
     Method::driving(name, FUSED).with_local(LocalConfig::AdaptiveDwa(local)).may_fail()
 }

@@ -27,7 +27,7 @@ const PUBLISHED: BidirectionalJpsConfig = BidirectionalJpsConfig::PAPER;
 const D_M: f64 = KeyPointSmoothingConfig::PAPER.safe_distance_m;
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-/// Maps of the paper, with other methods.
+/// Creates an experiment on the maps of the paper, with other methods.
 const fn on_maps(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
@@ -55,12 +55,14 @@ static PARTS: Experiment = on_maps(
     ],
 );
 
-/// Another reading of when the sides have met and of the keys of open nodes, with a weight a.
+/// Variant with another interpretation of the meeting condition and of the keys of open nodes,
+/// with a weight a.
 const fn reading(name: &'static str, meeting: JumpMeeting, keys: OpenKeys, a: f64) -> Method {
     Method::new(name, search(BidirectionalJpsConfig { meeting, keys, a, ..PUBLISHED }), None)
 }
 
-/// Table 4 gives the path of this search the length of A*'s: which reading does that?
+/// Interpretations of the search: table 4 gives its path the same length as that of A*, and this
+/// experiment shows which interpretation reproduces that.
 static READINGS: Experiment = Experiment {
     name: "you2021-readings",
     about: ABOUT,
@@ -101,7 +103,7 @@ static READINGS: Experiment = Experiment {
     reconstruction: Ok(&FITTED),
 };
 
-/// DWA of the paper with other weights.
+/// The paper's DWA with other weights.
 const fn dwa(weights: KeyPointWeights, speed_weight: SpeedWeight) -> LocalConfig {
     let config = KeyPointDwaConfig { weights, speed_weight, ..KeyPointDwaConfig::PAPER };
     LocalConfig::KeyPointDwa(config)
@@ -109,7 +111,7 @@ const fn dwa(weights: KeyPointWeights, speed_weight: SpeedWeight) -> LocalConfig
 
 const WEIGHTS: KeyPointWeights = KeyPointDwaConfig::PAPER.weights;
 const SPEED: SpeedWeight = SpeedWeight::PAPER;
-/// Speed weight that no obstacle changes.
+/// Speed weight that does not depend on obstacles.
 const FIXED: SpeedWeight = SpeedWeight { high_risk: 0.0, low_risk: 0.0, ..SPEED };
 
 const fn driven(name: &'static str, local: LocalConfig) -> Method {
@@ -121,15 +123,15 @@ static GAMMA: Experiment = on_maps(
     &[driven(ALL, dwa(WEIGHTS, SPEED)), driven("fixed gamma", dwa(WEIGHTS, FIXED))],
 );
 
-/// The distance term up to 2 R1 and at the end, as in the sample program, and regions of 30
-/// degrees to either side.
+/// Distance term up to 2 R1 and at the end of the trajectory, as in the sample program; regions
+/// of 30 degrees to either side.
 const SAMPLE_FUSED: LocalConfig = LocalConfig::KeyPointDwa(KeyPointDwaConfig {
     window: DwaConfig::SAMPLE.window,
     speed_weight: SpeedWeight { half_angle_deg: 30.0, ..SPEED },
     distance_term_cap_m: DwaConfig::SAMPLE.distance_term_cap_m,
     ..KeyPointDwaConfig::PAPER
 });
-/// The distance term up to 2 R1, along the trajectory, and the same regions.
+/// Distance term up to 2 R1 along the trajectory; the same regions.
 const CAPPED_FUSED: LocalConfig = LocalConfig::KeyPointDwa(KeyPointDwaConfig {
     speed_weight: SpeedWeight { half_angle_deg: 30.0, ..SPEED },
     distance_term_cap_m: DwaConfig::SAMPLE.distance_term_cap_m,

@@ -42,16 +42,16 @@ const fn with_l(name: &'static str, l: f64) -> Method {
 
 const AS_PUBLISHED: (Weight, Correction, f64) = (Weight::Dynamic, Correction::Distance, L);
 const SMOOTHER: SmootherConfig = SmootherConfig::Hierarchical(PUBLISHED);
-/// The first layer without the second one: nodes in sight of each other.
+/// First layer of the smoother without the second one: nodes within line of sight of each other.
 const INNER_LAYER: SmootherConfig = SmootherConfig::LineOfSight(LineOfSightConfig {});
 const YARDSTICK: Method = Method::new(Experiment::YARDSTICK, JPS, None);
 
-/// Maps of the static scene, with other methods.
+/// Creates an experiment on the maps of the static scene, with other methods.
 const fn on_static(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, ABOUT, FAMILY, ENDS, methods)
 }
 
-/// Maps with unknown obstacles, with other methods.
+/// Creates an experiment on the maps with unknown obstacles, with other methods.
 const fn on_unknown(name: &'static str, methods: &'static [Method]) -> Experiment {
     on_maps_of(name, UNKNOWN_ABOUT, UNKNOWN_FAMILY, UNKNOWN_ENDS, methods)
 }
@@ -110,7 +110,7 @@ const fn with_window(name: &'static str, weights: GuidedWeights, window: WindowC
     past_three(name, GUIDED).with_local(LocalConfig::GuidedDwa(config)).may_fail()
 }
 
-/// Of the weights, which the paper does not give, and of the distance of (16).
+/// Interpretations of the weights, which the paper does not give, and of the distance of (16).
 static GUIDED_READINGS: Experiment = on_unknown(
     "zhuyin2024-readings",
     &[
@@ -122,7 +122,7 @@ static GUIDED_READINGS: Experiment = on_unknown(
             IN_ORDER,
             WindowConfig::AT_THE_END,
         ),
-        // At 1 m/s, (16) asks for 2.5 m with 0.2 m/s2, and for 0.5 m with 1 m/s2.
+        // At 1 m/s, (16) requires 2.5 m with 0.2 m/s2, and 0.5 m with 1 m/s2.
         past_three("a robot that brakes with 1 m/s2", GUIDED)
             .on(Vehicle::PaperWith([0.2, 1.0]))
             .may_fail(),

@@ -1,12 +1,13 @@
 //! Experiments with runs among unknown obstacles.
 //!
-//! The sizes of the roadways, the mine and the laboratory are not published. Each family is chosen
-//! by the published figures of the baselines: the length of 4-neighbour A* in each of the three
-//! roadways (77, 80 and 88 m), the length of A* in the mine (86.31 m), and the number of turns of
-//! A*'s path in the laboratory (10). RRT, A* and Dijkstra do not avoid unknown obstacles; their
-//! runs end at the first one. So a length, a search time or a contact of these methods is measured
-//! on their path, as in the paper's tables: a robot that follows the path also touches the mapped
-//! walls whose corners it cuts. In the laboratory, where A* keeps off the walls, it is followed.
+//! The sizes of the roadways, the mine and the laboratory are not published. Each family is
+//! chosen by the published figures of the baselines: the length of 4-neighbour A* in each of the
+//! three roadways (77, 80 and 88 m), the length of A* in the mine (86.31 m), and the number of
+//! turns of A*'s path in the laboratory (10). RRT, A* and Dijkstra do not avoid unknown
+//! obstacles; their runs end at the first one. A length, a search time or a contact of these
+//! methods is therefore measured on their path, as in the paper's tables: a robot that follows
+//! the path also touches the mapped walls whose corners it cuts. In the laboratory, A*'s path
+//! keeps clear of the walls, so a robot follows it.
 
 use super::super::driven::Vehicle;
 use super::super::experiment::{Experiment, ExperimentScene};
@@ -48,13 +49,13 @@ const NO_ROOM: &str = "neither plan nor size of the room is published, nor the l
 
 /// Maximum distance of the unknown obstacles' centres from the path \[m\].
 const ON_THE_WAY_M: f64 = 0.5;
-/// Unknown obstacles of figure 7, as in its scenes: standing and walking ones.
+/// Unknown obstacles of figure 7, as in its scenes: static and walking ones.
 const STANDING_AND_WALKING: [u32; 2] = [3, 2];
-/// Unknown obstacles of figure 8, where nothing moves.
+/// Unknown obstacles of figure 8: no moving ones.
 const STANDING: [u32; 2] = [3, 0];
 
-/// A square mine; the rough sides of its pillars make each map different. Around its ends there is
-/// room for the constraint.
+/// A square mine; the rough sides of its pillars make each map different. Its start and goal have
+/// enough clearance for the constraint.
 const fn mine(
     side_m: f64,
     [roadway_m, pillar_m]: [f64; 2],
@@ -64,7 +65,7 @@ const fn mine(
     square(side_m, 0.5, Pattern::Mine(Mine { roadway_m, pillar_m, roughness_m, fallen_in }))
 }
 
-/// Share of the stretches between two crossings that have fallen in.
+/// Share of the roadway sections between two crossings that have collapsed.
 const FALLEN_IN: f64 = 0.2;
 /// Roughness \[m\]; more than a cell, so that it changes the map.
 const ROUGH_M: f64 = 2.0;
@@ -97,7 +98,8 @@ pub(super) static UNKNOWN: Experiment = Experiment {
     reconstruction: Err(LENGTHS_FIT_ALL),
 };
 
-/// Methods in the roadways. Unknown obstacles stand on the same places for the paths and the run.
+/// Methods in the roadways. The unknown obstacles have the same positions for the paths and the
+/// run.
 static IN_ROADWAYS: [Method; 4] = [
     Method::new(PATH_OF_RRT, RRT, None).among_unknown(STANDING_AND_WALKING, ON_THE_WAY_M),
     Method::new(PATH_OF_ASTAR4, ASTAR4, None).among_unknown(STANDING_AND_WALKING, ON_THE_WAY_M),
@@ -125,8 +127,7 @@ const fn roadway(
     }
 }
 
-/// The pillar is as large as the map: what is left are the roadways along its lower and its left
-/// side.
+/// The pillar is as large as the map, so only the roadways along its lower and left sides remain.
 pub(super) static TURNING_ROADWAY: Experiment = roadway(
     (
         "zhuyin2024-turning-roadway",
@@ -141,8 +142,8 @@ pub(super) static TURNING_ROADWAY: Experiment = roadway(
     },
 );
 
-/// The way leads up the left roadway, along the upper one and into the stub of another upright one,
-/// which has fallen in farther up and below. So there is no other way.
+/// The path leads up the left roadway, along the upper one and into the stub of another vertical
+/// one, which has collapsed farther up and below. No other path exists.
 pub(super) static CONSECUTIVE_TURNS: Experiment = roadway(
     (
         "zhuyin2024-consecutive-turns",
@@ -157,8 +158,8 @@ pub(super) static CONSECUTIVE_TURNS: Experiment = roadway(
     },
 );
 
-/// The way leads along the lower roadway, through the left one of the upright ones, since the other
-/// has fallen in, and back along the upper roadway.
+/// The path leads along the lower roadway, through the left one of the vertical ones, since the
+/// other has collapsed, and back along the upper roadway.
 pub(super) static ROADWAY_TO_ROADWAY: Experiment = roadway(
     (
         "zhuyin2024-roadway-to-roadway",

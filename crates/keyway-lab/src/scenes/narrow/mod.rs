@@ -15,19 +15,20 @@ use keyway_sim::worlds::{Boxes, GeneratedMap, Pattern};
 use places::Place;
 use robots::any_robot;
 
-/// Simple narrow places to make scenes of: tunnels, doors, bays, corners, lanes, rooms with
-/// furniture, and walls to drive along. Each has a robot of its own, from a disc of 0.1 m to a
+/// Request for scenes of simple narrow places: tunnels, doors, bays, corners, lanes, rooms with
+/// furniture, and walls to drive along. Each has its own robot, from a disc of 0.1 m to a
 /// rectangle of 1.2 m x 0.6 m that turns about a point near its rear, of 0.3 to 3 m/s. The whole
 /// map is known.
 ///
-/// Some cannot be driven at all: the example `possible_poses` of this crate tells them.
+/// Some scenes cannot be driven at all: the example `possible_poses` of this crate identifies
+/// them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NarrowRequest {
-    /// Names of kinds, such as `tunnel`; all of them if it is empty.
+    /// Names of kinds, such as `tunnel`; if empty, all of them.
     pub names: Vec<String>,
     /// Seed of the first scene of each kind.
     pub seed: u64,
-    /// Number of scenes of each kind, each of the seed after the one before.
+    /// Number of scenes of each kind, with consecutive seeds.
     pub count: usize,
 }
 
@@ -40,7 +41,7 @@ impl NarrowRequest {
     /// Returns the scenes of each kind, in the order of their seeds.
     ///
     /// # Errors
-    /// When there is no such kind.
+    /// Returns [`ScenesError`] if no such kind exists.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let is_unknown = |name: &&String| Self::all_names().all(|known| known != name.as_str());
         if let Some(name) = self.names.iter().find(is_unknown) {
@@ -65,7 +66,7 @@ impl NarrowRequest {
 const SIDE_M: f64 = 10.0;
 const CELL_M: f64 = 0.05;
 
-/// The first and the last pose of a robot, in the frame of the map, whose middle is (0, 0).
+/// Start and goal pose of a robot, in the frame of the map, whose centre is (0, 0).
 #[derive(Clone, Copy, Debug)]
 struct Ends {
     start: Pose,
@@ -73,9 +74,10 @@ struct Ends {
     has_heading: bool,
 }
 
-/// The scene of a seed: of all that are drawn, the first one at whose ends the robot fits.
+/// Returns the scene of a seed: of all that are drawn, the first one in which the robot fits at
+/// its start and goal.
 fn scene(place: &Place, seed: u64) -> Result<SceneFile, keyway_sim::scene_files::SceneError> {
-    /// So many draws hardly ever fail.
+    /// Maximum number of draws, which hardly ever all fail.
     const MOST_DRAWS: u32 = 200;
     let name: u64 = place.name.bytes().fold(0, |name, byte| name << 8 | u64::from(byte));
     let mut random = Random::stream(seed, &[name]);
@@ -108,7 +110,7 @@ struct Drawn {
     ends: Ends,
 }
 
-/// Draws a robot and a place for it; the place is turned on the map.
+/// Draws a robot and a place for it; the place is rotated on the map.
 fn draw(place: &Place, random: &mut Random) -> Drawn {
     let robot = any_robot(random);
     let (boxes, ends) = (place.draw)(&robot, random);
@@ -130,7 +132,7 @@ fn draw(place: &Place, random: &mut Random) -> Drawn {
     Drawn { robot, world, ends }
 }
 
-/// True if the robot has a margin of a centimetre at both ends.
+/// True if the robot has a margin of a centimetre at its start and goal.
 fn fits(drawn: &Drawn) -> bool {
     const MARGIN_M: f64 = 0.01;
     let Ok(grid) = drawn.world.generate(0, &[]) else { return false };
@@ -142,13 +144,13 @@ fn fits(drawn: &Drawn) -> bool {
     })
 }
 
-/// To a millimetre and a tenth of a degree.
+/// Rounds to a millimetre and a tenth of a degree.
 fn rounded(pose: Pose) -> Pose {
     let theta = to(pose.theta.to_degrees(), 10.0).to_radians();
     Pose { x: to(pose.x, 1e3), y: to(pose.y, 1e3), theta }
 }
 
-/// A number in whole parts of 1.
+/// Rounds a number to whole parts of 1.
 fn to(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts
 }
@@ -173,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Nearly all of many draws have ends at which the robot fits.
+    /// In nearly all of many draws, the robot fits at its start and goal.
     #[test]
     fn robots_fit_where_they_begin_and_end() {
         for place in Place::ALL {

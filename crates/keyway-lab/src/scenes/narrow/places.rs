@@ -1,4 +1,5 @@
-//! The kinds of narrow places. Lengths are metres in a frame whose origin is the middle of the map.
+//! The kinds of narrow places. Lengths are metres in a frame whose origin is the centre of the
+//! map.
 
 use super::Ends;
 use super::robots::width_m;
@@ -7,7 +8,7 @@ use keyway::random::Random;
 use keyway::robot::{Footprint, Robot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The boxes that stand, and the ends of the way.
+/// The static boxes, and the start and goal.
 type Drawing = (Vec<[f64; 4]>, Ends);
 
 /// A kind of place.
@@ -62,10 +63,10 @@ impl Place {
     ];
 }
 
-/// Beyond the border of the map, however it is turned.
+/// Distance beyond the border of the map, in any rotation.
 const FAR_M: f64 = 8.0;
 
-/// The ways may lie no farther than this from the middle of the map \[m\].
+/// Maximum distance of routes from the centre of the map \[m\].
 const REACH_M: f64 = 3.8;
 
 /// A wall across the map, from `left` to `right`, with a gap from `low` to `high`.
@@ -73,7 +74,7 @@ fn wall_with_gap([left, right]: [f64; 2], [low, high]: [f64; 2]) -> Vec<[f64; 4]
     vec![[left, -FAR_M, right, low], [left, high, right, FAR_M]]
 }
 
-/// The width of a gap, so much wider to each side than the robot.
+/// Width of a gap, wider than the robot by this much on each side.
 fn gap_m(robot: &Robot, random: &mut Random, to_each_side_m: [f64; 2]) -> f64 {
     width_m(robot) + 2.0 * random.between(to_each_side_m)
 }
@@ -118,7 +119,7 @@ fn bay(robot: &Robot, random: &mut Random) -> Drawing {
     let depth_m = size_m * random.between([0.8, 2.5]);
     let mut boxes = wall_with_gap([0.0, FAR_M], [-half_m, half_m]);
     boxes.push([depth_m, -half_m, FAR_M, half_m]);
-    // A wall opposite to it.
+    // A wall opposite to the bay.
     let opposite_m = -size_m * random.between([1.2, 4.0]) - 0.3;
     boxes.push([-FAR_M, -FAR_M, opposite_m, FAR_M]);
     let facing = if random.is_chosen(0.5) { PI } else { 0.0 };
@@ -132,7 +133,7 @@ fn corner(robot: &Robot, random: &mut Random) -> Drawing {
     let mut corridor_m =
         || random.between([width_m(robot) + 0.06, widest_m.max(width_m(robot) + 0.1)]);
     let (across_m, up_m) = (corridor_m(), corridor_m());
-    // Along the x axis from the left, then upwards.
+    // A lane along the x axis from the left, then one upwards.
     let boxes = vec![
         [-FAR_M, -FAR_M, FAR_M, -0.5 * across_m],
         [-FAR_M, 0.5 * across_m, -0.5 * up_m, FAR_M],
@@ -174,7 +175,7 @@ fn room(robot: &Robot, random: &mut Random) -> Drawing {
     (boxes, ends(start, goal, random.is_chosen(0.5)))
 }
 
-/// Beside a wall, along it or away from it.
+/// Route beside a wall, along it or away from it.
 fn wall(robot: &Robot, random: &mut Random) -> Drawing {
     let mut boxes = vec![[-FAR_M, -FAR_M, FAR_M, 0.0]];
     if random.is_chosen(0.5) {

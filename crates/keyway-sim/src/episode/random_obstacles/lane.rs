@@ -19,14 +19,14 @@ pub(super) struct Lane {
     /// Path on the original map; empty if there is none.
     pub(super) way: Polyline,
     pub(super) inscribed_m: f64,
-    /// Free distance from the ends to the rim of any obstacle \[m\].
+    /// Free distance from the ends to the edge of any obstacle \[m\].
     free_ends_m: f64,
     workspace: Workspace,
 }
 
 impl Lane {
-    /// `ends` are all positions that the robot has to visit, in order; `free_ends_m` is the free
-    /// margin around its footprint there.
+    /// Creates the lane of a robot. `ends` are all positions that the robot has to visit, in
+    /// order; `free_ends_m` is the free margin around its footprint there.
     pub(super) fn of(
         known: &OccupancyGrid,
         footprint: &Footprint,
@@ -34,7 +34,7 @@ impl Lane {
         free_ends_m: f64,
     ) -> Result<Self, ConfigError> {
         let inscribed_m = footprint.inscribed_radius_m();
-        // The robot stands at its ends, however near they are to an obstacle.
+        // The robot fits at its stops, however close they are to an obstacle.
         let layers = LayerConfig {
             clearance_m: inscribed_m,
             free_ends_m: inscribed_m,
@@ -60,7 +60,7 @@ impl Lane {
         Ok(lane)
     }
 
-    /// True if there is a path on the original map.
+    /// True if a path exists on the original map.
     pub(super) fn has_way(&self) -> bool {
         self.way.length_m() > 0.0
     }
@@ -71,14 +71,14 @@ impl Lane {
         self.map.apply(&edits);
     }
 
-    /// True if there is a path around all added obstacles. A robot that never had a path has lost
-    /// none.
+    /// True if a path exists around all added obstacles, or if there was none on the original
+    /// map.
     pub(super) fn still_has_way(&mut self) -> bool {
         !self.has_way() || self.legs(&Jps).is_some()
     }
 
-    /// True if a disc of `radius_m` leaves the ends free at its nearest position; `apart_m` is the
-    /// distance of an end from this position.
+    /// True if a disc of `radius_m` leaves the ends free at its nearest position; `apart_m`
+    /// returns the distance of an end from this position.
     pub(super) fn leaves_ends(&self, radius_m: f64, apart_m: impl Fn(Point) -> f64) -> bool {
         self.ends.iter().all(|&end| apart_m(end) >= self.free_ends_m + radius_m)
     }

@@ -3,8 +3,8 @@ use keyway::geometry::Disc;
 use keyway::map::{GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 
-/// A hall of 12 m x 6 m in cells of 0.1 m, with walls around it, and a wall across with a door from
-/// 2 m to 3.2 m up.
+/// A hall of 12 m x 6 m in cells of 0.1 m, with walls around it, and optionally a wall across
+/// with a door from y = 2 m to 3.2 m.
 fn hall(with_door: bool) -> OccupancyGrid {
     let frame = GridFrame::new(120, 60, 0.1, keyway::geometry::Pose::default()).unwrap();
     OccupancyGrid::from_fn(frame, |Cell { x, y }| {
@@ -46,7 +46,8 @@ fn to_squares_m(squares: &[Cell], at: Point) -> f64 {
     squares.iter().map(apart_m).fold(f64::INFINITY, f64::min)
 }
 
-/// True if cells whose centres keep these distances from squares and discs connect start and goal.
+/// True if start and goal are connected by cells whose centres keep these distances from squares
+/// and discs.
 fn has_way(episode: &Episode, radius_m: f64, beside_discs_m: f64) -> bool {
     let (frame, squares) = (episode.known.frame(), squares(&episode.known));
     let is_free = |cell: Cell| {
@@ -112,7 +113,7 @@ fn what_stands_is_near_the_way_off_the_ends_and_leaves_a_way() {
 
 #[test]
 fn beside_a_disc_there_is_room_to_spare() {
-    // In the door, 0.5 m are left beside a disc: the robot is 0.36 m wide, and fits through a row
+    // In the door, 0.5 m are free beside a disc. The robot is 0.36 m wide and fits through a row
     // of cells, but not with a margin.
     let narrow = RandomObstacles {
         unknown: Some(RandomUnknown { count: 1, radius_m: [0.14, 0.14] }),
@@ -183,7 +184,7 @@ fn what_finds_no_place_is_counted() {
     let placed = episode.random.unwrap();
     assert_eq!((placed.unknown_placed, placed.moving_placed, placed.left_out()), (0, 0, 5));
     assert!(episode.obstacles.is_empty() && episode.movers.is_empty());
-    // Without a path, nothing is near it.
+    // Without a path, no obstacle can be placed near it.
     let mut closed = self::episode(true, Robot::small());
     closed.robots[0].goal.position = Point::new(0.05, 0.05);
     config(2, 1).put_into(&mut closed, 1).unwrap();
@@ -218,7 +219,7 @@ fn bad_values_are_named() {
     assert_eq!(field(&|it| it.moving = moving([1.0, 200.0])), "moving.speed_mps[1]");
 }
 
-/// A wide robot that stays on the left, and two robots that pass through the door from opposite
+/// A wide robot that drives on the left, and two robots that pass through the door from opposite
 /// sides.
 fn team(with_door: bool) -> Episode {
     let robot = |robot: Robot, from: [f64; 2], to: [f64; 2]| {
@@ -287,7 +288,7 @@ fn of_several_robots_each_has_its_way_and_its_ends_free() {
     assert!(near.iter().all(|&count| count > 0) && crossing > 6, "{near:?}, {crossing}");
 }
 
-/// The walled-in robot stays where it is; the others drive all the same.
+/// The walled-in robot stays at its start; the others still drive.
 #[test]
 fn a_robot_without_a_way_keeps_its_ends_free() {
     let mut team = team(false);

@@ -3,9 +3,10 @@
 //! # Source
 //! \[Efron1987\]. Samples of the same size are drawn from the values, with replacement. The
 //! interval of the true mean follows from the share of their means below the mean of the sample,
-//! and from the sample's skewness. No distribution of the values is assumed, but there must be
+//! and from the sample's skewness. The method assumes no distribution of the values, but needs
 //! enough of them: of 1000 intervals of 95 %, 80 to 82 % contained the true mean with 5 values
-//! each, 90 % with 10, 92 to 93 % with 20, and 94 % with 50 (of normal and of exponential values).
+//! each, 90 % with 10, 92 to 93 % with 20, and 94 % with 50 (of normal and of exponential
+//! values).
 //!
 //! | paper | here |
 //! |---|---|
@@ -15,8 +16,9 @@
 //! | a | the sum of cubed deviations over 6 times the sum of squared ones to the power of 3/2 |
 //! | z\[α\] = z0 + (z0 + z(α)) / (1 - a (z0 + z(α))) | interval end among the resamples' means |
 //!
-//! # Where this differs from the paper
-//! Half of the equal means count as lower: values such as numbers of turns give many of them.
+//! # Difference from the paper
+//! Half of the equal means count as lower, because values such as numbers of turns have many
+//! ties.
 //!
 //! # Errors / cost
 //! `None` for a single value. If all values are equal, the interval has no width. 10,000 n draws.
@@ -31,8 +33,8 @@ const RESAMPLES: usize = 10_000;
 
 impl Sample {
     /// Returns the interval of the true mean: Efron's `BCa` interval of 10,000 resamples, drawn
-    /// from this seed. `None` for a single value; without width where all are equal. With few
-    /// values it is too narrow: with 10, an interval of 95 % contains the true mean in about 90 %
+    /// from this seed. `None` for a single value; without width if all are equal. It is too
+    /// narrow for few values: with 10, an interval of 95 % contains the true mean in about 90 %
     /// of cases.
     pub fn mean_interval(&self, confidence: Confidence, seed: u64) -> Option<Interval> {
         let values = self.values();
@@ -57,7 +59,7 @@ fn resampled_mean(values: &[f64], draws: &mut [u32], random: &mut Random) -> f64
     for _ in values {
         draws[random.below(count) as usize] += 1;
     }
-    // In the order of the values, the sum of the sample itself is the same to the bit.
+    // In the order of the values, the sum of the sample itself is bitwise the same.
     let drawn = values.iter().zip(draws).map(|(value, draws)| value * f64::from(*draws));
     drawn.sum::<f64>() / values.len() as f64
 }
@@ -79,7 +81,7 @@ fn corrected(means: Vec<f64>, sample: &Sample, confidence: Confidence) -> Interv
     let end = |z: f64| {
         let shifted = bias + z;
         let scale = 1.0 - acceleration * shifted;
-        // In a tail so far out that the correction changes its sign, the last mean is used.
+        // If the correction changes sign in an extreme tail, the last mean is used.
         let place = if scale > 0.0 { bias + shifted / scale } else { shifted * f64::INFINITY };
         means.quantile(normal::probability_below(place))
     };
@@ -87,8 +89,8 @@ fn corrected(means: Vec<f64>, sample: &Sample, confidence: Confidence) -> Interv
     Interval { low: end(-z), high: end(z), confidence }
 }
 
-/// For a mean, the jackknife's formula is a sixth of the skewness over the root of the number of
-/// values.
+/// Acceleration of a mean by the jackknife's formula: a sixth of the skewness over the root of
+/// the number of values.
 fn acceleration(sample: &Sample) -> f64 {
     let mean = sample.mean();
     let deviations = || sample.values().iter().map(|value| value - mean);
@@ -114,8 +116,8 @@ mod tests {
         values.iter().sum::<f64>() / values.len() as f64
     }
 
-    /// Interval of all n^n resamples, with the acceleration of the jackknife: each value left out
-    /// once.
+    /// Interval of all n^n resamples, with the acceleration of the jackknife that leaves out each
+    /// value once.
     fn of_all_resamples(values: &[f64], confidence: f64) -> [f64; 2] {
         let (n, whole) = (values.len(), mean(values));
         let draw = |mut number: usize| {

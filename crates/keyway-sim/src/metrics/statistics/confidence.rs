@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 #[serde(try_from = "f64", into = "f64")]
 pub struct Confidence(f64);
 
-/// Confidence interval of a true value, both ends included.
+/// Confidence interval of a true value, both limits included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
-    /// The lower end.
+    /// Lower limit.
     pub low: f64,
-    /// The upper end.
+    /// Upper limit.
     pub high: f64,
     /// Confidence of the interval.
     pub confidence: Confidence,
@@ -24,8 +24,10 @@ impl Confidence {
     /// The usual 95 %.
     pub const USUAL: Self = Self(0.95);
 
+    /// Creates a confidence from a share.
+    ///
     /// # Errors
-    /// When the share is not above 0 and below 1.
+    /// Returns an error if the share is not above 0 and below 1.
     pub fn new(share: f64) -> Result<Self, StatisticsError> {
         let is_sound = share > 0.0 && share < 1.0;
         if is_sound { Ok(Self(share)) } else { Err(StatisticsError::Confidence(share)) }

@@ -3,7 +3,7 @@
 use keyway::given::Given;
 use thiserror::Error;
 
-/// Error in the given numbers.
+/// Error in input values.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StatisticsError {
     /// The sample is empty.

@@ -1,22 +1,23 @@
 //! Holm's correction for several tests \[Holm1979\].
 //!
 //! # Source
-//! \[Holm1979\]: of m tests, the one with the smallest p is judged as one of m, the next as one of
-//! m - 1, and so on until one is not significant. The values returned here are compared with the
-//! usual level.
+//! \[Holm1979\]: of m tests, the one with the smallest p is judged as one of m, the next as one
+//! of m - 1, and so on until one is not significant. The returned values are to be compared with
+//! the usual level.
 //!
 //! | paper | here |
 //! |---|---|
 //! | P(1) ≤ ... ≤ P(n) | the p-values in ascending order |
-//! | α / (n - k + 1) | level of P(k); here (n - k + 1) P(k), made ascending, is compared with α |
+//! | α / (n - k + 1) | level of P(k); here (n - k + 1) P(k), made monotonic, is compared with α |
 //!
 //! # Errors / cost
 //! [`StatisticsError`] for a value that is not a probability. Sorts the p-values.
 
 use super::error::StatisticsError;
 
-/// Returns the corrected p-values of tests that are judged together, in the given order: the chance
-/// of a single wrong rejection among them stays below the level that they are compared with.
+/// Returns the corrected p-values of tests that are judged together, in the given order. The
+/// probability of any false rejection among them stays below the level that they are compared
+/// with.
 ///
 /// ```
 /// use keyway_sim::metrics::statistics::holm;
@@ -26,7 +27,7 @@ use super::error::StatisticsError;
 /// ```
 ///
 /// # Errors
-/// When a value is not from 0 to 1.
+/// Returns an error if a value is not from 0 to 1.
 pub fn holm(p_values: &[f64]) -> Result<Vec<f64>, StatisticsError> {
     let is_sound = |p: &f64| (0.0..=1.0).contains(p);
     if let Some(at) = p_values.iter().position(|p| !is_sound(p)) {
@@ -71,7 +72,7 @@ mod tests {
     }
 
     proptest! {
-        /// The closure principle: a test is significant when every set of tests that contains it is
+        /// The closure principle: a test is significant if every set of tests that contains it is
         /// significant by Bonferroni's inequality.
         #[test]
         fn the_closure_of_bonferronis_tests(

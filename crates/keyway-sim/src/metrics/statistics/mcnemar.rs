@@ -1,11 +1,11 @@
-//! McNemar's exact test \[McNemar1947\]: which of two methods succeeds more often on the same
-//! tasks.
+//! McNemar's exact test \[McNemar1947\]: tests which of two methods succeeds more often on the
+//! same tasks.
 //!
 //! # Source
-//! \[McNemar1947\]. Only pairs in which exactly one method succeeds show which is better. If
-//! neither is better, each of these pairs is as likely to favour the first method as the second, so
-//! the number for one method is binomial. The paper approximates it by a chi-squared distribution;
-//! here it is exact.
+//! \[McNemar1947\]. Only pairs in which exactly one method succeeds show a difference. If neither
+//! method is better, each of these pairs is as likely to favour the first method as the second,
+//! so the number for one method is binomial. The paper approximates it by a chi-squared
+//! distribution; here it is exact.
 //!
 //! | paper | here |
 //! |---|---|
@@ -24,13 +24,13 @@ use std::f64::consts::LN_2;
 pub struct McNemarTest {
     /// Tasks in which both succeeded.
     pub both: u64,
-    /// Tasks in which only the first one did.
+    /// Tasks in which only the first method succeeded.
     pub only_first: u64,
-    /// Tasks in which only the second one did.
+    /// Tasks in which only the second method succeeded.
     pub only_second: u64,
-    /// Tasks in which neither did.
+    /// Tasks in which neither method succeeded.
     pub neither: u64,
-    /// Rate of the first less the rate of the second; `None` without pairs.
+    /// Success rate of the first method minus that of the second; `None` without pairs.
     pub rate_difference: Option<f64>,
     /// Probability of a difference at least as large, in either direction, if both methods were
     /// equally good.
@@ -38,7 +38,7 @@ pub struct McNemarTest {
 }
 
 impl McNemarTest {
-    /// Compares outcomes: for each task, whether the first and whether the second method succeeded.
+    /// Compares outcomes: for each task, true for each method that succeeded.
     pub fn of_pairs(pairs: impl IntoIterator<Item = [bool; 2]>) -> Self {
         let [mut both, mut only_first, mut only_second, mut neither] = [0; 4];
         for pair in pairs {

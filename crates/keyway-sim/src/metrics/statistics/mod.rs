@@ -2,17 +2,17 @@
 //!
 //! | question | answer | source |
 //! |---|---|---|
-//! | how large are these values? | [`Sample::summary`] | \[Hyndman1996\] |
-//! | what is the range of their true mean? | [`Sample::mean_interval`] | \[Efron1987\] |
-//! | what is the range of a true rate? | [`Rate::interval`] | \[Wilson1927\] |
-//! | does one of two methods succeed more often? | [`McNemarTest`] | \[McNemar1947\] |
-//! | does one of two methods give larger values? | [`SignedRankTest`] | \[Wilcoxon1945\] |
-//! | which of several tests still hold together? | [`holm`] | \[Holm1979\] |
+//! | distribution of values | [`Sample::summary`] | \[Hyndman1996\] |
+//! | interval of the true mean | [`Sample::mean_interval`] | \[Efron1987\] |
+//! | interval of a true rate | [`Rate::interval`] | \[Wilson1927\] |
+//! | success of two methods | [`McNemarTest`] | \[McNemar1947\] |
+//! | values of two methods | [`SignedRankTest`] | \[Wilcoxon1945\] |
+//! | correction for several tests | [`holm`] | \[Holm1979\] |
 //!
 //! Two methods are compared on the same tasks, so both tests are paired. Everything is
-//! deterministic: the same values in any order give the same bytes. Only the normal distribution is
-//! needed, and it follows from `libm::erfc`; the crate `statrs` has none of these intervals and
-//! tests.
+//! deterministic: the same values in any order give the same bytes. Only the normal distribution
+//! is needed, and it follows from `libm::erfc`; the crate `statrs` has none of these intervals
+//! and tests.
 //!
 //! ```
 //! use keyway_sim::metrics::statistics::{Confidence, Rate, Sample, SignedRankTest};

@@ -2,7 +2,7 @@
 //!
 //! # Errors / cost
 //! The quantile of a share of 0 or less is minus infinity, and that of a share of 1 or more is
-//! infinity. A quantile takes about a hundred error functions.
+//! infinity. A quantile costs about a hundred evaluations of the error function.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

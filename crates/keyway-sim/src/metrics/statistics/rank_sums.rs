@@ -1,7 +1,7 @@
 //! Sums of ranks with random signs \[Wilcoxon1945\].
 //!
-//! If neither of two methods is better, every difference is as likely to be positive as negative.
-//! So the sum of the positive ranks contains each rank with probability 1/2.
+//! If neither of two methods is better, every difference is equally likely to be positive or
+//! negative. So the sum of the positive ranks contains each rank with probability 1/2.
 //!
 //! Ranks are doubled because tied ranks are multiples of one half. The probabilities are built rank
 //! by rank as sums of positive numbers, so hardly any precision is lost.
@@ -76,7 +76,7 @@ mod tests {
     }
 
     proptest! {
-        /// Every choice of signs.
+        /// Compares with all choices of signs.
         #[test]
         fn all_signs(ranks in prop::collection::vec(1u64..12, 0..11), sum in 0u64..80) {
             let sums = RankSums::of(ranks.iter().copied());

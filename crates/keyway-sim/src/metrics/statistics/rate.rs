@@ -1,10 +1,10 @@
 //! A rate with Wilson's score interval \[Wilson1927\].
 //!
 //! # Source
-//! \[Wilson1927\]; \[Newcombe1998\] compares it with others and recommends it. The ends of the
-//! interval are the rates p for which the observed rate is z standard deviations away: |p̂ - p| = z
-//! sqrt(p (1 - p) / n). The interval stays within 0 to 1. It is also right for 0 of n and n of n,
-//! where the usual p̂ ± z sqrt(p̂ (1 - p̂) / n) would have no width.
+//! \[Wilson1927\]; \[Newcombe1998\] compares it with others and recommends it. The limits of the
+//! interval are the rates p that are z standard deviations away from the observed rate:
+//! |p̂ - p| = z sqrt(p (1 - p) / n). The interval stays within 0 to 1. It is also correct for 0 of
+//! n and n of n, for which the usual p̂ ± z sqrt(p̂ (1 - p̂) / n) has no width.
 //!
 //! | paper | here |
 //! |---|---|
@@ -50,7 +50,7 @@ impl Rate {
         let middle = (share + z * z / (2.0 * n)) / scale;
         let variance = share * (1.0 - share) / n + z * z / (4.0 * n * n);
         let half = z * variance.sqrt() / scale;
-        // Where nothing or everything succeeded, that end is exact except for rounding.
+        // If all trials had the same outcome, that limit is exact except for rounding.
         let low = if self.successes == 0 { 0.0 } else { (middle - half).max(0.0) };
         let high = if self.failures == 0 { 1.0 } else { (middle + half).min(1.0) };
         Some(Interval { low, high, confidence })
@@ -85,7 +85,7 @@ mod tests {
         }
     }
 
-    /// The equation that defines the ends, solved by bisection.
+    /// Checks the limits against their defining equation, solved by bisection.
     #[test]
     fn the_ends_are_as_far_as_the_confidence_says() {
         for (successes, trials, confidence) in

@@ -7,11 +7,11 @@
 //! |---|---|
 //! | X(1) ≤ ... ≤ X(n) | [`Sample::values`] |
 //! | p | the share of a quantile |
-//! | (n - 1) p | the place of the quantile, counted from 0; between two places it is interpolated |
+//! | (n - 1) p | the position of the quantile, from 0; interpolated between two positions |
 //!
 //! # Errors / cost
-//! [`StatisticsError`] for no values, and for a value that is not a number. Sorted once; all else
-//! is linear or less.
+//! [`StatisticsError`] for no values, and for a value that is not a number. Values are sorted
+//! once; everything else is at most linear.
 
 use super::error::StatisticsError;
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// Limit beyond which the sums of squares and cubes are meaningless.
 const LARGEST: f64 = 1e90;
 
-/// At least one value, all of them numbers; in ascending order, so that no result depends on the
+/// At least one value, all of them numbers, in ascending order, so that no result depends on the
 /// order of the input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
@@ -48,10 +48,10 @@ pub struct Summary {
 }
 
 impl Sample {
-    /// A sample of these values, in any order.
+    /// Creates a sample of these values, in any order.
     ///
     /// # Errors
-    /// When there are none, or one is not a number from -1e90 to 1e90.
+    /// Returns an error if there are no values, or one is not a number from -1e90 to 1e90.
     pub fn new(mut values: Vec<f64>) -> Result<Self, StatisticsError> {
         if values.is_empty() {
             return Err(StatisticsError::NoValues);
@@ -84,16 +84,16 @@ impl Sample {
     }
 
     /// Returns the value that this share of the values does not exceed, interpolated between
-    /// neighbours. The share is limited to 0 to 1.
+    /// neighbours. The share is clamped to the interval from 0 to 1.
     pub fn quantile(&self, share: f64) -> f64 {
         let place = share.clamp(0.0, 1.0) * (self.sorted.len() - 1) as f64;
         let (below, part) = (place.floor() as usize, place.fract());
         let (low, high) = (self.sorted[below], self.sorted[self.sorted.len().min(below + 2) - 1]);
-        // Between equal values, nothing is rounded.
+        // Equal values are not interpolated, to avoid rounding.
         if low == high { low } else { low + part * (high - low) }
     }
 
-    /// Returns all figures at once.
+    /// Returns the complete summary.
     pub fn summary(&self) -> Summary {
         Summary {
             count: self.sorted.len(),

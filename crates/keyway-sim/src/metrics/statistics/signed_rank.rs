@@ -1,30 +1,30 @@
-//! Wilcoxon's signed-rank test \[Wilcoxon1945\]: which of two methods gives larger values on the
-//! same tasks.
+//! Wilcoxon's signed-rank test \[Wilcoxon1945\]: tests which of two methods gives larger values
+//! on the same tasks.
 //!
 //! # Source
 //! \[Wilcoxon1945\], with the zeros of \[Pratt1959\] and the effect size of \[Kerby2014\].
 //!
 //! | source | here |
 //! |---|---|
-//! | d(i) | differences, first less second |
+//! | d(i) | differences, first minus second |
 //! | rank of \|d(i)\| | from 1; ties: mean rank; zeros are ranked, then dropped \[Pratt1959\] |
 //! | T+, T- | [`SignedRankTest::positive_rank_sum`], [`SignedRankTest::negative_rank_sum`] |
 //! | r = (T+ - T-) / (T+ + T-) | [`SignedRankTest::rank_biserial`] |
 //!
-//! # Why Pratt's zeros
+//! # Pratt's zeros
 //! Wilcoxon drops zeros before ranking. A result may then become *more* significant when a value
 //! moves against it \[Pratt1959\]. Methods that often agree, such as planners on easy tasks, give
 //! many zeros.
 //!
-//! # Exact or not
-//! With up to 50 differences other than 0, p is exact, also with ties and zeros: see [`RankSums`].
-//! Beyond that, T+ is taken as normal, with the mean and the variance that the ranks themselves
-//! give: half of their sum, and a quarter of the sum of their squares. This includes the usual
-//! corrections for ties and zeros; half a rank is the continuity correction.
+//! # Exact and approximate p
+//! With up to 50 differences other than 0, p is exact, also with ties and zeros: see
+//! [`RankSums`]. Beyond that, T+ is approximated as normal, with the mean and the variance of the
+//! ranks themselves: half of their sum, and a quarter of the sum of their squares. This includes
+//! the usual corrections for ties and zeros; half a rank is the continuity correction.
 //!
 //! # Errors / cost
-//! A sample is never empty, so nothing fails. Sorts the differences; for the interval, see
-//! `walsh.rs`.
+//! A sample is never empty, so nothing fails. Sorts the differences; for the cost of the
+//! interval, see `walsh.rs`.
 
 use super::confidence::{Confidence, Interval};
 use super::normal;
@@ -44,23 +44,22 @@ pub struct SignedRankTest {
     pub positive_rank_sum: f64,
     /// Sum of the ranks of the negative differences.
     pub negative_rank_sum: f64,
-    /// Probability of rank sums at least as different, in either direction, if differences were as
-    /// likely to be positive as negative.
+    /// Probability of rank sums at least as different, in either direction, if positive and
+    /// negative differences were equally likely.
     pub p_value: f64,
     /// True if p is exact, not approximated by a normal distribution.
     pub is_exact: bool,
-    /// Effect size from -1, all differences are negative, to 1, all are positive; 0 where all are
-    /// 0.
+    /// Effect size from -1, all differences negative, to 1, all positive; 0 if all are 0.
     pub rank_biserial: f64,
     /// Median of the means of all pairs of differences \[Hodges1963\].
     pub median_difference: f64,
-    /// Interval of the median difference; `None` where there are too few pairs for this confidence.
+    /// Interval of the median difference; `None` if there are too few pairs for this confidence.
     pub median_difference_interval: Option<Interval>,
 }
 
 impl SignedRankTest {
-    /// Compares two methods by their differences, first less second. Sizes that differ only by
-    /// rounding are not ties, so round the differences first where that matters.
+    /// Compares two methods by their differences, first minus second. Sizes that differ only by
+    /// rounding are not ties, so round the differences first if that matters.
     pub fn of_differences(differences: &Sample, confidence: Confidence) -> Self {
         let ranks = Ranks::of(differences.values());
         let total = ranks.positive + ranks.negative;
@@ -148,7 +147,7 @@ mod tests {
         assert_eq!(test.rank_biserial, 0.6);
     }
 
-    /// The depression scores of \[Hollander1999\], table 3.1: T+ is 5 for second less first, the
+    /// The depression scores of \[Hollander1999\], table 3.1: T+ is 5 for second minus first, the
     /// estimate -0.46 and the interval of 96 % -0.786 to -0.010.
     #[test]
     fn depression_scores() {
@@ -185,8 +184,8 @@ mod tests {
         assert_eq!(test_of(&[2.0]).median_difference_interval, None);
     }
 
-    /// Variance as in textbooks: n (n + 1) (2 n + 1) / 24, less zeros, less the sum of t³ - t over
-    /// 48.
+    /// Variance as in textbooks: n (n + 1) (2 n + 1) / 24, minus zeros, minus the sum of t³ - t
+    /// over 48.
     #[test]
     fn many_pairs_with_zeros_and_ties() {
         let differences: Vec<f64> = (0..120).map(|i| f64::from((i * 37 % 23) - 10) / 2.0).collect();

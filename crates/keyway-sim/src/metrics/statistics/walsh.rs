@@ -2,10 +2,10 @@
 //!
 //! # Source
 //! \[Hodges1963\]; the interval is from \[Hollander1999\], section 3.3. Walsh averages are the
-//! means of all pairs of differences, including each difference with itself. Their median estimates
-//! the shift between two methods. The number of averages above a value is the sum of the positive
-//! ranks of the differences less that value, so the interval contains the shifts that a signed-rank
-//! test does not reject.
+//! means of all pairs of differences, including each difference with itself. Their median
+//! estimates the shift between two methods. The number of averages above a value is the sum of
+//! the positive ranks after that value is subtracted from the differences. So the interval
+//! contains the shifts that a signed-rank test does not reject.
 //!
 //! | source | here |
 //! |---|---|
@@ -13,20 +13,20 @@
 //! | T+ | a sum of the ranks 1 to n, see [`RankSums`] |
 //! | C(α) | the largest c with P(T+ ≤ c - 1) ≤ α / 2; the interval is W(c) to W(M + 1 - c) |
 //!
-//! # Where this differs from the source
+//! # Difference from the source
 //! Differences may be equal and may be 0. The interval is then wider than necessary, never too
 //! narrow.
 //!
 //! # Errors / cost
 //! `None` if even the widest interval has less than the requested confidence: 95 % needs 6
-//! differences. An average is found by bisection in at most 64 n steps; no list of averages is
-//! made.
+//! differences. An average is found by bisection in at most 64 n steps, without a list of
+//! averages.
 
 use super::confidence::{Confidence, Interval};
 use super::rank_sums::RankSums;
 use super::sample::Sample;
 
-/// Number of ranks beyond which their sums are taken as normally distributed.
+/// Number of ranks beyond which their sums are approximated as normal.
 pub(super) const EXACT_RANKS: usize = 50;
 
 /// Means of all pairs of values of a sample.
@@ -54,7 +54,7 @@ impl<'a> WalshAverages<'a> {
         Some(Interval { low: self.nth(first), high: self.nth(last), confidence })
     }
 
-    /// Returns the number of the average at the interval's lower end.
+    /// Returns the index of the average at the interval's lower end.
     fn first_inside(&self, confidence: Confidence) -> Option<u64> {
         let n = self.values.len();
         let inside = if n <= EXACT_RANKS {
@@ -76,7 +76,7 @@ impl<'a> WalshAverages<'a> {
         n * (n + 1) / 2
     }
 
-    /// The n-th smallest average, from 1.
+    /// Returns the n-th smallest average, from 1.
     fn nth(&self, number: u64) -> f64 {
         let bound = |value: Option<&f64>| place(value.copied().unwrap_or_default());
         let (mut low, mut high) = (bound(self.values.first()), bound(self.values.last()));
@@ -92,7 +92,7 @@ impl<'a> WalshAverages<'a> {
     fn at_most(&self, limit: f64) -> u64 {
         let (mut end, mut count) = (self.values.len(), 0);
         for (i, low) in self.values.iter().enumerate() {
-            // The larger this value is, the fewer others are small enough.
+            // The larger this value is, the fewer others are below the limit.
             while end > i && 0.5 * (low + self.values[end - 1]) > limit {
                 end -= 1;
             }
@@ -102,7 +102,8 @@ impl<'a> WalshAverages<'a> {
     }
 }
 
-/// Position of a number among all floating point numbers: neighbours have neighbouring positions.
+/// Position of a number in the order of all floating point numbers: neighbours have consecutive
+/// positions.
 const fn place(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
@@ -137,11 +138,11 @@ mod tests {
         assert_eq!(interval(&six[..5], 0.95), None);
         assert_eq!(interval(&six[..1], 0.95), None);
         assert_eq!(interval(&[0.0; 9], 0.95), Some([0.0, 0.0]));
-        // With hardly any confidence, the ends are next to the middle one of 21 averages.
+        // At a confidence near 0, the limits are next to the middle one of 21 averages.
         assert_eq!(interval(&six, 1e-9), Some([4.5, 5.0]));
     }
 
-    /// The number of the lower end grows smoothly where the exact sums give way to normal ones.
+    /// The index of the lower limit grows smoothly at the change from exact sums to normal ones.
     #[test]
     fn many_differences() {
         let first = |n: u32| {

@@ -62,7 +62,7 @@ fn what_stands_for_a_time_or_is_hard_to_see_is_elusive() {
 
 #[test]
 fn occupied_cells_that_are_covered_are_absent() {
-    // All but the left column is occupied; the start and the goal need not be free here.
+    // All columns except the left one are occupied; the start and the goal need not be free here.
     let map = OccupancyGrid::from_ascii(&[".####", ".####", ".####", ".####", ".####"]);
     let absent = |table: &str| {
         let text = format!("{SCENE}[[absent]]\n{table}\n");
@@ -72,7 +72,7 @@ fn occupied_cells_that_are_covered_are_absent() {
         cells.into_iter().map(|cell| (cell.x, cell.y)).collect::<Vec<_>>()
     };
     assert_eq!(absent("cells = [[3, 2], [1, 2], [0, 2], [3, 2]]"), [(1, 2), (3, 2)]);
-    // By their centres, the borders included; what is free is not absent.
+    // By their centres, borders included; free cells are not absent.
     assert_eq!(absent("vertices_m = [[0, 1], [2.5, 1], [2.5, 2], [0, 2]]"), [(1, 1), (2, 1)]);
     assert_eq!(
         absent("position = [2.5, 2.5]\nradius_m = 1"),

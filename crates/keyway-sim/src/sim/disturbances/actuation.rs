@@ -7,36 +7,36 @@ use keyway::geometry::{Pose, Velocity};
 use keyway::robot::{CycleCount, Limits, Robot};
 use std::collections::VecDeque;
 
-/// A robot's motors and wheels with delay and errors.
+/// Motors and wheels of a robot, with delay and errors.
 ///
-/// A command passes the dead band and the noise, then the delay, then the limits of acceleration,
-/// then the lag; the wheels' velocity at its end passes the slip.
+/// A command passes through the dead band and the noise, then the delay, then the limits of
+/// acceleration, then the lag; the resulting velocity of the wheels is reduced by slip.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Actuation {
     faults: ActuationFaults,
     cycle_s: f64,
     v: Gaussian,
     omega: Gaussian,
-    /// Commands waiting for the whole cycles of the delay, oldest first.
+    /// Commands that wait for the whole cycles of the delay, oldest first.
     waiting: VecDeque<Velocity>,
-    /// Rest of the delay as a fraction of a cycle. Each command takes effect from this fraction of
+    /// Remaining delay as a fraction of a cycle. Each command takes effect from this fraction of
     /// a cycle until the same fraction of the next.
     late: f64,
     /// Velocity within the limits that the wheels follow, at the end of the effect of the last
-    /// command that has one.
+    /// effective command.
     wanted: Velocity,
-    /// Velocity of the wheels then.
+    /// Velocity of the wheels at that time.
     wheels: Velocity,
-    /// Share of the wheels' lag that a cycle makes up: 1 without lag.
+    /// Share of the wheels' lag that is made up in a cycle: 1 without lag.
     made_up: f64,
 }
 
-/// Wheels that are slower than this stand when they are to stand \[m/s, rad/s\].
+/// Speed below which wheels stop if their target is 0 \[m/s, rad/s\].
 const CREEP: f64 = 1e-3;
 
 impl Actuation {
     /// Returns the motors, or `None` if they are exact and without delay. The robot's known delay
-    /// and the disturbing delay add up.
+    /// and the delay of the disturbance add up.
     pub(in crate::sim) fn new(
         faults: ActuationFaults,
         source: Source,
@@ -61,19 +61,19 @@ impl Actuation {
         (!is_exact).then_some(actuation)
     }
 
-    /// True if a standing robot stays where it is: no command that moves it is pending.
+    /// True if a stationary robot stays stationary: no pending command moves it.
     pub(in crate::sim) fn is_at_rest(&self) -> bool {
         let mut all = self.waiting.iter().chain([&self.wanted, &self.wheels]);
         all.all(|velocity| *velocity == Velocity::ZERO)
     }
 
-    /// Velocity of the wheels of a robot that moves at this one, as odometry measures it.
+    /// Wheel velocity that odometry measures for a robot with this true velocity.
     pub(in crate::sim) fn odometry(&self, velocity: Velocity) -> Velocity {
         let ActuationFaults { v_slip, omega_slip, .. } = self.faults;
         Velocity::new(velocity.v / (1.0 - v_slip), velocity.omega / (1.0 - omega_slip))
     }
 
-    /// Motion of the next cycle for the command given at its beginning.
+    /// Returns the motion of the next cycle for the command issued at its beginning.
     pub(in crate::sim) fn motion(
         &mut self,
         pose: Pose,
@@ -110,7 +110,7 @@ impl Actuation {
         Velocity::new(next(wheels.v, wanted.v), next(wheels.omega, wanted.omega))
     }
 
-    /// Velocity of the robot whose wheels have this one.
+    /// True velocity of a robot with this wheel velocity.
     fn on_ground(&self, wheels: Velocity) -> Velocity {
         let ActuationFaults { v_slip, omega_slip, .. } = self.faults;
         Velocity::new(wheels.v * (1.0 - v_slip), wheels.omega * (1.0 - omega_slip))

@@ -10,8 +10,8 @@ const LARGEST: f64 = 3.0;
 /// Independent deviations with mean 0 and standard deviation 1.
 ///
 /// # Source
-/// \[Box1958\], equation 1: of two numbers u and w above 0 and up to 1, sqrt(-2 ln u) cos(2 pi w)
-/// and sqrt(-2 ln u) sin(2 pi w) are independent and normal.
+/// \[Box1958\], equation 1: for two uniform numbers u and w above 0 and up to 1, sqrt(-2 ln u)
+/// cos(2 pi w) and sqrt(-2 ln u) sin(2 pi w) are independent and normal.
 #[derive(Clone, Debug)]
 pub(super) struct Gaussian {
     random: Random,
@@ -24,7 +24,7 @@ impl Gaussian {
         Self { random: source.stream(kind), spare: None }
     }
 
-    /// The next deviation.
+    /// Returns the next deviation.
     pub(super) fn next(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
@@ -35,7 +35,7 @@ impl Gaussian {
         radius * cos
     }
 
-    /// The next deviation, clipped to three standard deviations.
+    /// Returns the next deviation, clipped to three standard deviations.
     pub(super) fn next_cut(&mut self) -> f64 {
         cut(self.next())
     }

@@ -1,4 +1,4 @@
-//! Pose and velocity that a robot is told.
+//! Localisation and odometry errors: the pose and velocity that are reported to a controller.
 
 use super::gaussian::{Gaussian, cut};
 use super::{Kind, LocalisationFaults, Source, cycles_late};
@@ -18,10 +18,10 @@ pub(in crate::sim) struct Localisation {
     omega: Gaussian,
     drift: Drift,
     jumps: Option<Jumps>,
-    /// Number of cycles from a pose to the one in which the robot is told it.
+    /// Delay from a pose to its report \[cycles\].
     late: usize,
     cycle_s: f64,
-    /// Poses and velocities that the robot is not told yet, oldest first.
+    /// Poses and velocities that are not reported yet, oldest first.
     under_way: VecDeque<(Pose, Velocity)>,
 }
 
@@ -64,7 +64,7 @@ impl Localisation {
         })
     }
 
-    /// Pose and velocity that the controller is told in the next cycle.
+    /// Returns the pose and velocity that are reported to the controller in the next cycle.
     pub(in crate::sim) fn told(&mut self, state: TrueState) -> (Pose, Velocity) {
         let now = (self.estimated(state), self.measured(state.odometry));
         if self.late == 0 {
@@ -77,7 +77,7 @@ impl Localisation {
         self.under_way.front().copied().unwrap_or(now)
     }
 
-    /// Stamp of the pose that the controller is told in a cycle \[s\].
+    /// Returns the stamp of the pose that is reported in a cycle \[s\].
     pub(in crate::sim) fn stamp_s(&self, cycle: u64) -> f64 {
         cycle.saturating_sub(self.late as u64) as f64 * self.cycle_s + self.faults.stamp_late_s
     }
@@ -120,7 +120,7 @@ struct Offset {
 impl Offset {
     const NONE: Self = Self { position: Point::new(0.0, 0.0), heading_rad: 0.0 };
 
-    /// The pose that is told in the place of another.
+    /// Returns the pose with this error.
     fn of(self, pose: Pose) -> Pose {
         let Self { position: Point { x, y }, heading_rad } = self;
         Pose::new(pose.x + x, pose.y + y, pose.theta + heading_rad)
@@ -153,7 +153,7 @@ impl Drift {
     }
 }
 
-/// Jumps of a pose, one in each stretch of time.
+/// Jumps of a pose, one in each interval of `every_s`.
 #[derive(Clone, Debug)]
 struct Jumps {
     random: Random,
@@ -161,7 +161,7 @@ struct Jumps {
     jump_rad: f64,
     every_s: f64,
     for_s: f64,
-    /// Number of the stretch whose jump is drawn, its beginning \[s\], and its offset.
+    /// Index of the last drawn interval, the time at which its jump begins \[s\], and its offset.
     drawn: Option<(u64, f64, Offset)>,
 }
 
@@ -172,11 +172,11 @@ impl Jumps {
         Self { random, jump_m, jump_rad, every_s: jump_every_s, for_s: jump_for_s, drawn: None }
     }
 
-    /// The error at a time; times do not run back.
+    /// Returns the error at a time. Times must not decrease.
     fn at(&mut self, t_s: f64) -> Offset {
         let stretch = (t_s / self.every_s) as u64;
         let mut next = self.drawn.map_or(0, |(drawn, ..)| drawn + 1);
-        // Those that nobody asked for are drawn, too: a jump does not depend on the cycle.
+        // Skipped intervals are drawn, too, so that a jump does not depend on the cycle.
         while next <= stretch {
             self.drawn = Some(self.draw(next));
             next += 1;
@@ -251,7 +251,7 @@ mod tests {
         velocity_is_zero: false,
     };
 
-    /// State at the beginning, with a velocity.
+    /// State at time 0.
     fn moving(pose: Pose, odometry: Velocity) -> TrueState {
         TrueState { t_s: 0.0, pose, odometry, driven_m: 0.0 }
     }
@@ -342,7 +342,7 @@ mod tests {
         assert!((v_squared / 0.01 - 0.995).abs() < 4.0 * f64::sqrt(2e-5), "{v_squared}");
         assert!((omega_squared / 0.04 - 0.995).abs() < 4.0 * f64::sqrt(2e-5), "{omega_squared}");
         assert!(product.abs() < 4.0 * 0.02 / f64::sqrt(1e5), "{product}");
-        // A standing robot is told that it stands.
+        // The reported velocity of a stationary robot is 0.
         assert_eq!(localisation.told(moving(pose, Velocity::ZERO)), (pose, Velocity::ZERO));
     }
 
@@ -392,14 +392,14 @@ mod tests {
             jump_for_s: 5.0,
             ..NONE
         };
-        // 500 stretches of 200 cycles.
+        // 500 intervals of 200 cycles.
         let errors =
             pose_errors(faults, 0, (0..100_000).map(|cycle| (f64::from(cycle) / 10.0, 0.0)));
         let (mut largest_m, mut largest_rad, mut distinct) = (0.0_f64, 0.0_f64, 0);
         for stretch in errors.chunks(200) {
             let is_off = |error: &&[f64; 3]| error.iter().any(|part| part.abs() > 1e-9);
             let off: Vec<_> = stretch.iter().filter(is_off).collect();
-            // 5 s begin and end within two cycles.
+            // A jump of 5 s takes 50 cycles, give or take one.
             assert!((49..=51).contains(&off.len()), "{}", off.len());
             let first = stretch.iter().position(|error| is_off(&error)).unwrap();
             assert!(

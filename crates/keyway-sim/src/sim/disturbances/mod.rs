@@ -1,12 +1,12 @@
-//! Disturbances of a simulated robot: a late, inexact or half blind sensor, late, weak or inexact
-//! motors, and errors of its localisation.
+//! Disturbances of a simulated robot: a delayed, noisy or partly blind sensor; delayed, weak or
+//! inexact motors; and localisation errors.
 //!
-//! Disturbances change only the controller's inputs and the action of the motors. Contact,
+//! Disturbances change only the controller's inputs and the response of the motors. Contact,
 //! clearance, arrival and the record of a run ([`Run`](super::Run)) follow the true motion.
 //!
-//! Every kind of noise of every robot draws from its own stream, so a change of one kind leaves the
-//! numbers of the others unchanged. Deviations are normal and clipped to three standard deviations.
-//! No error is ever larger, and the actual standard deviation is 0.9975 times the requested one.
+//! Each kind of noise of each robot draws from its own stream, so a change of one kind leaves the
+//! numbers of the others unchanged. Deviations are normal and clipped to three standard
+//! deviations. Clipping makes the actual standard deviation 0.9975 times the requested one.
 
 mod actuation;
 mod gaussian;
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Disturbances of a robot; by default none. Random numbers follow from `seed` and the robot's
-/// place among the participants, so several robots with equal disturbances are disturbed
+/// index among the participants, so several robots with equal disturbances are disturbed
 /// differently.
 ///
 /// ```
@@ -52,12 +52,12 @@ pub struct Disturbances {
     pub localisation: LocalisationFaults,
 }
 
-/// Errors of the range sensors: each has them, with random numbers of its own.
+/// Errors of the range sensors. They apply to each sensor, with random numbers of its own.
 ///
 /// The range r of a beam that hits something is measured as r + e. The standard deviation of e is
-/// the root of `range_m`² + (`range_relative` r)², and e is drawn anew for every beam and scan. The
-/// result stays between 0, which carries no information, and the sensor's range. A beam that hits
-/// nothing reports this without error.
+/// the root of `range_m`² + (`range_relative` r)², and e is drawn anew for each beam and scan.
+/// The result is clamped to the interval from 0, which carries no information, to the sensor's
+/// range. A beam that hits nothing has no error.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -66,83 +66,83 @@ pub struct SensorFaults {
     pub range_m: f64,
     /// Standard deviation as a share of the range, from 0 to 0.3.
     pub range_relative: f64,
-    /// Share of the beams that return nothing, from 0 to 1, chosen independently for every beam and
-    /// scan. These beams are NaN, which carries no information: neither an obstacle nor free
-    /// ground.
+    /// Share of the beams that return nothing, from 0 to 1, chosen independently for each beam
+    /// and scan. These beams are NaN, which carries no information: neither an obstacle nor free
+    /// space.
     pub dropped_beams: f64,
-    /// Share of the scans that are lost, from 0 to 1, chosen independently. The controller is
-    /// called in every cycle, as on a real robot. It gets no scan then, and not an old one, which
-    /// would show obstacles in wrong places.
+    /// Share of the scans that are lost, from 0 to 1, chosen independently. As on a real robot,
+    /// the controller still runs in every cycle. It then gets no scan instead of an old one,
+    /// which would show obstacles at wrong positions.
     pub dropped_scans: f64,
-    /// Share of the scans in whose place the scan before is given again as if it were new, from 0
-    /// to 1, chosen independently. It shows obstacles where they were in relation to the robot.
+    /// Share of the scans that are replaced by the previous scan as if it were new, from 0 to 1,
+    /// chosen independently. It shows obstacles where they were relative to the robot.
     pub repeated_scans: f64,
-    /// True if the last scan is given again in every cycle until there is a new one, as if it were
-    /// new: by a driver that publishes faster than the sensor turns.
+    /// True if the last scan is repeated as if it were new in every cycle until the next one, as
+    /// by a driver that publishes faster than the sensor scans.
     pub held_scans: bool,
-    /// Time from a scan to the first cycle in which the controller can get it \[s\], from 0 to 10.
-    /// The controller gets the latest scan that has arrived, once, with the time at which it was
-    /// made. Until the first one arrives it gets none.
+    /// Time from a scan to the first cycle in which the controller can get it \[s\], from 0 to
+    /// 10. The controller gets the latest scan that has arrived, once, with its stamp. Before the
+    /// first arrival it gets none.
     pub delay_s: f64,
-    /// Time by which the stamps of scans are later than the scans \[s\], from 0 to `delay_s`. With
-    /// all of the delay a scan seems to have been made when it arrives.
+    /// Time by which the stamps of scans are late \[s\], from 0 to `delay_s`. With all of the
+    /// delay, a scan appears to have been taken at its arrival.
     pub stamp_late_s: f64,
-    /// Time from one scan to the next \[s\], from 0.001 to 60, where it is not what the robot's
-    /// description says ([`RangeSensor::period_s`](keyway::robot::RangeSensor::period_s)); 0: as
-    /// described.
+    /// Time from one scan to the next \[s\], from 0.001 to 60; 0 for the period of the robot's
+    /// description ([`RangeSensor::period_s`](keyway::robot::RangeSensor::period_s)).
     pub period_s: f64,
-    /// Sectors in which the sensor is blind, each from one bearing counter-clockwise to another
-    /// \[deg\], from -360 to 360 and 0 where the sensor looks: a dirty window, or a mast. Their
+    /// Blind sectors of the sensor, each from one bearing counter-clockwise to another \[deg\],
+    /// from -360 to 360, with 0 straight ahead of the sensor: a dirty window, or a mast. Their
     /// beams are NaN.
     pub blind_deg: Vec<[f64; 2]>,
-    /// Indices of the sensors that say nothing at all.
+    /// Indices of the sensors that fail completely.
     pub lost: Vec<usize>,
 }
 
-/// Errors of the motors and wheels. The robot still keeps its limits of speed and acceleration, and
-/// comes to a stand when commanded to stand.
+/// Errors of the motors and wheels. The robot still keeps its limits of speed and acceleration,
+/// and comes to a stop when commanded to stop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ActuationFaults {
-    /// Delay from a command to its effect that the robot does not know \[s\], from 0 to 10. It adds
-    /// to the known delay ([`Robot::actuation_delay_s`](keyway::robot::Robot::actuation_delay_s)).
-    /// A command given at the time t changes the velocity from t + `delay_s` on, for one cycle, as
-    /// it would from t on without a delay. So the same commands drive the same velocities `delay_s`
-    /// later, whether or not the delay is a whole number of cycles. Before the first command takes
-    /// effect, the robot stands. A robot has arrived only when no command that moves it is pending.
+    /// Delay from a command to its effect that is not in the robot's description \[s\], from 0 to
+    /// 10. It adds to the known delay
+    /// ([`Robot::actuation_delay_s`](keyway::robot::Robot::actuation_delay_s)). A command issued
+    /// at the time t changes the velocity from t + `delay_s` on, for one cycle, as it would from
+    /// t on without a delay. So the same commands give the same velocities `delay_s` later, even
+    /// if the delay is not a whole number of cycles. The robot is stationary until the first
+    /// command takes effect. It has arrived only when no pending command moves it.
     pub delay_s: f64,
-    /// Standard deviation of the speed as a share of it, from 0 to 0.3. The robot obeys (1 + e)
-    /// times the command within its limits; e is drawn anew in every cycle. The speed can fall
+    /// Standard deviation of the speed as a share of it, from 0 to 0.3. The robot executes (1 +
+    /// e) times the command within its limits; e is drawn anew in every cycle. The speed can fall
     /// below a limit but not exceed it. So a robot driven at a limit is slower on average, and
-    /// brakes less hard on average when commanded to brake as hard as it can.
+    /// brakes less hard on average at full braking.
     pub v_relative: f64,
     /// Standard deviation of the turn rate as a share of it, from 0 to 0.3.
     pub omega_relative: f64,
-    /// Time constant of the drive \[s\], from 0 to 10. With 0 the wheels follow the velocity w that
-    /// the command and the limits allow. Otherwise their velocity u is a first-order lag behind it:
-    /// in each cycle of length T, u' = u + (1 - exp(-T / `lag_s`)) (w - u). Below 0.001 m/s and
-    /// 0.001 rad/s the wheels stand when w is 0.
+    /// Time constant of the drive \[s\], from 0 to 10. With 0 the wheels follow the velocity w
+    /// that the command and the limits allow. Otherwise their velocity u is a first-order lag
+    /// behind it: in each cycle of length T, u' = u + (1 - exp(-T / `lag_s`)) (w - u). Below
+    /// 0.001 m/s and 0.001 rad/s the wheels stop when w is 0.
     pub lag_s: f64,
-    /// Dead band of the speed \[m/s\], from 0 to 100: a command below it, without its sign, drives
-    /// as if it were 0.
+    /// Dead band of the speed \[m/s\], from 0 to 100: a command whose magnitude is below it acts
+    /// as 0.
     pub dead_band_mps: f64,
     /// Dead band of the turn rate \[rad/s\], from 0 to 100.
     pub dead_band_radps: f64,
-    /// Share of the wheels' speed that is lost to slip, from 0 to 0.9. The velocity that the robot
-    /// is told is that of the wheels.
+    /// Share of the wheels' speed that is lost to slip, from 0 to 0.9. Odometry reports the
+    /// velocity of the wheels.
     pub v_slip: f64,
-    /// The same of the turn rate: skid-steered robots lose much of it.
+    /// Share of the turn rate that is lost to slip, from 0 to 0.9. Skid-steered robots lose much
+    /// of it.
     pub omega_slip: f64,
 }
 
 /// Errors of a robot's estimated pose and velocity.
 ///
-/// Errors of real localisation drift: they change slowly. Errors of position and heading are
-/// stationary Gauss-Markov processes: two errors that are t apart have the correlation
-/// exp(-t / `correlation_s`). The errors of x, y and heading are independent. The first pose
-/// already has an error. Errors of the velocity are drawn anew in every cycle; a standing robot is
-/// told that it stands.
+/// Localisation errors drift slowly. Errors of position and heading are stationary Gauss-Markov
+/// processes: two errors that are t apart have the correlation exp(-t / `correlation_s`). The
+/// errors of x, y and heading are independent, and the first pose already has one. Errors of the
+/// velocity are drawn anew in every cycle; the reported velocity of a stationary robot is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
@@ -151,40 +151,40 @@ pub struct LocalisationFaults {
     pub position_m: f64,
     /// Standard deviation of the heading \[rad\], from 0 to pi.
     pub heading_rad: f64,
-    /// Correlation time of the errors of position and heading \[s\], from 0 to 1000000. With 0 they
-    /// are drawn anew in every cycle, so the robot seems to jump to and fro; a few seconds or more
-    /// resemble a robot that matches scans with a map.
+    /// Correlation time of the errors of position and heading \[s\], from 0 to 1000000. With 0
+    /// they are drawn anew in every cycle, so the pose jitters; a few seconds or more resemble a
+    /// robot that matches scans with a map.
     pub correlation_s: f64,
     /// Standard deviation of the speed as a share of it, from 0 to 0.3.
     pub v_relative: f64,
     /// Standard deviation of the turn rate as a share of it, from 0 to 0.3.
     pub omega_relative: f64,
-    /// Error of the position per driven distance, from 0 to 0.3: after d metres the position is off
-    /// by `drift` d. Its direction in the world frame is drawn once.
+    /// Error of the position per driven distance, from 0 to 0.3: after d metres the position is
+    /// off by `drift` d. Its direction in the world frame is drawn once.
     pub drift: f64,
-    /// Error of the heading per driven distance \[rad/m\], from 0 to 1, to a side that is drawn
-    /// once.
+    /// Error of the heading per driven distance \[rad/m\], from 0 to 1. Its sign is drawn once.
     pub heading_drift_radpm: f64,
-    /// Largest distance of a jump of the position \[m\], from 0 to 100. The pose jumps once in each
-    /// stretch of `jump_every_s`, at a random time, and is right again `jump_for_s` later, within
-    /// the same stretch. Distance, direction and turn are drawn anew for each jump, every one
-    /// equally likely.
+    /// Largest distance of a jump of the position \[m\], from 0 to 100. The pose jumps once in
+    /// each interval of `jump_every_s`, at a random time, and is correct again `jump_for_s`
+    /// later, within the same interval. Distance, direction and turn are drawn anew for each
+    /// jump, from uniform distributions.
     pub jump_m: f64,
     /// Largest turn of a jump to either side \[rad\], from 0 to pi.
     pub jump_rad: f64,
-    /// Time in which there is one jump \[s\], from 0 to 1000000 and at least `jump_for_s`; at least
-    /// 0.001 where there are jumps.
+    /// Length of the intervals with one jump each \[s\], from 0 to 1000000 and at least
+    /// `jump_for_s`; with jumps, at least 0.001.
     pub jump_every_s: f64,
-    /// Duration of a jump \[s\], from 0 to `jump_every_s`; where both are equal, the pose is always
+    /// Duration of a jump \[s\], from 0 to `jump_every_s`; if both are equal, the pose is always
     /// off.
     pub jump_for_s: f64,
-    /// Time from a pose and its velocity to the first cycle in which the controller is told them
-    /// \[s\], from 0 to 10. It is told their time, too. Until then it is told those of the start.
+    /// Time from a pose and its velocity to the first cycle in which they are reported to the
+    /// controller \[s\], from 0 to 10. Their stamp is reported, too. Until then the controller
+    /// gets those of the start.
     pub delay_s: f64,
-    /// Time by which the stamps of poses are later than the poses \[s\], from 0 to `delay_s`. With
-    /// all of the delay a pose seems to be the present one.
+    /// Time by which the stamps of poses are late \[s\], from 0 to `delay_s`. With all of the
+    /// delay, a pose appears to be current.
     pub stamp_late_s: f64,
-    /// True if the velocity is always told as 0, as by odometry without wheel encoders.
+    /// True if the reported velocity is always 0, as by odometry without wheel encoders.
     pub velocity_is_zero: bool,
 }
 
@@ -197,8 +197,8 @@ impl Disturbances {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used, with its valid values. Relative deviations are at
-    /// most 0.3, so that three of them cannot change the sign.
+    /// Returns an error that names the first invalid field, with its valid values. Relative
+    /// deviations are at most 0.3, so that three of them cannot change the sign.
     pub fn validate(&self) -> Result<(), ConfigError> {
         self.sensor.validate().map_err(|error| error.within("sensor"))?;
         self.actuation.validate().map_err(|error| error.within("actuation"))?;
@@ -207,11 +207,11 @@ impl Disturbances {
 }
 
 impl Disturbances {
-    /// Checks every value, those that depend on the robot, too.
+    /// Checks every value, including those that depend on the robot.
     ///
     /// # Errors
-    /// As for [`Self::validate`]; for an index of a sensor that the robot does not have, and for a
-    /// delay of scans in which more ranges are under way than a simulation may hold.
+    /// Those of [`Self::validate`]. Also fails for the index of a sensor that the robot does not
+    /// have, and for a delay of scans that keeps more ranges pending than a simulation may hold.
     pub fn validate_for(&self, robot: &Robot) -> Result<(), ConfigError> {
         /// About a gigabyte.
         const MOST_RANGES: f64 = 1e8;
@@ -243,7 +243,7 @@ const ANGLE: Most = (PI, "an angle from 0 to pi");
 const BAND: Most = (100.0, "a number from 0 to 100");
 const SLIP: Most = (0.9, "a share from 0 to 0.9");
 
-/// Refuses the first value that is not from 0 to its largest.
+/// Returns an error for the first value that is not between 0 and its maximum.
 fn check<const N: usize>(checks: [(&'static str, f64, Most); N]) -> Result<(), ConfigError> {
     let is_unusable = |(_, value, (most, _)): &(_, f64, Most)| !(0.0..=*most).contains(value);
     match checks.into_iter().find(is_unusable) {
@@ -252,7 +252,7 @@ fn check<const N: usize>(checks: [(&'static str, f64, Most); N]) -> Result<(), C
     }
 }
 
-/// Refuses stamps that would be in the future.
+/// Returns an error for stamps in the future.
 fn check_stamps(stamp_late_s: f64, delay_s: f64) -> Result<(), ConfigError> {
     if (0.0..=delay_s).contains(&stamp_late_s) {
         return Ok(());
@@ -350,13 +350,13 @@ impl LocalisationFaults {
     }
 }
 
-/// Seed, robot and sensor that random numbers are drawn for.
+/// Seed, robot and sensor of a random number stream.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     pub(super) seed: u64,
-    /// Place of the robot among the participants.
+    /// Index of the robot among the participants.
     pub(super) robot: usize,
-    /// Place of the sensor among those of the robot.
+    /// Index of the sensor on the robot.
     pub(super) sensor: usize,
 }
 
@@ -379,8 +379,7 @@ enum Kind {
     Glimpse = 13,
 }
 
-/// Number of cycles after which something is there that is so late: it waits for the cycle's
-/// beginning.
+/// Delay in whole cycles, rounded up: a late value waits for the next cycle.
 fn cycles_late(delay_s: f64, cycle_s: f64) -> usize {
     let CycleCount { whole, part, .. } = CycleCount::of(delay_s, cycle_s);
     whole + usize::from(part > 0.0)
@@ -389,7 +388,7 @@ fn cycles_late(delay_s: f64, cycle_s: f64) -> usize {
 impl Source {
     fn stream(self, kind: Kind) -> keyway::random::Random {
         let names = [self.robot as u64, kind as u64, self.sensor as u64];
-        // The first sensor has the numbers of a robot without others.
+        // The first sensor has the numbers of a robot with one sensor.
         let names = if self.sensor == 0 { &names[..2] } else { &names[..] };
         keyway::random::Random::stream(self.seed, names)
     }

@@ -7,7 +7,7 @@ use keyway::robot::RangeSensor;
 use keyway::sense::Scan;
 use std::collections::VecDeque;
 
-/// A robot's sensor: the times of its scans, and their faults.
+/// A robot's sensor: its scan times and its faults.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Sensing {
     clock: ScanClock,
@@ -15,7 +15,7 @@ pub(in crate::sim) struct Sensing {
     faults: Option<Faults>,
 }
 
-/// Cycles in which a sensor scans: the first one, and then once in every period.
+/// Cycles in which a sensor scans: the first one, and then one in each period.
 #[derive(Clone, Copy, Debug)]
 struct ScanClock {
     period_s: f64,
@@ -24,7 +24,7 @@ struct ScanClock {
 
 impl ScanClock {
     fn scans_in(self, cycle: u64) -> bool {
-        // A period that ends where a cycle begins has ended, rounded or not.
+        // A period that ends at the beginning of a cycle has ended, despite rounding.
         let periods = |cycle: u64| (cycle as f64 * self.cycle_s / self.period_s + 1e-9).floor();
         cycle == 0 || periods(cycle) > periods(cycle - 1)
     }
@@ -34,17 +34,17 @@ impl ScanClock {
 #[derive(Clone, Debug)]
 struct Faults {
     sensor: SensorFaults,
-    /// Place of the sensor among those of the robot.
+    /// Index of the sensor on the robot.
     index: usize,
     ranges: Gaussian,
     beams: Random,
     scans: Random,
     repeats: Random,
-    /// Number of cycles from a scan to the one in which the controller gets it.
+    /// Delay from a scan to its arrival at the controller \[cycles\].
     late: usize,
-    /// Scans under way, oldest first, each with the cycle in which it arrives.
+    /// Scans in transit, oldest first, each with the cycle in which it arrives.
     under_way: VecDeque<(u64, Vec<f64>)>,
-    /// Ranges of the last scan that was taken, for one that repeats it.
+    /// Ranges of the last new scan, for repetitions.
     last_m: Vec<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Sensing {
         Self { clock: ScanClock { period_s, cycle_s }, source, faults }
     }
 
-    /// True if the sensor scans in the cycle of this number.
+    /// True if the sensor scans in this cycle.
     pub(in crate::sim) fn scans_in(&self, cycle: u64) -> bool {
         self.clock.scans_in(cycle)
     }
@@ -84,14 +84,14 @@ impl Sensing {
         })
     }
 
-    /// Random numbers that decide which beams of a cycle's scan see what they may miss.
+    /// Random numbers that decide which beams of a cycle's scan detect an elusive obstacle.
     pub(in crate::sim) fn glimpses(&self, cycle: u64) -> Random {
         Random::new(self.source.stream(Kind::Glimpse).bits() ^ cycle)
     }
 
-    /// Turns the exact scan of a cycle into the one that the controller gets in it. Outside the
-    /// cycles of [`Self::scans_in`] the exact scan does not count. False if the controller gets
-    /// none; then every beam is NaN.
+    /// Replaces the exact scan of a cycle by the one that the controller gets in it. The exact
+    /// scan is ignored outside the cycles of [`Self::scans_in`]. Returns false if the controller
+    /// gets no scan; every beam is then NaN.
     pub(in crate::sim) fn give(&mut self, cycle: u64, scan: &mut Scan) -> bool {
         let is_new = self.scans_in(cycle);
         match &mut self.faults {
@@ -133,7 +133,7 @@ impl Faults {
         arrives_now
     }
 
-    /// Puts the scan before in the place of the new one, or remembers that; a lost scan stays lost.
+    /// Replaces the new scan by the previous one, or stores it. A lost scan stays lost.
     fn repeat(&mut self, scan: &mut Scan, is_made: bool) {
         let share = self.sensor.repeated_scans;
         if share == 0.0 && !self.sensor.held_scans {
@@ -150,7 +150,7 @@ impl Faults {
         }
     }
 
-    /// Gives the last scan again where scans are held; false where there is none.
+    /// Repeats the last scan if scans are held; false if there is none.
     fn hold(&self, scan: &mut Scan) -> bool {
         let is_held = self.sensor.held_scans && !self.last_m.is_empty();
         if is_held {
@@ -159,7 +159,8 @@ impl Faults {
         is_held
     }
 
-    /// Turns an exact scan into a measured one. False if it is lost: then every beam is NaN.
+    /// Turns an exact scan into a measured one. Returns false if it is lost: every beam is then
+    /// NaN.
     fn disturb(&mut self, scan: &mut Scan) -> bool {
         let SensorFaults { range_m, range_relative, dropped_beams, dropped_scans, .. } =
             self.sensor;
@@ -191,7 +192,7 @@ impl Faults {
     }
 
     fn is_blind_towards(&self, bearing_deg: f64) -> bool {
-        // Bearings come from radians: an edge includes what is nearer to it than rounding.
+        // Bearings come from radians, so a sector includes its edges within rounding.
         const ROUNDING_DEG: f64 = 1e-9;
         self.sensor.blind_deg.iter().any(|&[from_deg, to_deg]| {
             let width_deg = to_deg - from_deg;
@@ -285,8 +286,8 @@ mod tests {
         assert!(nothing.iter().all(|range_m| *range_m == f64::INFINITY));
     }
 
-    /// The number of the scan that a sensor gives in each of some cycles; `None` where it gives
-    /// none. Each scan shows its cycle as its range.
+    /// Number of the scan that a sensor delivers in each of some cycles; `None` for no scan. Each
+    /// scan has its cycle as its range.
     fn given(sensor: SensorFaults, cycles: u64) -> Vec<Option<u64>> {
         let mut sensing = sensing(sensor);
         let mut give = |cycle| {
@@ -306,7 +307,7 @@ mod tests {
             given.into_iter().flatten().collect::<Vec<_>>()
         };
         let all: Vec<_> = (0..=12).collect();
-        // As the robot says, or with another period.
+        // The period of the robot's description, or another one.
         assert_eq!((scans(0.0), scans(0.05)), (all.clone(), all));
         assert_eq!(scans(0.3), [0, 3, 6, 9, 12]);
         assert_eq!(scans(0.25), [0, 3, 5, 8, 10]);
@@ -338,7 +339,7 @@ mod tests {
         assert!((2816..3184).contains(&repeated), "{repeated}");
     }
 
-    /// The same scans are lost, whether others are repeated or not.
+    /// The same scans are lost with and without repetitions.
     #[test]
     fn a_lost_scan_is_not_replaced_by_the_one_before() {
         let scans = |repeated_scans| {

@@ -4,7 +4,7 @@ use keyway::robot::Robot;
 use keyway::sense::Scan;
 use serde_json::{Value, json};
 
-/// Every field except the seed, with a value that disturbs and an invalid one.
+/// Every field except the seed, with a valid value that disturbs and an invalid one.
 const FIELDS: [(&str, &str, f64, f64); 29] = [
     ("sensor", "range_m", 0.01, 101.0),
     ("sensor", "range_relative", 0.01, 0.31),
@@ -138,7 +138,7 @@ fn unknown_fields_are_refused() {
     assert_eq!(serde_json::from_str::<Disturbances>(&again).unwrap(), disturbances);
 }
 
-/// Draws of every kind in some cycles for a constant state: ranges, dropped beams, scans, motions,
+/// Draws of every kind in some cycles for a constant state: ranges, dropped beams, motions,
 /// poses, velocities.
 fn drawn(disturbances: Disturbances, robot: usize) -> [Vec<f64>; 5] {
     let source = Source { seed: disturbances.seed, robot, sensor: 0 };

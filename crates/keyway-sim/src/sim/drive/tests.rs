@@ -32,7 +32,7 @@ fn brisk(cycle_s: f64) -> Robot {
 
 const FAR: Point = Point::new(9.5, 9.5);
 
-/// One robot.
+/// Runs a single robot.
 fn alone(
     world: &World,
     robot: &Robot,
@@ -102,7 +102,7 @@ fn a_circle_closes() {
 
 #[test]
 fn reached_at_the_end_of_a_cycle() {
-    // The goal's tolerance begins at x = 1.88 m: x is 1.85 m after 4.2 s, 1.9 m after 4.3 s.
+    // The goal tolerance begins at x = 1.88 m: x is 1.85 m after 4.2 s, 1.9 m after 4.3 s.
     let goal = Point::new(2.03, 0.0);
     let run = drive(&world(&[]), &robot(), goal, &limit(60.0), Velocity::new(0.5, 0.0));
     assert_eq!((run.outcome, run.cycles), (Outcome::Reached, 43));
@@ -222,7 +222,7 @@ fn stop_and_arrived_brake() {
         Control { action, remaining_m: 1.0, route: 1, turn_left_rad: 0.0 }
     });
     let run = run.unwrap();
-    // 0.25 m to speed up in 1 s, as much to brake.
+    // 0.25 m to accelerate in 1 s, and as much to brake.
     assert!(run.samples.last().unwrap().velocity.v.abs() < 1e-12);
     assert!((run.length_m - 0.5).abs() < 1e-9);
 }
@@ -234,7 +234,7 @@ fn the_controller_sees_the_state_and_a_scan() {
     let run = alone(&world, &robot(), Pose::default(), FAR, &limit(1.0), |observation| {
         let Observation { pose, velocity: v, scans, .. } = *observation;
         let scan = scans[0].scan;
-        // Beam 4 of 8 looks straight ahead.
+        // Beam 4 of 8 points straight ahead.
         assert!((scan.ranges_m.get(4).unwrap() - (2.0 - pose.x)).abs() < 1e-9);
         seen.push((pose, v));
         Control {
@@ -305,7 +305,7 @@ fn refuses_what_cannot_be() {
     assert!(error.to_string().starts_with("rules.time_limit_s must be a positive number"));
     let error = run(&robot(), start, &rules, f64::NAN).unwrap_err();
     assert!(matches!(error, SimError::Command { robot: 0, cycle: 0, .. }));
-    // An infinite velocity only means fast.
+    // An infinite velocity counts as the highest one.
     assert_eq!(run(&robot(), start, &rules, f64::INFINITY).unwrap().cycles, 10);
     let mut warp = brisk(0.1);
     (warp.limits.v_max_mps, warp.limits.deceleration_mps2) = (100.0, 10.0);

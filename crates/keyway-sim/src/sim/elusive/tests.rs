@@ -7,7 +7,7 @@ use keyway::map::{BitGrid, GridFrame};
 use keyway::robot::{RangeSensor, Robot};
 use keyway::sense::Observation;
 
-/// 10 m x 4 m without any wall.
+/// A hall of 10 m x 4 m without walls.
 fn hall() -> World {
     let frame = GridFrame::new(100, 40, 0.1, Pose::default()).unwrap();
     World::new(frame, BitGrid::new(100, 40, false), Vec::new()).unwrap()
@@ -33,8 +33,8 @@ const fn until(until_s: f64) -> Presence {
     Presence { until_s: Some(until_s), ..Presence::ALWAYS }
 }
 
-/// A run straight ahead from x = 1 m at a speed, for 10 s, and the number of beams that hit
-/// something in each cycle.
+/// Drives straight ahead from x = 1 m at a speed, for 10 s; returns the run and the number of
+/// hits in each cycle.
 fn driven(elusive: ElusiveObstacle, v_mps: f64) -> (Run, Vec<usize>) {
     let world = hall().with_elusive(vec![elusive]);
     let mut robot = Robot::small();
@@ -71,26 +71,27 @@ fn time_s(run: &Run) -> f64 {
 fn what_appears_is_seen_and_touched_from_then_on() {
     let (run, hits) = driven(disc(3.0, from(2.0)), 0.5);
     assert!(hits[..20].iter().all(|&hits| hits == 0) && hits[20..].iter().all(|&hits| hits > 0));
-    // Its near side is 2.7 m from the origin, the robot's front 0.18 m ahead of it.
+    // The near side of the disc is 2.7 m from the origin; the robot's front is 0.18 m ahead of
+    // its centre.
     let way_m = 2.7 - 0.18 - 1.0;
     assert!((run.length_m - way_m).abs() < 2e-4, "{}", run.length_m);
     let Outcome::Collided { with: Obstacle::Elusive(0), jumped_onto: false, .. } = run.outcome
     else {
         panic!("{:?}", run.outcome)
     };
-    // The clearance is that from the time on at which it stands.
+    // The clearance counts from the time at which the obstacle appears.
     assert_eq!(run.min_clearance_m, Some(0.0));
     let (late, _) = driven(disc(3.0, from(9.0)), 0.5);
     assert_eq!(late.outcome, Outcome::Timeout);
-    // Its far side is at 3.3 m. The robot speeds up within the first cycle.
+    // The far side is at 3.3 m. The robot accelerates within the first cycle.
     let back_m = 1.0 + (9.0 - 0.05) * 0.5 - 0.18;
     assert!((late.min_clearance_m.unwrap() - (back_m - 3.3)).abs() < 1e-3, "{late:?}");
 }
 
 #[test]
 fn what_goes_lets_pass() {
-    // The front is at the gate after (4 - 1.18) m / 0.5 m/s = 5.64 s, and 0.05 s in which the robot
-    // speeds up.
+    // The front reaches the gate after (4 - 1.18) m / 0.5 m/s = 5.64 s, plus 0.05 s of
+    // acceleration.
     let (run, hits) = driven(gate(until(5.0)), 0.5);
     assert_eq!(run.outcome, Outcome::Timeout);
     assert!(hits[49] > 0 && hits[50..].iter().all(|&hits| hits == 0));
@@ -120,13 +121,13 @@ fn a_sensor_sees_the_share_that_is_told() {
     let (_, some) = driven(disc(3.0, share(0.3)), 0.0);
     let (_, none) = driven(disc(3.0, share(0.0)), 0.0);
     assert!(none.iter().all(|&hits| hits == 0));
-    // Seen at 2 m with a radius of 0.3 m: 17 of 360 beams, in 100 scans.
+    // At 2 m with a radius of 0.3 m: 17 of 360 beams, in 100 scans.
     assert!(all.iter().all(|&hits| hits == 17), "{all:?}");
     let hits: usize = some.iter().sum();
     // Expected are 510 with a standard deviation of 19.
     assert!((434..=586).contains(&hits), "{hits}");
     assert!(some.windows(2).any(|pair| pair[0] != pair[1]), "drawn anew in every scan");
-    // Touched all the same.
+    // Contact nevertheless.
     let (run, _) = driven(disc(3.0, share(0.0)), 0.5);
     assert!(matches!(run.outcome, Outcome::Collided { with: Obstacle::Elusive(0), .. }));
 }

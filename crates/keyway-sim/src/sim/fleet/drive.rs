@@ -29,7 +29,7 @@ pub(super) struct Drive<'a> {
     length_m: f64,
     pub(super) least: Clearances,
     pub(super) sensors: Vec<Sensor>,
-    /// State that the controller is told for [`Self::pose`] and [`Self::velocity`].
+    /// State that is reported to the controller for [`Self::pose`] and [`Self::velocity`].
     pub(super) told: RobotState,
     /// Disturbances of the robot, each `None` if nothing is disturbed.
     pub(super) actuation: Option<Actuation>,
@@ -43,7 +43,7 @@ pub(super) struct Drive<'a> {
     pub(super) outcome: Option<Outcome>,
 }
 
-/// Smallest clearances of a run so far \[m\]; infinite if there is nothing of the kind.
+/// Smallest clearances of a run so far \[m\]; infinite if there is no obstacle of the kind.
 #[derive(Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "names end with their unit")]
 pub(super) struct Clearances {
@@ -56,9 +56,9 @@ pub(super) struct Clearances {
 pub(super) struct Sensor {
     pub(super) beams: Beams,
     pub(super) sensing: Sensing,
-    /// The last scan; every beam is NaN where there was none in the last cycle.
+    /// The last scan; every beam is NaN if there was none in the last cycle.
     pub(super) scan: Scan,
-    /// True if there was one in the last cycle.
+    /// True if there was a scan in the last cycle.
     pub(super) is_given: bool,
 }
 
@@ -123,14 +123,14 @@ impl<'a> Drive<'a> {
         pose.point().distance(self.goal) <= self.goal_tolerance_m
     }
 
-    /// Turns the exact scans of this cycle, if there are any, into what the controller gets.
+    /// Turns the exact scans of this cycle, if any, into the scans that the controller gets.
     pub(super) fn learn_scans(&mut self) {
         for sensor in &mut self.sensors {
             sensor.is_given = sensor.sensing.give(self.cycles, &mut sensor.scan);
         }
     }
 
-    /// Updates the pose and velocity that the controller is told.
+    /// Updates the reported pose and velocity.
     pub(super) fn learn_place(&mut self, cycle_s: f64) {
         let (pose, t_s, driven_m) = (self.pose, self.time_s(cycle_s), self.length_m);
         let actuation = self.actuation.as_ref();
@@ -156,7 +156,7 @@ impl<'a> Drive<'a> {
             .collect()
     }
 
-    /// True if the robot stands and no pending command moves it.
+    /// True if the robot is stationary and no pending command moves it.
     pub(super) fn is_at_rest(&self) -> bool {
         let will_stand = self.actuation.as_ref().is_none_or(Actuation::is_at_rest);
         self.velocity == Velocity::ZERO && will_stand
@@ -183,7 +183,7 @@ impl<'a> Drive<'a> {
         PairSweep { robots: [self.moving(), other.moving()] }
     }
 
-    /// Records a contact in the current cycle, unless the robot already stands.
+    /// Records a contact in the current cycle, unless the robot is already stopped.
     pub(super) fn touch(&mut self, place: f64, with: Touched) {
         if self.is_moving() {
             self.touched = Some(with);
@@ -206,8 +206,8 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Ends the run with a contact at a place on the current motion, in the world as the cycle
-    /// began.
+    /// Ends the run with a contact at a place on the current motion, in the world at the
+    /// beginning of the cycle.
     pub(super) fn collide(&mut self, place: f64, with: Touched, world: &WorldAt<'_>, cycle_s: f64) {
         let (jumped_onto, mover_speed_mps) = match with {
             Touched::Mover { jumped_onto, speed_mps, .. } => (jumped_onto, Some(speed_mps)),
@@ -235,13 +235,13 @@ impl<'a> Drive<'a> {
         self.end(outcome, cycle_s);
     }
 
-    /// Ends the run: from now on the robot stands.
+    /// Ends the run. The robot is stationary from now on.
     pub(super) fn end(&mut self, outcome: Outcome, cycle_s: f64) {
         self.outcome = Some(outcome);
         self.motion = CycleMotion::standing(self.pose, cycle_s);
     }
 
-    /// The robot as obstacles that give way see it.
+    /// Body of the robot for the obstacles that give way.
     pub(super) fn body(&self) -> Body {
         let (sin, cos) = libm::sincos(self.pose.theta);
         let v_mps = if self.outcome.is_none() { self.velocity.v } else { 0.0 };
@@ -252,8 +252,8 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// The finished run. `ways` are the ways of all obstacles that give way, up to the end of the
-    /// last run.
+    /// Returns the finished run. `ways` are the paths of all obstacles that give way, up to the
+    /// end of the last run.
     pub(super) fn into_run(self, ways: &[MoverWay]) -> Option<Run> {
         let movers = ways.iter().map(|way| way.until(self.cycles)).collect();
         let Clearances { standing_m, movers_m, robots_m } = self.least;

@@ -16,9 +16,9 @@ use keyway::sense::{Scan, SensorScan};
 use std::borrow::Cow;
 
 /// Robots that drive in a world at the same time. Between two cycles, each robot has decided, or
-/// its run has ended and it stands.
+/// its run has ended and it is stationary.
 pub(super) struct Fleet<'a> {
-    /// World with the current places of the obstacles that give way.
+    /// World with the current positions of the obstacles that give way.
     world: Cow<'a, World>,
     giving_way: Vec<GivingWay>,
     /// Number of cycles driven.
@@ -47,7 +47,7 @@ impl<'a> Entrant<'a> {
 /// Object that a robot touched.
 #[derive(Clone, Copy)]
 enum Touched {
-    /// The nearest stationary obstacle, or the border; `appeared` if it has just appeared there.
+    /// The nearest static obstacle, or the border; `appeared` if it has just appeared there.
     Standing { appeared: bool },
     /// The moving obstacle of this index, with its speed; `jumped_onto` if it has just jumped
     /// there.
@@ -56,7 +56,7 @@ enum Touched {
     Robot(usize),
 }
 
-/// A robot's contact, and its place on the motion of a cycle.
+/// A robot's contact, and its position along the motion of a cycle.
 struct Contact {
     place: f64,
     robot: usize,
@@ -83,7 +83,8 @@ impl<'a> Fleet<'a> {
         self.drives.iter().any(|drive| drive.outcome.is_none())
     }
 
-    /// Measures a robot's inputs for its next decision; false if its run has ended or ends now.
+    /// Measures a robot's inputs for its next decision. Returns false if its run has ended or
+    /// ends now.
     pub(super) fn sense(&mut self, index: usize) -> bool {
         let drive = &mut self.drives[index];
         if drive.outcome.is_some() {
@@ -102,7 +103,7 @@ impl<'a> Fleet<'a> {
         true
     }
 
-    /// Makes the exact scan of a sensor, if it scans in this cycle.
+    /// Takes the exact scan of a sensor, if it scans in this cycle.
     fn scan_with(&mut self, index: usize, sensor: usize) {
         let cycle = self.drives[index].cycles;
         let scanning = &mut self.drives[index].sensors[sensor];
@@ -129,7 +130,7 @@ impl<'a> Fleet<'a> {
         self.drives[index].scans()
     }
 
-    /// State that a robot was last told, at the beginning of a cycle.
+    /// State that was last reported to a robot, at the beginning of a cycle.
     pub(super) fn told(&self, index: usize) -> RobotState {
         self.drives[index].told
     }
@@ -139,7 +140,8 @@ impl<'a> Fleet<'a> {
         self.drives[index].cycles
     }
 
-    /// Tests a robot's arrival and progress by its controller's answer; true if the run goes on.
+    /// Tests a robot's arrival and progress after its controller's decision; true if the run
+    /// continues.
     pub(super) fn goes_on(&mut self, index: usize, control: &Control) -> bool {
         let drive = &mut self.drives[index];
         if control.action == Action::Arrived && drive.is_at_rest() && drive.is_near_goal() {
@@ -166,9 +168,9 @@ impl<'a> Fleet<'a> {
         };
     }
 
-    /// Drives one cycle of all robots at the same time. Contacts are handled in the order in which
-    /// they happen, because a robot that has touched something stands in the way of the others from
-    /// then on.
+    /// Drives one cycle of all robots at the same time. Contacts are handled in the order in
+    /// which they occur, because a robot that has touched something is an obstacle for the others
+    /// from then on.
     pub(super) fn drive_cycle(&mut self) {
         let end_s = (self.cycle + 1) as f64 * self.cycle_s;
         let robots: Vec<Body> = self.drives.iter().map(Drive::body).collect();
@@ -216,7 +218,7 @@ impl<'a> Fleet<'a> {
         }
     }
 
-    /// Distances from a robot to everything else, and the object it touches. Ties go to stationary
+    /// Distances from a robot to everything else, and the object it touches. Ties go to static
     /// obstacles, then moving obstacles, then robots, and to the lowest index.
     fn clearances_at_start(&self, index: usize) -> (Clearances, Option<Touched>) {
         let Drive { ref robot, pose, .. } = self.drives[index];
@@ -248,13 +250,13 @@ impl<'a> Fleet<'a> {
         (Clearances { standing_m, movers_m, robots_m }, touched)
     }
 
-    /// The first contact that has not been handled yet. Ties go to stationary obstacles, then
-    /// moving obstacles, then robots, and to the lowest indices.
+    /// The first contact that has not been handled yet. Ties go to static obstacles, then moving
+    /// obstacles, then robots, and to the lowest indices.
     fn first_contact(&self) -> Option<Contact> {
         let standing = (0..self.drives.len()).filter_map(|robot| self.contact_with_standing(robot));
         let mut first = standing.min_by(|a, b| a.place.total_cmp(&b.place));
         // Search only up to the first known contact. Until then robots are on the map, so two
-        // robots with speeds beyond the range of numbers are not followed for ever.
+        // robots with speeds that overflow are not followed forever.
         let until = |first: &Option<Contact>| {
             first.as_ref().map_or(CycleMotion::END, |contact| contact.place)
         };
@@ -315,7 +317,7 @@ impl<'a> Fleet<'a> {
             return least;
         }
         let until = drive.motion.stop();
-        // The clearance stays infinite if there never is anything of the kind.
+        // The clearance stays infinite if there is never an obstacle of the kind.
         let anything = least.standing_m.is_finite() || !self.world.elusive().is_empty();
         let standing_m = if anything {
             drive.sweep(&self.world, self.cycle_s).least_clearance(until, least.standing_m)

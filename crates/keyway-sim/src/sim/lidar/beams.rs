@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 /// between beams.
 const MARGIN_RAD: f64 = 1e-6;
 
-/// Beams of a sensor in its own frame, computed once.
+/// Beams of a sensor in its own frame, precomputed.
 #[derive(Clone, Debug)]
 pub(in crate::sim) struct Beams {
     /// Pose of the sensor in the robot's frame.
@@ -42,7 +42,7 @@ impl Beams {
         robot.compose(self.mount)
     }
 
-    /// A scan of these beams without measurements.
+    /// Returns a scan of these beams without measurements.
     pub(in crate::sim) fn scan(&self) -> Scan {
         let Self { angle_min_rad, angle_increment_rad, range_min_m, range_max_m, .. } = *self;
         let ranges_m = vec![f64::INFINITY; self.directions.len()];
@@ -55,8 +55,8 @@ impl Beams {
         self.directions.iter().map(move |&beam| turned(beam, ahead))
     }
 
-    /// Beams with bearings within `half_rad` of a bearing \[rad\], and perhaps a few beside them,
-    /// with their directions for a robot with the heading `theta` \[rad\].
+    /// Beams with bearings within `half_rad` of a bearing \[rad\], and possibly a few adjacent
+    /// ones, with their directions for a robot with the heading `theta` \[rad\].
     pub(super) fn near(
         &self,
         bearing_rad: f64,

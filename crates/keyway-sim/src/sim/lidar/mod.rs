@@ -14,22 +14,22 @@ use keyway::sense::Scan;
 use shapes::Shapes;
 
 impl WorldAt<'_> {
-    /// Scan of a sensor of a robot at `pose`, without noise. Each range is the exact distance to
-    /// the first square, circle or polygon: infinity beyond the sensor's range, 0 inside an
-    /// obstacle. There are no squares outside the map.
+    /// Returns the scan of a sensor of a robot at `pose`, without noise. Each range is the exact
+    /// distance to the first square, circle or polygon: infinity beyond the sensor's range, 0
+    /// inside an obstacle. There are no squares outside the map.
     ///
-    /// With a field of view of 360 degrees, beam 0 looks back (-180 degrees) and the others follow
-    /// evenly. With a smaller field of view, the first and the last beam look along its edges. A
-    /// single beam looks straight ahead.
+    /// With a field of view of 360 degrees, beam 0 points backwards (-180 degrees) and the others
+    /// follow at equal angles. With a smaller field of view, the first and the last beam lie on
+    /// its edges. A single beam points straight ahead.
     ///
     /// A beam is a line without width: it passes between two squares that only share a corner.
-    /// Along the border of two squares, it sees the one that `map::ray` visits.
+    /// Along the border of two squares, it hits the one that `map::ray` visits.
     ///
-    /// Beams that [may miss](super::Presence::seen) something are chosen by the same numbers for
-    /// each scan.
+    /// The beams that [miss](super::Presence::seen) an elusive obstacle are chosen by the same
+    /// random numbers for each scan.
     ///
-    /// Costs a few operations per free square of cells on a beam (not per cell), per circle within
-    /// range, and per beam that looks towards it.
+    /// Costs a few operations per free square of cells on a beam (not per cell), per circle
+    /// within range, and per beam in its direction.
     pub fn cast(&self, pose: Pose, sensor: &RangeSensor) -> Scan {
         let beams = Beams::of(sensor);
         let mut scan = beams.scan();
@@ -37,8 +37,8 @@ impl WorldAt<'_> {
         scan
     }
 
-    /// Casts prepared beams into their scan, among other robots: each is seen as its footprint at
-    /// its pose. `glimpses` decides which beams see what they may miss.
+    /// Casts prepared beams into their scan, among other robots, each with its footprint at its
+    /// pose. `glimpses` decides which beams detect an elusive obstacle.
     pub(super) fn cast_among<'f>(
         &self,
         robot: Pose,

@@ -6,7 +6,7 @@ use keyway::geometry::{Disc, Point, Pose, Segment, outline};
 use keyway::random::Random;
 use keyway::robot::Footprint;
 
-/// Ranges of all beams, lowered shape by shape.
+/// Ranges of all beams, reduced shape by shape.
 pub(super) struct Shapes<'a> {
     pub(super) beams: &'a Beams,
     pub(super) from: Point,
@@ -54,7 +54,7 @@ impl Shapes<'_> {
         }
     }
 
-    /// Adds an obstacle that a part of the beams on it see.
+    /// Adds an obstacle that only some of the beams on it detect.
     pub(super) fn add_elusive(&mut self, elusive: &ElusiveObstacle, glimpses: &mut Random) {
         let seen = elusive.presence().seen;
         if seen == 0.0 {
@@ -75,11 +75,11 @@ impl Shapes<'_> {
         }
     }
 
-    /// Lowers the ranges of all beams that may meet something within a radius around a place.
+    /// Reduces the ranges of all beams that may hit a shape within a radius around a position.
     fn lower_near(&mut self, centre: Point, radius_m: f64, range_m: impl Fn(Point) -> f64) {
         let to_centre = centre - self.from;
         let sin = radius_m / to_centre.norm();
-        // From inside, it is seen at every bearing.
+        // From inside, the shape covers every bearing.
         let half_rad = if sin < 1.0 { libm::asin(sin) } else { std::f64::consts::PI };
         let bearing_rad = to_centre.heading() - self.theta;
         for (beam, direction) in self.beams.near(bearing_rad, half_rad, self.theta) {
@@ -113,8 +113,9 @@ pub(super) fn range_to_disc(from: Point, direction: Point, circle: &Disc) -> f64
 }
 
 /// Distance along a beam to an edge of a polygon \[m\]; infinity if the beam misses it. An edge
-/// along the beam counts as missed: its neighbours have the same ends. The side of the beam on
-/// which a vertex lies does not depend on the edge, so no beam slips through between two edges.
+/// along the beam counts as missed, because its neighbours share its ends. The side of the beam
+/// on which a vertex lies does not depend on the edge, so no beam slips through between two
+/// edges.
 pub(super) fn range_to_edge(from: Point, direction: Point, edge: &Segment) -> f64 {
     let (to_a, to_b) = (edge.a - from, edge.b - from);
     let (aside_a, aside_b) = (direction.cross(to_a), direction.cross(to_b));

@@ -20,8 +20,8 @@ fn cast_among<'f>(
     scan
 }
 
-/// Ranges from testing every beam against every cell that it passes, every circle and every edge of
-/// a robot.
+/// Ranges from testing every beam against every cell that it crosses, every circle and every edge
+/// of a robot.
 fn beam_by_beam(
     world: &World,
     t_s: f64,
@@ -80,7 +80,7 @@ fn ranges_by_hand() {
         let pose = Pose::new(x, y, degrees.to_radians());
         world.at(0.0).cast(pose, &sensor(4, 360.0, 2.25)).ranges_m
     };
-    // Beams look back, right, ahead, left.
+    // Beams point backwards, right, ahead, left.
     let ranges = cast(2.5, 0.5, 0.0);
     assert_eq!(ranges[..3], [1.5, f64::INFINITY, f64::INFINITY]);
     assert!((ranges[3] - 1.75).abs() < 1e-12);
@@ -108,8 +108,8 @@ fn beam_layouts() {
     assert_eq!(one, [0.0]);
 }
 
-/// True if a segment meets the closed square with this lower-left corner and a side of 1: the parts
-/// of the segment between the lines of two opposite sides overlap.
+/// True if a segment meets the closed square with this lower left corner and a side of 1: the
+/// parts of the segment between the lines of two opposite sides overlap.
 fn meets_square(a: Point, b: Point, corner: Point) -> bool {
     let between = |a: f64, b: f64, low: f64| {
         if a == b {
@@ -123,8 +123,8 @@ fn meets_square(a: Point, b: Point, corner: Point) -> bool {
     x.0.max(y.0).max(0.0) <= x.1.min(y.1).min(1.0)
 }
 
-/// Distance along the ray at which it enters the closed square: bisection on "the segment up to
-/// here meets it".
+/// Distance along the ray at which it enters the closed square, by bisection of the length of a
+/// segment that meets it.
 fn square_by_bisection(start: Point, direction: Point, range: f64, corner: Point) -> f64 {
     let meets = |length: f64| meets_square(start, start + direction * length, corner);
     if !meets(range) {
@@ -191,7 +191,8 @@ proptest! {
         }
     }
 
-    /// No place on a beam before its range is on another robot, and the place at its range is.
+    /// Checks that no point on a beam before its range is on another robot, and that the point at
+    /// its range is.
     #[test]
     fn other_robots_are_seen_as_their_footprints(
         radii in prop::collection::vec(0.1..0.6f64, 3..8), offset in (-0.5..0.5f64, -0.5..0.5f64),
@@ -227,7 +228,7 @@ proptest! {
         }
     }
 
-    /// Skipping free squares and beams that look elsewhere changes no bit.
+    /// Checks that skipping free squares and beams in other directions changes no bit.
     #[test]
     fn ranges_are_those_beam_by_beam(
         density in prop_oneof![Just(0.0), 0.001..0.1f64], cells in prop::collection::vec(0.0..1.0f64, 40 * 31),
@@ -275,8 +276,8 @@ proptest! {
         }
     }
 
-    /// Ranges agree with the place of a moving obstacle at the instant of the scan, found by
-    /// walking along its motion.
+    /// Compares ranges with the position of a moving obstacle at the instant of the scan, found
+    /// by following its motion.
     #[test]
     fn movers_are_seen_where_they_are(
         mover in moving_obstacle(), t_s in 0.0..9.0f64, from in (-2.0..2.0f64, -2.0..2.0f64, -3.1..3.1f64),

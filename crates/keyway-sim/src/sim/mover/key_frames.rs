@@ -1,23 +1,23 @@
-//! A motion given by places and times.
+//! A motion given by positions and times.
 
 use super::{unless_finite, unless_usable_speed};
 use keyway::ConfigError;
 use keyway::geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// Place of an obstacle at a time: `[t, x, y]` \[s, m, m\].
+/// Position of an obstacle at a time: `[t, x, y]` \[s, m, m\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 3]", into = "[f64; 3]")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "[f64; 3]"))]
 pub struct KeyFrame {
     /// Time \[s\].
     pub t_s: f64,
-    /// Place \[m\].
+    /// Position \[m\].
     pub position: Point,
 }
 
-/// A motion through key frames: in a straight line at constant speed from each to the next. Before
-/// the first and after the last, the obstacle stands there.
+/// A motion through key frames: in a straight line at constant speed from each to the next. The
+/// obstacle is stationary before the first and after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyFrames {
     /// At least one, with increasing times.
@@ -25,13 +25,13 @@ pub struct KeyFrames {
 }
 
 impl KeyFrames {
-    /// A motion through these places at these times.
+    /// Creates a motion through these positions at these times.
     ///
     /// # Errors
-    /// When there is no key frame, a number is not finite, times do not increase, or the speed
-    /// between two key frames is higher than
-    /// [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS). Paths begin with
-    /// `key_frames`.
+    /// Returns an error if there is no key frame, a number is not finite, times do not increase,
+    /// or the speed between two key frames is higher than
+    /// [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS). Error paths begin
+    /// with `key_frames`.
     pub fn new(frames: Vec<KeyFrame>) -> Result<Self, ConfigError> {
         unless_in_order("key_frames", &frames, 1)?;
         for (i, pair) in frames.windows(2).enumerate() {
@@ -40,7 +40,7 @@ impl KeyFrames {
         Ok(Self { frames })
     }
 
-    /// A motion through key frames that are known to be valid.
+    /// Creates a motion through key frames that are known to be valid.
     pub(in crate::sim) const fn in_order(frames: Vec<KeyFrame>) -> Self {
         Self { frames }
     }
@@ -50,12 +50,12 @@ impl KeyFrames {
         self.frames.push(frame);
     }
 
-    /// The key frames, in the order of their times.
+    /// Key frames, in the order of their times.
     pub fn frames(&self) -> &[KeyFrame] {
         &self.frames
     }
 
-    /// Place at a time \[m\]. Costs a binary search.
+    /// Position at a time \[m\]. Costs a binary search.
     pub fn position(&self, t_s: f64) -> Point {
         let after = self.frames.partition_point(|frame| frame.t_s <= t_s);
         match (self.frames[..after].last(), self.frames.get(after)) {
@@ -71,8 +71,8 @@ impl KeyFrames {
     /// Highest speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, the higher of
     /// both sides.
     pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
-        // From the stretch that contains `from_s` or ends there to the one that contains `to_s` or
-        // begins there.
+        // From the segment that contains or ends at `from_s` to the one that contains or begins
+        // at `to_s`.
         let first = self.frames.partition_point(|frame| frame.t_s < from_s).saturating_sub(1);
         let end = self.frames.partition_point(|frame| frame.t_s <= to_s) + 1;
         let stretch = &self.frames[first..end.min(self.frames.len())];

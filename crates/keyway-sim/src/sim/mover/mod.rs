@@ -18,12 +18,12 @@ use keyway::given::Given;
 use keyway::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// A round moving obstacle. It passes through whatever is in its way and gives way to nothing,
-/// unless its motion says so.
+/// A round moving obstacle. It passes through other obstacles and gives way to nothing, unless
+/// its motion says so.
 ///
-/// In files and reports it is a table with its `radius_m` and the fields of one motion: `position`
-/// and `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points` and
-/// `speed_mps`, with `to_and_fro` if it turns back and `gives_way` if it gives way; or
+/// In files and reports it is a table with its `radius_m` and the fields of one motion:
+/// `position` and `velocity_mps`; or `key_frames`; or `spline` and `duration_s`; or `way_points`
+/// and `speed_mps`, with `to_and_fro` if it turns back and `gives_way` if it gives way; or
 /// `random_walk`.
 ///
 /// ```
@@ -45,34 +45,35 @@ pub struct MovingObstacle {
     motion: Motion,
 }
 
-/// Motion of an obstacle: its place at any time, bounds of its speed, and the times of its jumps.
+/// Motion of an obstacle: its position at any time, bounds of its speed, and the times of its
+/// jumps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Motion {
-    /// At constant velocity for ever.
+    /// Constant velocity, indefinitely.
     Straight {
-        /// Place at time 0 \[m\].
+        /// Position at time 0 \[m\].
         from: Point,
         /// Velocity \[m/s\].
         velocity_mps: Point,
     },
-    /// From place to place at given times.
+    /// Straight from position to position at given times.
     KeyFrames(KeyFrames),
-    /// Smoothly through places at given times, lap after lap. The obstacle may jump from the end of
-    /// a lap to the beginning of the next.
+    /// Smooth and periodic, through positions at given times. The obstacle may jump from the end
+    /// of a lap to the beginning of the next.
     Spline(Spline),
-    /// Along a closed course at constant speed for ever.
+    /// Closed path at constant speed, indefinitely.
     WayPoints(WayPoints),
-    /// At random in a rectangle for ever.
+    /// Random walk in a rectangle, indefinitely.
     RandomWalk(RandomWalk),
-    /// From way-point to way-point for ever, giving way to robots and other moving obstacles. Its
-    /// course depends on them, so this motion stands at its first way-point, and
-    /// [`simulate`](super::simulate) computes the course ([`Run::movers`](super::Run::movers)).
+    /// From way-point to way-point, repeated, giving way to robots and other moving obstacles.
+    /// The path depends on them, so this motion is stationary at its first way-point, and
+    /// [`simulate`](super::simulate) computes the path ([`Run::movers`](super::Run::movers)).
     GivesWay(WayPoints),
 }
 
 impl Motion {
-    /// Place at a time \[m\]; at the instant of a jump, the place after it.
+    /// Position at a time \[m\]; at the instant of a jump, the position after it.
     pub fn position(&self, t_s: f64) -> Point {
         match self {
             Self::Straight { from, velocity_mps } => *from + *velocity_mps * t_s,
@@ -84,8 +85,8 @@ impl Motion {
         }
     }
 
-    /// Place just before a time \[m\]: at the instant of a jump, the place before it; otherwise
-    /// [`Self::position`].
+    /// Position just before a time \[m\]: at the instant of a jump, the position before it;
+    /// otherwise [`Self::position`].
     pub fn position_before(&self, t_s: f64) -> Point {
         if let Self::Spline(spline) = self {
             spline.position_before(t_s)
@@ -104,8 +105,8 @@ impl Motion {
         if let Self::Spline(spline) = self { spline.last_jump_s(t_s) } else { None }
     }
 
-    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\], up to rounding; a jump
-    /// does not count. The bound for a part of that time is not higher.
+    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\], up to rounding.
+    /// Jumps do not count. The bound of a part of the interval is not higher.
     pub fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         match self {
             Self::Straight { velocity_mps, .. } => velocity_mps.norm(),
@@ -123,15 +124,15 @@ impl MovingObstacle {
     /// instant, so fast motion costs computing time.
     pub const FASTEST_MPS: f64 = 100.0;
 
-    /// Speed above which an obstacle darts \[m/s\]: nothing that walks or drives among robots is
-    /// faster.
+    /// Speed above which a motion counts as darting \[m/s\]: nothing that walks or drives among
+    /// robots is faster.
     pub const DART_MPS: f64 = 5.0;
 
-    /// An obstacle with this radius and motion.
+    /// Creates an obstacle with this radius and motion.
     ///
     /// # Errors
-    /// When the radius is negative, the radius or the place is not finite, or the velocity is
-    /// higher than [`Self::FASTEST_MPS`].
+    /// Returns an error if the radius is negative, the radius or the position is not finite, or
+    /// the velocity is higher than [`Self::FASTEST_MPS`].
     pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("radius_m", radius_m)?;
         if let Motion::Straight { from, velocity_mps } = &motion {
@@ -142,10 +143,10 @@ impl MovingObstacle {
         Ok(Self { radius_m, motion })
     }
 
-    /// An obstacle that moves at constant velocity for ever.
+    /// Creates an obstacle that moves at constant velocity, indefinitely.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn straight(from: Point, radius_m: f64, velocity_mps: Point) -> Result<Self, ConfigError> {
         Self::new(radius_m, Motion::Straight { from, velocity_mps })
     }
@@ -155,7 +156,7 @@ impl MovingObstacle {
         matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
     }
 
-    /// Returns the obstacle. If it [needs a seed](Self::needs_seed), it gets one that follows from
+    /// Returns the obstacle. If it [needs a seed](Self::needs_seed), it gets one derived from
     /// another seed and the `index` of the obstacle.
     #[must_use]
     pub fn seeded(self, seed: u64, index: u64) -> Self {
@@ -163,42 +164,42 @@ impl MovingObstacle {
         if !self.needs_seed() {
             return self;
         }
-        // Seeds in files are not larger.
+        // Seeds in files have at most 63 bits.
         let own = Random::stream(seed, &[index]).bits() >> 1;
         let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
-        // Only the choices change, so the configuration stays valid.
+        // Only the random choices change, so the configuration stays valid.
         let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
         Self { motion: Motion::RandomWalk(walk), ..self }
     }
 
-    /// Its radius \[m\].
+    /// Radius \[m\].
     pub const fn radius_m(&self) -> f64 {
         self.radius_m
     }
 
-    /// Its motion.
+    /// Motion of the obstacle.
     pub const fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// The obstacle with another motion.
+    /// Returns the obstacle with another motion.
     pub(super) const fn moving(&self, motion: Motion) -> Self {
         Self { radius_m: self.radius_m, motion }
     }
 
-    /// Adds a key frame to an obstacle that moves along key frames.
+    /// Appends a key frame to an obstacle that moves along key frames.
     pub(super) fn goes_on(&mut self, frame: KeyFrame) {
         if let Motion::KeyFrames(frames) = &mut self.motion {
             frames.push(frame);
         }
     }
 
-    /// Its speed at a time \[m/s\]; the higher one where the speed changes abruptly.
+    /// Speed at a time \[m/s\]; the higher one if it changes abruptly.
     pub fn speed_mps(&self, t_s: f64) -> f64 {
         self.motion.speed_bound_mps(t_s, t_s)
     }
 
-    /// Disc that it covers at a time.
+    /// Disc that the obstacle covers at a time.
     pub fn at(&self, t_s: f64) -> Disc {
         Disc::new(self.motion.position(t_s), self.radius_m)
     }

@@ -12,27 +12,26 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RandomWalkConfig {
-    /// Place at time 0 \[m\].
+    /// Position at time 0 \[m\].
     pub position: Point,
-    /// Two opposite corners of the rectangle in which the centre stays, the lower left one first
-    /// \[m\].
+    /// Lower left and upper right corner of the rectangle that contains the centre \[m\].
     pub area: [Point; 2],
-    /// The lowest and the highest speed \[m/s\].
+    /// Lowest and highest speed \[m/s\].
     pub speed_mps: [f64; 2],
-    /// The shortest and the longest time between two choices \[s\].
+    /// Shortest and longest duration of a leg \[s\].
     pub leg_s: [f64; 2],
     /// Seed of all choices; `None`: the seed of the scene, or 0 without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
 }
 
-/// A random walk in a rectangle that follows entirely from a seed: straight on for a while, then
-/// straight on in another direction at another speed. The obstacle is reflected where its centre
-/// meets a side of the rectangle.
+/// A random walk in a rectangle, determined by a seed: straight for a while, then straight in
+/// another direction at another speed. The obstacle is reflected when its centre reaches a side
+/// of the rectangle.
 ///
-/// Directions are uniformly distributed, and so are speeds and durations within their bounds. After
-/// [`RandomWalkConfig::LEGS`] legs the choices repeat, but lead to other places. Before time 0 the
-/// obstacle stands.
+/// Directions are uniformly distributed, and so are speeds and durations within their bounds.
+/// After [`RandomWalkConfig::LEGS`] legs the choices repeat, but lead to other positions. The
+/// obstacle is stationary before time 0.
 ///
 /// ```
 /// use keyway::geometry::Point;
@@ -54,7 +53,7 @@ pub struct RandomWalkConfig {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomWalk {
     config: RandomWalkConfig,
-    /// One round of choices in an unbounded plane.
+    /// One round of choices on an unbounded plane.
     unbounded: KeyFrames,
 }
 
@@ -99,10 +98,10 @@ impl RandomWalkConfig {
 }
 
 impl RandomWalk {
-    /// The walk with these parameters.
+    /// Creates the walk with these parameters.
     ///
     /// # Errors
-    /// When a value cannot be used. Paths name the field.
+    /// Returns an error if a value is invalid. Error paths name the field.
     pub fn new(config: RandomWalkConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         let mut random = Random::new(config.seed.unwrap_or_default());
@@ -124,7 +123,7 @@ impl RandomWalk {
         &self.config
     }
 
-    /// Place at a time \[m\]. Costs a binary search.
+    /// Position at a time \[m\]. Costs a binary search.
     pub fn position(&self, t_s: f64) -> Point {
         let (round, t_s) = self.round(t_s);
         let gone = self.last().position * round + self.unbounded.position(t_s);
@@ -133,8 +132,8 @@ impl RandomWalk {
         Point::new(reflected(at.x, low.x, high.x), reflected(at.y, low.y, high.y))
     }
 
-    /// Highest speed at any time from `from_s` to `to_s` \[m/s\]; where it changes, the higher of
-    /// both sides.
+    /// Highest speed at any time from `from_s` to `to_s` \[m/s\]; at a change, the higher of both
+    /// sides.
     pub(super) fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let ((first, from_s), (last, to_s)) = (self.round(from_s), self.round(to_s));
         let bound = |from_s, to_s| self.unbounded.speed_bound_mps(from_s, to_s);
@@ -159,7 +158,7 @@ impl RandomWalk {
     }
 }
 
-/// A coordinate, reflected by two mirrors.
+/// Returns a coordinate, reflected by two mirrors.
 fn reflected(at: f64, low: f64, high: f64) -> f64 {
     let width = high - low;
     let gone = (at - low).rem_euclid(2.0 * width);

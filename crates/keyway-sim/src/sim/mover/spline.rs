@@ -1,4 +1,4 @@
-//! A smooth motion through places at given times, lap after lap.
+//! A smooth periodic motion through positions at given times.
 //!
 //! # Source
 //! The moving obstacles of `DynaBARN` \[Nair2022\] are repeating animations of the Gazebo
@@ -7,51 +7,51 @@
 //!
 //! | symbol | here |
 //! |---|---|
-//! | `p_i`, `t_i`: place and time of key frame `i`, of `0 .. n` | [`KeyFrame`] |
+//! | `p_i`, `t_i`: position and time of key frame `i`, of `0 .. n` | [`KeyFrame`] |
 //! | `m_i`: tangent there | [`tangent`] |
-//! | `u`: part of a stretch, from 0 to 1 | `part` |
+//! | `u`: part of a segment, from 0 to 1 | `part` |
 //!
-//! Between two key frames the place is the cubic polynomial of `u = (t - t_i) / (t_{i+1} - t_i)`
-//! with the places `p_i`, `p_{i+1}` and the derivatives with respect to `u`, `m_i` and `m_{i+1}`,
-//! at its ends:
+//! Between two key frames the position is the cubic polynomial of
+//! `u = (t - t_i) / (t_{i+1} - t_i)` with the positions `p_i`, `p_{i+1}` and the derivatives with
+//! respect to `u`, `m_i` and `m_{i+1}`, at its ends:
 //!
 //! 1. `m_i = (p_{i+1} - p_{i-1}) / 2` at inner key frames,
 //! 2. `m_0 = (p_1 - p_0) / 2` and `m_{n-1} = (p_{n-1} - p_{n-2}) / 2` at the ends,
-//! 3. `m_0 = m_{n-1} = (p_1 - p_{n-2}) / 2` if the last place is the first one.
+//! 3. `m_0 = m_{n-1} = (p_1 - p_{n-2}) / 2` if the last position is the first one.
 //!
-//! The tangents do not depend on the times. So a stretch has the velocity `m_i / (t_{i+1} - t_i)`
+//! The tangents do not depend on the times. So a segment has the velocity `m_i / (t_{i+1} - t_i)`
 //! at its beginning and `m_{i+1} / (t_{i+1} - t_i)` at its end. At a key frame the direction is
-//! continuous; the speed is continuous if the stretches on both sides last equally long.
+//! continuous; the speed is continuous if the adjacent segments have equal durations.
 //!
 //! If two key frames are close in time and their neighbours are far away, the tangents are much
-//! longer than the distance between the two: the obstacle darts out and back. Obstacles of
-//! `DynaBARN` do so in places, one at more than 70 m/s for 0.03 s.
+//! longer than the distance between the two: the obstacle darts out and back. Some obstacles of
+//! `DynaBARN` do so, one at more than 70 m/s for 0.03 s.
 //!
-//! The velocity of a stretch is a Bézier curve of degree 2, and so is the velocity of any part of
-//! it. It stays within the triangle of its three control points, so the control point farthest from
-//! 0 bounds the speed.
+//! The velocity of a segment is a Bézier curve of degree 2, and so is the velocity of any part of
+//! it. It stays within the triangle of its three control points, so the control point farthest
+//! from 0 bounds the speed.
 //!
 //! # Cost
-//! A place costs a binary search. A bound of the speed costs two, and a few operations per stretch
-//! between.
+//! A position costs a binary search. A speed bound costs two, and a few operations per segment
+//! between them.
 
 use super::key_frames::{KeyFrame, unless_in_order};
 use super::unless_faster;
 use keyway::ConfigError;
 use keyway::geometry::{Cubic, Point};
 
-/// A smooth motion through key frames, repeated: after `duration_s` the obstacle jumps back to the
-/// first place, unless the last place is the same. It stands at the last place until then, and at
-/// the first place before the time of the first key frame.
+/// A smooth motion through key frames, repeated. After `duration_s` the obstacle jumps back to
+/// the first position, unless the last position is the same. It is stationary at the last
+/// position until then, and at the first position before the time of the first key frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     frames: Vec<KeyFrame>,
     duration_s: f64,
-    /// Stretches from each key frame to the next.
+    /// Segments from each key frame to the next.
     stretches: Vec<Stretch>,
 }
 
-/// The stretch from one key frame to the next.
+/// Segment from one key frame to the next.
 #[derive(Clone, Debug, PartialEq)]
 struct Stretch {
     from_s: f64,
@@ -68,13 +68,13 @@ impl Spline {
     /// suggests, the curve darts to and fro between them.
     pub const FASTEST_MPS: f64 = 1000.0;
 
-    /// A motion through these places at these times that starts again after each `duration_s`.
+    /// A motion through these key frames that repeats every `duration_s`.
     ///
     /// # Errors
-    /// When there are fewer than two key frames, a number is not finite, the first time is before
-    /// 0, times do not increase, `duration_s` is less than the last time or than
+    /// Returns an error if there are fewer than two key frames, a number is not finite, the first
+    /// time is before 0, times do not increase, `duration_s` is less than the last time or than
     /// [`Self::SHORTEST_S`], or a control point of the velocity is faster than
-    /// [`Self::FASTEST_MPS`]. Paths begin with `spline` or `duration_s`.
+    /// [`Self::FASTEST_MPS`]. Error paths begin with `spline` or `duration_s`.
     pub fn new(frames: Vec<KeyFrame>, duration_s: f64) -> Result<Self, ConfigError> {
         unless_in_order("spline", &frames, 2)?;
         let (first_s, last_s) = (frames[0].t_s, frames[frames.len() - 1].t_s);
@@ -98,7 +98,7 @@ impl Spline {
         Ok(Self { frames, duration_s, stretches })
     }
 
-    /// The key frames of a lap, in the order of their times.
+    /// Key frames of a lap, in the order of their times.
     pub fn frames(&self) -> &[KeyFrame] {
         &self.frames
     }
@@ -108,13 +108,13 @@ impl Spline {
         self.duration_s
     }
 
-    /// Place at a time \[m\]; at the end of a lap, the first place of the next lap.
+    /// Position at a time \[m\]; at the end of a lap, the first position of the next lap.
     pub fn position(&self, t_s: f64) -> Point {
         let lap = self.lap(t_s);
         self.position_in_lap(t_s - self.start_s(lap))
     }
 
-    /// Place just before a time \[m\]; at the end of a lap, the last place of the lap.
+    /// Position just before a time \[m\]; at the end of a lap, the last position of the lap.
     pub(super) fn position_before(&self, t_s: f64) -> Point {
         let lap = self.lap(t_s);
         if lap > 0.0 && t_s == self.start_s(lap) {
@@ -126,7 +126,7 @@ impl Spline {
     /// Time of the first jump after a time \[s\].
     pub(super) fn next_jump_s(&self, t_s: f64) -> Option<f64> {
         let jump_s = self.start_s(self.lap(t_s) + 1.0);
-        // At very large times one lap cannot be told from the next.
+        // At very large times consecutive laps cannot be distinguished.
         (self.jumps() && jump_s > t_s).then_some(jump_s)
     }
 
@@ -136,7 +136,7 @@ impl Spline {
         (self.jumps() && lap > 0.0).then(|| self.start_s(lap))
     }
 
-    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, on
+    /// Upper bound of the speed at any time from `from_s` to `to_s` \[m/s\]; at a key frame, of
     /// both sides.
     pub(super) fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let (first, last) = (self.lap(from_s), self.lap(to_s));
@@ -155,13 +155,12 @@ impl Spline {
         &self.frames[self.frames.len() - 1]
     }
 
-    /// True if the next lap does not begin where a lap ends.
+    /// True if the end of a lap is not the beginning of the next.
     fn jumps(&self) -> bool {
         self.frames[0].position != self.last().position
     }
 
-    /// Start time of a lap \[s\]. This number alone decides which lap a time belongs to, so a jump
-    /// has one instant.
+    /// Start time of a lap \[s\]. It alone decides the lap of a time, so a jump has one instant.
     fn start_s(&self, lap: f64) -> f64 {
         lap * self.duration_s
     }
@@ -191,7 +190,7 @@ impl Spline {
 }
 
 impl Stretch {
-    /// The stretch after key frame `i`, from the tangents there and at the next.
+    /// Segment after key frame `i`, from the tangents at its ends.
     fn between(frames: &[KeyFrame], i: usize) -> Self {
         let (from, to) = (frames[i], frames[i + 1]);
         // The derivative of a cubic Bézier curve at an end is three times the leg of its control
@@ -215,7 +214,7 @@ impl Stretch {
         self.curve.legs.map(|leg| leg * (3.0 / (self.to_s - self.from_s)))
     }
 
-    /// Upper bound of the speed between two times \[m/s\]; the parts outside the stretch do not
+    /// Upper bound of the speed between two times \[m/s\]; times outside the segment do not
     /// count.
     fn speed_bound_mps(&self, from_s: f64, to_s: f64) -> f64 {
         let (from, to) = (self.part(from_s), self.part(to_s));
@@ -227,7 +226,7 @@ impl Stretch {
     }
 }
 
-/// Derivative at a key frame with respect to the part of a stretch \[m\]: equations 1 to 3.
+/// Derivative at a key frame with respect to the part of a segment \[m\]: equations 1 to 3.
 fn tangent(frames: &[KeyFrame], i: usize) -> Point {
     let last = frames.len() - 1;
     let is_closed = frames[0].position == frames[last].position;

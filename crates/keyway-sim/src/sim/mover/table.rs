@@ -1,4 +1,4 @@
-//! The form of a moving obstacle in files and reports.
+//! Representation of a moving obstacle in files and reports.
 
 use super::{
     KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
@@ -22,44 +22,45 @@ use serde::{Deserialize, Serialize};
 ])))]
 #[serde(deny_unknown_fields)]
 pub(super) struct MoverTable {
-    /// Its radius \[m\], at least 0.
+    /// Radius \[m\], at least 0.
     radius_m: f64,
-    /// Straight on for ever: place at time 0 \[m\].
+    /// Constant velocity: position at time 0 \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     position: Option<Point>,
-    /// Straight on for ever: velocity, `[vx, vy]` \[m/s\].
+    /// Constant velocity: velocity, `[vx, vy]` \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     velocity_mps: Option<Point>,
-    /// From each place to the next in a straight line at constant speed: `[t, x, y]` each
-    /// \[s, m, m\], in the order of their times.
+    /// Straight from each position to the next at constant speed: `[t, x, y]` each \[s, m, m\],
+    /// in the order of their times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     key_frames: Option<Vec<KeyFrame>>,
-    /// Smoothly through places, lap after lap: `[t, x, y]` each \[s, m, m\], in the order of their
-    /// times.
+    /// Smooth and periodic, through these positions: `[t, x, y]` each \[s, m, m\], in the order
+    /// of their times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     spline: Option<Vec<KeyFrame>>,
     /// Along a spline: duration of a lap \[s\], at least 0.1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
-    /// From each place to the next at constant speed, and from the last to the first again, for
-    /// ever \[m\].
+    /// From each position to the next at constant speed, and from the last back to the first,
+    /// indefinitely \[m\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     way_points: Option<Vec<Point>>,
     /// Along way-points: speed \[m/s\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     speed_mps: Option<f64>,
-    /// Along way-points: true if it turns back at the last one and returns the same way.
+    /// Along way-points: true if the obstacle turns back at the last one and returns on the same
+    /// path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     to_and_fro: Option<bool>,
-    /// At random in a rectangle, for ever.
+    /// Random walk in a rectangle, indefinitely.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     random_walk: Option<RandomWalkConfig>,
-    /// Along way-points: true if it gives way to robots and other moving obstacles.
+    /// Along way-points: true if the obstacle gives way to robots and other moving obstacles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gives_way: Option<bool>,
 }
 
-/// Fields that a table may have beside its radius.
+/// Fields that a table may have besides its radius.
 const MOTIONS: &str = "`position` and `velocity_mps`, or `key_frames`, or `spline` and `duration_s`, \
      or `way_points` and `speed_mps`, or `random_walk`";
 
@@ -116,7 +117,7 @@ impl MoverTable {
         }
     }
 
-    /// Required fields of all motions, and whether each is given.
+    /// Required fields of all motions; true for each that is given.
     fn fields(&self) -> [(&'static str, bool); 8] {
         [
             ("position", self.position.is_some()),
@@ -131,7 +132,7 @@ impl MoverTable {
     }
 }
 
-/// Error for a table whose fields are too many or too few for one motion.
+/// Error for a table with too many or too few fields for one motion.
 fn not_one_motion(given: &[&str]) -> ConfigError {
     let given: Vec<String> = given.iter().map(|name| format!("`{name}`")).collect();
     let given = if given.is_empty() { "none of them".to_owned() } else { given.join(", ") };

@@ -2,13 +2,13 @@ use super::*;
 use proptest::prelude::*;
 use serde_json::json;
 
-/// A place near the origin.
+/// A position near the origin.
 fn place() -> impl Strategy<Value = Point> {
     (-1.5..1.5f64, -1.5..1.5f64).prop_map(|(x, y)| Point::new(x, y))
 }
 
-/// A spline near the origin at up to 6 m/s; its lap may end where it began, or later than at its
-/// last place.
+/// A spline near the origin at up to 6 m/s; its lap may end at its first position, or later than
+/// its last key frame.
 fn spline() -> impl Strategy<Value = Motion> {
     let frames = prop::collection::vec((0.1..1.2f64, place()), 2..7);
     (frames, 0.0..0.5f64, any::<bool>(), prop_oneof![Just(0.0), 0.0..0.5f64]).prop_map(
@@ -23,8 +23,8 @@ fn spline() -> impl Strategy<Value = Motion> {
             if is_closed {
                 frames[last].position = frames[0].position;
             }
-            // Speeds are proportional to the lengths, whose derivatives are at most four steps per
-            // stretch.
+            // Speeds are proportional to the lengths, whose derivatives are at most four steps
+            // per segment.
             let leg = |pair: &[KeyFrame]| pair[0].position.distance(pair[1].position);
             let longest_m = frames.windows(2).map(leg).fold(0.0, f64::max);
             let gaps = frames.windows(2).map(|pair| pair[1].t_s - pair[0].t_s);
@@ -76,7 +76,7 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = MovingObstacle>
         .prop_map(|(motion, radius_m)| MovingObstacle::new(radius_m, motion).unwrap())
 }
 
-/// Place of an obstacle, found by walking along its motion from the beginning.
+/// Position of an obstacle, found by following its motion from the beginning.
 pub(in crate::sim) fn place_of(mover: &MovingObstacle, t_s: f64) -> Point {
     match mover.motion() {
         Motion::Straight { from, velocity_mps } => {
@@ -115,8 +115,8 @@ pub(in crate::sim) fn place_of(mover: &MovingObstacle, t_s: f64) -> Point {
     }
 }
 
-/// `Spline::RecalcTangents` and `Spline::Interpolate` of the simulator Gazebo 2 to 9, transcribed:
-/// by powers and a matrix.
+/// `Spline::RecalcTangents` and `Spline::Interpolate` of the simulator Gazebo 2 to 9, transcribed
+/// with powers and a matrix.
 fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
     let points: Vec<Point> = spline.frames().iter().map(|frame| frame.position).collect();
     let (n, is_closed) = (points.len(), points[0] == points[points.len() - 1]);
@@ -161,7 +161,7 @@ fn place_on_spline(spline: &Spline, t_s: f64) -> Point {
     place
 }
 
-/// Place on a random walk, found leg by leg and wall by wall.
+/// Position on a random walk, found leg by leg and wall by wall.
 fn place_on_walk(config: &RandomWalkConfig, t_s: f64) -> Point {
     let RandomWalkConfig { position, area: [low, high], speed_mps, leg_s, seed } = *config;
     let mut random = keyway::random::Random::new(seed.unwrap());
@@ -202,8 +202,8 @@ proptest! {
         prop_assert!(at.distance(walked) < 1e-9, "{at:?} {walked:?}");
     }
 
-    /// The speed is never above the bound, and reaches it somewhere; a part of a time has no higher
-    /// bound.
+    /// The speed never exceeds the bound, and reaches it somewhere; a part of an interval has no
+    /// higher bound.
     #[test]
     fn speed_bounds_hold_and_are_reached(
         mover in moving_obstacle(), from_s in -1.0..6.0f64, long_s in 0.001..3.0f64, part in (0.0..1.0f64, 0.0..1.0f64),
@@ -216,8 +216,8 @@ proptest! {
         let moved = (0..2000).filter(|&i| !jumps(i)).map(|i| at(i).distance(at(i + 1)) / step_s);
         let fastest_mps = moved.fold(0.0, f64::max);
         prop_assert!(fastest_mps <= bound_mps + 1e-6, "{fastest_mps} {bound_mps}");
-        // Sampling may miss a stretch with less than a step inside the interval, or a round of few
-        // steps.
+        // Sampling may miss a segment with less than a step inside the interval, or a round of
+        // few steps.
         let (a, b) = (from_s + long_s * part.0.min(part.1), from_s + long_s * part.0.max(part.1));
         prop_assert!(mover.motion().speed_bound_mps(a, b) <= bound_mps * (1.0 + 1e-9) + 1e-12);
         if let Motion::KeyFrames(frames) = mover.motion() {
@@ -251,7 +251,7 @@ fn key_frames_by_hand() {
         [bound(0.0, 0.5), bound(0.5, 1.5), bound(4.0, 5.0), bound(4.0, 7.1), bound(9.0, 10.0)],
         [0.0, 2.0, 0.0, 1.0, 0.0]
     );
-    // A key frame belongs to the stretches on both of its sides.
+    // A key frame belongs to the segments on both sides.
     assert_eq!(
         [bound(3.0, 4.0), bound(2.5, 8.5), bound(8.0, 9.0), bound(0.0, 1.0)],
         [2.0, 2.0, 1.0, 2.0]

@@ -1,45 +1,45 @@
-//! A motion along a closed course.
+//! A motion along a closed path.
 
 use super::{unless_finite, unless_usable_speed};
 use keyway::ConfigError;
 use keyway::geometry::Point;
 
-/// A motion along a course at constant speed for ever: around way-points in turn, or along them to
-/// and fro. At time 0 the obstacle is at the first way-point. It turns at once: corners are not
-/// rounded.
+/// A motion along a path at constant speed, repeated: around way-points in turn, or along them
+/// to and fro. At time 0 the obstacle is at the first way-point. It turns instantly: corners are
+/// not rounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WayPoints {
     points: Vec<Point>,
     to_and_fro: bool,
     speed_mps: f64,
-    /// One round: the way-points, the way-points of the way back, and the first again.
+    /// One round: the way-points, those of the return path, and the first again.
     course: Vec<Station>,
 }
 
-/// A place on the course.
+/// A position on the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Station {
     position: Point,
-    /// Length of the course before it \[m\].
+    /// Path length before it \[m\].
     driven_m: f64,
 }
 
 impl WayPoints {
-    /// A course from each way-point to the next, and from the last to the first.
+    /// A path from each way-point to the next, and from the last to the first.
     ///
     /// # Errors
-    /// When there are fewer than two different points, a number is not finite, or the speed is not
-    /// positive or higher than [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS).
-    /// Paths begin with
-    /// `way_points` or `speed_mps`.
+    /// Returns an error if there are fewer than two different points, a number is not finite, or
+    /// the speed is not positive or higher than
+    /// [`MovingObstacle::FASTEST_MPS`](super::MovingObstacle::FASTEST_MPS). Error paths begin
+    /// with `way_points` or `speed_mps`.
     pub fn around(points: Vec<Point>, speed_mps: f64) -> Result<Self, ConfigError> {
         Self::new(points, speed_mps, false)
     }
 
-    /// A course from the first way-point to the last and back.
+    /// A path from the first way-point to the last and back.
     ///
     /// # Errors
-    /// As for [`Self::around`].
+    /// Those of [`Self::around`].
     pub fn to_and_fro(points: Vec<Point>, speed_mps: f64) -> Result<Self, ConfigError> {
         Self::new(points, speed_mps, true)
     }
@@ -81,12 +81,12 @@ impl WayPoints {
         self.to_and_fro
     }
 
-    /// Its speed \[m/s\].
+    /// Speed \[m/s\].
     pub const fn speed_mps(&self) -> f64 {
         self.speed_mps
     }
 
-    /// Place at a time \[m\]. Costs a binary search.
+    /// Position at a time \[m\]. Costs a binary search.
     pub fn position(&self, t_s: f64) -> Point {
         let round_m = self.course[self.course.len() - 1].driven_m;
         let driven_m = (self.speed_mps * t_s).rem_euclid(round_m);

@@ -8,54 +8,56 @@ use super::World;
 use super::cycle_motion::CycleMotion;
 use keyway::robot::Footprint;
 
-/// Length below which a stretch is not halved any more \[m\]. It then counts as contact unless it
-/// can be shown to be free, and the smallest clearance has this accuracy.
+/// Length below which an interval is not halved any further \[m\]. It then counts as contact
+/// unless it is proven free, and the smallest clearance has this accuracy.
 pub(super) const TOLERANCE_M: f64 = 1e-4;
 
 /// Two objects that move during a cycle.
 ///
-/// The distance between two objects changes at most by how far parts of both move. Take two places
-/// with the clearances `c1` and `c2` between which the objects move by `ds` together. A place after
-/// a move of `s` has a clearance of at least `max(c1 - s, c2 - (ds - s))`, which is smallest where
-/// both are equal: `(c1 + c2 - ds) / 2`. If that bound is not enough, the stretch is halved.
+/// The distance between two objects changes by at most the distance that their parts move
+/// together. Take two places with the clearances `c1` and `c2` between which the objects move by
+/// `ds` together. A place after a move of `s` has a clearance of at least
+/// `max(c1 - s, c2 - (ds - s))`, which is smallest if both are equal: `(c1 + c2 - ds) / 2`. If
+/// that bound does not suffice, the interval is halved.
 pub(super) trait Sweep {
-    /// Distance between the two at a place, but at most `reach_m` \[m\].
+    /// Returns the distance between the two objects at a place, at most `reach_m` \[m\].
     fn clearance_m(&self, place: f64, reach_m: f64) -> f64;
 
-    /// Distance at a place until there is contact \[m\]: the clearance, unless there is contact
-    /// with something that does not count for clearances.
+    /// Returns the distance to contact at a place \[m\]: the clearance, unless there is contact
+    /// with an object that does not count for clearances.
     fn gap_m(&self, place: f64, reach_m: f64) -> f64 {
         self.clearance_m(place, reach_m)
     }
 
-    /// Upper bound of how far parts of both move together between two places \[m\].
+    /// Returns an upper bound of the distance that parts of both objects move together between
+    /// two places \[m\].
     fn moved_m(&self, from: f64, to: f64) -> f64;
 
-    /// The first place from `from` to `until` from which on the two touch, to [`TOLERANCE_M`]. A
-    /// gap that the bound cannot tell from contact on a stretch shorter than that (so a gap of at
-    /// most half of it) is contact. The two are assumed to be apart at `from`.
+    /// Returns the first place from `from` to `until` at which the two objects touch, to
+    /// [`TOLERANCE_M`]. If the bound cannot exclude contact on a shorter interval (with a gap of
+    /// at most half of it), it counts as contact. The two are assumed to be apart at `from`.
     fn first_contact_between(&self, from: f64, until: f64) -> Option<f64> {
         let moved_m = self.moved_m(from, until);
         if moved_m == 0.0 {
             return None;
         }
-        // Two clearances of the stretch's length are always enough, so larger ones need not be
-        // known. The tolerance keeps a length shorter than the radius' last digit from looking like
-        // contact.
+        // Two clearances of the interval's length always suffice, so larger ones need not be
+        // known. The tolerance prevents false contact if the length is below the last digit of
+        // the radius.
         let reach_m = moved_m + TOLERANCE_M;
         let probe = |place| Probe { place, clearance_m: self.gap_m(place, reach_m) };
         contact_between(self, probe(from), probe(until), &probe)
     }
 
-    /// The first contact from the motion's beginning to a place.
+    /// Returns the first contact from the motion's beginning to a place.
     fn first_contact(&self, until: f64) -> Option<f64> {
         self.first_contact_between(0.0, until)
     }
 
-    /// The smaller of `known_m` and the smallest clearance between two places on the motion,
-    /// accurate to [`TOLERANCE_M`].
+    /// Returns the smaller of `known_m` and the smallest clearance between two places on the
+    /// motion, accurate to [`TOLERANCE_M`].
     fn least_clearance_between(&self, from: f64, until: f64, known_m: f64) -> f64 {
-        // Anything farther away cannot matter on this motion.
+        // Objects farther away cannot matter on this motion.
         let reach_m = known_m + self.moved_m(from, until);
         let probe = |place| Probe { place, clearance_m: self.clearance_m(place, reach_m) };
         let (a, b) = (probe(from), probe(until));
@@ -64,7 +66,8 @@ pub(super) trait Sweep {
         least
     }
 
-    /// The smaller of `known_m` and the smallest clearance from the motion's beginning to a place.
+    /// Returns the smaller of `known_m` and the smallest clearance from the motion's beginning to
+    /// a place.
     fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
         self.least_clearance_between(0.0, until, known_m)
     }
@@ -77,7 +80,7 @@ pub(super) struct Moving<'a> {
     pub(super) motion: &'a CycleMotion,
 }
 
-/// A robot among the obstacles of a world that stand when a cycle begins; leaving the map is
+/// A robot among the static obstacles that are present when a cycle begins; leaving the map is
 /// contact.
 pub(super) struct StandingSweep<'a> {
     pub(super) world: &'a World,
@@ -92,7 +95,7 @@ pub(super) struct PairSweep<'a> {
 }
 
 impl Moving<'_> {
-    /// Upper bound of how far any part moves between two places \[m\].
+    /// Upper bound of the distance that any part moves between two places \[m\].
     fn moved_m(&self, from: f64, to: f64) -> f64 {
         let driven_m = self.motion.driven_m(to) - self.motion.driven_m(from);
         let turned_rad = self.motion.turned_rad(to) - self.motion.turned_rad(from);
@@ -148,7 +151,7 @@ fn contact_between<S: Sweep + ?Sized>(
         return None;
     }
     let half_way = 0.5 * (a.place + b.place);
-    // At an extreme velocity, places may become too close to halve before the tolerance is met.
+    // At an extreme velocity, places may be too close to halve before the tolerance is met.
     if moved_m < TOLERANCE_M || half_way <= a.place || half_way >= b.place {
         return Some(a.place);
     }
@@ -176,7 +179,7 @@ fn least_within<S: Sweep + ?Sized>(
     least_within(sweep, middle, b, probe, least);
 }
 
-/// Lower bound of the clearance on a stretch between two places.
+/// Lower bound of the clearance on the interval between two places.
 fn least_between(a: Probe, b: Probe, moved_m: f64) -> f64 {
     0.5 * (a.clearance_m + b.clearance_m - moved_m)
 }

@@ -1,4 +1,4 @@
-//! A robot and a moving obstacle, which may jump on its way.
+//! A robot and a moving obstacle, which may jump.
 
 use super::{Moving, Sweep, TOLERANCE_M};
 use crate::sim::MovingObstacle;
@@ -6,8 +6,8 @@ use crate::sim::cycle_motion::CycleMotion;
 use crate::sim::world::to_circle;
 use keyway::geometry::Disc;
 
-/// A robot and a moving obstacle. The motion is cut in two where the obstacle jumps: before that
-/// instant the old place counts, from then on the new one.
+/// A robot and a moving obstacle. The motion is split at each jump of the obstacle: before that
+/// instant the old position counts, from then on the new one.
 pub(in crate::sim) struct MoverSweep<'a> {
     pub(in crate::sim) mover: &'a MovingObstacle,
     pub(in crate::sim) robot: Moving<'a>,
@@ -16,7 +16,7 @@ pub(in crate::sim) struct MoverSweep<'a> {
 }
 
 impl<'a> MoverSweep<'a> {
-    /// The first place before `until` from which on the two touch, to [`TOLERANCE_M`].
+    /// Returns the first place before `until` at which the two touch, to [`TOLERANCE_M`].
     pub(in crate::sim) fn first_contact(&self, until: f64) -> Option<f64> {
         self.stretches(until).find_map(|stretch| {
             // The obstacle may have jumped there.
@@ -27,15 +27,15 @@ impl<'a> MoverSweep<'a> {
         })
     }
 
-    /// The smaller of `known_m` and the smallest clearance up to a place on the motion, accurate to
-    /// [`TOLERANCE_M`].
+    /// Returns the smaller of `known_m` and the smallest clearance up to a place on the motion,
+    /// accurate to [`TOLERANCE_M`].
     pub(in crate::sim) fn least_clearance(&self, until: f64, known_m: f64) -> f64 {
         self.stretches(until).fold(known_m, |known_m, stretch| {
             stretch.least_clearance_between(stretch.from, stretch.to, known_m)
         })
     }
 
-    /// True if the obstacle jumped within the time of a cycle before a place.
+    /// True if the obstacle jumped within one cycle time before a place.
     pub(in crate::sim) fn jumped_before(&self, place: f64) -> bool {
         let since_s = |stretch: Stretch<'_>| {
             let jump_s = self.mover.motion().last_jump_s(stretch.from_s)?;
@@ -50,13 +50,13 @@ impl<'a> MoverSweep<'a> {
         self.stretch_of(place).map_or(0.0, |stretch| self.mover.speed_mps(stretch.time_s(place)))
     }
 
-    /// The last stretch that has begun at a place.
+    /// Returns the last section that has begun at a place.
     fn stretch_of(&self, place: f64) -> Option<Stretch<'a>> {
-        // All stretches are searched, because another one may begin at the place itself.
+        // All sections are searched, because another one may begin at the place itself.
         self.stretches(CycleMotion::END).take_while(|stretch| stretch.from <= place).last()
     }
 
-    /// Parts of the motion up to a place, separated by jumps.
+    /// Sections of the motion up to a place, separated by jumps.
     fn stretches(&self, until: f64) -> impl Iterator<Item = Stretch<'a>> {
         let Self { mover, robot, start_s } = *self;
         let from_to = move |from: f64, from_s: f64| {
@@ -71,8 +71,8 @@ impl<'a> MoverSweep<'a> {
     }
 }
 
-/// A part of the motion without a jump, from a place to another. Times stay from `from_s` to
-/// `to_s`, and at `to_s` the obstacle is where it was just before, however places are rounded.
+/// A section of the motion without a jump. Times stay from `from_s` to `to_s`. At `to_s` the
+/// obstacle is at its position just before the jump, regardless of rounding.
 struct Stretch<'a> {
     mover: &'a MovingObstacle,
     robot: Moving<'a>,

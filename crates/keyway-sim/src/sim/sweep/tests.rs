@@ -93,7 +93,7 @@ proptest! {
         prop_assert_eq!(sweep.least_clearance(until, least * 0.5), least * 0.5);
     }
 
-    /// Polygons that turn among squares and a circle: free before the contact, and touching there.
+    /// Polygons that turn among squares and a circle: free before the contact, touching at it.
     #[test]
     fn first_contact_of_polygons(
         occupied in prop::collection::vec(prop::bool::weighted(0.02), 20 * 20),
@@ -127,7 +127,7 @@ proptest! {
         }
     }
 
-    /// A disc that drives past a stationary polygon: free before the contact, touching there, and
+    /// A disc that drives past a static polygon: free before the contact, touching at it, and
     /// with the sampled smallest clearance.
     #[test]
     fn contact_with_standing_polygons_agrees_with_dense_sampling(
@@ -153,13 +153,13 @@ proptest! {
         prop_assert!(least_m > -1e-9, "{least_m}");
         prop_assert!(contact.is_none() || gap_m(until) < TOLERANCE_M, "{}", gap_m(until));
         let known_m = sweep.least_clearance(until, 9.0);
-        // Between two samples the robot moves on by 1 mm at most.
+        // Between two samples the robot moves by 1 mm at most.
         prop_assert!(known_m <= least_m + TOLERANCE_M && known_m > least_m - 2e-3, "{known_m} {least_m}");
     }
 
-    /// A disc or a polygon that drives and turns, stops or stands, and an obstacle of any motion,
-    /// which may turn corners in the cycle: apart before the contact, touching there, and with the
-    /// smallest clearance of 4000 instants.
+    /// A disc or a polygon that drives and turns, stops or is stationary, and an obstacle of any
+    /// motion, which may turn corners in the cycle: apart before the contact, touching at it, and
+    /// with the smallest clearance of 4000 instants.
     #[test]
     fn contact_with_movers_agrees_with_dense_sampling(
         (shape, motion) in mover(), mover in moving_obstacle(), start_s in 0.0..4.0f64, stands in prop::bool::weighted(0.3),
@@ -184,7 +184,7 @@ proptest! {
         let places = (0..=4000).map(|i| f64::from(i) / 1000.0);
         let contact = sweep.first_contact(CycleMotion::END);
         if let Some(place) = contact {
-            // A jump may happen in the last digits of its place.
+            // A jump may be off by the last digits of its place.
             let gap_m = gap_m(place).min(gap_m(place + 1e-9));
             prop_assert!(gap_m < TOLERANCE_M, "gap {gap_m}");
         }
@@ -219,8 +219,8 @@ fn shape(is_disc: bool, radii: &[f64], offset: (f64, f64)) -> Footprint {
     Footprint::polygon(star(radii, offset)).unwrap()
 }
 
-/// A robot of any shape near the origin, and its motion in a cycle of a second; it may stop on its
-/// way.
+/// A robot of any shape near the origin, and its motion in a cycle of a second; it may stop
+/// within the cycle.
 fn mover() -> impl Strategy<Value = (Footprint, CycleMotion)> {
     let shape =
         (any::<bool>(), prop::collection::vec(0.05..0.4f64, 3..7), (-0.2..0.2f64, -0.2..0.2f64))
@@ -246,7 +246,7 @@ fn two_discs_meet_half_way() {
     // A gap of 1.5 m at 2 m/s.
     let place = PairSweep { robots }.first_contact(CycleMotion::END).unwrap();
     assert!((right.elapsed_s(place) - 0.75).abs() < TOLERANCE_M, "{place}");
-    // The other robot does not meet a robot that stops after 0.25 s in this cycle.
+    // The robot that stops after 0.25 s and the other one do not collide in this cycle.
     let mut stopped = left.clone();
     stopped.stop_at(1.0);
     let robots = [&right, &stopped].map(|motion| Moving { footprint: &disc, motion });
@@ -257,7 +257,7 @@ fn two_discs_meet_half_way() {
 
 proptest! {
     /// Two discs, a disc and a polygon, or two polygons, that drive and turn: apart before the
-    /// contact, touching there, and with the smallest clearance of 4000 places.
+    /// contact, touching at it, and with the smallest clearance of 4000 places.
     #[test]
     fn contact_of_two_robots_agrees_with_dense_sampling(one in mover(), other in mover()) {
         let moving = |mover: &'_ (Footprint, CycleMotion)| (mover.0.clone(), mover.1.clone());
@@ -304,8 +304,8 @@ fn a_jump_is_no_way() {
     let robot = Moving { footprint: &footprint, motion: &motion };
     let sweep = MoverSweep { mover: &mover, robot, start_s: 0.275 };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
-    // At the end of its lap it is at (2, 0.9), then at (-2, 0): that is nearer than any place
-    // before.
+    // At the end of its lap the obstacle is at (2, 0.9), then at (-2, 0), which is nearer than
+    // any position before.
     let least_m = |until| sweep.least_clearance(until, 9.0);
     assert!((least_m(CycleMotion::END) - 1.7).abs() < 2.0 * TOLERANCE_M);
     let before_m = 2.0_f64.hypot(0.9) - 0.3;
@@ -317,8 +317,8 @@ fn contact_by_a_jump_is_at_its_instant() {
     let footprint = Footprint::circle(0.2).unwrap();
     let start = Pose::new(2.0, 0.0, 0.0);
     let mover = comes_again(2.25);
-    // The jump falls within each cycle once, at its beginning or end as well, and twice in the long
-    // cycle.
+    // The jump falls within each cycle once, including its beginning and end, and twice in the
+    // long cycle.
     for (start_s, duration_s) in
         [(0.41, 0.1), (0.45, 0.1), (0.449, 0.1), (0.2, 0.8), (3.55, 0.1), (4.05, 0.1)]
     {
@@ -337,7 +337,7 @@ fn contact_by_a_jump_is_at_its_instant() {
     let sweep = MoverSweep { mover: &mover, robot, start_s: 0.325 };
     assert_eq!(sweep.first_contact(CycleMotion::END), None);
     assert!(sweep.least_clearance(CycleMotion::END, 9.0) > 2.0);
-    // An obstacle that has stood there for longer than a cycle did not just jump.
+    // An obstacle that has been stationary there for longer than a cycle did not just jump.
     let standing = [[0.0, 2.25, 0.0], [0.3, 2.25, 0.0], [0.4, 2.25, 5.0]].map(KeyFrame::from);
     let standing = Spline::new(standing.to_vec(), 0.5).unwrap();
     let mover = MovingObstacle::new(0.1, Motion::Spline(standing)).unwrap();

@@ -10,7 +10,7 @@ fn point() -> Footprint {
     Footprint::circle(0.0).unwrap()
 }
 
-/// Their names in reports.
+/// Names of obstacles in reports.
 #[test]
 fn what_was_touched_in_reports() {
     use Obstacle::{Border, Circle, HiddenSquare, Mover, Polygon, Robot, Square};
@@ -33,7 +33,7 @@ fn distances_by_hand() {
     assert_eq!(at(3.0, 2.0), 0.5);
     assert_eq!(at(4.2, 2.0), 0.0);
     assert_eq!(within(&world, 3.0, 2.0, 0.2), 0.2);
-    // Unknown is not occupied: the nearest is the square (0, 0), 1.5 m below.
+    // Unknown cells are not occupied: the nearest obstacle is the square (0, 0), 1.5 m below.
     assert_eq!(at(0.5, 2.5), 1.5);
     let mut hidden = BitGrid::new(5, 3, true);
     hidden.set(Cell::new(0, 2), true);
@@ -52,7 +52,7 @@ fn the_border_and_the_nearest() {
     assert_eq!(nearest(2.5, 2.9), Obstacle::Border);
     assert_eq!(nearest(3.4, 1.9), Obstacle::Circle(0));
     assert_eq!(nearest(1.2, 0.9), Obstacle::Square);
-    // A box that reaches 1.2 m ahead of its centre is nearest to the circle there.
+    // A box that extends 1.2 m ahead of its centre is nearest to the circle there.
     let ahead = [[0.0, 0.1], [0.0, -0.1], [1.2, -0.1], [1.2, 0.1]];
     let ahead = Footprint::polygon(ahead.map(Point::from).to_vec()).unwrap();
     assert_eq!(

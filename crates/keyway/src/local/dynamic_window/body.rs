@@ -1,11 +1,11 @@
-//! What of a robot must touch nothing in the next cycle.
+//! The part of a robot that must touch nothing in the next cycle.
 
 use crate::geometry::Point;
 use crate::local::Scene;
 use crate::map::Core;
 use crate::robot::Robot;
 
-/// What must touch nothing on a rollout.
+/// The part that must touch nothing on a rollout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body<'a> {
     pub(super) core: Core<'a>,
@@ -15,11 +15,11 @@ pub(super) struct Body<'a> {
     pub(super) contact_m: f64,
 }
 
-/// A robot where it is now.
+/// A robot at its present pose.
 pub(super) struct Standing<'a> {
     pub(super) robot: &'a Robot,
     pub(super) scene: &'a Scene<'a>,
-    /// Distances of more than this from the footprint are not told apart \[m\].
+    /// Distances of more than this from the footprint are not distinguished \[m\].
     pub(super) reach_m: f64,
 }
 
@@ -27,9 +27,9 @@ impl<'a> Standing<'a> {
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
     const HALVINGS: u32 = 16;
 
-    /// The footprint and the margin around it. Where it is inside the margin already (or over a
-    /// cell that was sensed too near), it must stay at least as far away as now: a polygon that
-    /// covers an obstacle is shrunk into `shrunk` until it covers none.
+    /// The footprint and the margin around it. If the robot is inside the margin already (or over
+    /// a cell that was sensed too near), it must keep at least its present distance: a polygon
+    /// that covers an obstacle is shrunk into `shrunk` until it covers none.
     pub(super) fn body(self, margin_m: f64, shrunk: &'a mut Vec<Point>) -> Body<'a> {
         let (core, radius_m) = self.robot.footprint.core();
         let room_m = self.room_m(&core, radius_m);
@@ -44,15 +44,15 @@ impl<'a> Standing<'a> {
         Body { core, offset_m, contact_m }
     }
 
-    /// Room at the present pose, from obstacles and border \[m\].
+    /// Clearance at the present pose, from obstacles and border \[m\].
     fn room_m(&self, core: &Core<'_>, offset_m: f64) -> f64 {
         let (pose, clearance) = (self.scene.pose, self.scene.obstacles.clearance());
         let distance_m = core.distance_m(pose, &clearance, self.reach_m + offset_m);
         distance_m.min(core.to_border_m(pose, &clearance))
     }
 
-    /// What there is of room now, except for the distance by which the noise of its odometry seems
-    /// to move a standing robot \[m\].
+    /// The present clearance, less the distance by which odometry noise seems to move a
+    /// stationary robot \[m\].
     fn kept_m(&self, room_m: f64, offset_m: f64) -> f64 {
         let speed = self.scene.velocity.v.abs();
         let cycle_s = self.robot.cycle_s;
@@ -62,7 +62,7 @@ impl<'a> Standing<'a> {
         (kept_m - drift_m).max(kept_m.min(offset_m))
     }
 
-    /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
+    /// The polygon, scaled around the centre of rotation to the largest size that covers nothing.
     fn shrink(&self, core: Core<'_>, shrunk: &'a mut Vec<Point>) -> Core<'a> {
         let mut fill = |scale: f64| {
             shrunk.clear();

@@ -6,22 +6,21 @@ use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Which velocities are tried, how they are rolled out, and which of them are refused.
+/// Parameters of the dynamic window: candidates, their rollouts, and the rules that refuse them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct WindowConfig {
-    /// How far ahead a candidate is predicted \[s\].
+    /// Prediction horizon of a candidate \[s\].
     pub horizon_s: f64,
-    /// When on its way a candidate is compared with the guide point \[s\]: its heading, or how near
-    /// it is. At most the horizon, and with the prediction `arcs` at least a cycle.
+    /// Time at which a candidate is compared with the guide point \[s\]: by its heading, or its
+    /// distance. At most the horizon, and with the prediction `arcs` at least a cycle.
     pub judged_s: f64,
-    /// How far ahead a candidate is compared with what moves \[s\]; never less far than the
-    /// horizon.
+    /// Time over which a candidate is compared with moving obstacles \[s\]; at least the horizon.
     pub movers_s: f64,
     /// Time between two predicted poses \[s\].
     pub prediction_step_s: f64,
-    /// How a candidate is predicted: `euler` or `arcs`.
+    /// Prediction of a candidate: `euler` or `arcs`.
     pub prediction: Prediction,
     /// Spacing of the candidates' speeds \[m/s\].
     pub v_step_mps: f64,
@@ -30,16 +29,16 @@ pub struct WindowConfig {
     /// True if a robot that can drive backwards does so to follow its guide. Otherwise only
     /// recoveries back up.
     pub backwards: bool,
-    /// Which of the candidates that touch nothing are admissible: `stopping-distance` or `rollout`.
+    /// Admissible candidates among those that touch nothing: `stopping-distance` or `rollout`.
     pub admissible: Admissible,
-    /// Place on a trajectory of the distance within which a velocity must be able to stop: the
-    /// nearest of all (`trajectory`), or the `end`.
+    /// Point of a trajectory at which the distance is measured within which a velocity must be
+    /// able to stop: the nearest of all (`trajectory`), or the `end`.
     pub stopping_distance_at: DistanceAt,
-    /// Place on a trajectory of the distance in the evaluation: `trajectory` or `end`.
+    /// Point of a trajectory for the distance in the evaluation: `trajectory` or `end`.
     pub distance_at: DistanceAt,
     /// Larger distances count as this one \[m\].
     pub distance_cap_m: f64,
-    /// The footprint is kept this far from everything, once it is that far away \[m\].
+    /// Distance that the footprint keeps from everything, once it is that far away \[m\].
     pub safety_margin_m: f64,
 }
 
@@ -68,17 +67,19 @@ impl WindowConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and the time to stop, or
-    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s) where that is more: for
+    ///   [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s) if that is more, for
     ///   robots that stop within a cycle;
-    /// - `judged_s`: a cycle and half the time to stop. At full speed the robot drives in it as far
-    ///   as it needs to stand. Compared at the end of the horizon, twice as far ahead, whatever
-    ///   passes the guide point looks away from it, and the robot creeps up to each of them;
-    /// - `movers_s`: three times the horizon. What moves does not stop where the robot would;
+    /// - `judged_s`: a cycle and half the time to stop. In this time the robot drives its
+    ///   stopping distance at full speed. Compared at the end of the horizon, twice as far ahead,
+    ///   a trajectory that passes the guide point faces away from it, and the robot creeps up to
+    ///   each guide point;
+    /// - `movers_s`: three times the horizon. Moving obstacles do not stop where the robot would;
     /// - `prediction_step_s`: a cycle, but at most an inscribed radius of driving, and at least a
     ///   tenth of a cycle;
     /// - steps: a tenth of the width of the widest window in speed, a twentieth in turn rate;
-    /// - `backwards`: no, as sensors look ahead; the recoveries back up where the robot has been;
-    /// - `admissible`: whatever touches nothing, as the way to stop is part of the rollout;
+    /// - `backwards`: no, as sensors face ahead; the recoveries back up over ground that the
+    ///   robot has covered;
+    /// - `admissible`: every rollout without contact, as the braking motion is part of it;
     /// - `distance_cap_m`: the stopping distance
     ///   ([`Limits::stop_m`](crate::robot::Limits::stop_m));
     /// - `safety_margin_m`: [`Robot::safety_margin_m`].
@@ -93,7 +94,7 @@ impl WindowConfig {
             horizon_s,
             judged_s: cycle_s + 0.5 * limits.stop_s(),
             movers_s: 3.0 * horizon_s,
-            // Where the brakes are weak for the cycle, no more poses than anybody can wait for.
+            // Limits the number of poses if the brakes are weak for the cycle.
             prediction_step_s: step_s.max(1e-3 * horizon_s),
             prediction: Prediction::Arcs,
             v_step_mps: widest.v / 10.0,
@@ -110,7 +111,7 @@ impl WindowConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [
             ("horizon_s", self.horizon_s),

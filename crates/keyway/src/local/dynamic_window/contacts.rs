@@ -1,15 +1,16 @@
-//! Speeds of one turn rate that surely touch something. All lengths are in cells.
+//! Speeds of one turn rate with a certain contact. All lengths are in cells.
 //!
-//! Among many obstacles most candidates do, and that is told faster than how near the others come:
-//! at a pose the places of all speeds lie on a line, and the part of it on which a convex core
-//! meets a box is found by cutting it once for each side of either ([`NearObstacles::meets`]).
+//! Among many obstacles most candidates have one, and that is computed faster than the clearance
+//! of the others: at a pose the positions of all speeds lie on a line, and the part of it on
+//! which a convex core meets a box is found by cutting it once for each side of either
+//! ([`NearObstacles::meets`]).
 
 use super::counting::Counting;
 use super::motion::Motion;
 use crate::map::{Core, NearObstacles, Placement, Sweep, Turned};
 use std::ops::Range;
 
-/// Where contacts are looked for.
+/// The search for contacts.
 #[derive(Debug)]
 pub(super) struct Contacts<'w, 'a> {
     pub(super) counting: &'w Counting,
@@ -22,11 +23,12 @@ pub(super) struct Contacts<'w, 'a> {
 }
 
 impl Contacts<'_, '_> {
-    /// Every so-manieth pose is looked at first: what the robot drives over it meets at several.
+    /// Stride of the poses that are checked first: a box in the robot's path is met at several
+    /// poses.
     const POSES_AT_ONCE: usize = 6;
 
-    /// Tells of each speed whether it surely touches something at some poses. Of the others nothing
-    /// is known.
+    /// Determines for each speed if it certainly touches something at some poses. Nothing is
+    /// known about the others.
     pub(super) fn find(&mut self, poses: &Range<usize>, touching: &mut Vec<bool>) {
         touching.clear();
         touching.resize(self.all_mps.len(), false);

@@ -1,30 +1,30 @@
-//! What counts as contact and as near. All lengths are in cells.
+//! Thresholds of contact and nearness. All lengths are in cells.
 
 use super::motion::Motion;
 use crate::map::NearObstacles;
 use std::ops::Range;
 
-/// What counts as contact and as near.
+/// Thresholds of contact and nearness.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counting {
     /// Anything nearer than this to the core is contact.
     pub(super) contact: f64,
-    /// With so much room it surely touches nothing. More than the former for a centre that may
-    /// touch something: there, a distance of 0 says nothing.
+    /// Clearance at which there is certainly no contact. More than the former for a centre that
+    /// may touch something: there, a distance of 0 is ambiguous.
     pub(super) certain: f64,
-    /// Distances that are at least this count as this.
+    /// Larger distances count as this.
     pub(super) farthest: f64,
-    /// True if the nearest of all poses counts, or the last one alone.
+    /// True if the nearest of all poses counts; otherwise the last one alone.
     pub(super) counts_all: bool,
-    /// What is at least so far away leaves no doubt, neither between two poses.
+    /// Distance beyond which no doubt remains, at poses and between them.
     pub(super) enough: f64,
     /// True if the map's border can matter.
     pub(super) is_near_border: bool,
 }
 
 impl Counting {
-    /// From the first to the last pose of the speeds between two at which something may be near
-    /// enough to count.
+    /// Range of poses, for the speeds between two, at which something may be near enough to
+    /// count.
     pub(super) fn near_poses(
         &self,
         motion: &Motion,

@@ -15,13 +15,13 @@ pub(in crate::local) struct Candidate<const TERMS: usize> {
 /// The value of a term for one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TermValue {
-    /// In the term's own unit, at least 0.
+    /// Value in the term's own unit, at least 0.
     pub raw: f64,
-    /// Factor of the term's weight for this candidate: 1 as a rule.
+    /// Factor of the term's weight for this candidate: usually 1.
     pub factor: f64,
 }
 
-/// A term of an evaluation: its name in reports and its weight. Nav2 calls it a critic.
+/// A term of an evaluation, by its name in reports and its weight. Nav2 calls it a critic.
 #[derive(Clone, Copy, Debug)]
 pub struct Term {
     name: &'static str,
@@ -45,7 +45,7 @@ pub(super) struct Ranking {
 }
 
 impl TermValue {
-    /// A value that counts by the term's weight alone.
+    /// A value with the factor 1.
     pub const fn of(raw: f64) -> Self {
         Self { raw, factor: 1.0 }
     }
@@ -57,14 +57,14 @@ impl Term {
         Self { name, weight, is_cost: false }
     }
 
-    /// A term of which less is better: it counts by how far it is below the largest of all
-    /// candidates.
+    /// A term of which less is better: the difference to the largest value of all candidates
+    /// counts.
     pub const fn cost(name: &'static str, weight: f64) -> Self {
         Self { name, weight, is_cost: true }
     }
 }
 
-/// What a term's raw values are compared with.
+/// Reference values for the raw values of a term.
 #[derive(Clone, Copy, Default)]
 struct Scale {
     sum: f64,
@@ -72,7 +72,7 @@ struct Scale {
 }
 
 impl<const TERMS: usize> Weighing<TERMS> {
-    /// Ranks the candidates, which are gone through twice; ties go to the earlier one. `None` when
+    /// Ranks the candidates, which are iterated over twice; ties go to the earlier one. `None` if
     /// there is none.
     ///
     /// A term whose sum over the candidates is 0 contributes 0.
@@ -101,7 +101,7 @@ impl<const TERMS: usize> Weighing<TERMS> {
         })
     }
 
-    /// Each candidate's shares.
+    /// The shares of each candidate.
     pub(super) fn all_shares(&self, candidates: &[Candidate<TERMS>]) -> Vec<Shares> {
         let scales = self.scales(candidates.iter().copied());
         candidates.iter().map(|candidate| self.shares(candidate, &scales)).collect()
@@ -115,13 +115,13 @@ impl<const TERMS: usize> Weighing<TERMS> {
             count += 1;
             for (scale, value) in scales.iter_mut().zip(candidate.values) {
                 scale.sum += value.raw;
-                // One instruction, where the library's maximum takes eight.
+                // A single instruction; the library's maximum takes eight.
                 scale.largest = if value.raw > scale.largest { value.raw } else { scale.largest };
             }
         });
         for (scale, term) in scales.iter_mut().zip(&self.0) {
             if term.is_cost {
-                // The sum of the largest less each.
+                // The sum of the differences to the largest.
                 scale.sum = f64::from(count) * scale.largest - scale.sum;
             }
         }
@@ -176,7 +176,7 @@ mod tests {
         assert!((distance.weighted - 0.16).abs() < 1e-12);
         assert!((runner_up.unwrap().total() - 0.10).abs() < 1e-12);
         assert!(weighing.rank([].into_iter()).is_none());
-        // Of equals the first.
+        // Ties go to the first.
         let twice = [candidate(0.3, [1.0, 1.0, 1.0]), candidate(0.4, [1.0, 1.0, 1.0])];
         assert_eq!(weighing.rank(twice.into_iter()).unwrap().command.v, 0.3);
     }

@@ -1,14 +1,14 @@
-//! Why a dynamic window decides as it does: every candidate with its fate, and what would free a
-//! robot that cannot drive.
+//! Explains the decision of a dynamic window: every candidate with its fate, and the changes that
+//! would free a robot that cannot drive.
 //!
-//! Nothing here is used by a decision, which only counts. Each candidate is judged as there, by the
-//! same rollouts and rules; a property test compares the two.
+//! A decision uses nothing from here; it only counts. Each candidate is judged as in a decision,
+//! by the same rollouts and rules; a property test compares the two.
 //!
-//! What would free it is found as for every planner (`remedies.rs`).
+//! The remedies are found as for every planner (`remedies.rs`).
 //!
 //! # Errors / cost
-//! None. Those of a decision, and about twelve rollouts in addition for a candidate that touches
-//! something; where none drives, up to 40 times as many candidates.
+//! None. The cost is that of a decision, and about twelve rollouts in addition for a candidate
+//! that touches something; if none drives, up to 40 times as many candidates.
 
 use super::roller::{RollMemory, Roller};
 use super::rollout::{Prediction, Rollout};
@@ -20,15 +20,15 @@ use crate::local::{Explanation, Fate, JudgedCandidate, Scene};
 use crate::robot::Robot;
 use std::borrow::Cow;
 
-/// Poses of a candidate.
+/// Number of poses of a candidate.
 const POSES: u32 = 10;
 
-/// The time of a contact is found to this \[s\].
+/// Resolution of the time of a contact \[s\].
 const CONTACT_S: f64 = 1e-3;
 
 impl DynamicWindow {
-    /// The reasons for what [`Self::decide`] does with the same scene, candidate by candidate.
-    /// Costs many times as much as the decision.
+    /// Explains the result of [`Self::decide`] for the same scene, candidate by candidate. Costs
+    /// many times as much as the decision.
     pub fn explain<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
@@ -45,7 +45,7 @@ impl DynamicWindow {
                 Ok(rollout) => {
                     admissible.push(Candidate { velocity, values: terms(velocity, &rollout) });
                     places.push(explanation.candidates.len());
-                    // The score follows when all of them are known.
+                    // The score is filled in once all of them are known.
                     Fate::Admissible { shares: [].into_iter().collect(), score: 0.0 }
                 }
                 Err(rule) => judge.refused(velocity, rule),
@@ -121,7 +121,7 @@ impl<'a> Judge<'a> {
         Self { window, roller, memory: RollMemory::default(), only: Lattice::default() }
     }
 
-    /// Where each candidate leads, or the rule that refuses it.
+    /// The rollout of each candidate, or the rule that refuses it.
     fn judge(&mut self, lattice: &Lattice) -> Vec<Result<Rollout, &'static str>> {
         self.roller.roll(lattice, &mut self.memory);
         let mover_rule = self.window.mover_rule(self.roller.scene);
@@ -141,13 +141,13 @@ impl<'a> Judge<'a> {
         Fate::Refused { rule: Cow::Borrowed(rule), because: Cow::Borrowed(because), free_for_s }
     }
 
-    /// How long the rollout of a candidate that touches something is free.
+    /// Time for which the rollout of a candidate that touches something is free.
     fn free_for_s(&mut self, velocity: Velocity) -> f64 {
         let WindowConfig { horizon_s, prediction, .. } = self.window.config;
         self.only.fill_with(velocity);
         let parts = match prediction {
             Prediction::Arcs => (horizon_s / CONTACT_S).ceil() as u32,
-            // A part of a step would be another step.
+            // A fraction of a step would be a different step.
             Prediction::Euler => self.steps(),
         };
         let part_s = horizon_s / f64::from(parts);
@@ -162,12 +162,13 @@ impl<'a> Judge<'a> {
         f64::from(free) * part_s
     }
 
-    /// Steps of equal length between two predicted poses, as in a rollout by [`Prediction::Euler`].
+    /// Number of steps of equal length between predicted poses, as in a rollout by
+    /// [`Prediction::Euler`].
     fn steps(&self) -> u32 {
         (self.roller.timing.steps as u32).max(1)
     }
 
-    /// Poses on the way, up to the contact.
+    /// Poses along the rollout, up to the contact.
     fn poses(&self, velocity: Velocity, fate: &Fate) -> Vec<Pose> {
         let until_s = match *fate {
             Fate::Refused { free_for_s: Some(free_for_s), .. } => free_for_s,

@@ -81,7 +81,7 @@ fn evaluation(dwa: &Dwa, scene: &Scene<'_>) -> Evaluation {
     }
 }
 
-/// Makes the change by what users have: other parameters, another robot, another pose.
+/// Applies a change as a user would: other parameters, another robot, another pose.
 fn drives_after(change: Change, robot: &Robot, config: &DwaConfig, at: &Scene<'_>) -> bool {
     let (mut robot, mut config, mut changed) = (robot.clone(), config.clone(), *at);
     if matches!(change, Change::Wait { .. } | Change::Turn { .. } | Change::BackUp { .. }) {
@@ -161,7 +161,7 @@ fn facing_a_wall_a_turn_frees_and_waiting_does_not() {
     // margin.
     let Change::SafetyMargin { safety_margin_m } = explanation.remedies[3].change else { panic!() };
     assert!((0.0004..=0.0005).contains(&safety_margin_m), "{safety_margin_m}");
-    // As soon as it can drive, there is nothing to be said.
+    // As soon as it can drive, there are no remedies.
     let away = Scene { pose: Pose::new(1.0, 1.5, 0.0), ..at };
     assert_eq!(explain(&dwa, &away).remedies, []);
 }
@@ -210,7 +210,7 @@ proptest! {
         let world = grid(|x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
         let robot = small(shape);
         let mut config = if is_usual { DwaConfig::for_robot(&robot) } else { config(&robot, prediction) };
-        // What is drawn ends where the rollout does.
+        // The poses that are drawn end with the rollout.
         config.window.judged_s = config.window.horizon_s;
         let dwa = Dwa::new(config.clone(), robot.clone()).unwrap();
         let at = scene(&world, Pose::new(1.5, 1.5, heading), Velocity::new(speed, turn));
@@ -247,14 +247,14 @@ proptest! {
 
         prop_assert_eq!(explanation.remedies.is_empty(), evaluation.driving > 0);
         for remedy in &explanation.remedies {
-            // Of turns that do not help all were tried, not only this one.
+            // If no turn helps, all of them were tried, not only this one.
             if remedy.frees || !matches!(remedy.change, Change::Turn { .. } | Change::Wait { .. } | Change::BackUp { .. }) {
                 prop_assert_eq!(drives_after(remedy.change, &robot, &config, &at), remedy.frees, "{}", remedy);
             }
         }
     }
 
-    /// Near a wall that it faces, where nothing drives more often.
+    /// Near a wall that it faces, so that cases in which nothing drives are more frequent.
     #[test]
     fn what_frees_is_true(gap_m in 0.0..0.03f64, heading in -0.7..0.7f64, speed in prop_oneof![Just(0.0), 0.1..0.5f64],
                           shape in 0..3usize, lane in 0..2usize) {

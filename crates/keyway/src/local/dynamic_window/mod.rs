@@ -1,6 +1,6 @@
-//! What every planner with a dynamic window does: velocities that can be reached within a cycle are
-//! rolled out, those that touch something or could not stop in time are refused, and the rest are
-//! ranked by terms that the planner gives.
+//! The common part of all planners with a dynamic window: velocities that can be reached within a
+//! cycle are rolled out, those that touch something or could not stop in time are refused, and
+//! the rest are ranked by the terms of the planner.
 //!
 //! # Source
 //! \[Fox1997\], in the form of \[You2021\]: equations (4) to (8) and (10), tables 2 and 3.
@@ -11,8 +11,8 @@
 //! | dv | `v_step_mps` | m/s | 0.01 |
 //! | d omega | `omega_step_radps` | rad/s | 1 deg/s |
 //! | prediction time | `horizon_s` | s | 3 |
-//! | when it is compared with the guide point | `judged_s` | s | 3, at the end |
-//! | how far ahead it is compared with what moves | `movers_s` | s | |
+//! | time of the comparison with the guide point | `judged_s` | s | 3, at the end |
+//! | time of the comparison with moving obstacles | `movers_s` | s | |
 //! | dist(v, omega) | the footprint's distance along the rollout | m | |
 //! | Vm, Vd, Va, Vr | limits, window, admissible, all of them together | | |
 //!
@@ -28,27 +28,27 @@
 //! - The window of \[You2021\] is centred on the present velocity; here its ends are candidates,
 //!   too. It ends at the speed from which the robot still stops at its goal.
 //! - The footprint may be a polygon; the paper's robot is a point.
-//! - A candidate that leads into something that moves, where that is told apart, is refused by a
-//!   rule of its own; `dist` is the room to what moves where that is less. (7) is about what
-//!   stands.
-//! - Nothing admissible: the robot brakes so that it stays on its arc, and at standstill, when it
-//!   is round, turns towards the guide point.
+//! - A candidate that leads into a moving obstacle, if moving obstacles are tracked, is refused
+//!   by a separate rule; `dist` is the clearance to moving obstacles if that is less. (7) is
+//!   about stationary obstacles.
+//! - If nothing is admissible, the robot brakes so that it stays on its arc. At standstill, a
+//!   round robot turns towards the guide point.
 //!
 //! # Safety
-//! With [`Prediction::Arcs`] the way on which the robot brakes after a command is part of that
-//! command's rollout: a cycle in which the velocity changes to the candidate, then the candidate's
-//! arc. Braking keeps the arc, and of it the robot covers what it would cover at the unchanged
-//! velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s), whole cycles
-//! counted; the horizon is at least a cycle longer. After each command the robot may brake, then,
-//! and what it does when nothing is admissible is just that. By induction over the cycles, among
-//! obstacles that stand still and are seen, a robot that starts free never touches anything.
+//! With [`Prediction::Arcs`] the braking motion after a command is part of that command's
+//! rollout: a cycle in which the velocity changes to the candidate, then the candidate's arc.
+//! Braking keeps the arc, and the robot covers as much of it as it would cover at the unchanged
+//! velocity in [`Limits::brakes_within_s`](crate::robot::Limits::brakes_within_s), counted in
+//! whole cycles; the horizon is at least a cycle longer. So the robot may brake after each
+//! command, and if nothing is admissible it does just that. By induction over the cycles, among
+//! stationary obstacles in view, a robot that starts free never touches anything.
 //!
 //! # Errors / cost
-//! [`NoCommand`] when nothing is admissible. Cost: one look-up where nothing is within reach of any
-//! candidate, one per turn rate and pose where nothing is near to it; near obstacles, where the
-//! speeds of a turn rate have to be told apart, at most one exact distance per candidate, pose and
-//! near box, and usually a few per candidate. Twice that where (7) and the evaluation measure the
-//! distance at different places.
+//! [`NoCommand`] if nothing is admissible. Cost: one look-up if nothing is within reach of any
+//! candidate, and one per turn rate and pose if nothing is near to it. Near obstacles, if the
+//! speeds of a turn rate have to be distinguished, at most one exact distance per candidate, pose
+//! and near box, and usually a few per candidate. Twice that if (7) and the evaluation measure
+//! the distance at different poses.
 
 mod body;
 mod config;
@@ -83,8 +83,9 @@ use rollouts::{Distances, Rollouts};
 use std::sync::Arc;
 use window::{Lattice, Window};
 
-/// The dynamic window of a robot: all that planners with one have in common but the terms of their
-/// evaluation. The example `own_evaluation_term` is a planner with a term of its own.
+/// The dynamic window of a robot: everything that the planners with a window share, except for
+/// the terms of their evaluation. The example `own_evaluation_term` is a planner with a term of
+/// its own.
 #[derive(Clone, Debug)]
 pub struct DynamicWindow {
     config: WindowConfig,
@@ -100,7 +101,7 @@ const CANNOT_STOP: &str = "cannot-stop";
 /// |omega| > sqrt(2 dist angular deceleration), eq. (7): it could not stop turning in time.
 const TURNS_TOO_FAST: &str = "turns-too-fast";
 
-/// It leads into something that moves ([`MoverRule`]).
+/// It leads into a moving obstacle ([`MoverRule`]).
 const MOVER: &str = Rejections::MOVER;
 
 const RULES: [(&str, &str); 4] = [
@@ -110,7 +111,7 @@ const RULES: [(&str, &str); 4] = [
     (MOVER, "lead into something that moves"),
 ];
 
-/// What a decision works in.
+/// Working memory of a decision.
 #[derive(Debug, Default)]
 struct Work {
     lattice: Lattice,
@@ -119,24 +120,24 @@ struct Work {
 }
 
 impl DynamicWindow {
-    /// More candidates than this in one cycle are a mistake in the config.
+    /// Upper limit of the candidates in one cycle; more are an error in the config.
     const MAX_CANDIDATES: f64 = 100_000.0;
 
-    /// More predicted poses than this for one candidate are a mistake in the config.
+    /// Upper limit of the predicted poses of one candidate; more are an error in the config.
     const MAX_POSES: f64 = 10_000.0;
 
-    /// A longer horizon is a mistake in the config: no robot needs more than a minute to stop.
+    /// Upper limit of the horizon: no robot needs more than a minute to stop.
     const LONGEST_HORIZON_S: f64 = 1000.0;
 
-    /// A prediction of movers that is longer than so many horizons is a mistake in the config.
+    /// Upper limit of the prediction of moving obstacles, in horizons.
     const MOST_HORIZONS: f64 = 100.0;
 
-    /// The window of a robot.
+    /// Creates the window of a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together (a
-    /// horizon too short to stop within it, or steps too small for one cycle); the error names the
-    /// field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together (a horizon too short to stop within it, or steps too small for one
+    /// cycle); the error names the field.
     pub fn new(config: WindowConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let robot = robot.into();
         robot.validate().map_err(|error| error.within("robot"))?;
@@ -157,7 +158,7 @@ impl DynamicWindow {
         let least_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
         let least_s = least_s * (1.0 - 1e-9);
         if config.prediction == Prediction::Arcs && config.horizon_s < least_s {
-            // Rounded up, so that what the message says can be used.
+            // Rounded up, so that the value in the message is valid.
             let least = Given((least_s * 1e6).ceil() / 1e6);
             let expected = format!("at least {least}, for a cycle and the way to stop");
             return refuse("horizon_s", &expected, config.horizon_s);
@@ -189,17 +190,18 @@ impl DynamicWindow {
         Ok(())
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The best of the velocities that can be reached and are admissible, by the values that
-    /// `terms` gives each of them and its rollout, in the order of `weighing`. Of equal ones it is
-    /// the slowest, and of these the one farthest to the right.
+    /// Returns the best of the reachable and admissible velocities, by the values that `terms`
+    /// gives each of them and its rollout, in the order of `weighing`. Ties go to the slowest,
+    /// and among these to the one farthest to the right.
     ///
     /// # Errors
-    /// When no velocity is admissible; the error holds the velocity with which the robot brakes.
+    /// Returns [`NoCommand`] if no velocity is admissible; the error holds the velocity with
+    /// which the robot brakes.
     pub fn decide<const TERMS: usize>(
         &self,
         scene: &Scene<'_>,
@@ -223,7 +225,7 @@ impl DynamicWindow {
         }
     }
 
-    /// Refuses what the rules do, and counts. What touches something is refused already.
+    /// Applies the rules to the candidates, and counts. Contact has been refused already.
     fn refuse(&self, scene: &Scene<'_>, lattice: &Lattice, rollouts: &mut Rollouts) -> Evaluation {
         let candidates = lattice.len() as u32;
         let mut rejected = Rejections::none_by(&RULES);
@@ -239,8 +241,8 @@ impl DynamicWindow {
         Evaluation { candidates, driving, rejected, ..Evaluation::default() }
     }
 
-    /// The distance that counts of a candidate that touches nothing \[m\], or the rule that refuses
-    /// it.
+    /// The distance that counts for a candidate that touches nothing \[m\], or the rule that
+    /// refuses it.
     #[inline]
     fn admitted(
         &self,
@@ -255,7 +257,7 @@ impl DynamicWindow {
         Ok(evaluated_m.min(room_m))
     }
 
-    /// All candidates of a cycle.
+    /// Fills in all candidates of a cycle.
     fn fill(&self, lattice: &mut Lattice, scene: &Scene<'_>) {
         let WindowConfig { v_step_mps, omega_step_radps, backwards, .. } = self.config;
         let window = Window::of(&self.robot, scene.velocity, scene.remaining_m, backwards);
@@ -279,7 +281,7 @@ impl DynamicWindow {
         }
     }
 
-    /// What keeps clear of movers.
+    /// The rule that keeps the robot clear of moving obstacles.
     fn mover_rule<'a>(&'a self, scene: &'a Scene<'a>) -> MoverRule<'a> {
         let WindowConfig { horizon_s, movers_s, safety_margin_m, .. } = self.config;
         let movers_s = movers_s.max(horizon_s);
@@ -294,9 +296,8 @@ impl DynamicWindow {
         Timing::new(prediction, start, self.robot.cycle_s, times_s)
     }
 
-    /// The rule of Va, eq. (7), that refuses a candidate, where it is used. Within the safety
-    /// margin the robot may creep, and on the spot it may turn at any rate: contact is refused
-    /// anyway.
+    /// The rule of Va, eq. (7), that refuses a candidate, if it is used. Within the safety margin
+    /// the robot may creep, and on the spot it may turn at any rate: contact is refused anyway.
     fn refused_by(&self, velocity: Velocity, dist_m: f64) -> Option<&'static str> {
         if self.config.admissible == Admissible::Rollout {
             return None;
@@ -311,8 +312,8 @@ impl DynamicWindow {
         (!is_turning_on_the_spot && velocity.omega.abs() > fastest_radps).then_some(TURNS_TOO_FAST)
     }
 
-    /// Brakes along the present arc; at standstill a round robot, which always may, turns towards
-    /// the guide point.
+    /// Brakes along the present arc. At standstill, a round robot, which always may, turns
+    /// towards the guide point.
     fn fallback(&self, scene: &Scene<'_>) -> Velocity {
         let is_driving =
             scene.velocity.v.abs() > self.robot.limits.standing_mps(self.robot.cycle_s);

@@ -1,21 +1,20 @@
-//! Where the candidates of one turn rate lead: for each predicted pose, its place as a function of
-//! the speed.
+//! Predicted poses of the candidates of one turn rate, as functions of the speed.
 //!
-//! The heading depends on the turn rate alone, and every length driven is linear in the speed v, in
-//! the ramp as in the steps after it. So the places of all speeds are A + B v, with the same A and
-//! B, and all sines and cosines are made once per turn rate.
+//! The heading depends on the turn rate alone, and every length driven is linear in the speed v,
+//! in the ramp and in the steps after it. So the positions of all speeds are A + B v, with the
+//! same A and B, and all sines and cosines are computed once per turn rate.
 
 use super::rollout::Prediction;
 use crate::geometry::{Point, Pose, Velocity};
 use crate::map::{Core, GridFrame, Placement, Sweep, Turned};
 use std::ops::Range;
 
-/// The times of a prediction, and where it begins.
+/// The times of a prediction, and its initial state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timing {
     pub(super) prediction: Prediction,
     pub(super) start: Pose,
-    /// The velocity at the beginning.
+    /// Initial velocity.
     pub(super) from: Velocity,
     /// The robot's control cycle \[s\].
     pub(super) cycle_s: f64,
@@ -25,19 +24,20 @@ pub(super) struct Timing {
     pub(super) steps: usize,
     /// Duration of each \[s\].
     pub(super) step_s: f64,
-    /// When a candidate is compared with the guide point \[s\], not before the end of the ramp.
+    /// Time at which a candidate is compared with the guide point \[s\], not before the end of
+    /// the ramp.
     pub(super) judged_s: f64,
 }
 
-/// A predicted pose of all speeds \[cells\].
+/// The predicted position of all speeds \[cells\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
-    /// Where it is at speed 0.
+    /// Position at speed 0.
     at_rest: Point,
-    /// What a speed of 1 m/s adds, and how long that is.
+    /// Displacement per speed of 1 m/s, and its length.
     per_speed: Point,
     per_speed_length: f64,
-    /// Where the robot's x axis points, as long as a metre \[cells\].
+    /// Direction of the robot's x axis, as long as a metre \[cells\].
     ahead: Point,
 }
 
@@ -56,13 +56,13 @@ impl Judged {
     }
 }
 
-/// The poses of one turn rate, that of the beginning first.
+/// The poses of one turn rate, beginning with the present one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     places: Vec<Place>,
     /// The core at each of them.
     turned: Vec<Turned>,
-    /// Where it is compared with the guide point.
+    /// Position that is compared with the guide point.
     judged: Place,
     /// The angle turned by then \[rad\].
     judged_turned_rad: f64,
@@ -78,7 +78,8 @@ impl Timing {
     ) -> Self {
         let ramp_s = if prediction == Prediction::Arcs { cycle_s.min(horizon_s) } else { 0.0 };
         let left_s = horizon_s - ramp_s;
-        // However long a step may be, what is left takes one; what is left by rounding does not.
+        // A remainder takes at least one step, however long a step may be; a rounding remainder
+        // does not.
         let least = if left_s > 1e-12 { 1.0 } else { 0.0 };
         let steps = (left_s / longest_step_s - 1e-9).ceil().max(least);
         let step_s = if steps > 0.0 { left_s / steps } else { 0.0 };
@@ -89,7 +90,7 @@ impl Timing {
         self.prediction == Prediction::Arcs
     }
 
-    /// The part of the cycle that the ramp is.
+    /// Fraction of the cycle that the ramp takes.
     fn ramp_part(&self) -> f64 {
         self.ramp_s / self.cycle_s
     }
@@ -102,8 +103,8 @@ impl Timing {
     /// The last predicted pose before a candidate is judged, and the time from there \[s\].
     fn to_judged(self) -> (usize, f64) {
         let after_ramp_s = (self.judged_s - self.ramp_s).max(0.0);
-        // At the end of a step nothing is left of it, rounded or not. No steps: of no length, which
-        // gives no number.
+        // At the end of a step no time remains, rounded or not. Without steps, their length is 0,
+        // and the quotient is not a number.
         let whole = (after_ramp_s / self.step_s + 1e-9).floor().min(self.steps as f64);
         let steps = if self.steps > 0 { whole } else { 0.0 };
         let left_s = (after_ramp_s - self.step_s * steps).max(0.0);
@@ -123,7 +124,7 @@ impl Timing {
         in_ramp + omega_radps * self.step_s * (stretches - 1) as f64
     }
 
-    /// What a speed of 1 m/s adds to a place after the ramp in a time, at most a step.
+    /// Displacement per speed of 1 m/s after the ramp in a time of at most a step.
     fn along(&self, from: Place, omega_radps: f64, duration_s: f64) -> Point {
         let turn_rad = omega_radps * duration_s;
         match self.prediction {
@@ -183,7 +184,7 @@ impl Place {
     }
 }
 
-/// A direction, turned by an angle given as (cosine, sine).
+/// Rotates a direction by an angle given as (cosine, sine).
 fn turned(direction: Point, by: Point) -> Point {
     Point::new(direction.x * by.x - direction.y * by.y, direction.x * by.y + direction.y * by.x)
 }
@@ -193,16 +194,16 @@ fn unit(angle_rad: f64) -> Point {
     Point::new(cos, sin)
 }
 
-/// The chord of an arc that turns by an angle, in parts of its length.
+/// The chord of an arc that turns by an angle, as a fraction of its length.
 fn chord(turned_rad: f64) -> f64 {
     let half = 0.5 * turned_rad;
     if half.abs() < 1e-6 { 1.0 - half * half / 6.0 } else { libm::sin(half) / half }
 }
 
 impl Motion {
-    /// Those of another turn rate, from a place on the grid with the direction ahead; allocates
-    /// nothing once it is warm. Where nothing is near not all of them are needed, only those up to
-    /// where it is compared with the guide point.
+    /// Fills in the poses of another turn rate, from a position on the grid with the direction
+    /// ahead; allocates nothing once it is warm. If nothing is near, only the poses up to the
+    /// comparison with the guide point are needed.
     pub(super) fn fill(
         &mut self,
         timing: &Timing,
@@ -217,8 +218,8 @@ impl Motion {
         self.fill_judged(timing, judged, left_s);
     }
 
-    /// Turns the core at some poses and at those before and after them: at no other it may be asked
-    /// for.
+    /// Rotates the core for some poses and for those before and after them; it is undefined at
+    /// all others.
     pub(super) fn turn(&mut self, core: &Core<'_>, poses: &Range<usize>) {
         let count = self.places.len();
         self.turned.resize_with(count, Turned::default);
@@ -272,8 +273,8 @@ impl Motion {
         Placement { origin: self.places[index].at(v_mps), turned: &self.turned[index] }
     }
 
-    /// The middle of the places of all speeds between two at a pose, and how far the others are
-    /// from it at most \[cells\].
+    /// The middle of the positions of all speeds between two at a pose, and the largest distance
+    /// of the others from it \[cells\].
     #[inline]
     pub(super) fn line(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> (Point, f64) {
         let place = &self.places[index];
@@ -281,18 +282,18 @@ impl Motion {
         (place.at(0.5 * (low_mps + high_mps)), place.per_speed_length * half_mps)
     }
 
-    /// The way from this middle to the end \[cells\].
+    /// Vector from this middle to the end \[cells\].
     #[inline]
     pub(super) fn half(&self, index: usize, [low_mps, high_mps]: [f64; 2]) -> Point {
         self.places[index].per_speed * (0.5 * (high_mps - low_mps))
     }
 
-    /// Where the robot's x axis points at a pose, as long as a metre \[cells\].
+    /// Direction of the robot's x axis at a pose, as long as a metre \[cells\].
     pub(super) fn ahead(&self, index: usize) -> Point {
         self.places[index].ahead
     }
 
-    /// The places of all speeds between two at a pose \[cells\].
+    /// The positions of all speeds between two at a pose \[cells\].
     #[inline]
     pub(super) fn sweep(&self, index: usize, ends_mps: [f64; 2]) -> Sweep<'_> {
         let (origin, half_length) = self.line(index, ends_mps);
@@ -313,7 +314,7 @@ impl Motion {
         Pose::new(world.x, world.y, timing.start.theta + turned_rad)
     }
 
-    /// Where all speeds are compared with the guide point, in the world.
+    /// The poses at which all speeds are compared with the guide point, in the world.
     pub(super) fn judged(&self, timing: &Timing, frame: &GridFrame) -> Judged {
         let Place { at_rest, per_speed, .. } = self.judged;
         let origin = frame.world_from_grid(at_rest);
@@ -332,7 +333,7 @@ fn after_ramp(mut place: Place, timing: &Timing, omega_radps: f64) -> Place {
     let start = place.ahead;
     let mut turned_rad = 0.0;
     for arc in 0..Pose::RAMP_ARCS {
-        // How much of the candidate is in the mean velocity of the arc.
+        // Fraction of the candidate in the mean velocity of the arc.
         let share = timing.ramp_part() * (f64::from(arc) + 0.5) / arcs;
         let turn_rad = (timing.from.omega + (omega_radps - timing.from.omega) * share) * arc_s;
         let along = turned(start, unit(turned_rad + 0.5 * turn_rad)) * (arc_s * chord(turn_rad));

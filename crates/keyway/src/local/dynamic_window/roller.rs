@@ -12,33 +12,33 @@ use super::window::Lattice;
 use crate::local::Scene;
 use crate::map::{NearBoxes, NearObstacles, Placement, Reach, Turned, on_grid};
 
-/// What all rollouts of a cycle share.
+/// The inputs that all rollouts of a cycle share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roller<'a> {
     pub(super) scene: &'a Scene<'a>,
     pub(super) body: Body<'a>,
     pub(super) timing: Timing,
-    /// Place of the distance in the evaluation.
+    /// Point of the trajectory for the distance in the evaluation.
     pub(super) evaluated_at: DistanceAt,
-    /// Place of the distance in eq. (7).
+    /// Point of the trajectory for the distance in eq. (7).
     pub(super) stopping_at: DistanceAt,
     pub(super) distance_cap_m: f64,
 }
 
-/// Memory to work in.
+/// Working memory.
 #[derive(Debug, Default)]
 pub(super) struct RollMemory {
     near: NearBoxes,
     turned: Turned,
     motion: Motion,
-    /// The speeds that surely touch something.
+    /// The speeds with a certain contact.
     touching: Vec<bool>,
     bounds: Bounds,
     rollouts: Rollouts,
 }
 
 impl RollMemory {
-    /// Those that [`Roller::roll`] made last.
+    /// The rollouts that [`Roller::roll`] made last.
     pub(super) const fn rollouts(&self) -> &Rollouts {
         &self.rollouts
     }
@@ -50,12 +50,11 @@ impl RollMemory {
 }
 
 impl Roller<'_> {
-    /// What is near a core is kept this much less than it has to be \[cells\], because distances
-    /// are rounded.
+    /// Slack subtracted from every required distance \[cells\], because distances are rounded.
     const ROUNDING_CELLS: f64 = 1e-9;
 
-    /// Rolls out every candidate; refused are those whose footprint would touch something on the
-    /// way or leave the map, and all where numbers are not finite.
+    /// Rolls out every candidate. Those whose footprint would touch something or leave the map
+    /// are refused, and all of them if numbers are not finite.
     pub(super) fn roll(&self, lattice: &Lattice, memory: &mut RollMemory) {
         memory.rollouts.forget_stopping_distances();
         if self.stopping_at != self.evaluated_at {
@@ -65,7 +64,7 @@ impl Roller<'_> {
         self.roll_at(self.evaluated_at, lattice, memory);
     }
 
-    /// The same with the distances at one place.
+    /// The same with the distances at one point of the trajectory.
     fn roll_at(&self, distance_at: DistanceAt, lattice: &Lattice, memory: &mut RollMemory) {
         let RollMemory { near, turned, motion, touching, bounds, rollouts } = memory;
         if !self.is_finite() {
@@ -128,7 +127,7 @@ impl Roller<'_> {
         }
     }
 
-    /// The footprint's distance, where the core's is so many cells \[m\].
+    /// The footprint's distance for a distance of the core in cells \[m\].
     fn distance_m(&self, cells: f64) -> f64 {
         cells * self.scene.obstacles.frame().resolution_m() - self.body.offset_m
     }
@@ -170,8 +169,8 @@ impl Roller<'_> {
         self.stretches(lattice)[1]
     }
 
-    /// What is asked for: all distances up to those that count, with the candidates of the window
-    /// looked at together.
+    /// The reach of the queries: all distances up to those that count, with the candidates of the
+    /// window evaluated together.
     fn reach(&self, counting: &Counting, lattice: &Lattice) -> Reach {
         let ([longest, _], contact) = (self.stretches(lattice), counting.contact.abs());
         let Timing { ramp_s, steps, step_s, .. } = self.timing;
@@ -180,8 +179,9 @@ impl Roller<'_> {
         let [low_mps, high_mps] = lattice.ends_mps();
         let spread = 0.5 * (high_mps - low_mps) * horizon_s / cell_m;
         let distance = counting.enough + spread;
-        // Half a stretch, and how far it may deviate from a straight line.
-        // On longer ways than the robot is large, boxes are looked for again in parts of them.
+        // `way`: half a stretch, and its largest deviation from a straight line. `spread`: on
+        // distances longer than the size of the robot, boxes are searched for again in parts of
+        // them.
         let size = self.body.core.swing_m() / cell_m + contact;
         Reach { distance, way: contact + longest, spread: spread.min(size) }
     }

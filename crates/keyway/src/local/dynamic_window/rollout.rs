@@ -1,9 +1,9 @@
-//! What is known of where a candidate velocity would lead.
+//! The predicted trajectory of a candidate velocity, and the options of the prediction.
 
 use crate::geometry::Pose;
 use serde::{Deserialize, Serialize};
 
-/// How a trajectory is predicted.
+/// Method by which a trajectory is predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 pub enum Prediction {
     /// \[You2021, eq. (4)\]: Euler steps at the candidate velocity.
     Euler,
-    /// As the robot really moves: one cycle in which the velocity changes linearly to the
+    /// The motion of the robot: one cycle in which the velocity changes linearly to the
     /// candidate, then the exact circular arc.
     Arcs,
 }
 
-/// Where on a trajectory its distance to obstacles is measured.
+/// Point of a trajectory at which its distance to obstacles is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -28,16 +28,16 @@ pub enum DistanceAt {
     End,
 }
 
-/// Which velocities are admissible, of those whose trajectory touches nothing.
+/// Admissibility of the velocities whose trajectory touches nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Admissible {
-    /// \[You2021, eq. (7)\]: those that could stop within dist, the distance to what is beside the
-    /// trajectory as well as ahead.
+    /// \[You2021, eq. (7)\]: those that could stop within dist, the distance to obstacles beside
+    /// the trajectory as well as ahead.
     StoppingDistance,
-    /// All of them. With [`Prediction::Arcs`] the way to stop is part of the trajectory.
+    /// All of them. With [`Prediction::Arcs`] the braking motion is part of the trajectory.
     Rollout,
 }
 

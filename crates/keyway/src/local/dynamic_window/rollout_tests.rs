@@ -1,5 +1,5 @@
 //! The rollouts of a cycle against a literal transcription: each candidate by itself, pose after
-//! pose, with distances measured at every pose and at many places between.
+//! pose, with distances measured at every pose and at many points between.
 
 use super::motion::euler_step;
 use super::roller::{RollMemory, Roller};
@@ -10,16 +10,15 @@ use crate::map::{BitGrid, DistanceField, FieldConfig, GridFrame};
 use crate::robot::Footprint;
 use proptest::prelude::*;
 
-/// Places that are looked at on each stretch.
+/// Points that are checked on each stretch.
 const SAMPLES: u32 = 100;
 
 struct Literal {
     end: Pose,
     distance_m: f64,
-    /// The least room at any place that was looked at \[m\]; negative where the core is inside
-    /// something.
+    /// The least clearance at any checked point \[m\]; negative if the core is inside something.
     room_m: f64,
-    /// What lies between two places is not nearer by more than this \[m\].
+    /// Between two points nothing is nearer by more than this \[m\].
     coarse_m: f64,
 }
 
@@ -187,7 +186,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
-    /// Many speeds are judged together, in parts and alone: what is nearest changes with the speed.
+    /// Many speeds are judged together, in parts and alone: the nearest obstacle changes with the
+    /// speed.
     #[test]
     fn distances_of_many_speeds_are_exact(
         pillars in prop::collection::vec((0i32..60, 0i32..60, 0i32..4), 0..60), at in (0.3..2.7f64, 0.3..2.7f64, -3.0..3.0f64),
@@ -216,7 +216,7 @@ proptest! {
     }
 }
 
-/// Of all candidates that touch nothing.
+/// Checks the distances of all candidates that touch nothing.
 fn assert_distances_are_exact(
     window: &DynamicWindow,
     world: &DistanceField,
@@ -254,9 +254,9 @@ fn assert_distances_are_exact(
     }
 }
 
-/// With a wall at its side that is the nearest for the slow, and one ahead that is the nearest for
-/// the fast: where the wall ahead is the nearest of half of some speeds, that at the side still is
-/// of the others.
+/// A wall at the side is the nearest for the slow speeds, and one ahead for the fast: while the
+/// wall ahead is the nearest for half of some speeds, the one at the side still is for the
+/// others.
 #[test]
 fn in_a_corner_one_wall_or_the_other_is_nearest() {
     let frame = GridFrame::new(80, 80, 0.05, Pose::default()).unwrap();
@@ -280,7 +280,7 @@ fn in_a_corner_one_wall_or_the_other_is_nearest() {
     }
 }
 
-/// After the first cycle nothing is allocated, also where much is in doubt.
+/// After the first cycle nothing is allocated, even if much is in doubt.
 #[test]
 fn a_warm_cycle_allocates_nothing() {
     let frame = GridFrame::new(60, 60, 0.05, Pose::default()).unwrap();

@@ -1,9 +1,9 @@
 //! The rollouts of all candidates, in the order of the lattice: slowest speed first.
 //!
-//! Of each only two numbers are kept, because moving more of them about takes longer than making
-//! them where nothing is near: the distance, and how well the robot looks at the guide point. The
-//! pose at which it does follows from the turn rate's [`Judged`] and the speed, for the few who
-//! ask.
+//! Only two numbers are kept for each, because moving more of them takes longer than recomputing
+//! them if nothing is near: the distance, and the alignment with the guide point. The pose of
+//! that alignment follows from the turn rate's [`Judged`] and the speed, for the few callers that
+//! need it.
 
 use super::motion::Judged;
 use super::rollout::Rollout;
@@ -14,9 +14,9 @@ use crate::local::terms::heading;
 /// The two distances of a candidate \[m\].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Distances {
-    /// Within which it must be able to stop, eq. (7).
+    /// Distance within which it must be able to stop, eq. (7).
     pub(super) stopping_m: f64,
-    /// Of its evaluation.
+    /// Distance in its evaluation.
     pub(super) evaluated_m: f64,
 }
 
@@ -25,18 +25,18 @@ pub(super) struct Distances {
 pub(super) struct Rollouts {
     /// [`Rollout::distance_m`], or [`Self::REFUSED`].
     distances_m: Vec<f64>,
-    /// [`Distances::stopping_m`]; empty where it is the same.
+    /// [`Distances::stopping_m`]; empty if it is the same.
     stopping_m: Vec<f64>,
-    /// [`Rollout::heading`]; of refused candidates any number.
+    /// [`Rollout::heading`]; undefined for refused candidates.
     headings: Vec<f64>,
-    /// Of each turn rate, where its candidates are compared with the guide point.
+    /// For each turn rate, the poses at which its candidates are compared with the guide point.
     judged: Vec<Judged>,
     /// Memory for the headings of one turn rate.
     column: Vec<f64>,
 }
 
 impl Rollouts {
-    /// The distance of a candidate that is refused; half as large as an `Option`.
+    /// Distance of a candidate that is refused; takes half the space of an `Option`.
     const REFUSED: f64 = f64::NEG_INFINITY;
 
     /// All candidates of a lattice at the same distance; turn rates are to be added.
@@ -53,7 +53,7 @@ impl Rollouts {
         self.judged.resize(lattice.turn_rates_radps().len(), Judged::default());
     }
 
-    /// From now on both distances are the same.
+    /// Makes both distances the same from now on.
     pub(super) fn forget_stopping_distances(&mut self) {
         self.stopping_m.clear();
     }
@@ -70,7 +70,7 @@ impl Rollouts {
         Distances { stopping_m, evaluated_m }
     }
 
-    /// Adds where the next turn rate's candidates are compared with the guide point.
+    /// Adds the poses at which the next turn rate's candidates are compared with the guide point.
     pub(super) fn push(&mut self, judged: Judged) {
         self.judged.push(judged);
     }
@@ -90,13 +90,13 @@ impl Rollouts {
         }
     }
 
-    /// The distance of a candidate with the turn rate added last; `None` refuses it.
+    /// Sets the distance of a candidate with the turn rate added last; `None` refuses it.
     pub(super) fn set(&mut self, lattice: &Lattice, row: usize, distance_m: Option<f64>) {
         let index = row * lattice.turn_rates_radps().len() + self.judged.len() - 1;
         self.distances_m[index] = distance_m.unwrap_or(Self::REFUSED);
     }
 
-    /// Number of candidates that are not refused, of those speeds of which it is asked.
+    /// Number of candidates that are not refused, among the speeds that satisfy a condition.
     pub(super) fn count(&self, lattice: &Lattice, is_asked: impl Fn(f64) -> bool) -> u32 {
         let rows = self.distances_m.chunks_exact(lattice.turn_rates_radps().len().max(1));
         let asked = lattice.speeds_mps().iter().zip(rows).filter(|(v_mps, _)| is_asked(**v_mps));
@@ -106,8 +106,8 @@ impl Rollouts {
             .sum()
     }
 
-    /// Applies a rule to all candidates that are not refused: it gives the distance that counts;
-    /// `None` refuses.
+    /// Applies a rule to all candidates that are not refused. The rule returns the distance that
+    /// counts; `None` refuses.
     pub(super) fn retain(
         &mut self,
         lattice: &Lattice,

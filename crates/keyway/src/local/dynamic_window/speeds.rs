@@ -1,12 +1,12 @@
-//! The candidates of one turn rate: which of them touch something, and how near the others come to
-//! obstacles.
+//! Contact and clearance of the candidates of one turn rate.
 //!
-//! At any time the places of all speeds lie on a line ([`super::motion`]), and of each box near
-//! that line one measurement bounds how far all of them are from it, by two straight lines over the
-//! speed ([`NearObstacles::apart`]). So the speeds are judged together first, then in parts, and
-//! with each part only the boxes go on that leave a doubt: that may be the nearest, or too near.
-//! Where a robot drives along a wall, both lines are the distance itself, and nothing is measured
-//! again. In open ground one look per pose decides for all speeds. All lengths are in cells.
+//! At any time the positions of all speeds lie on a line ([`super::motion`]), and for each box
+//! near that line one measurement bounds the distance of all of them from it, by two straight
+//! lines over the speed ([`NearObstacles::apart`]). So the speeds are judged together first, then
+//! in parts. Each part only inherits the boxes that are still in doubt: those that may be the
+//! nearest, or too near. If a robot drives along a wall, both lines are the distance itself, and
+//! nothing is measured again. On open ground one query per pose decides for all speeds. All
+//! lengths are in cells.
 
 use super::counting::Counting;
 use super::motion::{Motion, Timing};
@@ -15,18 +15,18 @@ use crate::geometry::{Pose, Velocity};
 use crate::map::{Apart, Core, GridFrame, Line, NearObstacles, Placement, Sweep, Turned, on_grid};
 use std::ops::Range;
 
-/// What is known of the speeds that are being judged.
+/// Bounds for the speeds that are being judged.
 #[derive(Debug, Default)]
 pub(super) struct Bounds {
-    /// What is in doubt: for a part after those of the speeds that it is a part of.
+    /// Items in doubt; those of a part follow those of the speeds that it is a part of.
     doubtful: Vec<Doubt>,
-    /// The room that a single speed has at each pose, at least.
+    /// Lower bound of the clearance of a single speed at each pose.
     room: Vec<f64>,
-    /// Memory for poses between.
+    /// Memory for intermediate poses.
     spare: Vec<Turned>,
 }
 
-/// Something at a pose that may be too near, or the nearest, with bounds of how far it is from the
+/// Something at a pose that may be too near, or the nearest, with bounds of its distance from the
 /// slowest speed to the fastest.
 #[derive(Clone, Copy, Debug)]
 struct Doubt {
@@ -37,17 +37,17 @@ struct Doubt {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
-    /// All boxes and the border: they have to be looked for.
+    /// All boxes and the border: they have to be searched for.
     Anything,
     Box(u32),
     Border,
 }
 
 impl Doubt {
-    /// Distances that differ by less are the same, rounded differently \[cells\].
+    /// Distances that differ by less than this are equal up to rounding \[cells\].
     const ROUNDING: f64 = 1e-10;
 
-    /// Nothing is known of what is at a pose but that it is nowhere nearer than this.
+    /// Nothing is known at a pose except for a lower bound of the distance.
     const fn of_anything(pose: usize, at_least: Line) -> Self {
         let apart = Apart { at_least, at_most: Line::level(f64::MAX) };
         Self { pose, what: What::Anything, apart }
@@ -58,14 +58,14 @@ impl Doubt {
         !self.is_nearer_than(self.apart.at_most)
     }
 
-    /// True if it may be nearer somewhere.
+    /// True if it may be nearer for some speed.
     #[inline]
     fn is_nearer_than(&self, other: Line) -> bool {
         let Line { begin, end } = self.apart.at_least;
         begin < other.begin - Self::ROUNDING || end < other.end - Self::ROUNDING
     }
 
-    /// For the speeds between two fractions.
+    /// Bounds for the speeds between two fractions.
     fn between(self, ends: [f64; 2]) -> Self {
         let Apart { at_least, at_most } = self.apart;
         let apart = Apart { at_least: at_least.between(ends), at_most: at_most.between(ends) };
@@ -87,48 +87,49 @@ pub(super) struct Speeds<'w, 'a> {
     pub(super) core: &'w Core<'w>,
 }
 
-/// Some speeds that follow one another.
+/// A range of consecutive speeds.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     low_mps: f64,
     high_mps: f64,
-    /// Half of what any part of the core moves in the first stretch and in each of the others.
+    /// Half of the largest motion of any part of the core in the first stretch and in each of the
+    /// others.
     half_moves: [f64; 2],
 }
 
 impl Part {
-    /// Where a speed is between the lowest and the highest, from 0 to 1.
+    /// Position of a speed between the lowest and the highest, from 0 to 1.
     fn fraction(&self, v_mps: f64) -> f64 {
         let width_mps = self.high_mps - self.low_mps;
         if width_mps > 0.0 { (v_mps - self.low_mps) / width_mps } else { 0.0 }
     }
 }
 
-/// What is known of the speeds that a part is taken from.
+/// Knowledge about the speeds that a part is taken from.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     part: Part,
-    /// What each speed comes at least so near to. Where it is exact it may be missing among what is
-    /// in doubt.
+    /// Upper bound of the distance of each speed. If it is exact, it may be missing among the
+    /// doubts.
     nearest: Doubt,
 }
 
-/// What each speed of a part comes at least so near to.
+/// Upper bound of the distance of each speed of a part.
 #[derive(Clone, Copy, Debug)]
 struct Nearest {
     doubt: Doubt,
-    /// True if it is what was known before.
+    /// True if it was known before.
     is_known: bool,
 }
 
-/// A stretch that is looked at in pieces.
+/// A stretch that is checked in pieces.
 struct Way {
     number: usize,
     begin: Pose,
     candidate: Velocity,
 }
 
-/// A place on a stretch, from 0 to 1.
+/// A pose on a stretch, by its fraction from 0 to 1.
 #[derive(Clone, Copy)]
 struct Stop<'t> {
     fraction: f64,
@@ -136,16 +137,16 @@ struct Stop<'t> {
 }
 
 impl Speeds<'_, '_> {
-    /// Speeds are judged together, then in so many parts, and so on.
+    /// Number of parts into which speeds are split, repeatedly.
     const PARTS: usize = 8;
 
-    /// After so many halvings, a piece of a stretch that cannot be shown to be free counts as
+    /// After this many halvings, a piece of a stretch that cannot be shown to be free counts as
     /// contact.
     const MOST_HALVINGS: u32 = 8;
 
-    /// Reports for each speed the core's smallest distance at the poses, up to what counts, or
-    /// `None` on contact. Some are known to be `touching` something; at the poses outside of `near`
-    /// nothing is near enough to count.
+    /// Reports for each speed the core's smallest distance at the poses, up to the farthest that
+    /// counts, or `None` on contact. Some speeds are known to be `touching` something; at the
+    /// poses outside of `near` nothing is near enough to count.
     pub(super) fn judge(
         &mut self,
         near: &Range<usize>,
@@ -166,7 +167,7 @@ impl Speeds<'_, '_> {
         }
     }
 
-    /// The same for speeds of which nothing is known.
+    /// The same for speeds about which nothing is known.
     fn judge_unknown<R: FnMut(usize, Option<f64>)>(
         &mut self,
         speeds: Range<usize>,
@@ -181,7 +182,7 @@ impl Speeds<'_, '_> {
         self.judge_part(speeds, 0..count, &known, report);
     }
 
-    /// The same for a part, in which only some things are in doubt.
+    /// The same for a part, in which only some items are in doubt.
     fn judge_part<R: FnMut(usize, Option<f64>)>(
         &mut self,
         speeds: Range<usize>,
@@ -227,8 +228,8 @@ impl Speeds<'_, '_> {
         Stretch::new(self.timing, number, candidate, self.core.swing_m())
     }
 
-    /// Looks at what is in doubt and appends what is still in doubt, the nearest first. Gives what
-    /// every speed comes as near as; `None` when all touch something.
+    /// Measures the items in doubt and appends those that remain in doubt, the nearest first.
+    /// Returns an upper bound of the distance of every speed; `None` if all touch something.
     fn look(&mut self, part: &Part, doubtful: Range<usize>, known: &Known) -> Option<Doubt> {
         let begin = self.bounds.doubtful.len();
         let ends = [part.low_mps, part.high_mps].map(|v_mps| known.part.fraction(v_mps));
@@ -273,7 +274,7 @@ impl Speeds<'_, '_> {
                 && doubt.is_nearer_than(nearest.doubt.apart.at_most)
     }
 
-    /// Looks for what is near a pose and appends what leaves a doubt; `None` when all touch
+    /// Searches for boxes near a pose and appends those that remain in doubt; `None` if all touch
     /// something.
     #[inline]
     fn look_around(&mut self, part: &Part, pose: usize, nearest: &mut Nearest) -> Option<()> {
@@ -299,13 +300,14 @@ impl Speeds<'_, '_> {
         }
         let to_others = self.surroundings.to_others(&around) - sweep.half_length;
         if to_others < self.enough(part, pose, nearest) {
-            // What is farther away in the middle may be nearer at an end.
+            // A box that is farther away in the middle may be nearer at an end.
             self.forget(pose, begin, to_others);
         }
         Some(())
     }
 
-    /// Leaves of what has been found at a pose, from a position on, only how near something may be.
+    /// Replaces the items found at a pose, from a position on, by a lower bound of their
+    /// distance.
     fn forget(&mut self, pose: usize, begin: usize, to_others: f64) {
         let (mut kept, mut at_least) = (begin, Line::level(to_others));
         for position in begin..self.bounds.doubtful.len() {
@@ -321,7 +323,7 @@ impl Speeds<'_, '_> {
         self.bounds.doubtful.push(Doubt::of_anything(pose, at_least));
     }
 
-    /// Measures something again and appends it if it leaves a doubt; `None` when all touch it.
+    /// Measures an item again and appends it if it remains in doubt; `None` if all touch it.
     #[inline]
     fn look_at(
         &mut self,
@@ -341,7 +343,7 @@ impl Speeds<'_, '_> {
         self.count(Doubt { apart, ..doubt }, nearest)
     }
 
-    /// Appends something that is known; `None` when all touch it.
+    /// Appends a measured item; `None` if all touch it.
     #[inline]
     fn count(&mut self, doubt: Doubt, nearest: &mut Nearest) -> Option<()> {
         let at_most = doubt.apart.at_most;
@@ -359,7 +361,7 @@ impl Speeds<'_, '_> {
         Some(())
     }
 
-    /// What is at least so far away from a pose leaves no doubt.
+    /// Distance from a pose beyond which no doubt remains.
     #[inline]
     fn enough(&self, part: &Part, pose: usize, nearest: &Nearest) -> f64 {
         let needed = self.needed_room(part, pose);
@@ -369,13 +371,13 @@ impl Speeds<'_, '_> {
         nearest.doubt.apart.at_most.most().min(self.counting.farthest).max(needed)
     }
 
-    /// True if something counts for the smallest distance; the border does not.
+    /// True if an item counts for the smallest distance; the border does not.
     #[inline]
     fn counts(&self, doubt: &Doubt) -> bool {
         doubt.what != What::Border && self.counts_pose(doubt.pose)
     }
 
-    /// Distance from obstacles and border, up to `most` or more.
+    /// Distance from obstacles and border; exact up to `most`.
     fn room(&mut self, at: &Placement<'_>, most: f64) -> f64 {
         let distance = self.surroundings.distance(at, most);
         let is_near_border = self.counting.is_near_border;
@@ -387,15 +389,15 @@ impl Speeds<'_, '_> {
         self.counting.counts_all || pose + 1 == self.motion.poses()
     }
 
-    /// With so much room at a pose, half of the stretches before and after it are free.
+    /// Clearance at a pose with which half of the stretches before and after it are free.
     #[inline]
     fn needed_room(&self, part: &Part, index: usize) -> f64 {
         let [first, other] = part.half_moves;
         self.counting.certain + if index < 2 { first.max(other) } else { other }
     }
 
-    /// True if a single speed touches nothing, given what is so near that there may be too little
-    /// room.
+    /// True if a single speed touches nothing, given the items that may leave too little
+    /// clearance.
     fn is_free(&mut self, part: &Part, doubtful: Range<usize>) -> bool {
         let candidate = Velocity::new(part.low_mps, self.omega_radps);
         let last = self.motion.poses() - 1;
@@ -410,8 +412,8 @@ impl Speeds<'_, '_> {
         })
     }
 
-    /// Fills in the room that a speed has at the poses at which something is in doubt, and at those
-    /// before and after them. Gives the first and the last of the former.
+    /// Fills in the clearance of a speed at the poses with items in doubt, and at those before
+    /// and after them. Returns the first and the last of the former.
     fn fill_room(&mut self, part: &Part, doubtful: Range<usize>) -> (usize, usize) {
         let count = self.motion.poses();
         let poses = self.bounds.doubtful[doubtful.clone()].iter().map(|doubt| doubt.pose);
@@ -428,9 +430,9 @@ impl Speeds<'_, '_> {
         (first, last)
     }
 
-    /// True if the way from a pose to the next is free. After a move by s, of l in all, there is at
-    /// least the room r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c it is at least c
-    /// everywhere; otherwise the way is looked at as a straight line, and each half of it.
+    /// True if the motion from a pose to the next is free. After a motion by s, of l in all, the
+    /// clearance is at least r1 - s and r2 - (l - s), so with r1 + r2 - l >= 2 c it is at least c
+    /// everywhere. Otherwise the motion is checked as a straight line, and then each half of it.
     fn is_stretch_free(&mut self, number: usize, candidate: Velocity) -> bool {
         let (Stretch { moves_m, deviation_m }, cell_m) =
             (self.stretch(number, candidate), self.frame.resolution_m());
@@ -477,8 +479,8 @@ impl Speeds<'_, '_> {
         is_free
     }
 
-    /// True if a way that deviates so little from a straight line is free. The border's distance is
-    /// concave, so it is smallest at an end.
+    /// True if a motion with this deviation from a straight line is free. The border's distance
+    /// is concave, so it is smallest at an end.
     fn is_straight_way_free(&mut self, from: Stop<'_>, to: Stop<'_>, deviation: f64) -> bool {
         let (from, to) = (&from.placement, &to.placement);
         let least = self.counting.contact + deviation;

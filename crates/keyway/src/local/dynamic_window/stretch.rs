@@ -1,16 +1,16 @@
-//! How far a core moves between two predicted poses.
+//! Bounds on the motion of a core between two predicted poses.
 
 use super::motion::Timing;
 use crate::geometry::Velocity;
 
-/// What is known of the way between two predicted poses.
+/// Bounds on the motion between two predicted poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stretch {
-    /// No part of the core moves farther \[m\].
+    /// Upper bound of the motion of any part of the core \[m\].
     pub(super) moves_m: f64,
-    /// No vertex of the core (nor the centre, where it is alone) is ever farther from the straight
-    /// line between its two ends \[m\]. A part of the way as long as half of it deviates a quarter
-    /// as far at most.
+    /// Upper bound of the distance of any vertex of the core (or the centre, if it is alone) from
+    /// the straight line between its two ends \[m\]. Half of the motion deviates at most a
+    /// quarter as far.
     pub(super) deviation_m: f64,
 }
 
@@ -18,10 +18,10 @@ impl Stretch {
     /// The stretch of this number with a candidate of at most this speed, for a core that reaches
     /// `swing_m` from the centre of rotation.
     ///
-    /// In the time T a curve is nowhere farther from its chord than T² / 8 times the largest second
-    /// derivative across the chord. That of a vertex is at most
-    /// |dv/dt| + swing |d omega/dt| + (|v| + swing |omega|) |omega|. The centre alone moves along
-    /// its chord but for the angle turned, unless it reverses, so of dv/dt only that part counts.
+    /// In the time T a curve is nowhere farther from its chord than T² / 8 times the largest
+    /// second derivative across the chord. That of a vertex is at most
+    /// dv/dt| + swing |d omega/dt| + (|v| + swing |omega|) |omega|. The centre alone moves along its
+    /// chord except for the angle turned, unless it reverses, so of dv/dt only that part counts.
     pub(super) fn new(timing: &Timing, number: usize, candidate: Velocity, swing_m: f64) -> Self {
         if !(number == 0 && timing.has_ramp()) {
             let driven_m = candidate.v.abs() * timing.step_s;
@@ -30,7 +30,7 @@ impl Stretch {
             return Self { moves_m, deviation_m: 0.125 * moves_m * turned_rad };
         }
         let (from, duration_s) = (timing.from, timing.ramp_s);
-        // Larger than the mean of both, which is only right where the robot does not reverse.
+        // Larger than the mean of both, which is only correct if the robot does not reverse.
         let driven_m = from.v.abs().max(candidate.v.abs()) * duration_s;
         let turned_rad = from.omega.abs().max(candidate.omega.abs()) * duration_s;
         let moves_m = driven_m + swing_m * turned_rad;

@@ -32,7 +32,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
     }
 }
 
-/// This planner looks at the guide point alone.
+/// This planner uses the guide point alone.
 static NO_PATH: Polyline = Polyline::new(Vec::new());
 
 fn decide(dwa: &Dwa, scene: &Scene<'_>) -> Result<Decision, NoCommand> {
@@ -83,7 +83,7 @@ fn noise_at_a_wall_does_not_freeze_the_robot() {
     assert!(command.v.abs() < 1e-9 && command.omega.abs() > 0.2, "{command:?}");
 }
 
-/// However long a step may be, the whole horizon is looked at.
+/// However long a step may be, the whole horizon is checked.
 #[test]
 fn a_long_prediction_step_leaves_nothing_out() {
     let wall = grid(200, 0.05, |x, _| x >= 100);
@@ -170,7 +170,7 @@ fn shaped(robot: Robot, shape: usize) -> Robot {
     Robot { footprint: Footprint::polygon(vertices).unwrap(), ..robot }
 }
 
-/// Drives for so many cycles towards a guide point and looks at every fiftieth of a cycle.
+/// Drives for a number of cycles towards a guide point and checks every fiftieth of a cycle.
 fn touches_nothing(
     config: DwaConfig,
     robot: &Robot,
@@ -226,8 +226,8 @@ fn blocks() -> impl Strategy<Value = DistanceField> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// A robot that starts free never touches what stands around it: neither while a
-    /// command is admissible nor while it brakes.
+    /// A robot that starts free never touches stationary obstacles: neither while a command is
+    /// admissible nor while it brakes.
     #[test]
     fn never_touches_what_stands_still(world in blocks(), heading in -3.0..3.0f64,
                                        guide in (0.0..3.0f64, 0.0..3.0f64), shape in 0..3usize) {
@@ -236,7 +236,7 @@ proptest! {
         touches_nothing(DwaConfig::for_robot(&robot), &robot, &world, Pose::new(1.5, 1.5, heading), guides)?;
     }
 
-    /// Also where a robot brakes in less than a cycle, of which it then needs the whole all the
+    /// Also if a robot brakes in less than a cycle, of which it then needs the whole all the
     /// same. Its guide point keeps moving, so it keeps driving.
     #[test]
     fn strong_brakes_and_long_cycles_touch_nothing(

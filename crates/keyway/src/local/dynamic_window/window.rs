@@ -3,8 +3,8 @@
 use crate::geometry::Velocity;
 use crate::robot::{Limits, Robot};
 
-/// Vm and Vd of \[You2021, eq. (5), (6)\] together: what the limits allow and the accelerations
-/// reach within one cycle. The fastest are those from which the robot still stops at its goal.
+/// Vm and Vd of \[You2021, eq. (5), (6)\] together: the velocities within the limits that can be
+/// reached within one cycle. The fastest are those from which the robot still stops at its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Window {
     pub(super) slowest: Velocity,
@@ -25,8 +25,8 @@ impl Window {
         }
     }
 
-    /// The width that no window exceeds: what can be reached within a cycle to both sides, and what
-    /// the limits allow.
+    /// Upper limit of the width of any window: the range that can be reached within a cycle to
+    /// both sides, within the limits.
     pub(super) fn widest(limits: &Limits, cycle_s: f64) -> Velocity {
         let by_v = limits.acceleration_mps2 + limits.deceleration_mps2;
         let by_omega = limits.angular_acceleration_radps2 + limits.angular_deceleration_radps2;
@@ -45,7 +45,7 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Those of another window; allocates nothing once it is warm.
+    /// Fills in the candidates of another window; allocates nothing once it is warm.
     pub(super) fn fill(&mut self, window: &Window, v_step_mps: f64, omega_step_radps: f64) {
         let Window { slowest, fastest } = window;
         multiples(slowest.v, fastest.v, v_step_mps, &mut self.speeds_mps);
@@ -81,8 +81,8 @@ impl Lattice {
         Velocity::new(largest(&self.speeds_mps), largest(&self.turn_rates_radps))
     }
 
-    /// The slowest speed and the fastest, backwards being slower than standing; none at all are two
-    /// of 0.
+    /// The slowest speed and the fastest, where backwards is slower than standstill; both are 0
+    /// if there are none.
     pub(super) fn ends_mps(&self) -> [f64; 2] {
         let end = |end: Option<&f64>| end.copied().unwrap_or_default();
         [end(self.speeds_mps.first()), end(self.speeds_mps.last())]
@@ -96,7 +96,7 @@ impl Lattice {
     }
 }
 
-/// The multiples of `step` between both ends, and the ends: standing still and driving straight are
+/// The multiples of `step` between both ends, and the ends. Standstill and driving straight are
 /// among the candidates whenever they can be reached, and so is the upper end of the window.
 fn multiples(low: f64, high: f64, step: f64, values: &mut Vec<f64>) {
     let near = step * 1e-6;

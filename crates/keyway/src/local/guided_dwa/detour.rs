@@ -1,39 +1,39 @@
-//! The guide points of a way around an obstacle that the known map does not have.
+//! The guide points of a detour around an obstacle that is not on the known map.
 //!
 //! # Source
 //! \[ZhuYin2024\]: equations (19) to (21), and steps 7 to 9 of its whole algorithm.
 //!
 //! | paper | here | unit |
 //! |---|---|---|
-//! | `x_ob` | [`Unknown::centre`]: the centre of the obstacle, as far as it was seen | m |
+//! | `x_ob` | [`Unknown::centre`]: the centre of the sensed part of the obstacle | m |
 //! | `x_j-1` | the robot's position when the obstacle was detected | m |
-//! | `x_j` | `Detour::Behind::from`: the next node of the route, or `x_j-1` when that node is not before the obstacle | m |
+//! | `x_j` | `Detour::Behind::from`: the next node of the route, or `x_j-1` if that node is not before the obstacle | m |
 //! | `x_ga` = 2 `x_ob` - `x_j`, eq. (19) | [`Behind::point`]: behind the obstacle | m |
 //! | `x_st`, eq. (20) | [`Behind::rejoin`]: the node of the remaining route nearest to `x_ga` | m |
 //! | invalid zone | the disc of radius `reached_m` around `x_ga` | m |
 //! | `e_gt` | direction of travel on entering the invalid zone | 1 |
 //! | `e_gs` | unit vector from `x_ga` to `x_st` | 1 |
-//! | `e_gi` = `e_gt` + `e_gs` | the direction in which the route is joined | 1 |
+//! | `e_gi` = `e_gt` + `e_gs` | direction in which the route is joined | 1 |
 //! | `x_it`, eq. (21) | the node in the direction from `x_ga` that is closest to `e_gi` | m |
 //!
 //! # Where this differs from the paper
-//! - It does not say what holds for an obstacle on a straight route, where `x_ga` lies on the
-//!   route: with `x_ga` and `x_st` nearer to each other than half a cell, `e_gs` is 0; where `e_gi`
-//!   is 0, `e_gs` stands in for it.
-//! - The remaining route begins behind the place where the obstacle stands on it. Candidates for
-//!   `x_it` lie behind `x_st`, at least half a cell from `x_ga`, and in a straight line from it
-//!   that keeps the clearance; directions that are equal up to rounding go to the first along the
-//!   route. With no candidate, `x_it` is `x_st`.
-//! - `x_ga` must keep the clearance from everything known and sensed, and the straight line from
-//!   `x_j` to it may cross the obstacle and nothing else. Otherwise `x_ga` is the first node of the
-//!   remaining route that keeps the clearance. Where there is none, the way around has failed.
-//! - `x_j` is kept while the robot is on its way to `x_ga`, and the rest is computed anew in each
-//!   cycle: from what was seen meanwhile, and where an obstacle that moves is now. When nothing is
-//!   left of it on the route up to `x_st`, the way around ends.
+//! - The paper does not cover an obstacle on a straight route, with `x_ga` on the route: if
+//!   `x_ga` and `x_st` are nearer to each other than half a cell, `e_gs` is 0; if `e_gi` is 0,
+//!   `e_gs` is used instead.
+//! - The remaining route begins behind the obstacle. Candidates for `x_it` lie behind `x_st`, at
+//!   least half a cell from `x_ga`, and are connected with it by a straight line that keeps the
+//!   clearance. Among directions that are equal up to rounding, the first along the route is
+//!   taken. Without a candidate, `x_it` is `x_st`.
+//! - `x_ga` must keep the clearance from everything mapped and sensed, and the straight line from
+//!   `x_j` to it may cross the obstacle and nothing else. Otherwise `x_ga` is the first node of
+//!   the remaining route that keeps the clearance. If there is none, the detour has failed.
+//! - `x_j` is kept while the robot drives to `x_ga`, and the rest is recomputed in each cycle,
+//!   from new sensor data and the present position of a moving obstacle. Once nothing of it is
+//!   left on the route up to `x_st`, the detour ends.
 //!
 //! # Errors / cost
-//! [`AllCovered`]. Linear in the nodes of the remaining route; (21) with one test of a line for
-//! each of them, once for each way around.
+//! [`AllCovered`]. Linear in the nodes of the remaining route; (21) with one line-of-sight test
+//! for each of them, once per detour.
 
 use super::obstacle::{Cluster, Search, Unknown};
 use super::route_nodes::{RouteNode, route_nodes};
@@ -44,15 +44,15 @@ use crate::map::{Clearance, RayCells};
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// The ways around what is not on the known map.
+/// Parameters of detours around obstacles that are not on the known map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct DetourConfig {
-    /// How far ahead along the route something unknown matters, and how far from the robot its
-    /// cells count \[m\].
+    /// Range \[m\]: distance along the route within which an unknown obstacle matters, and
+    /// distance from the robot within which its cells count.
     pub look_ahead_m: f64,
-    /// What the route, a guide point and the straight way from it keep from obstacles to be free
+    /// Clearance that the route, a guide point and the straight line from it need to be free
     /// \[m\].
     pub clearance_m: f64,
     /// A guide point is reached within this distance: the radius of the invalid zone \[m\].
@@ -60,17 +60,17 @@ pub struct DetourConfig {
 }
 
 impl DetourConfig {
-    /// For maps with cells of 1 m. All are readings: the range of the sensor, the safe distance of
-    /// the smoother, and half a cell.
+    /// For maps with cells of 1 m. All are readings: the range of the sensor, the safe distance
+    /// of the smoother, and half a cell.
     pub const PAPER: Self = Self { look_ahead_m: 5.0, clearance_m: 0.8, reached_m: 0.5 };
 
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `look_ahead_m`: [`Robot::decision_reach_m`];
-    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_m`]: there the robot
-    ///   can turn;
-    /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint covers
-    ///   the point.
+    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_m`]: the robot can
+    ///   turn with that clearance;
+    /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint
+    ///   covers the point.
     pub fn for_robot(robot: &Robot) -> Self {
         let cycle_m = robot.limits.v_max_mps * robot.cycle_s;
         Self {
@@ -87,14 +87,14 @@ impl DetourConfig {
     }
 }
 
-/// No place behind an obstacle is free.
+/// No position behind an obstacle is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AllCovered {
-    /// How many were tried.
+    /// Number of positions that were tried.
     pub(super) tried: u32,
 }
 
-/// A place behind an obstacle.
+/// A position behind an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Behind {
     /// `x_ga`.
@@ -103,7 +103,7 @@ struct Behind {
     rejoin: RouteNode,
 }
 
-/// Chooses the guide point of a cycle.
+/// Selects the guide point of a cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GuidePoints<'a> {
     pub(super) config: &'a DetourConfig,
@@ -114,7 +114,7 @@ impl GuidePoints<'_> {
     /// Directions whose angles with `e_gi` differ by less are equal, as cosines.
     const EQUAL_DIRECTIONS: f64 = 1e-9;
 
-    /// Where to drive around something unknown; `None` where nothing unknown stands on the route.
+    /// Target of a detour around an unknown obstacle; `None` if none is on the route.
     pub(super) fn target(
         &self,
         memory: &mut DriveMemory,
@@ -176,7 +176,7 @@ impl GuidePoints<'_> {
         route_nodes(self.scene.path, self.cell_m(), from_m)
     }
 
-    /// The first thing unknown on a stretch of the route.
+    /// The first unknown obstacle on a stretch of the route.
     fn first_unknown(&self, from_m: f64, to_m: f64, cluster: &mut Cluster) -> Option<Unknown> {
         let search = Search {
             sensed: self.sensed(),
@@ -188,8 +188,8 @@ impl GuidePoints<'_> {
         cluster.first_on(stretch, &search)
     }
 
-    /// `x_j`: the next node of the route if it is before the obstacle, otherwise where the robot
-    /// is.
+    /// `x_j`: the next node of the route if it is before the obstacle, otherwise the position of
+    /// the robot.
     fn detected_from(&self, covered_m: f64, unknown: &Unknown) -> Point {
         let next = self.nodes(covered_m).next().filter(|node| node.along_m < unknown.along_m);
         next.map_or(self.scene.pose.point(), |node| node.point)
@@ -225,7 +225,7 @@ impl GuidePoints<'_> {
         Err(AllCovered { tried })
     }
 
-    /// True if the straight line from `x_j` to `x_ga` meets no obstacle but the one to drive
+    /// True if the straight line from `x_j` to `x_ga` crosses no obstacle except the one to drive
     /// around.
     fn crosses_nothing_else(&self, from: Point, to: Point, cluster: &Cluster) -> bool {
         let (frame, obstacles) = (self.scene.obstacles.frame(), self.scene.obstacles.clearance());
@@ -240,7 +240,7 @@ impl GuidePoints<'_> {
             .all(|passed| !obstacles.obstacles().get(passed.cell) || cluster.contains(passed.cell))
     }
 
-    /// `x_it`: where the route is joined from `x_ga`.
+    /// `x_it`: the node at which the route is joined from `x_ga`.
     fn back(&self, behind: &Behind) -> RouteNode {
         let Behind { point, rejoin } = *behind;
         let half_cell_m = 0.5 * self.cell_m();

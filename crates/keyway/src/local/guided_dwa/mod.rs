@@ -1,10 +1,10 @@
-//! Guided DWA: follows the route while nothing unknown stands on it; around what does, a dynamic
-//! window approach drives to a point behind it and from there back to the route.
+//! Guided DWA: follows the route while no unknown obstacle is on it. Around one, a dynamic window
+//! approach drives to a point behind it and from there back to the route.
 //!
 //! # Source
-//! \[ZhuYin2024\]: the evaluation is equation (18), the points of the way around are (19) to (21)
-//! (see `detour.rs`), the order of both is that of its whole algorithm, steps 7 to 10. Equations
-//! (11) to (17) are (4) to (8) of \[You2021\], those of [`WindowConfig`].
+//! \[ZhuYin2024\]: the evaluation is equation (18), the points of the detour are (19) to (21)
+//! (see `detour.rs`), and the order of both is that of its whole algorithm, steps 7 to 10.
+//! Equations (11) to (17) are (4) to (8) of \[You2021\], those of [`WindowConfig`].
 //!
 //! | paper | here | unit | paper's value |
 //! |---|---|---|---|
@@ -15,33 +15,33 @@
 //! | radius of the invalid zone | `detour.reached_m` | m | not given |
 //!
 //! # Where this differs from the paper
-//! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are tables 2 and 3 of
-//!   \[You2021\] where they have them. Its weights are those of the same terms there, 0.08 for the
-//!   heading and 0.2 for the distance to obstacles; the distance to the target, which is not there,
-//!   has the third of them, 0.1.
+//! - The paper gives no numbers; those of [`GuidedDwaConfig::PAPER`] are from tables 2 and 3 of
+//!   \[You2021\] if they are given there. Its weights are those of the same terms there, 0.08 for
+//!   the heading and 0.2 for the distance to obstacles; the distance to the target, which has no
+//!   term there, gets the third weight, 0.1.
 //! - Equation (16) takes the nearest distance on the trajectory, od of (18) that of its end.
 //! - In (18) beta target becomes beta (the largest target of all candidates - target).
-//! - Something unknown is on the route when a cell that was sensed comes nearer than
-//!   `detour.clearance_m` to one of the nodes of the route within `detour.look_ahead_m`. Nodes are
-//!   its points at every whole cell of arc length, and its end. The obstacle is all sensed cells
-//!   connected with that cell, as far as they are within the same distance of the robot.
-//! - The follower looks at no obstacle, so a command of it is driven only when the [stop
-//!   rule](StopRule) for what stands admits it, with the margin of the window, or 0.1 mm; otherwise
-//!   the dynamic window approach drives to the follower's point of the route in that cycle. On
-//!   routes as smooth and as far from obstacles as the paper's, that does not happen.
-//! - The paper goes on with the dynamic window approach while obstacles move. Here everything is
-//!   judged anew in each cycle, whether it moves or not.
+//! - An unknown obstacle is on the route if a sensed cell comes nearer than `detour.clearance_m`
+//!   to one of the nodes of the route within `detour.look_ahead_m`. Nodes are its points at every
+//!   whole cell of arc length, and its end. The obstacle consists of all sensed cells connected
+//!   with that cell, within the same distance of the robot.
+//! - The follower ignores obstacles, so its command is only issued if the [stop rule](StopRule)
+//!   for stationary obstacles admits it, with the margin of the window, or 0.1 mm; otherwise the
+//!   dynamic window approach drives to the follower's carrot in that cycle. On routes as smooth
+//!   and as far from obstacles as the paper's, that does not happen.
+//! - The paper continues with the dynamic window approach while obstacles move. Here everything
+//!   is evaluated again in each cycle, moving or not.
 //!
-//! # What it does not do
-//! A mirrored point lies straight behind the obstacle, so in front of it every turn makes heading
-//! and target distance worse. With the weights of [`GuidedDwaConfig::PAPER`], and all others tried
-//! that do not weigh od several times as much as the rest, the robot stands still there: it is the
-//! caller, planning anew with what was seen, who gets it on.
+//! # Limitations
+//! A mirrored point lies straight behind the obstacle, so in front of it every turn increases the
+//! costs of heading and target distance. With the weights of [`GuidedDwaConfig::PAPER`], and all
+//! others tried that do not weigh od several times as much as the rest, the robot stops there.
+//! The caller has to replan with the sensed obstacles.
 //!
 //! # Errors / cost
-//! When no place behind the obstacle is free, [`NoCommand`]: the caller is to plan a new route.
-//! Otherwise see [`WindowConfig`]. A cycle on the route costs a few distances; one on a way around
-//! is linear in the nodes of the remaining route and the cells of the obstacle.
+//! [`NoCommand`] if no position behind the obstacle is free: the caller is to plan a new route.
+//! Otherwise see [`WindowConfig`]. A cycle on the route costs a few distances; one on a detour is
+//! linear in the nodes of the remaining route and the cells of the obstacle.
 
 mod detour;
 mod obstacle;
@@ -70,13 +70,13 @@ use std::sync::Arc;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct GuidedDwaConfig {
-    /// Which velocities are tried around an obstacle, and which of them are refused.
+    /// Candidate velocities around an obstacle, and the rules that refuse them.
     pub window: WindowConfig,
     /// Weights of the evaluation (18).
     pub weights: GuidedWeights,
-    /// The ways around what is not on the known map.
+    /// Detours around obstacles that are not on the known map.
     pub detour: DetourConfig,
-    /// What drives while nothing unknown stands on the route.
+    /// The path follower that drives while no unknown obstacle is on the route.
     pub follower: FollowerConfig,
 }
 
@@ -102,8 +102,8 @@ impl GuidedWeights {
 }
 
 impl GuidedDwaConfig {
-    /// As published. The paper gives no numbers: all are readings, those of \[You2021\], tables 2
-    /// and 3, where it has them.
+    /// As published. The paper gives no numbers: all are readings, from tables 2 and 3 of
+    /// \[You2021\] if they are given there.
     pub const PAPER: Self = Self {
         window: WindowConfig { distance_at: DistanceAt::End, ..WindowConfig::PAPER },
         weights: GuidedWeights { heading: 0.08, target_distance: 0.1, obstacle_distance: 0.2 },
@@ -155,29 +155,29 @@ pub struct GuidedDwa {
     rule: StopRule,
 }
 
-/// No place to go to behind an obstacle is free.
+/// No position behind an obstacle is free.
 const COVERED: &str = "covered";
 
 const RULES: [(&str, &str); 1] = [(COVERED, "places behind an obstacle are not free")];
 
 impl GuidedDwa {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "guided-dwa";
 
-    /// The name of target(v, omega) in an evaluation.
+    /// Name of target(v, omega) in an evaluation.
     const TARGET_DISTANCE: &'static str = "target-distance";
 
-    /// The margin of the stop rule where the window has none \[m\].
+    /// Margin of the stop rule if the window has none \[m\].
     const LEAST_MARGIN_M: f64 = 1e-4;
 
-    /// The name of od(v, omega) in an evaluation.
+    /// Name of od(v, omega) in an evaluation.
     const OBSTACLE_DISTANCE: &'static str = "obstacle-distance";
 
-    /// A planner for a robot.
+    /// Creates a planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
-    /// error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together; the error names the field.
     pub fn new(config: GuidedDwaConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let GuidedDwaConfig { window, weights, detour, follower } = config;
         let margin_m = window.safety_margin_m.max(Self::LEAST_MARGIN_M);
@@ -197,12 +197,12 @@ impl GuidedDwa {
         Ok(Self { window, weighing, detour, follower, rule })
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         self.window.robot()
     }
 
-    /// Eq. (18) towards the guide point of the scene.
+    /// Drives by eq. (18) towards the guide point of the scene.
     fn drive_to_guide(
         &self,
         scene: &Scene<'_>,
@@ -221,7 +221,7 @@ impl GuidedDwa {
         ]
     }
 
-    /// Step 7: along the route.
+    /// Step 7: drives along the route.
     fn follow(
         &self,
         scene: &Scene<'_>,
@@ -236,18 +236,18 @@ impl GuidedDwa {
         self.drive_to_guide(&Scene { guide, ..*scene }, scratch)
     }
 
-    /// The follower's point of the route, once it has decided.
+    /// The follower's carrot on the route, once it has decided.
     fn carrot(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Point {
         self.follower.carrot(scene.path, memory.covered_m).unwrap_or(scene.guide)
     }
 
-    /// The reasons for what [`Self::drive_to_guide`] does.
+    /// Explains the result of [`Self::drive_to_guide`].
     fn explain_towards(&self, scene: &Scene<'_>) -> Explanation {
         let terms = |_, rollout: &Rollout| Self::terms(scene, rollout);
         self.window.explain(scene, &self.weighing, terms)
     }
 
-    /// The reasons for what [`Self::follow`] does.
+    /// Explains the result of [`Self::follow`].
     fn explain_following(&self, scene: &Scene<'_>, memory: &mut DriveMemory) -> Explanation {
         let mut scratch = Scratch::default();
         let command = self.follower.decide(scene, memory, &mut scratch).map(|one| one.command);
@@ -261,7 +261,7 @@ impl GuidedDwa {
         }
     }
 
-    /// Nothing behind the obstacle is free: brake, and let the caller plan a new route.
+    /// No position behind the obstacle is free: brakes, and lets the caller plan a new route.
     fn covered(&self, scene: &Scene<'_>, AllCovered { tried }: AllCovered) -> NoCommand {
         let mut rejected = Rejections::none_by(&RULES);
         (0..tried).for_each(|_| rejected.add(COVERED));

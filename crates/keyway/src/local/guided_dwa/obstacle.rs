@@ -1,19 +1,19 @@
-//! What stands on the route and is not on the known map: connected cells that were sensed.
+//! Unknown obstacles on the route: connected sensed cells that are not on the known map.
 
 use super::route_nodes::RouteNode;
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, Clearance, GridFrame};
 
-/// Something unknown on the route.
+/// An unknown obstacle on the route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Unknown {
-    /// Arc length of the first node of the route that it comes too near to \[m\].
+    /// Arc length of the first node of the route that is too near to it \[m\].
     pub(super) along_m: f64,
-    /// `x_ob`: the mean of the centres of its cells, as far as they were seen \[m\].
+    /// `x_ob`: the mean of the centres of its sensed cells \[m\].
     pub(super) centre: Point,
 }
 
-/// Cells that are connected with one another. Its memory is kept from cycle to cycle.
+/// Connected cells. Their memory is kept from cycle to cycle.
 #[derive(Debug)]
 pub(super) struct Cluster {
     members: BitGrid,
@@ -27,22 +27,22 @@ impl Default for Cluster {
     }
 }
 
-/// Where to look.
+/// Parameters of the search for an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Search<'a> {
     /// The cells that were sensed.
     pub(super) sensed: Clearance<'a>,
-    /// What is nearer to a node than this is on the route \[m\].
+    /// An obstacle nearer to a node than this is on the route \[m\].
     pub(super) clearance_m: f64,
-    /// Only cells within a distance \[m\] of the robot are looked at.
+    /// Position of the robot; only cells near it are considered \[m\].
     pub(super) robot: Point,
-    /// That distance \[m\].
+    /// Distance from the robot within which cells are considered \[m\].
     pub(super) range_m: f64,
 }
 
 impl Cluster {
-    /// What stands on the first of these nodes that is not free. Of several sensed cells, the one
-    /// nearest to the node counts.
+    /// The obstacle on the first of these nodes that is not free. Of several sensed cells, the
+    /// one nearest to the node counts.
     pub(super) fn first_on(
         &mut self,
         nodes: impl Iterator<Item = RouteNode>,
@@ -53,13 +53,13 @@ impl Cluster {
         Some(Unknown { along_m, centre: self.fill(seed, search) })
     }
 
-    /// True if a cell belongs to it.
+    /// True if a cell belongs to the obstacle.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         self.members.get(cell)
     }
 
-    /// Takes all sensed cells that are connected with one of them, by an edge or a corner; the mean
-    /// of their centres. The first one counts wherever it is.
+    /// Collects all sensed cells that are connected with one of them, by an edge or a corner;
+    /// returns the mean of their centres. The first one counts at any distance.
     fn fill(&mut self, seed: Cell, search: &Search<'_>) -> Point {
         let (frame, sensed) = (search.sensed.frame(), search.sensed.obstacles());
         self.clear(frame);
@@ -95,8 +95,8 @@ const NEIGHBOURS: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 impl Search<'_> {
-    /// The sensed cell whose square is nearest to a point, if one is nearer than the clearance; of
-    /// equals the lowest, then the leftmost.
+    /// The sensed cell whose square is nearest to a point, if one is nearer than the clearance.
+    /// Ties go to the lowest, then the leftmost.
     fn nearest(&self, point: Point) -> Option<Cell> {
         let reach_m = self.clearance_m;
         let nearest_m = self.sensed.of_point(point, reach_m);
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(cluster.first_on(route(0.25), &search), Some(lower));
         let narrow = Search { clearance_m: 0.5, ..search };
         assert_eq!(cluster.first_on(route(0.5), &narrow), None, "exactly the clearance is enough");
-        // Farther on it is the other one, alone.
+        // Farther on, only the other one is found.
         let alone = Unknown { along_m: 4.5, centre: Point::new(5.5, 1.5) };
         assert_eq!(cluster.first_on(route(0.5).skip(4), &search), Some(alone));
         // The second cell of the pair is 3.61 m away.

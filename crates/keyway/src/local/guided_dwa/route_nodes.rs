@@ -5,14 +5,14 @@ use crate::geometry::{Point, Polyline};
 /// A node of a route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RouteNode {
-    /// Where it is \[m\].
+    /// Position of the node \[m\].
     pub(super) point: Point,
     /// Arc length from the beginning of the route \[m\].
     pub(super) along_m: f64,
 }
 
-/// The points of a route at every whole `spacing_m` of arc length that lie after `from_m`, and its
-/// end. A route ends with one node, also where rounding puts the last of the others there.
+/// The points of a route at every whole `spacing_m` of arc length that lie after `from_m`, and
+/// its end. A route ends with one node, even if rounding puts the last of the others there.
 pub(super) fn route_nodes(
     path: &Polyline,
     spacing_m: f64,

@@ -53,7 +53,7 @@ fn line(points: &[[f64; 2]]) -> Polyline {
     Polyline::new(points.iter().map(|&p| p.into()).collect())
 }
 
-/// A hall of 20 x 8 m with something in the given cells.
+/// A hall of 20 x 8 m with obstacles in the given cells.
 fn hall(sensed: &[(usize, usize)], known: &[(usize, usize)]) -> World {
     let cell = |x: usize, y: usize| {
         if sensed.contains(&(x, y)) {
@@ -98,7 +98,7 @@ fn the_whole_way_around_on_a_straight_route() {
         (target, memory.detour()),
         (Some([13.5, 2.5]), behind([3.5, 2.5], [13.5, 2.5], 13.0))
     );
-    // On the way there x_j stays.
+    // While it drives there x_j stays.
     assert_eq!(world.target(Pose::new(8.5, 4.5, 0.0), &path, &mut memory), Some([13.5, 2.5]));
     assert_eq!(memory.covered_m, 2.0);
     // In the invalid zone e_gs is 0 and all nodes ahead are in the direction of e_gt: the first one
@@ -138,7 +138,7 @@ fn equations_20_and_21_beside_a_bend() {
     assert_eq!(back(&world, theta), [9.5, 4.5]);
     // A wall at 0.71 m of (9.5, 3.5) and (9.5, 5.5).
     assert_eq!(back(&hall(&[(7, 2)], &[(8, 4)]), theta), [9.5, 6.5]);
-    // With a wall across the way there is no candidate: x_st.
+    // With a wall between the detour and the route there is no candidate: x_st.
     let across: Vec<(usize, usize)> = (9..13).map(|x| (x, 4)).collect();
     assert_eq!(back(&hall(&[(7, 2)], &across), theta), [9.5, 2.5]);
 }
@@ -185,10 +185,12 @@ fn every_cycle_sees_where_the_obstacle_is_now() {
     // It has moved half a metre, and a metre farther on: x_ob moves, x_j stays.
     assert_eq!(target(&mut memory, pose, &[(7, 2), (8, 2)]), Some([11.5, 2.5]));
     assert_eq!(target(&mut memory, pose, &[(8, 2)]), Some([12.5, 2.5]));
-    // Gone: the robot, which is beside the route by now, goes on along it from where it is.
+    // Gone: the robot, which is beside the route by now, continues along it from its present
+    // position.
     assert_eq!(target(&mut memory, Pose::new(6.0, 4.0, 0.0), &[]), None);
     assert_eq!(memory, covered(5.5));
-    // The same on the way back, when something comes to stand where the route is to be joined.
+    // The same on the way back, if an obstacle appears at the point at which the route is to be
+    // joined.
     let point = Point::new(14.5, 2.5);
     let own = OwnMemory::Detour(Detour::Back { point, along_m: 14.0 });
     memory = DriveMemory { covered_m: 13.0, own };
@@ -248,7 +250,8 @@ fn the_follower_does_not_drive_into_anything() {
     assert!(evaluated(7.55) > 0, "a dynamic window decides");
 }
 
-/// From a start to the end of the route, among obstacles that are all sensed from the beginning.
+/// Drives from a start to the end of the route, among obstacles that are all sensed from the
+/// beginning.
 fn drive(world: &World, path: &Polyline, robot: &Robot, config: GuidedDwaConfig) -> (Point, f64) {
     let planner = GuidedDwa::new(config, robot.clone()).unwrap();
     let goal = *path.points().last().unwrap();
@@ -286,7 +289,7 @@ fn drives_around_what_stands_on_the_route() {
 
 #[test]
 fn stands_in_front_of_what_it_cannot_drive_around() {
-    // The point behind it is straight ahead, so every turn makes things worse: the caller has to
+    // The point behind it is straight ahead, so every turn increases the cost: the caller has to
     // plan a new route.
     let (world, path) = (hall(&[(8, 2)], &[]), straight());
     let (end, nearest_m) = drive(&world, &path, &Robot::paper(), GuidedDwaConfig::PAPER);
@@ -331,7 +334,7 @@ fn explains_what_it_decides_on_a_detour_and_nothing_on_its_route() {
     }
 }
 
-/// A known wall across the route, which the follower would drive into: the follower is asked as
+/// A known wall across the route, which the follower would drive into: the follower decides as
 /// long as the robot can still stop after its command, and then the dynamic window.
 #[test]
 fn a_command_after_which_it_cannot_stop_is_not_followed() {
@@ -347,7 +350,7 @@ fn a_command_after_which_it_cannot_stop_is_not_followed() {
         let explanation = planner.explain(&scene, &memory);
         let decided = planner.decide(&scene, &mut memory, &mut Scratch::default());
         let evaluation = decided.map_or_else(|why| why.evaluation, |decision| decision.evaluation);
-        // Whoever decides drives to the carrot, and the explanation is that of who decides.
+        // The deciding planner drives to the carrot, and the explanation is that planner's.
         assert_eq!(explanation.candidates.len() as u32, evaluation.candidates);
         let off_m = explanation.target.unwrap().distance(Point::new(x + look_ahead_m, 2.5));
         assert!(off_m < 1e-9, "{explanation:?}");

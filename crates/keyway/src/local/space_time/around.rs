@@ -1,5 +1,5 @@
-//! The surroundings of the robot in one cycle: room, the way ahead, the cost of headings on it, and
-//! movers.
+//! The surroundings of the robot in one cycle: clearance, the route ahead, the cost of headings
+//! along it, and moving obstacles.
 
 use super::cost_to_go::{CostToGo, WayAhead, Weighing};
 use super::fitting::Ground;
@@ -29,15 +29,16 @@ pub(super) struct Around {
 }
 
 impl SpaceTime {
-    /// Points in an inscribed radius: of the fine lattice, for room and for headings, and of the
-    /// coarse one, for the cost to go.
+    /// Points in an inscribed radius: of the fine lattice, for clearance and for headings, and of
+    /// the coarse one, for the cost to go.
     const FINE: f64 = 3.0;
     const COARSE: f64 = 2.0;
 
-    /// Movers are uncertain by three standard deviations.
+    /// The uncertainty of a moving obstacle is three standard deviations.
     const DEVIATIONS: f64 = 3.0;
 
-    /// Takes in what is around the robot; what is left of the route beyond \[m\].
+    /// Fills in the surroundings of the robot; returns the remaining length of the route beyond
+    /// \[m\].
     pub(super) fn look(&self, around: &mut Around, scene: &Scene<'_>, covered_m: f64) -> f64 {
         let frame = scene.obstacles.frame();
         let robot = local(frame, scene.pose.point());
@@ -69,7 +70,7 @@ impl SpaceTime {
         beyond_m
     }
 
-    /// Finds what headings cost on the way ahead.
+    /// Computes the cost of headings along the route ahead.
     fn weigh_headings(
         &self,
         around: &mut Around,
@@ -105,11 +106,11 @@ impl SpaceTime {
         }
     }
 
-    /// Takes in the movers that a course may meet.
+    /// Fills in the moving obstacles that a trajectory may meet.
     fn foresee(&self, around: &mut Around, scene: &Scene<'_>) {
         let Around { movers, room, .. } = around;
         let horizon_s = self.config.horizon_s;
-        // A polygon is between its circles, in most directions.
+        // A polygon lies between its inscribed and circumscribed circles, in most directions.
         let body_m = 0.5 * (self.outline.inscribed_m + self.outline.circumscribed_m);
         movers.clear();
         let near = scene.movers.iter().filter(|mover| {
@@ -141,8 +142,8 @@ impl SpaceTime {
     }
 }
 
-/// The end of the way on the lattice, and the heading there; with what is left beyond it, and the
-/// room that the robot needs to turn \[m\].
+/// The end of the route on the lattice, and the heading there, given the remaining length beyond
+/// it and the clearance that the robot needs to turn \[m\].
 fn way_end(scene: &Scene<'_>, way: WayAhead<'_>, lengths_m: (f64, f64)) -> WayEnd {
     let WayAhead { robot, route, .. } = way;
     let at = route.last().copied().unwrap_or(robot);
@@ -158,8 +159,8 @@ fn way_end(scene: &Scene<'_>, way: WayAhead<'_>, lengths_m: (f64, f64)) -> WayEn
     WayEnd { at, facing }
 }
 
-/// True if the robot has to come to its goal backwards, as it can turn nowhere on what is left of
-/// its route beyond the lattice \[m\].
+/// True if the robot has to reach its goal backwards, as it can turn nowhere on the rest of its
+/// route beyond the lattice \[m\].
 fn backs_in(scene: &Scene<'_>, (beyond_m, turning_m): (f64, f64)) -> bool {
     let Some(heading_rad) = scene.goal_heading_rad else { return false };
     let (path, clearance) = (scene.path, scene.obstacles.clearance());

@@ -1,20 +1,20 @@
-//! An open list for values that are passed on with at least a certain growth.
+//! An open list for values that are propagated with at least a certain growth.
 
-/// Points that wait, in buckets of values. A bucket is as wide as the least growth: so what is in
+/// Waiting points in buckets of values. A bucket is as wide as the least growth, so the points in
 /// the lowest one cannot become lower, and may be taken in any order.
 #[derive(Debug, Default)]
 pub(super) struct Buckets {
     waiting: Vec<Vec<u32>>,
-    /// No bucket before this one holds anything.
+    /// Index of the first bucket that may hold anything.
     first: usize,
     per_value: f32,
 }
 
 impl Buckets {
-    /// Values beyond so many buckets wait in the last one.
+    /// Number of regular buckets; larger values wait in a last one.
     const MOST: usize = 1 << 14;
 
-    /// Empties all of them; the memory is kept.
+    /// Empties all buckets; the memory is kept.
     pub(super) fn clear(&mut self, least_growth: f32) {
         self.waiting.iter_mut().for_each(Vec::clear);
         self.first = 0;
@@ -29,7 +29,7 @@ impl Buckets {
         self.waiting[bucket].push(point);
     }
 
-    /// One of the lowest.
+    /// Removes one of the points in the lowest bucket.
     pub(super) fn pop(&mut self) -> Option<u32> {
         while let Some(bucket) = self.waiting.get_mut(self.first) {
             if let Some(point) = bucket.pop() {

@@ -1,14 +1,14 @@
-//! The course of the last cycle, gone on with from now; and when another one is taken.
+//! Commitment: continues the trajectory of the last cycle, and decides if a new one replaces it.
 
 use super::course::{Acceleration, Cost, Judge, State};
 use crate::geometry::{Point, Velocity};
 use crate::local::Course;
 use crate::robot::Robot;
 
-/// A course by another side of an obstacle is taken when it is so much better \[s\].
+/// A trajectory on another side of an obstacle has to be better by this \[s\].
 const DECIDED_S: f64 = 0.3;
 
-/// How much better than what is left of the last course a new one has to be \[s\].
+/// Margin by which a new trajectory has to be better than the rest of the last one \[s\].
 pub(super) fn reluctance_s(
     rest: &[Velocity],
     new: &[Velocity],
@@ -18,8 +18,8 @@ pub(super) fn reluctance_s(
     if are_apart(rest, new, start, judge) { DECIDED_S } else { 0.0 }
 }
 
-/// True if two courses pass something on different sides: where the robot would be at some instant
-/// on the one, it could not come straight from where it would be on the other.
+/// True if two trajectories pass an obstacle on different sides: at some instant, the straight
+/// line between their positions is blocked.
 fn are_apart(one: &[Velocity], other: &[Velocity], start: &State, judge: &Judge<'_>) -> bool {
     let (mut a, mut b) = (*start, *start);
     for (&to_a, &to_b) in one.iter().zip(other) {
@@ -45,8 +45,9 @@ fn is_open_between(a: Point, b: Point, judge: &Judge<'_>) -> bool {
     (0..=steps as u32).all(fits)
 }
 
-/// What is left of a course that was begun a cycle ago, as velocities at the ends of so many
-/// stretches from now on. The last one goes on, and none changes faster than the robot can.
+/// Computes the rest of a `Course` that was begun a cycle ago, as velocities at the ends of a
+/// number of stretches from now on. The last velocity continues, and none changes faster than the
+/// robot can.
 pub(super) fn go_on(
     rest: &mut Vec<Velocity>,
     course: Option<&Course>,
@@ -65,7 +66,7 @@ pub(super) fn go_on(
     }
 }
 
-/// The acceleration with which a course that was begun a cycle ago goes on from a velocity.
+/// The acceleration with which a `Course` that was begun a cycle ago continues from a velocity.
 pub(super) fn going_on(course: Option<&Course>, from: Velocity, robot: &Robot) -> Acceleration {
     let Some(course) = course else { return Acceleration::default() };
     let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
@@ -100,7 +101,7 @@ mod tests {
         let is_near = |a: Acceleration, b: Acceleration| {
             (a.linear - b.linear).abs() < 1e-9 && (a.angular - b.angular).abs() < 1e-9
         };
-        // In five cycles it changes by 0.1 m/s, in the four that are left by 0.08 m/s.
+        // In five cycles it changes by 0.1 m/s, in the remaining four by 0.08 m/s.
         let from = Velocity::new(0.12, 0.0);
         let long = course(5.0 * cycle_s, &[(0.2, -0.04), (0.0, 0.0)]);
         let found = going_on(Some(&long), from, &robot);
@@ -109,7 +110,7 @@ mod tests {
         let short = course(cycle_s, &[(0.12, 0.0), (0.1, 0.0)]);
         let found = going_on(Some(&short), from, &robot);
         assert!(is_near(found, parts(-0.02 / cycle_s, 0.0)));
-        // It is nowhere near the course, and can do no more than it can.
+        // It is far from the `Course`, and limited to what the robot can do.
         let found = going_on(Some(&long), Velocity::new(-9.0, 0.0), &robot);
         assert_eq!(found.linear, 1.0);
         assert_eq!(going_on(None, from, &robot), Acceleration::default());

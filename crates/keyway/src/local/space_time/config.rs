@@ -1,4 +1,4 @@
-//! The parameters.
+//! Parameters of the space-time planner.
 
 use crate::ConfigError;
 use crate::local::Course;
@@ -12,31 +12,32 @@ const MOST_STRETCHES: u32 = Course::MOST_STRETCHES as u32;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SpaceTimeConfig {
-    /// H: how far a course looks ahead \[s\]; at least a cycle for each stretch.
+    /// H: planning horizon of a trajectory \[s\]; at least a cycle for each stretch.
     pub horizon_s: f64,
-    /// K: stretches of a course, from 1 to 32.
+    /// K: number of stretches of a trajectory, from 1 to 32.
     pub stretches: u32,
-    /// W: the most promising courses that are followed from stretch to stretch where something
-    /// moves, from 1 to 1000; half as many where nothing does.
+    /// W: number of most promising trajectories that are extended from stretch to stretch if
+    /// something moves, from 1 to 1000; half as many if nothing does.
     pub width: u32,
-    /// m: room that the robot likes to have around its footprint \[m\]; positive.
+    /// m: preferred clearance around the footprint \[m\]; positive.
     pub comfortable_m: f64,
-    /// q: with a fifth of the room that it likes, a metre counts as 0.64 q more, beside something
-    /// that it nearly touches as 9 q more; what it has to bear where it is now is left out.
+    /// q: penalty of low clearance. At a fifth of the preferred clearance, a metre counts as 0.64
+    /// q more, close to contact as 9 q more; a tight clearance at the present pose is not
+    /// penalized.
     pub discomfort: f64,
-    /// u: a second in which the velocity changes as fast as it can counts as so many more.
+    /// u: additional cost of a second in which the velocity changes as fast as it can.
     pub steering: f64,
-    /// j: to begin with another acceleration than the last course goes on with, other by the whole
-    /// limit, counts as so many stretches; 0 in stack files that do not have it.
+    /// j: cost of a change of the acceleration from that of the last trajectory, in stretches for
+    /// a change by the whole limit; defaults to 0 in stack files without it.
     #[serde(default)]
     pub jerk: f64,
-    /// n: room that the robot likes to have to what moves \[m\]; positive.
+    /// n: preferred clearance from moving obstacles \[m\]; positive.
     pub mover_room_m: f64,
-    /// p: a second in which the robot touches a mover counts as so many more.
+    /// p: additional cost of a second in contact with a moving obstacle.
     pub contact: f64,
-    /// a: a standard deviation of what movers accelerate \[m/s²\].
+    /// a: standard deviation of the acceleration of moving obstacles \[m/s²\].
     pub mover_acceleration_mps2: f64,
-    /// True if courses may lead backwards, if the robot can, and where it has looked.
+    /// True if trajectories may lead backwards, if the robot can, over observed ground.
     pub backwards: bool,
 }
 
@@ -44,13 +45,13 @@ impl SpaceTimeConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `horizon_s`: a cycle and three times the time to stop;
-    /// - `stretches`: 6, but as many as it takes for one to be no longer than a second, up to 32:
-    ///   what changes its velocity over a longer one makes way too late;
-    /// - `comfortable_m`: what it drives in four cycles at full speed, but at least its inscribed
-    ///   radius;
-    /// - `mover_room_m`: what it drives in two, but at least its inscribed radius, as estimates of
-    ///   movers are rough;
-    /// - `mover_acceleration_mps2`: what the tracker's filter reckons with
+    /// - `stretches`: 6, or more if needed for stretches of at most a second, up to 32: with
+    ///   longer ones the robot gives way too late;
+    /// - `comfortable_m`: the distance driven in four cycles at full speed, but at least the
+    ///   inscribed radius;
+    /// - `mover_room_m`: the distance driven in two cycles, but at least the inscribed radius, as
+    ///   estimates of moving obstacles are rough;
+    /// - `mover_acceleration_mps2`: the value of the tracker's filter
     ///   ([`TrackerConfig::acceleration_mps2`](crate::sense::TrackerConfig), two standard
     ///   deviations).
     pub fn for_robot(robot: &Robot) -> Self {
@@ -84,7 +85,7 @@ impl SpaceTimeConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         let positive = [
             ("horizon_s", self.horizon_s),
@@ -113,7 +114,7 @@ impl SpaceTimeConfig {
         Ok(())
     }
 
-    /// Checks that they fit a robot.
+    /// Checks that the parameters fit a robot.
     pub(super) fn check(&self, robot: &Robot) -> Result<(), ConfigError> {
         self.validate()?;
         let (least_s, most_s) =
@@ -125,7 +126,7 @@ impl SpaceTimeConfig {
         Ok(())
     }
 
-    /// A longer horizon is a mistake: no robot needs more than a minute to stop \[s\].
+    /// Upper limit of the horizon: no robot needs more than a minute to stop \[s\].
     const LONGEST_HORIZON_S: f64 = 1000.0;
 }
 
@@ -150,7 +151,7 @@ mod tests {
             let robot = Robot::by_name(name).unwrap();
             assert_eq!(SpaceTimeConfig::for_robot(&robot).check(&robot), Ok(()), "{name}");
         }
-        // A robot that stops at once is asked once in a cycle.
+        // A robot that stops at once gets a command once per cycle.
         let mut quick = Robot::small();
         (quick.limits.deceleration_mps2, quick.limits.angular_deceleration_radps2) = (1e3, 1e3);
         assert_eq!(SpaceTimeConfig::for_robot(&quick).check(&quick), Ok(()));

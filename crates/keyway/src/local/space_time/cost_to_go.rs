@@ -1,75 +1,76 @@
-//! How far it is to the end of the route from everywhere around the robot, and in which direction.
+//! Cost to go: the remaining path length from every position around the robot to the end of the
+//! route, and its direction of steepest descent.
 //!
-//! The way is weighed by the room along it: a metre counts as more where the robot has less room
-//! than it would like. So the cheapest way keeps clear of corners where that costs little, and is
-//! the shortest one where nothing else fits.
+//! The path length is weighted by clearance: a metre counts as more if the robot has less
+//! clearance than it would like. So the cheapest path keeps clear of corners if that costs
+//! little, and is the shortest one if nothing else fits.
 //!
 //! # Source
-//! \[Tsitsiklis1995\]: values grow outwards from the end, as in Dijkstra's search, but a way may
-//! cross the line between two neighbours anywhere, where the value is interpolated. So ways are not
+//! \[Tsitsiklis1995\]: values grow outwards from the end, as in Dijkstra's search, but a path may
+//! cross the line between two neighbours anywhere, with an interpolated value. So paths are not
 //! bound to the directions of a grid. The eight triangles around a point, and the closed form of
 //! [`across`], are those of \[Ferguson2006\].
 //!
 //! # Where this differs from the paper
-//! What is blocked costs 200 m a metre instead of being infinite, so that there always is a
-//! direction, and interpolation never meets infinity. A point takes its own weight for a whole step
-//! to it. What values grow too much by between the directions of the grid is taken away again, so
-//! that in sight of the end they are the distance to it.
+//! A blocked metre costs 200 m instead of being infinite, so that there always is a direction,
+//! and interpolation never meets infinity. A point applies its own weight to a whole step to it.
+//! The excess of values between the directions of the grid is subtracted, so that values are the
+//! distance to the end within line of sight of it.
 //!
 //! # Cost
-//! Linear in the points from which the way is not much longer than from the robot.
+//! Linear in the number of points from which the path is not much longer than from the robot.
 
 use super::buckets::Buckets;
 use super::lattice::Lattice;
 use crate::geometry::{Disc, Point};
 use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-/// What is left of the way from the points of a lattice.
+/// The cost to go from the points of a lattice.
 #[derive(Debug, Default)]
 pub(super) struct CostToGo {
     lattice: Lattice,
-    /// \[m\].
+    /// Cost to go of each point \[m\].
     values: Vec<f32>,
-    /// What a metre counts as at each point; infinite where it is blocked.
+    /// Weight of a metre at each point; infinite if it is blocked.
     weights: Vec<f32>,
-    /// What a straight step to each point counts as \[m\].
+    /// Cost of a straight step to each point \[m\].
     steps_m: Vec<f32>,
-    /// What is left from each point that is done for those who come from elsewhere \[m\]; infinite
-    /// from the others, and [`Self::NO_WAY_ON`] from the edge.
+    /// For each settled point, the value that it passes on to its neighbours \[m\]; infinite for
+    /// the others, and [`Self::NO_WAY_ON`] at the edge.
     leaving_m: Vec<f32>,
     open: Buckets,
     end: Point,
 }
 
-/// What a metre counts as, by the room from the centre of rotation.
+/// Weight of a metre, by the clearance of the centre of rotation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weighing {
-    /// Less room than this blocks \[m\].
+    /// Less clearance than this blocks \[m\].
     pub(super) blocked_m: f64,
-    /// With less than this the robot cannot turn around \[m\].
+    /// With less clearance than this the robot cannot turn around \[m\].
     pub(super) turning_m: f64,
-    /// More room than this changes nothing \[m\].
+    /// More clearance than this changes nothing \[m\].
     pub(super) comfortable_m: f64,
-    /// What a metre counts as in addition where the robot can just turn around.
+    /// Additional weight of a metre if the robot can just turn around.
     pub(super) discomfort: f64,
-    /// In addition where the robot cannot turn around. Where it has to face some way at the end, 0:
-    /// to drive in with the wrong heading, and out again, has to cost more than what is left
-    /// becomes less by.
+    /// Additional weight if the robot cannot turn around. It is 0 if a heading is required at the
+    /// end: to drive in with the wrong heading, and out again, has to cost more than the
+    /// reduction of the remaining path.
     pub(super) tight: f64,
 }
 
-/// The way ahead, in the positions of the lattice.
+/// The route ahead, in the positions of the lattice.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayAhead<'a> {
     pub(super) robot: Point,
     /// The route from near the robot to its last point on the lattice.
     pub(super) route: &'a [Point],
-    /// Ground on which movers walk, and around which the route leads.
+    /// Ground on which moving obstacles walk, and around which the route leads.
     pub(super) walked: &'a [Disc],
 }
 
 impl Weighing {
-    /// Usual for `tight`: a heading has to fit there, and often does not.
+    /// Usual value of `tight`: a heading has to fit there, and often does not.
     pub(super) const TIGHT: f64 = 3.0;
 
     fn weight(&self, room_m: f64) -> f64 {
@@ -82,25 +83,25 @@ impl Weighing {
         1.0 + self.discomfort * missing * missing + tight
     }
 
-    /// That of the tightest ground that is not blocked.
+    /// Weight of the tightest ground that is not blocked.
     fn largest(&self) -> f64 {
         1.0 + self.discomfort + self.tight
     }
 }
 
 impl CostToGo {
-    /// What a metre through something that blocks counts as.
+    /// Weight of a metre through an obstacle.
     const THROUGH: f32 = 200.0;
 
-    /// No way leads along the edge of the lattice: only its inner side is known, so what is found
-    /// there would depend on the order in which points are done.
+    /// No path leads along the edge of the lattice: only its inner side is known, so values there
+    /// would depend on the order in which points are settled.
     const NO_WAY_ON: f32 = f32::MAX;
 
-    /// On open ground values are too large by no more than this part of the distance.
+    /// On open ground values are too large by no more than this fraction of the distance.
     const EXCESS: f32 = 0.03;
 
-    /// Finds the ways to the end of the route from all points from which they are at most
-    /// `beyond_m` longer than from the robot; all others count as just as far.
+    /// Computes the cost to go from all points from which the path is at most `beyond_m` longer
+    /// than from the robot; all others get the largest value found.
     pub(super) fn fill(
         &mut self,
         lattice: Lattice,
@@ -123,8 +124,8 @@ impl CostToGo {
         }
         self.block_walked(way.walked, weighing);
         self.open_route(way.route, weighing);
-        // What is blocked has the value of the free ground beside it, so that values in between are
-        // those of the free ground.
+        // A blocked point has the value of the free ground beside it, so that values in between
+        // are those of the free ground.
         let free = |&weight: &f32| if weight.is_finite() { weight } else { 1.0 };
         self.steps_m.clear();
         self.steps_m
@@ -136,7 +137,7 @@ impl CostToGo {
         self.straighten(end);
     }
 
-    /// Ground on which movers walk blocks, as what stands does.
+    /// Blocks ground on which moving obstacles walk, as stationary obstacles do.
     fn block_walked(&mut self, walked: &[Disc], weighing: &Weighing) {
         let Lattice { side, spacing_m, .. } = self.lattice;
         for disc in walked {
@@ -153,7 +154,7 @@ impl CostToGo {
         }
     }
 
-    /// The route is a way even where its passages fall between the points.
+    /// Keeps the route open even if its passages fall between the points.
     fn open_route(&mut self, route: &[Point], weighing: &Weighing) {
         let most = weighing.largest() as f32;
         let side = self.lattice.side;
@@ -161,7 +162,8 @@ impl CostToGo {
             let steps = (2.0 * ends[0].distance(ends[1]) / self.lattice.spacing_m).ceil().max(1.0);
             for step in 0..=steps as u32 {
                 let at = ends[0].lerp(ends[1], f64::from(step) / steps);
-                // In the middle between two points both of them: neither side is the better one.
+                // Opens both points if it is in the middle between two: neither side is
+                // preferred.
                 let [columns, rows] = self.lattice.within(self.lattice.place(at), 0.5);
                 for index in rows.flat_map(|y| columns.clone().map(move |x| y * side + x)) {
                     self.weights[index] = self.weights[index].min(most);
@@ -170,7 +172,7 @@ impl CostToGo {
         }
     }
 
-    /// The points around the end know how far it is.
+    /// Initializes the points around the end with their distance to it.
     fn begin(&mut self, end: Point) {
         let Lattice { side, spacing_m, .. } = self.lattice;
         let place = self.lattice.place(end);
@@ -193,7 +195,7 @@ impl CostToGo {
     fn grow(&mut self, robot: Point, beyond_m: f32) {
         let side = self.lattice.side;
         let robot = self.lattice.nearest(robot);
-        // To go through what blocks costs.
+        // Cost of a step through an obstacle.
         let through_m = Self::THROUGH * self.lattice.spacing_m as f32;
         let (mut most, mut farthest) = (f32::INFINITY, 0.0_f32);
         while let Some(index) = self.open.pop() {
@@ -202,7 +204,7 @@ impl CostToGo {
             if self.leaving_m[index].is_finite() {
                 continue;
             }
-            // None of those that are far may be left out because it is the last one of its bucket.
+            // No `break`: the order within a bucket must not decide which points are settled.
             if value > most {
                 continue;
             }
@@ -224,9 +226,9 @@ impl CostToGo {
             .for_each(|(value, _)| *value = farthest);
     }
 
-    /// What a point that is done makes of its neighbours. It shares two triangles with each of
-    /// them, whose third corners are neighbours, too: the ways of these may be crossed where they
-    /// are done. The corner from which less is left is the better one.
+    /// Passes the value of a settled point on to its neighbours. It shares two triangles with
+    /// each of them, whose third corners are neighbours as well: a path may cross the edge to
+    /// such a corner if it is settled. The corner with the lower value is used.
     fn pass_on(&mut self, from: usize) {
         let side = self.lattice.side;
         let (below, above) = (from - side, from + side);
@@ -246,8 +248,8 @@ impl CostToGo {
         }
     }
 
-    /// Takes away what values grow too much by between the directions of the grid, so that in sight
-    /// of the end they are the distance to it, and directions are exact.
+    /// Subtracts the excess of values between the directions of the grid, so that values are the
+    /// distance to the end within line of sight of it, and directions are exact.
     fn straighten(&mut self, end: Point) {
         let Self { lattice, values, .. } = self;
         for y in 0..lattice.side {
@@ -259,8 +261,8 @@ impl CostToGo {
         }
     }
 
-    /// What is left from a position \[m\], and the direction in which that falls fastest (not of
-    /// length 1).
+    /// The cost to go from a position \[m\], and its direction of steepest descent (not of length
+    /// 1).
     pub(super) fn way(&self, position: Point) -> (f64, Point) {
         match self.straight_to_end(position) {
             Some(way) => (way.norm(), way),
@@ -268,12 +270,13 @@ impl CostToGo {
         }
     }
 
-    /// What is left from a position, interpolated \[m\].
+    /// The cost to go from a position, interpolated \[m\].
     fn at(&self, position: Point) -> f64 {
         self.lattice.value(&self.values, position)
     }
 
-    /// The way to the end, where it is straight and nothing weighs on it; not at the end itself.
+    /// Vector to the end, if the path is straight and has no additional weight; `None` at the end
+    /// itself.
     pub(super) fn straight_to_end(&self, position: Point) -> Option<Point> {
         let way = self.end - position;
         let straight_m = way.norm();
@@ -282,18 +285,18 @@ impl CostToGo {
             .then_some(way)
     }
 
-    /// What interpolation adds to distances, as a part of them and in metres.
+    /// Interpolation error of distances, as a fraction of them and in metres.
     const ROUNDING: f64 = 0.005;
 }
 
-/// The least value of a point that is a straight step from a neighbour with the value `straight`
-/// and a diagonal one from a neighbour with the value `diagonal`, when the way to it may begin
-/// anywhere between the two; `step` is what a straight step counts as. A neighbour that is not done
-/// has an infinite value: then the way comes from the other one.
+/// Least value of a point that is a straight step from a neighbour with the value `straight` and
+/// a diagonal one from a neighbour with the value `diagonal`, if the path to it may begin
+/// anywhere between the two; `step` is the cost of a straight step. A neighbour that is not
+/// settled has an infinite value: then the path comes from the other one.
 ///
-/// At the part t of the line between them the value is straight - t g, with g = straight -
-/// diagonal, and the way from there counts as step sqrt(1 + t²). Their sum is least at t = g /
-/// sqrt(step² - g²), where it is straight + sqrt(step² - g²).
+/// At the fraction t of the line between them the value is straight - t g, with g = straight -
+/// diagonal, and the path from there costs step sqrt(1 + t²). Their sum is least at t = g /
+/// sqrt(step² - g²), with the value straight + sqrt(step² - g²).
 fn across(straight: f32, diagonal: f32, step: f32) -> f32 {
     let gain = straight - diagonal;
     if gain <= 0.0 {
@@ -363,11 +366,11 @@ mod tests {
         }
     }
 
-    /// Around the end of a wall: two straight lines that meet where the room begins.
+    /// Around the end of a wall: two straight lines joined by an arc at the required clearance.
     #[test]
     fn around_a_corner_it_is_the_taut_line() {
         let corner = Point::new(10.0, 10.0);
-        // A wall upwards from the corner; ways keep 1 m from it.
+        // A wall upwards from the corner; paths keep 1 m from it.
         let room = |at: Point| {
             let up = Point::new(10.0, at.y.max(10.0));
             if at.distance(up) < 1.0 { 0.0 } else { 9.0 }
@@ -386,8 +389,8 @@ mod tests {
         assert!(cost_to_go.straight_to_end(at).is_none());
     }
 
-    /// Tangents from both places to the circle of 0.5 m around the end of the lane, and the arc in
-    /// between.
+    /// Tangents from both positions to the circle of 0.5 m around the end of the lane, and the
+    /// arc in between.
     #[test]
     fn ground_on_which_movers_walk_is_gone_around() {
         let lane =
@@ -439,7 +442,7 @@ mod tests {
         };
         let cost_to_go = filled(room, middle, &[Point::new(16.0, 10.0)]);
         assert!(cost_to_go.way(middle).1.x < 0.0);
-        // Half a metre of what blocks.
+        // Half a metre of blocked ground.
         assert!(cost_to_go.at(middle) < 8.0 + 100.0);
     }
 

@@ -1,5 +1,5 @@
-//! A course: velocities at a few instants, between which they change linearly. Where it leads, and
-//! what it costs.
+//! Space-time trajectories: velocities at a few instants, between which they change linearly; the
+//! simulation of a trajectory, and its cost.
 
 use super::cost_to_go::CostToGo;
 use super::meeting::Meeting;
@@ -10,18 +10,18 @@ use crate::local::rear::Seen;
 use crate::robot::Limits;
 use std::f64::consts::PI;
 
-/// A robot at an instant of a course. Positions are those of a lattice.
+/// State of the robot at an instant of a trajectory. Positions are those of a lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct State {
     pub(super) at: Point,
-    /// The direction that it faces, of length 1.
+    /// Direction that the robot faces, of length 1.
     pub(super) ahead: Point,
     pub(super) velocity: Velocity,
-    /// From the beginning of the course \[s\].
+    /// Time from the beginning of the trajectory \[s\].
     pub(super) after_s: f64,
 }
 
-/// What a course has cost so far in addition to its time, by reason \[s\].
+/// Cost of a trajectory so far in addition to its time, by reason \[s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(clippy::struct_field_names, reason = "the unit is no part of the names")]
 pub(super) struct Cost {
@@ -35,46 +35,46 @@ impl Cost {
         self.clearance_s + self.movers_s + self.steering_s
     }
 
-    /// What depends on what is there.
+    /// The part that depends on the surroundings.
     pub(super) fn way_s(&self) -> f64 {
         self.clearance_s + self.movers_s
     }
 }
 
-/// What courses are judged by in one cycle.
+/// The criteria by which trajectories are judged in one cycle.
 #[derive(Debug)]
 pub(super) struct Judge<'a> {
     pub(super) limits: &'a Limits,
     pub(super) outline: &'a Outline,
     pub(super) room: &'a Room,
     pub(super) exact: Exact<'a>,
-    /// Where it may drive backwards; everywhere, when it sees all around.
+    /// Cells over which the robot may drive backwards; `None` if it sees all around.
     pub(super) seen: Option<Seen<'a>>,
     pub(super) cost_to_go: &'a CostToGo,
     pub(super) pose_cost: &'a PoseCost,
     pub(super) meeting: &'a Meeting<'a>,
-    /// What is left of the route beyond the lattice \[m\].
+    /// Remaining length of the route beyond the lattice \[m\].
     pub(super) beyond_m: f64,
-    /// Room that the robot likes to have around its footprint \[m\].
+    /// Preferred clearance around the footprint \[m\].
     pub(super) comfortable_m: f64,
-    /// With less than this it touches something: the margin, or what it has now, where that is less
-    /// \[m\].
+    /// With less clearance than this the robot touches something: the margin, or its present
+    /// clearance if that is less \[m\].
     pub(super) least_m: f64,
-    /// Part of the room that is missing in a tight place in which it is now, squared, with the room
-    /// that it may use there: it does not get out of there by standing.
+    /// `tight_sq` of the clearance that the robot may use now: if it is in a tight
+    /// passage, being stationary does not get it out.
     pub(super) tight_now_sq: f64,
     pub(super) discomfort: f64,
     pub(super) steering: f64,
     pub(super) jerk: f64,
-    /// The acceleration that the last course goes on with.
+    /// Acceleration with which the last trajectory continues.
     pub(super) before: Acceleration,
     /// The duration of a stretch \[s\].
     pub(super) stretch_s: f64,
-    /// Way within which the robot has to stop \[m\].
+    /// Distance within which the robot has to stop \[m\].
     pub(super) remaining_m: f64,
 }
 
-/// Accelerations as parts of the robot's limits.
+/// Accelerations as fractions of the robot's limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Acceleration {
     pub(super) linear: f64,
@@ -82,7 +82,7 @@ pub(super) struct Acceleration {
 }
 
 impl Acceleration {
-    /// The constant one from one velocity to another.
+    /// The constant acceleration from one velocity to another.
     pub(super) fn of(from: Velocity, to: Velocity, duration_s: f64, limits: &Limits) -> Self {
         Self {
             linear: (to.v - from.v) / (limits.acceleration_mps2 * duration_s),
@@ -92,22 +92,23 @@ impl Acceleration {
 }
 
 impl State {
-    /// It has come to the end of a stretch.
+    /// Completes a stretch that ends with a velocity.
     fn end_stretch(&mut self, velocity: Velocity) {
         self.velocity = velocity;
-        // Turning a direction step by step makes it longer or shorter by rounding.
+        // Rotating a direction step by step changes its length by rounding.
         self.ahead = self.ahead * (1.0 / self.ahead.norm());
     }
 }
 
 impl Judge<'_> {
-    /// Steps of a stretch among movers, at least.
+    /// Least number of steps of a stretch among moving obstacles.
     const STEPS: f64 = 4.0;
 
-    /// No part of the footprint moves farther in a step than this part of its inscribed radius.
+    /// No part of the footprint moves farther in a step than this fraction of its inscribed
+    /// radius.
     const STEP: f64 = 0.8;
 
-    /// In how many steps a stretch is looked at.
+    /// Number of steps in which a stretch is evaluated.
     fn steps(&self, from: Velocity, to: Velocity) -> u32 {
         let v = from.v.abs().max(to.v.abs());
         let omega = from.omega.abs().max(to.omega.abs());
@@ -118,8 +119,8 @@ impl Judge<'_> {
         by_way.max(least).ceil() as u32
     }
 
-    /// Where a stretch leads: from a state, until its velocity is `to`; with the cost of that,
-    /// without what its way costs. Neither of them looks at what is there.
+    /// End state of a stretch from a state until its velocity is `to`, and the cost with that of
+    /// steering added. Neither considers the surroundings.
     pub(super) fn leads_to(&self, from: &State, cost: &Cost, to: Velocity) -> (State, Cost) {
         let steps = self.steps(from.velocity, to);
         let (mut state, mut cost) = (*from, *cost);
@@ -131,7 +132,7 @@ impl Judge<'_> {
         (state, cost)
     }
 
-    /// The same with what the way costs. `None` where it touches something.
+    /// The same with the cost of the surroundings. `None` if the robot touches something.
     pub(super) fn drive(&self, from: &State, cost: &Cost, to: Velocity) -> Option<(State, Cost)> {
         let steps = self.steps(from.velocity, to);
         let step_s = self.stretch_s / f64::from(steps);
@@ -155,7 +156,7 @@ impl Judge<'_> {
         Some((state, cost))
     }
 
-    /// Room around the robot in a state \[m\]; see [`Outline::room_m`].
+    /// Clearance of the robot in a state \[m\]; see [`Outline::room_m`].
     fn room_m(&self, state: &State, bounds_m: (f64, f64)) -> f64 {
         let (least_m, enough_m) = bounds_m;
         let posed = (state.at, state.ahead);
@@ -166,7 +167,8 @@ impl Judge<'_> {
         }
     }
 
-    /// One of the steps of a stretch between two velocities; the speed in it \[m/s\].
+    /// Simulates one of the steps of a stretch between two velocities; returns the speed in it
+    /// \[m/s\].
     #[inline]
     fn step(
         &self,
@@ -176,7 +178,7 @@ impl Judge<'_> {
     ) -> f64 {
         let step_s = self.stretch_s / f64::from(steps);
         let velocity = from.lerp(to, (f64::from(step) + 0.5) / f64::from(steps));
-        // The chord of a short arc, half-way between both headings.
+        // The chord of a short arc, halfway between both headings.
         let half = direction(0.5 * velocity.omega * step_s);
         let along = turned(state.ahead, half);
         state.at = state.at + along * (velocity.v * step_s);
@@ -185,8 +187,8 @@ impl Judge<'_> {
         velocity.v
     }
 
-    /// What room is missing to turn on the spot at a place: 0 where there is enough, 1 where no
-    /// more fits than its inscribed circle.
+    /// Missing clearance for a turn on the spot at a position: 0 if there is enough, 1 if no more
+    /// fits than the inscribed circle.
     pub(super) fn short_of_turning(&self, place: Point) -> f64 {
         let swings_m = self.outline.circumscribed_m - self.outline.inscribed_m;
         if swings_m <= 0.0 {
@@ -196,10 +198,10 @@ impl Judge<'_> {
         (missing_m / swings_m).clamp(0.0, 1.0)
     }
 
-    /// The turn rate that leads to the middle of a narrow way \[rad/s\]; `None` elsewhere.
+    /// The turn rate that leads to the middle of a narrow passage \[rad/s\]; `None` elsewhere.
     ///
-    /// In a straight lane, the distances of two places to its walls, one on each side of the robot,
-    /// differ by twice what it is off the middle.
+    /// In a straight lane, the distances of two points to its walls, one on each side of the
+    /// robot, differ by twice its offset from the middle.
     pub(super) fn to_middle_radps(&self, state: &State) -> Option<f64> {
         let v = state.velocity.v;
         let ahead_m = self.outline.inscribed_m + v.abs() * self.stretch_s;
@@ -209,32 +211,33 @@ impl Judge<'_> {
         let room_m = |left_m: f64| self.room.of_point(at + aside * left_m);
         let left_m = 0.5 * (room_m(beside_m) - room_m(-beside_m));
         let narrow_m = self.outline.inscribed_m + Self::NARROW * self.comfortable_m;
-        // The arc that leads there.
+        // The turn rate of the arc that leads there.
         (room_m(left_m) < narrow_m).then_some(2.0 * v * left_m / (ahead_m * ahead_m))
     }
 
-    /// With less room to each side than this part of what the robot likes, a way is narrow.
+    /// A passage is narrow if the clearance to each side is below this fraction of the preferred
+    /// one.
     const NARROW: f64 = 0.5;
 
-    /// True if the robot drives backwards where it has not looked: what is there would be touched
-    /// before it is seen.
+    /// True if the robot drives backwards over ground that it has not observed: it would touch an
+    /// obstacle there before it is seen.
     fn is_blind(&self, state: &State, v_mps: f64) -> bool {
         v_mps < 0.0 && !self.seen.is_none_or(|seen| seen.holds(state.at, state.ahead))
     }
 
-    /// True if the robot could brake along its arc from a state without touching anything: the stop
-    /// rule will ask for it.
+    /// True if the robot could brake along its arc from a state without touching anything, as the
+    /// stop rule will require.
     pub(super) fn can_stop(&self, from: &State) -> bool {
         let Velocity { v, omega, .. } = from.velocity;
         let Limits { deceleration_mps2, angular_deceleration_radps2, .. } = *self.limits;
         let stop_s = (v.abs() / deceleration_mps2).max(omega.abs() / angular_deceleration_radps2);
-        // Speed and turn rate fall in proportion: half of each on the mean.
+        // Speed and turn rate fall in proportion: the mean of each is half of its initial value.
         let (way_m, turn_rad) = (0.5 * v * stop_s, 0.5 * omega * stop_s);
         let moves_m = way_m.abs() + turn_rad.abs() * self.outline.swing_m();
         let step_m = (Self::STEP * self.outline.inscribed_m).max(self.room.spacing_m());
         let steps = (moves_m / step_m).ceil();
         let half = direction(0.5 * turn_rad / steps);
-        // Distances are interpolated: only what surely touches is left out.
+        // Distances are interpolated: only a certain contact is rejected.
         let least_m = self.least_m.min(0.0);
         let mut state = *from;
         for _ in 0..steps as u32 {
@@ -250,7 +253,7 @@ impl Judge<'_> {
         true
     }
 
-    /// What a metre counts as in addition, for a discomfort of 1.
+    /// Additional weight of a metre, for a discomfort of 1.
     fn missing(&self, room_m: f64) -> f64 {
         let part = |of_m: f64| (1.0 - room_m / of_m).clamp(0.0, 1.0);
         let room = part(self.comfortable_m);
@@ -258,20 +261,21 @@ impl Judge<'_> {
         room * room + Self::TIGHTER * tighter_sq
     }
 
-    /// The part that is missing in a tight place, squared; 0 where a place is not tight.
+    /// The missing fraction of the clearance in a tight passage, squared; 0 if a passage is not
+    /// tight.
     pub(super) fn tight_sq(room_m: f64, comfortable_m: f64) -> f64 {
         let missing = (1.0 - room_m / (Self::TIGHT * comfortable_m)).clamp(0.0, 1.0);
         missing * missing
     }
 
-    /// With less than this part of the comfortable room, a place is tight.
+    /// A passage is tight if its clearance is below this fraction of the comfortable one.
     const TIGHT: f64 = 0.2;
 
-    /// So much more a metre counts as where there is no room at all.
+    /// Additional weight of a metre at a clearance of 0.
     const TIGHTER: f64 = 8.0;
 
-    /// The cost of changing the velocity in a stretch \[s\]; in the first one, also that of changing
-    /// the acceleration.
+    /// Cost of changing the velocity in a stretch \[s\]; in the first stretch, also that of
+    /// changing the acceleration.
     fn steering_s(&self, from: &State, to: Velocity) -> f64 {
         let Acceleration { linear, angular } =
             Acceleration::of(from.velocity, to, self.stretch_s, self.limits);
@@ -283,14 +287,14 @@ impl Judge<'_> {
         self.stretch_s * cost
     }
 
-    /// An estimate of the time that is needed from a state to the end of the route, to stand there
-    /// \[s\].
+    /// Estimate of the time from a state to a stop at the end of the route \[s\].
     ///
-    /// With D, what is left of the way, and the angle f between heading and way: the time of the
-    /// fastest profile of speeds over D that begins with v cos f, and (1 - cos f) / 2 times what a
-    /// robot needs to turn around and to speed up again, up to twice as much where it stands, or
-    /// nearly, and has no room to turn: it has to get away from there first. Where headings have a
-    /// cost of their own ([`PoseCost`]), that takes the place of the second part.
+    /// With the remaining path length D and the angle f between heading and path, it is the time
+    /// of the fastest speed profile over D that begins with v cos f, plus (1 - cos f) / 2 times
+    /// the time that a robot needs to turn around and to speed up again. The second part grows up
+    /// to twofold if the robot is nearly or fully stationary and has no space to turn: it has to
+    /// drive away from there first. If headings have a cost of their own ([`PoseCost`]), that
+    /// replaces the second part.
     pub(super) fn time_to_go_s(&self, state: &State) -> f64 {
         let (left_m, way) = self.cost_to_go.way(state.at);
         let left_m = left_m + self.beyond_m;
@@ -301,19 +305,19 @@ impl Judge<'_> {
         }
         let Limits { v_max_mps, omega_max_radps, acceleration_mps2, .. } = *self.limits;
         let around_s = PI / omega_max_radps + v_max_mps / acceleration_mps2;
-        // At the end there is nothing to turn to.
+        // At the end there is no direction to turn to.
         let near_m = self.outline.inscribed_m.max(self.room.spacing_m());
         let turning_s = 0.5 * (1.0 - cos) * around_s * (left_m / near_m).min(1.0);
-        // The faster it is, the farther it comes while it turns.
+        // The faster it is, the farther it moves while it turns.
         let slowness = (1.0 - state.velocity.v.abs() / v_max_mps).max(0.0);
         let turning_s = turning_s * (1.0 + slowness * self.short_of_turning(state.at));
         profile_s(self.limits, state.velocity.v * cos, left_m) + turning_s
     }
 
-    /// True if a course need not go on from a state: it is at the end of the route before another
-    /// stretch has passed, or faces the end of what is seen of the route across open ground without
-    /// movers. There the time to go is exact, while the speeds of further stretches would be those
-    /// of whole stretches.
+    /// True if a trajectory need not be extended from a state: it reaches the end of the route
+    /// within another stretch, or faces the end of the local part of the route across open ground
+    /// without moving obstacles. The time to go is exact there, while further stretches would
+    /// have the speeds of whole stretches.
     pub(super) fn arrives(&self, state: &State, left_s: f64) -> bool {
         if left_s <= self.stretch_s {
             return true;
@@ -327,19 +331,19 @@ impl Judge<'_> {
         })
     }
 
-    /// Two and a half degrees.
+    /// Cosine of two and a half degrees.
     const FACING_COS: f64 = 0.999;
 }
 
-/// The time to drive `left_m` and stand there, beginning at the speed `v` (negative: away from it)
-/// \[s\]. Who is too fast to stop there pays for what is too much with twice the time to brake it.
+/// Time to drive `left_m` and stop there, with the initial speed `v` (negative: away from it)
+/// \[s\]. If that is too fast to stop there, the excess costs twice the time to brake it.
 fn profile_s(limits: &Limits, v: f64, left_m: f64) -> f64 {
     let Limits { v_max_mps, acceleration_mps2: a, deceleration_mps2: b, .. } = *limits;
     let stoppable_mps = (2.0 * b * left_m).sqrt();
     if v >= stoppable_mps {
         return (stoppable_mps + 2.0 * (v - stoppable_mps)) / b;
     }
-    // The speed at which braking begins, and the ways of speeding up and braking.
+    // The speed at which braking begins, and the distances of acceleration and braking.
     let peak_sq = (2.0 * a * b * left_m + b * v * v) / (a + b);
     let peak_sq = peak_sq.min(v_max_mps * v_max_mps);
     let peak_mps = peak_sq.sqrt();
@@ -347,13 +351,13 @@ fn profile_s(limits: &Limits, v: f64, left_m: f64) -> f64 {
     (peak_mps - v) / a + peak_mps / b + (left_m - changing_m).max(0.0) / v_max_mps
 }
 
-/// The direction of an angle, which is mostly small \[rad\].
+/// Unit vector of an angle \[rad\]; fast for small angles.
 fn direction(angle_rad: f64) -> Point {
     if angle_rad.abs() > 0.5 {
         let (sin, cos) = libm::sincos(angle_rad);
         return Point::new(cos, sin);
     }
-    // Taylor series: what is left out is below 1e-9.
+    // Taylor series: the remainder is below 1e-9.
     let sq = angle_rad * angle_rad;
     let cos = 1.0 - sq / 2.0 * (1.0 - sq / 12.0 * (1.0 - sq / 30.0 * (1.0 - sq / 56.0)));
     let sin = angle_rad * (1.0 - sq / 6.0 * (1.0 - sq / 20.0 * (1.0 - sq / 42.0)));
@@ -391,11 +395,11 @@ mod tests {
         assert!((time(0.0, 1.5) - 4.0).abs() < 1e-12);
         assert!((time(0.5, 1.25) - 3.0).abs() < 1e-12);
         assert!((time(0.0, 0.5) - 2.0).abs() < 1e-12);
-        // Half of it up to 0.3536 m/s, half down.
+        // Accelerates over half of it to 0.3536 m/s, and brakes over the other half.
         assert!((time(0.0, 0.25) - 2.0 * 0.5_f64.sqrt()).abs() < 1e-12);
         assert!((time(0.5, 0.25) - 1.0).abs() < 1e-12, "it just stops");
         assert!((time(0.4999, 0.25) - time(0.5001, 0.25)).abs() < 1e-3);
-        // Away from it: a second and 0.25 m to stop, and that way again.
+        // Away from it: a second and 0.25 m to stop, and that distance again.
         assert!((time(-0.5, 1.25) - 5.0).abs() < 1e-12);
         assert!(time(0.5, 0.2) > time(0.4, 0.2));
         assert_eq!(time(0.0, 0.0), 0.0);
@@ -443,7 +447,7 @@ mod tests {
             let velocity = Velocity::new(v, 0.0);
             judge.to_middle_radps(&State { at, ahead: direction(0.0), velocity, after_s: 0.0 })
         };
-        // 5 cm beside it, on an arc over 0.25 m and 0.5 s of way.
+        // 5 cm beside it, on an arc over 0.25 m and the distance of 0.5 s.
         let radps = 2.0 * 0.4 * 0.05 / (0.45 * 0.45);
         for (y, expected) in [(1.3, 0.0), (1.25, radps), (1.35, -radps)] {
             let found = rate_radps((4.0, y), 0.4).unwrap();
@@ -456,7 +460,8 @@ mod tests {
     }
 
     proptest! {
-        /// The positions of a stretch are those of many arcs of the same changing velocity.
+        /// The positions of a stretch agree with those of many arcs of the same changing
+        /// velocity.
         #[test]
         fn stretches_lead_where_the_robot_drives(
             from in (-0.5..2.0_f64, -3.0..3.0_f64), to in (-0.5..2.0_f64, -3.0..3.0_f64), theta in -3.0..3.0_f64,
@@ -464,7 +469,7 @@ mod tests {
             let robot = Robot::jackal();
             let (room, cost_to_go) = (Room::open(), CostToGo::default());
             let meeting = Meeting { movers: &[], comfortable_m: 1.0, contact: 0.0, horizon_s: 1.0 };
-            // Nothing is near: it is not asked.
+            // No obstacle is near: the field is not queried.
             let map = OccupancyGrid::from_ascii(&["."]);
             let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
             let exact = Exact { footprint: &robot.footprint, obstacles: &obstacles };

@@ -1,13 +1,14 @@
-//! Why a course was chosen: the best one for each beginning that was tried, and what would free a
-//! robot that cannot drive.
+//! Explains the choice of a trajectory: the best one for each beginning that was tried, and the
+//! changes that would free a robot that cannot drive.
 //!
-//! The first candidate is the course that was chosen, as a decision finds it. Each other one is the
-//! best course that begins with one of the other velocities that the search tries first; it is not
-//! polished. Candidates are named by what they would command. As each is searched for alone, one
-//! may be better than what a decision has time to find; the second best is the best that is not.
+//! The first candidate is the chosen trajectory, as a decision finds it. Each other one is the
+//! best trajectory that begins with one of the other velocities that the search tries first; it
+//! is not polished. Candidates are identified by their commands. As each is searched for alone,
+//! one may be better than the result of a decision; the runner-up is the best of those that are
+//! not.
 //!
 //! # Errors / cost
-//! None. About 30 decisions; where none drives, up to 40 times as many.
+//! None. About 30 decisions; if none drives, up to 40 times as many.
 
 use super::commitment::go_on;
 use super::course::{Cost, Judge, State};
@@ -23,25 +24,25 @@ use crate::local::{
 use crate::robot::Robot;
 use std::borrow::Cow;
 
-/// Poses of a candidate.
+/// Number of poses of a candidate.
 const POSES: u32 = 10;
 
-/// Ramps between two of them.
+/// Number of ramps between two of them.
 const RAMPS: u32 = 8;
 
-/// A contact is found to this part of a stretch.
+/// Resolution of the time of a contact, in parts of a stretch.
 const CONTACT_PARTS: u32 = 50;
 
 /// Velocities no farther apart than this are the same \[m/s, rad/s\].
 const SAME: f64 = 1e-6;
 
-/// The planner of a robot that has come so far along its route.
+/// The planner of a robot with its progress along the route.
 struct OnItsWay {
     planner: SpaceTime,
     memory: DriveMemory,
 }
 
-/// One cycle, looked at again.
+/// One cycle, evaluated again.
 struct Cycle<'a> {
     planner: &'a SpaceTime,
     scene: &'a Scene<'a>,
@@ -50,7 +51,7 @@ struct Cycle<'a> {
 }
 
 impl SpaceTime {
-    /// What becomes of each beginning of a course.
+    /// The fate of each beginning of a trajectory.
     pub(super) fn explained(&self, scene: &Scene<'_>, memory: &DriveMemory) -> Explanation {
         let mut explanation = self.candidates(scene, memory);
         if !self.drives_on(scene, &mut memory.clone()) {
@@ -105,7 +106,7 @@ impl SpaceTime {
 }
 
 impl Cycle<'_> {
-    /// The best course that begins with a stretch to this velocity.
+    /// The best trajectory that begins with a stretch to this velocity.
     fn beginning(&self, to: Velocity, beam: &mut Beam, scratch: &mut Scratch) -> JudgedCandidate {
         if self.judge.drive(self.start, &Cost::default(), to).is_none() {
             let free_for_s = self.free_for_s(to);
@@ -148,7 +149,7 @@ impl Cycle<'_> {
         self.planner.command(self.scene, first, self.judge)
     }
 
-    /// How long a stretch is free that touches something.
+    /// Time for which a stretch with a contact is free.
     fn free_for_s(&self, to: Velocity) -> f64 {
         let part = |parts: u32| f64::from(parts) / f64::from(CONTACT_PARTS);
         let is_free = |parts: &u32| {
@@ -161,7 +162,7 @@ impl Cycle<'_> {
         part(free) * self.judge.stretch_s
     }
 
-    /// Poses at equal intervals of a time.
+    /// Poses at equal intervals over a duration.
     fn poses(&self, course: &[Velocity], duration_s: f64) -> Vec<Pose> {
         let velocities = course.iter().copied().take(Course::MOST_STRETCHES).collect();
         let course = Course { stretch_s: self.judge.stretch_s, velocities };

@@ -1,4 +1,4 @@
-//! At which headings a footprint fits at the points of a lattice, found where somebody asks.
+//! Headings at which a footprint fits at the points of a lattice, computed on demand.
 
 use super::free_headings::{BlockedHeadings, Headings, Places};
 use super::lattice::Lattice;
@@ -9,34 +9,34 @@ use arrayvec::ArrayVec;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-/// A bit for each of so many headings; it stands for those up to the next ones.
+/// A set of headings, one bit each; a bit stands for the headings up to the next ones.
 pub(super) type Sectors = u32;
 
-/// The ground, and the room that a robot needs there.
+/// The ground, and the clearance that a robot needs there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ground<'a> {
     pub(super) obstacles: &'a DistanceField,
     pub(super) blocked: &'a BlockedHeadings,
-    /// No heading is free with less room than the first, all are with the second \[m\].
+    /// Below the first clearance no heading is free, from the second on all are \[m\].
     pub(super) inscribed_m: f64,
     pub(super) turning_m: f64,
 }
 
-/// The headings that fit at the points near a way, by their numbers.
+/// The headings that fit at the points near a path, by the numbers of the points.
 #[derive(Debug, Default)]
 pub(super) struct Fitting {
     is_known: Vec<bool>,
-    /// At which headings the footprint fits, and from which it turns to the next one.
+    /// Headings at which the footprint fits, and those from which it can turn to the next one.
     free: Vec<Sectors>,
     turning: Vec<Sectors>,
-    /// Columns and rows at which it is tried for a tile of points, in half cells.
+    /// Columns and rows at which the footprint is tried for a tile of points, in half cells.
     xs: Vec<i32>,
     ys: Vec<i32>,
     places: Places,
 }
 
 impl Fitting {
-    /// Forgets everything.
+    /// Forgets all results.
     pub(super) fn begin(&mut self, near: &Near) {
         self.is_known.clear();
         self.is_known.resize(near.count(), false);
@@ -46,24 +46,24 @@ impl Fitting {
         self.turning.resize(near.count(), 0);
     }
 
-    /// Known everywhere, without a footprint.
+    /// Results for all points, without a footprint.
     #[cfg(test)]
     pub(super) fn of(free: Vec<Sectors>, turning: Vec<Sectors>) -> Self {
         Self { is_known: vec![true; free.len()], free, turning, ..Self::default() }
     }
 
-    /// The headings at which the footprint fits somewhere in the square around a point; it must
-    /// have been [looked at](Self::look).
+    /// The headings at which the footprint fits somewhere in the square around a point. The point
+    /// must have been [evaluated](Self::look).
     pub(super) fn free(&self, number: usize) -> Sectors {
         self.free[number]
     }
 
-    /// Those of them from which it can turn to the next one there.
+    /// The free headings from which the robot can turn to the next one there.
     pub(super) fn turning(&self, number: usize) -> Sectors {
         self.turning[number]
     }
 
-    /// Looks at a point, unless that was done, and at those beside it, which share most of the
+    /// Evaluates a point, unless that was done, and those beside it, which share most of the
     /// work.
     #[inline]
     pub(super) fn look(
@@ -116,13 +116,13 @@ impl Fitting {
     }
 }
 
-/// The places in the squares around points at which a footprint is tried.
+/// The positions in the squares around points at which a footprint is tried.
 struct Tries {
     halves_per_m: f64,
-    /// Half cells from one point to the next, and places along them, less one.
+    /// Half cells from one point to the next, and number of intervals along them.
     side: i32,
     parts: i32,
-    /// Points in a row of a tile.
+    /// Number of points in a row of a tile.
     tile: usize,
 }
 
@@ -135,7 +135,7 @@ impl Tries {
         Self { halves_per_m, side, parts, tile }
     }
 
-    /// Those around the middle of a square, along an axis: the same to both sides of it.
+    /// Positions around the middle of a square, along an axis: symmetric to it.
     fn along(&self, middle_m: f64) -> impl Iterator<Item = i32> + use<> {
         let Self { side, parts, .. } = *self;
         let middle = middle_m * self.halves_per_m;
@@ -145,7 +145,7 @@ impl Tries {
         })
     }
 
-    /// Collects those of a tile.
+    /// Collects the positions of a tile.
     fn collect(
         &self,
         lattice: &Lattice,

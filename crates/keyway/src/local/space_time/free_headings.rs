@@ -1,5 +1,5 @@
-//! At which headings a footprint is free: sets of headings as bits, a look-up for each occupied cell
-//! near a place.
+//! Free headings of a footprint: sets of headings as bits, by a look-up for each occupied cell
+//! near a position.
 
 use crate::geometry::Point;
 use crate::map::{BitGrid, Cell, DistanceField};
@@ -7,25 +7,25 @@ use crate::robot::Footprint;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// A bit for each of so many headings, `TAU / HEADINGS` apart, from the x axis of the cells on.
+/// A set of headings, one bit each, `TAU / HEADINGS` apart, beginning at the x axis of the cells.
 pub(super) type Headings = u64;
 
 pub(super) const HEADINGS: usize = 64;
 
-/// Between two headings \[rad\].
+/// Angle between two headings \[rad\].
 pub(super) const HEADING_RAD: f64 = TAU / HEADINGS as f64;
 
 /// A footprint that comes no nearer than this to a cell does not touch it \[cells\].
 const ROUNDING: f64 = 1e-9;
 
-/// The headings that an occupied cell blocks, by where it is from the robot. The robot is in the
-/// middle of a cell, or on the line or the corner between cells: places are those of a grid of half
-/// cells.
+/// The headings that an occupied cell blocks, by its position relative to the robot. The robot is
+/// in the middle of a cell, or on the line or the corner between cells: places are those of a
+/// grid of half cells.
 #[derive(Debug, Default)]
 pub(super) struct BlockedHeadings {
-    /// They are made for this footprint, its margin and the side of a cell \[m\].
+    /// The footprint, its margin and the side of a cell \[m\] for which the tables were made.
     made_for: Option<(Footprint, f64, f64)>,
-    /// Cells to each side that matter.
+    /// Number of cells to each side that matter.
     reach: i32,
     /// For both parities of a place along both axes, by row and column of the place as seen from
     /// the cell, with columns without entries to both sides.
@@ -35,11 +35,11 @@ pub(super) struct BlockedHeadings {
 }
 
 impl BlockedHeadings {
-    /// A footprint that reaches over more cells has no tables: they would be too large.
+    /// A footprint that extends over more cells has no tables: they would be too large.
     const MOST_REACH: f64 = 100.0;
 
-    /// Makes the tables of a footprint with a margin around it \[m\], unless they are there. A
-    /// footprint that is not convex counts as if gaps along the rows of cells were filled.
+    /// Builds the tables of a footprint with a margin around it \[m\], unless they exist. A
+    /// footprint that is not convex is treated as if gaps along the rows of cells were filled.
     pub(super) fn fit(&mut self, footprint: &Footprint, margin_m: f64, cell_m: f64) {
         let is_that = |(of, its_margin_m, its_cell_m): &(Footprint, f64, f64)| {
             of == footprint && *its_margin_m == margin_m && *its_cell_m == cell_m
@@ -84,8 +84,8 @@ impl BlockedHeadings {
     /// Marks the cells that an outline \[cells\] touches, row by row.
     fn block(&mut self, outline: &[Point], margin: f64, (parity, heading): (usize, usize)) {
         let (reach, columns) = (self.reach, self.columns());
-        // Of the lower left corner of a cell, from the robot: it is in the middle of its own one, or
-        // on its left or lower line.
+        // Lower left corner of a cell, relative to the robot, which is in the middle of its own
+        // cell, or on its left or lower line.
         let corner =
             |cells: i32, is_between: bool| f64::from(cells) - if is_between { 0.0 } else { 0.5 };
         for row in -reach..=reach {
@@ -107,13 +107,14 @@ impl BlockedHeadings {
         2 * (self.reach as usize + Places::COLUMNS) + 1
     }
 
-    /// The column of a table for a place that is so many columns from a cell.
+    /// The column of a table for a place that is this many columns from a cell.
     const fn column(&self, off: i32) -> usize {
         (off + self.reach + Places::COLUMNS as i32) as usize
     }
 
-    /// Adds what blocks headings at all places of [`Places::COLUMNS`] columns of cells from `first`
-    /// on, for either parity of their column: `rows` are in half cells, and few cells apart.
+    /// Adds the blocked headings at all places of [`Places::COLUMNS`] columns of cells from
+    /// `first` on, for either parity of their column: `rows` are in half cells, and few cells
+    /// apart.
     fn add_to(
         &self,
         blocked: &mut [Block],
@@ -149,7 +150,7 @@ impl BlockedHeadings {
         }
     }
 
-    /// The headings at which it would be on the border of the map, or beyond.
+    /// The headings at which the footprint would be on the border of the map, or beyond.
     fn beyond_border(&self, (x, y): (i32, i32), obstacles: &DistanceField) -> Headings {
         let frame = obstacles.frame();
         let at = [x, y].map(|halves| 0.5 * f64::from(halves));
@@ -165,24 +166,25 @@ impl BlockedHeadings {
     }
 }
 
-/// Of a row of places: by the parity of the column, in half cells, and by column of cells.
+/// The blocked headings of a row of places, by the parity of the column in half cells, and by
+/// column of cells.
 type Block = [[Headings; Places::COLUMNS]; 2];
 
-/// Places at which a footprint is tried, in half cells from the lower left corner of the map:
-/// 2 x + 1 is the middle of column x.
+/// Places at which a footprint is tried, in half cells from the lower left corner of the map: 2
+/// x + 1 is the middle of column x.
 #[derive(Debug, Default)]
 pub(super) struct Places {
     xs: Vec<i32>,
     ys: Vec<i32>,
-    /// Row by row.
+    /// The blocked headings, row by row.
     blocked: Vec<Headings>,
-    /// Memory.
+    /// Working memory.
     block: Vec<Block>,
     cells: Vec<i32>,
 }
 
 impl Places {
-    /// Columns of cells that are done at once.
+    /// Number of columns of cells that are processed at once.
     pub(super) const COLUMNS: usize = 8;
 
     /// Tries a footprint at all places of these columns and rows, each in ascending order.
@@ -221,7 +223,7 @@ impl Places {
             for column in columns.clone() {
                 let (x, y) = (xs[column], ys[row]);
                 let cell = Cell::new(x.div_euclid(2), y.div_euclid(2));
-                // Only cells at the edge of what stands were looked at.
+                // Only cells at the edges of obstacles were checked.
                 let is_inside = occupied.contains(cell) && occupied.get(cell);
                 blocked[row * xs.len() + column] = if is_inside {
                     Headings::MAX
@@ -249,7 +251,7 @@ impl Places {
     }
 }
 
-/// Parts of ascending numbers of half cells, each within [`Places::COLUMNS`] cells.
+/// Ranges of ascending numbers of half cells, each within [`Places::COLUMNS`] cells.
 fn near_each_other(halves: &[i32]) -> impl Iterator<Item = Range<usize>> {
     let mut from = 0;
     std::iter::from_fn(move || {
@@ -261,8 +263,8 @@ fn near_each_other(halves: &[i32]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
-/// Collects the columns of those occupied cells of a row that have a neighbour, of eight, that is
-/// free: a footprint around a free place touches one of them before it touches any other one.
+/// Collects the columns of those occupied cells of a row that have a free neighbour, of eight: a
+/// footprint around a free place touches one of them before it touches any other one.
 fn collect_edge(occupied: &BitGrid, row: i32, (from, to): (i32, i32), columns: &mut Vec<i32>) {
     columns.clear();
     let (from, to) = (from.max(0), to.min(occupied.width() as i32 - 1));
@@ -272,7 +274,7 @@ fn collect_edge(occupied: &BitGrid, row: i32, (from, to): (i32, i32), columns: &
     }
     let own = occupied.row(row);
     let beside = [row - 1, row + 1].map(|row| if is_row(row) { occupied.row(row) } else { &[] });
-    // Set where a cell and both beside it are.
+    // Set if a cell and both beside it are.
     let inside = |row: &[u64], word: usize| {
         let Some(&here) = row.get(word) else { return 0 };
         let before = if word > 0 { row[word - 1] } else { 0 };
@@ -391,7 +393,7 @@ mod tests {
         assert!(free_ahead(&footprint(1.5), 0.2), "another footprint");
     }
 
-    /// Far from the edge of what stands.
+    /// Far from the edge of the obstacle.
     #[test]
     fn inside_of_what_stands_nothing_is_free() {
         let map = OccupancyGrid::from_ascii(&["####################"; 20]);

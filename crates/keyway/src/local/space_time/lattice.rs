@@ -1,4 +1,4 @@
-//! A grid of numbers around the robot, with values in between.
+//! A grid of values around the robot, interpolated in between.
 
 use crate::geometry::Point;
 use crate::map::{Cell, GridFrame};
@@ -14,32 +14,32 @@ pub(super) struct Lattice {
     low: (i32, i32),
     /// Its position \[m\].
     first_m: Point,
-    /// Cells from one point to the next; 1 where they are divided.
+    /// Number of cells from one point to the next; 1 if cells are divided.
     stride: i32,
-    /// Points in a cell along each axis; an odd number, so that its centre is one of them.
+    /// Number of points in a cell along each axis; odd, so that its centre is one of them.
     parts: i32,
-    /// Points in a row, and in a column.
+    /// Number of points in a row, and in a column.
     pub(super) side: usize,
     /// Distance of two neighbours \[m\].
     pub(super) spacing_m: f64,
-    /// Points per metre: positions are looked up far too often to divide.
+    /// Points per metre; stored because positions are looked up too often to divide.
     per_m: f64,
 }
 
 impl Lattice {
-    /// No more points to either side: for robots that come far within a horizon, points are farther
-    /// apart.
+    /// Upper limit of the points to either side: for robots that cover a long distance within a
+    /// horizon, points are farther apart.
     const MOST_TO_A_SIDE: f64 = 250.0;
 
-    /// So that columns and rows stay numbers of cells.
+    /// Limit that keeps columns and rows in the range of cell numbers.
     const LARGEST_STRIDE: f64 = 1e6;
 
-    /// Points along each axis of a cell that is divided.
+    /// Number of points along each axis of a cell that is divided.
     const PARTS: i32 = 3;
 
     /// All points up to `reach_m` from a position along both axes, and one more. They are
-    /// `spacing_m` apart, rounded down to cells, but at least one cell (a third of it where half a
-    /// cell is too much), and farther where there would be too many.
+    /// `spacing_m` apart, rounded down to cells, but at least one cell (a third of it if half a
+    /// cell is too much), and farther if there would be too many.
     pub(super) fn around(frame: &GridFrame, at: Point, reach_m: f64, spacing_m: f64) -> Self {
         let cell_m = frame.resolution_m();
         let finest_m = reach_m / Self::MOST_TO_A_SIDE;
@@ -50,8 +50,8 @@ impl Lattice {
         let part_m = cell_m / f64::from(parts);
         let spacing_m = f64::from(stride) * part_m;
         let half = (reach_m / spacing_m).ceil().min(Self::MOST_TO_A_SIDE) as i32 + 1;
-        // The same points wherever the robot is, so that values in between do not change as it
-        // goes.
+        // The same points for all positions of the robot, so that interpolated values do not
+        // change as it moves.
         let first = |along_m: f64| ((along_m / spacing_m).floor() as i32 - half) * stride;
         let low = (first(at.x), first(at.y));
         let along_m = |part: i32| (f64::from(part) + 0.5) * part_m;
@@ -60,7 +60,7 @@ impl Lattice {
         Self { low, first_m, stride, parts, side, spacing_m, per_m }
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub(super) const fn count(&self) -> usize {
         self.side * self.side
     }
@@ -70,30 +70,30 @@ impl Lattice {
         self.parts == 1
     }
 
-    /// Cells from one point to the next, where points are centres of cells.
+    /// Number of cells from one point to the next, if points are centres of cells.
     pub(super) const fn stride(&self) -> usize {
         self.stride as usize
     }
 
-    /// The cell that a point lies in; it may lie outside the map.
+    /// The cell that contains a point; it may lie outside the map.
     pub(super) fn cell(&self, x: usize, y: usize) -> Cell {
         let part = |first: i32, steps: usize| first + steps as i32 * self.stride;
         let along = |first: i32, steps: usize| part(first, steps).div_euclid(self.parts);
         Cell::new(along(self.low.0, x), along(self.low.1, y))
     }
 
-    /// Where a point lies \[m\].
+    /// Position of a point \[m\].
     pub(super) fn position(&self, x: usize, y: usize) -> Point {
         self.first_m + Point::new(x as f64, y as f64) * self.spacing_m
     }
 
-    /// Where a position lies, in points from the first one.
+    /// Coordinates of a position on the lattice, in points from the first one.
     #[inline]
     pub(super) fn place(&self, at: Point) -> Point {
         (at - self.first_m) * self.per_m
     }
 
-    /// The point nearest to a position, as the index of its value; `None` beyond the points.
+    /// Index of the point nearest to a position; `None` beyond the points.
     pub(super) fn nearest(&self, at: Point) -> Option<usize> {
         let place = self.place(at);
         let (x, y) = (place.x.round(), place.y.round());
@@ -101,8 +101,7 @@ impl Lattice {
         (within(x) && within(y)).then(|| y as usize * self.side + x as usize)
     }
 
-    /// The columns and the rows of the points that are no farther than this from a place along both
-    /// axes, in points.
+    /// Columns and rows of the points within this distance of a place along both axes, in points.
     pub(super) fn within(&self, place: Point, reach: f64) -> [Range<usize>; 2] {
         [place.x, place.y].map(|at| {
             let (low, high) = ((at - reach).ceil().max(0.0), (at + reach).floor() + 1.0);
@@ -110,8 +109,8 @@ impl Lattice {
         })
     }
 
-    /// True if everything that is no farther than this from a place, in points from the first one,
-    /// is between the points.
+    /// True if everything within this distance of a place, in points from the first one, lies
+    /// between the points.
     #[inline]
     pub(super) fn holds(&self, place: Point, within_m: f64) -> bool {
         let within = within_m / self.spacing_m + 1.0;
@@ -119,11 +118,11 @@ impl Lattice {
         place.x >= low && place.y >= low && place.x <= high && place.y <= high
     }
 
-    /// The value at a position, interpolated between the four points around it; beyond the points
-    /// that at their edge.
+    /// The value at a position, interpolated between the four points around it; beyond the
+    /// points, the value at their edge.
     ///
-    /// Values are kept as `f32`, and interpolated as `f64`: what rounding adds must not decide
-    /// between two courses, which would be another one seen in a mirror.
+    /// Values are stored as `f32`, and interpolated as `f64`: rounding must not decide between
+    /// two trajectories, which would be a different one in a mirrored world.
     #[inline]
     pub(super) fn value(&self, values: &[f32], at: Point) -> f64 {
         self.value_at(values, self.place(at))
@@ -132,20 +131,20 @@ impl Lattice {
     /// The same at a place, in points from the first one.
     #[inline]
     pub(super) fn value_at(&self, values: &[f32], place: Point) -> f64 {
-        // The last one is no place from which to look farther.
+        // The last point is excluded, as the next one after it is read.
         let last = (self.side - 1) as f64 * (1.0 - f64::EPSILON);
         self.value_within(values, Point::new(place.x.clamp(0.0, last), place.y.clamp(0.0, last)))
     }
 
-    /// The same between the points, where it [`Self::holds`] the place.
+    /// The same between the points, if the lattice [`Self::holds`] the place.
     #[inline]
     pub(super) fn value_within(&self, values: &[f32], place: Point) -> f64 {
         let (below, parts) = self.corner(place);
         self.between(values, below, parts)
     }
 
-    /// The first of the four points around a place, and what is beyond it of the distance to the
-    /// next one along both axes.
+    /// The first of the four points around a place, and the position beyond it as a fraction of
+    /// the distance to the next one along both axes.
     #[inline]
     fn corner(&self, place: Point) -> (usize, (f64, f64)) {
         let (left, low) = (place.x as u32, place.y as u32);
@@ -165,7 +164,7 @@ impl Lattice {
         lower + (upper - lower) * part_y
     }
 
-    /// The slope of the values at a position, per metre, over a step to both sides.
+    /// Slope of the values at a position, per metre, over a step to both sides.
     pub(super) fn slope(&self, values: &[f32], at: Point) -> Point {
         let place = self.place(at);
         let last = (self.side - 1) as f64;

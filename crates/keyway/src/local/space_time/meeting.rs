@@ -1,41 +1,42 @@
-//! What it costs to come near to something that moves.
+//! The cost of coming near to a moving obstacle.
 
 use super::room::Room;
 use crate::geometry::Point;
 
-/// A mover as it is expected to go on, in the positions of a lattice.
+/// Prediction of a moving obstacle, in the positions of a lattice.
 ///
-/// It keeps its velocity until it comes to something that stands; from then on it may go anywhere.
+/// It keeps its velocity until it reaches a stationary obstacle; from then on it may go anywhere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foreseen {
     pub(super) centre: Point,
     pub(super) velocity_mps: Point,
-    /// Centres that are farther apart do not touch: its radius and that of the robot \[m\].
+    /// Distance of the centres at contact: the sum of its radius and that of the robot \[m\].
     pub(super) reach_m: f64,
-    /// A standard deviation of its position \[m\], of its velocity \[m/s\], and of what it
-    /// accelerates \[m/s²\].
+    /// Standard deviations of its position \[m\], of its velocity \[m/s\], and of its
+    /// acceleration \[m/s²\].
     pub(super) off_m: f64,
     pub(super) off_mps: f64,
     pub(super) off_mps2: f64,
-    /// When it comes to something that stands \[s\].
+    /// Time at which it reaches a stationary obstacle \[s\].
     pub(super) wall_s: f64,
-    /// Squares of the distances within which it matters, up to the end of each part of the horizon
+    /// Squared distances within which it matters, up to the end of each part of the horizon
     /// \[m²\].
     pub(super) matters_sq: [f64; PARTS],
 }
 
-/// Parts of the horizon.
+/// Number of parts of the horizon.
 const PARTS: usize = 16;
 
-/// Everything that moves, in one cycle.
+/// All moving obstacles in one cycle.
 #[derive(Debug)]
 pub(super) struct Meeting<'a> {
     pub(super) movers: &'a [Foreseen],
-    /// Room to them that the robot likes to have \[m\].
+    /// Preferred clearance from them \[m\].
     pub(super) comfortable_m: f64,
-    /// What a second in contact counts as \[s\].
+    /// Cost of a second in contact \[s\].
     pub(super) contact: f64,
-    /// That of all courses, for which it was [looked ahead](Foreseen::look_ahead) \[s\].
+    /// Horizon of all trajectories, for which [`look_ahead`](Foreseen::look_ahead) was called
+    /// \[s\].
     pub(super) horizon_s: f64,
 }
 
@@ -43,18 +44,19 @@ impl Foreseen {
     /// It may matter anywhere.
     pub(super) const ALWAYS: [f64; PARTS] = [f64::INFINITY; PARTS];
 
-    /// It has come to a wall when it has less room than this part of its radius: movers also walk
-    /// along walls.
+    /// It has reached a wall if its clearance is below this fraction of its radius: pedestrians
+    /// also walk along walls.
     const WALL: f64 = 0.7;
 
-    /// The part of its speed by which it becomes less certain where it is, once it may have turned
-    /// around.
+    /// Rate at which its position becomes less certain once it may have turned around, as a
+    /// fraction of its speed.
     const ASTRAY: f64 = 0.7;
 
-    /// When it comes to something that stands, if that is within a horizon; a mover of this radius.
+    /// Time until a moving obstacle of this radius reaches a stationary obstacle, up to a
+    /// horizon.
     pub(super) fn until_wall_s(&self, radius_m: f64, room: &Room, horizon_s: f64) -> f64 {
         let speed_mps = self.velocity_mps.norm();
-        // It may stand beside a wall already.
+        // It may be beside a wall already.
         let least_m = Self::WALL * room.of_point(self.centre).min(radius_m);
         let mut after_s = 0.0;
         while after_s < horizon_s {
@@ -67,8 +69,9 @@ impl Foreseen {
         horizon_s
     }
 
-    /// Sets within which distances it matters, for a robot that likes to have `comfortable_m` of
-    /// room. It becomes less certain all the time where it is, so the end of a part tells.
+    /// Sets the distances within which it matters, for a robot with a preferred clearance of
+    /// `comfortable_m`. Its position becomes less certain all the time, so the end of a part
+    /// decides.
     pub(super) fn look_ahead(&mut self, comfortable_m: f64, horizon_s: f64) {
         self.matters_sq = std::array::from_fn(|part| {
             let end_s = horizon_s * (part + 1) as f64 / PARTS as f64;
@@ -83,19 +86,19 @@ impl Foreseen {
         self.centre + self.velocity_mps * after_s.min(self.wall_s)
     }
 
-    /// A standard deviation of where it is expected \[m\].
+    /// Standard deviation of the expected position \[m\].
     #[inline]
     fn deviation_m(&self, after_s: f64) -> f64 {
         let straight_s = after_s.min(self.wall_s);
         let astray_m = Self::ASTRAY * self.velocity_mps.norm() * (after_s - straight_s);
-        // Errors that have nothing to do with each other.
+        // The errors are independent.
         let (drifted_m, turned_m) = (self.off_mps * after_s, self.turned_away_m(after_s));
         let off_m = (self.off_m * self.off_m + drifted_m * drifted_m + turned_m * turned_m).sqrt();
         off_m + astray_m
     }
 
-    /// How far its accelerating leads \[m\]. What it changes its velocity by is no more than that
-    /// velocity: who strolls does not begin to run.
+    /// Position error due to its acceleration \[m\]. The velocity changes by no more than the
+    /// present speed: a strolling pedestrian does not begin to run.
     #[inline]
     fn turned_away_m(&self, after_s: f64) -> f64 {
         let most_mps = self.velocity_mps.norm();
@@ -107,18 +110,18 @@ impl Foreseen {
 }
 
 impl Meeting<'_> {
-    /// So much more it costs to come near to a mover on its left, and so much less on its right.
+    /// Relative increase of the cost on the left of a moving obstacle, and decrease on its right.
     const TO_THE_LEFT: f64 = 0.1;
 
-    /// What a second at a place costs a robot of this speed \[s\].
+    /// Cost of a second at a position for a robot with this velocity \[s\].
     ///
-    /// With the gap g between the discs, the standard deviation s and the comfortable room n, it
-    /// counts as `contact` R² / (R² + s²) (1 + |v| / 2) times
-    /// - 1 - g / R, where the discs overlap (g < 0, R the distance at which they touch);
-    /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the less is known, the
-    ///   more likely a contact is outside the disc, and the less likely it is inside. By up to
-    ///   [`Self::TO_THE_LEFT`] more on the left of a mover, and less on its right: of two that do
-    ///   the same as each other, neither gets past.
+    /// With the gap g between the discs, the standard deviation s and the preferred clearance n,
+    /// it is `contact` R² / (R² + s²) (1 + |v| / 2) times the sum of
+    /// - 1 - g / R, if the discs overlap (g < 0, R the distance at which they touch);
+    /// - (0.1 + 0.4 s / (s + 0.1)) (1 - g / (n + 2 s))², up to g = n + 2 s: the larger the
+    ///   uncertainty, the more likely a contact is outside the disc, and the less likely it is
+    ///   inside. It is up to [`Self::TO_THE_LEFT`] more on the left of a moving obstacle, and
+    ///   less on its right, because two that mirror each other's motion would never get past.
     #[inline]
     pub(super) fn cost_s(&self, at: Point, after_s: f64, velocity_mps: Point) -> f64 {
         let part = (after_s / self.horizon_s * PARTS as f64) as usize;
@@ -127,7 +130,7 @@ impl Meeting<'_> {
         for mover in self.movers {
             let apart = at - mover.centre_at(after_s);
             let apart_sq = apart.norm_sq();
-            // Most are far away: no root is drawn for them.
+            // Most are far away: their square root is not computed.
             if apart_sq >= mover.matters_sq[part] {
                 continue;
             }
@@ -151,15 +154,16 @@ impl Meeting<'_> {
     }
 }
 
-/// By how much a robot that is `apart` from a mover keeps to the left of it: from 1, where they
-/// pass at a right angle, to -1, where it keeps to the right. Of two that meet, both find the same.
+/// Degree to which a robot at the offset `apart` keeps to the left of a moving obstacle: from 1,
+/// if they pass at a right angle, to -1, if it keeps to the right. Both sides of an encounter get
+/// the same value.
 #[inline]
 fn to_the_left(apart: Point, relative_mps: Point) -> f64 {
     let most = (apart.norm_sq() * relative_mps.norm_sq()).sqrt();
     if most > 0.0 { relative_mps.cross(apart) / most } else { 0.0 }
 }
 
-/// The gap up to which a mover costs something \[m\].
+/// The gap up to which a moving obstacle costs something \[m\].
 #[inline]
 fn wide_m(comfortable_m: f64, off_m: f64) -> f64 {
     comfortable_m + 2.0 * off_m
@@ -184,7 +188,7 @@ mod tests {
 
     const STANDING: Point = Point::new(0.0, 0.0);
 
-    /// They come towards each other, 0.6 m apart to the side.
+    /// They approach each other with a lateral offset of 0.6 m.
     #[test]
     fn keeping_left_costs_more_and_both_agree() {
         let (robot, other) = (Point::new(4.0, 5.0), Point::new(5.0, 5.6));
@@ -236,7 +240,7 @@ mod tests {
         assert!(cost(&unsure, 6.0) < cost(&sure, 6.0));
     }
 
-    /// Looking ahead changes no cost, and leaves out all that is far away.
+    /// The precomputed distances change no cost, and exclude everything far away.
     #[test]
     fn what_does_not_matter_costs_nothing() {
         let walker = Foreseen { off_m: 0.1, off_mps: 0.2, off_mps2: 0.6, wall_s: 1.5, ..WALKER };
@@ -258,7 +262,7 @@ mod tests {
         }
     }
 
-    /// After 2 s: 0.3 m of its position, 0.4 m of its velocity, 1.17 m of what it accelerates.
+    /// After 2 s: 0.3 m from its position, 0.4 m from its velocity, 1.17 m from its acceleration.
     #[test]
     fn errors_add_up_in_squares() {
         let walker = Foreseen { off_m: 0.3, off_mps: 0.2, off_mps2: 0.6, ..WALKER };

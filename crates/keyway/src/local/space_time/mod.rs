@@ -1,81 +1,82 @@
-//! Keyway's own local planner: it looks for the course through space and time that brings the robot
-//! to the end of its route soonest, and begins to drive it.
+//! Keyway's own local planner. It searches for the space-time trajectory that brings the robot to
+//! the end of its route soonest, and executes the beginning of it.
 //!
 //! # The method
-//! In every cycle, from everything that is known and sensed:
+//! In every cycle, from the map and the sensor data:
 //!
-//! 1. **Cost to go.** What is left of the way to where the route leaves the surroundings is
-//!    computed for every place around the robot, on ground that is weighed by the room on it
-//!    (`cost_to_go.rs`). Ground on which movers walk, and around which the route leads, is blocked.
-//!    Where the robot cannot turn around everywhere on that way, so is what its heading costs, by
-//!    place and heading (`pose_cost.rs`): it turns before a narrow place, backs into a bay, and
-//!    leaves one that it cannot turn in.
-//! 2. **Search.** A course is a velocity at the end of each of K stretches; in between it changes
-//!    linearly. The W most promising courses are followed from stretch to stretch, as in a beam
-//!    search: each goes on with every pair of a few speeds and turn rates, and of those that lead
-//!    to nearly the same state only the best one is kept (`search.rs`). States from which the robot
-//!    could not brake along its arc are left out, and ways backwards over ground that it has not
-//!    seen.
-//! 3. **Polish.** The velocities of the best course are changed by small steps, one by one, as long
-//!    as that makes it better (`polish.rs`).
-//! 4. **Go on.** Where nothing moves, what is left of the last course, polished in the same way, is
-//!    taken unless the new one is better; by 0.3 s, where it passes something on the other side
-//!    (`commitment.rs`). So a side that was taken is kept.
-//! 5. **Command.** What the first cycle of the course asks for goes through the [stop
-//!    rule](StopRule) for what stands. When that refuses it, the search is made again among the
-//!    beginnings that it lets pass.
+//! 1. **Cost to go.** The remaining path length to the point where the route leaves the local
+//!    window is computed from every position around the robot, on ground that is weighted by its
+//!    clearance (`cost_to_go.rs`). Ground on which moving obstacles walk, and around which the
+//!    route leads, is blocked. If the robot cannot turn around everywhere along that path, the
+//!    cost of its heading is computed as well, by position and heading (`pose_cost.rs`): it turns
+//!    before a narrow passage, backs into a bay, and leaves one that it cannot turn in.
+//! 2. **Search.** A trajectory is given by the velocity at the end of each of K stretches; in
+//!    between the velocity changes linearly. The W most promising trajectories are extended from
+//!    stretch to stretch, as in a beam search: each is extended with every pair of a few speeds
+//!    and turn rates, and of those that lead to nearly the same state only the best one is kept
+//!    (`search.rs`). States from which the robot could not brake along its arc are pruned, and so
+//!    are backward motions over ground that it has not observed.
+//! 3. **Polish.** The velocities of the best trajectory are changed by small steps, one by one,
+//!    as long as that improves it (`polish.rs`).
+//! 4. **Continue.** If nothing moves, the rest of the last trajectory, polished in the same way,
+//!    is taken unless the new one is better; by 0.3 s, if the new one passes an obstacle on the
+//!    other side (`commitment.rs`). So the robot keeps to a side once chosen.
+//! 5. **Command.** The command of the first cycle of the trajectory passes the [stop
+//!    rule](StopRule) for stationary obstacles. If that refuses it, the search is repeated among
+//!    the beginnings that it admits.
 //!
-//! A course is worth the time until its end, the time to go from there, and what it costs on the
-//! way (`course.rs`, `meeting.rs`):
+//! The cost of a trajectory is its duration, the time to go from its end, and the penalties along
+//! it (`course.rs`, `meeting.rs`):
 //!
 //! | symbol | meaning | parameter | unit |
 //! |---|---|---|---|
-//! | H, K, W | horizon, stretches, courses that are followed (W / 2 where nothing moves) | `horizon_s`, `stretches`, `width` | s |
-//! | T | time of the course, and the time to go from its end | | s |
-//! | r, m | room around the footprint, and what the robot likes to have | `comfortable_m` | m |
+//! | H, K, W | horizon, stretches, trajectories that are extended (W / 2 if nothing moves) | `horizon_s`, `stretches`, `width` | s |
+//! | T | duration of the trajectory, and the time to go from its end | | s |
+//! | r, m | clearance around the footprint, and the preferred clearance | `comfortable_m` | m |
 //! | q | clearance: q times the integral of ((1 - r / m)² + 8 (1 - 5 r / m)²) abs(v) / `v_max`, where r < m, the second term where r < m / 5 | `discomfort` | |
-//! | u | steering: u times the integral of what the accelerations are of their limits, squared | `steering` | |
-//! | j | jerk: j times a stretch and the squared change of the acceleration, in parts of its limit, from that with which the last course goes on | `jerk` | |
-//! | n, p, a | movers: room, weight of a contact, what they accelerate (but by no more than their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
+//! | u | steering: u times the integral of the squared accelerations, in parts of their limits, a quarter of it for the linear one | `steering` | |
+//! | j | jerk: j times a stretch and the squared change of the acceleration from that of the last trajectory, in parts of its limit, a quarter of it for the linear one | `jerk` | |
+//! | n, p, a | moving obstacles: clearance, weight of a contact, acceleration (limited by their own speed) | `mover_room_m`, `contact`, `mover_acceleration_mps2` | m, , m/s² |
 //!
-//! The second term of q counts only as far as it is more than with the room that the robot has now,
-//! or, where it is slow, may use now: a tight place does not become wider because the robot stays
-//! in it.
+//! The second term of q counts only by its excess over the value at the robot's present clearance
+//! or, if the robot is slow, at the clearance that it may use now: a tight passage does not
+//! become wider because the robot stays in it.
 //!
-//! So there are no weights of heading, speed and distance to balance: what turns away from the way,
-//! drives slowly or takes a detour takes longer, and everything else is given as the time that it
-//! is worth.
+//! So there are no weights of heading, speed and distance to balance: a trajectory that turns
+//! away from the route, is slow or takes a detour takes longer, and everything else is expressed
+//! in seconds.
 //!
 //! # Source
-//! The parts are known: an exact cost to go inside of a dynamic window is that of \[Brock1999\]; a
-//! search through states and time that grows by short motions that the robot can drive, that of
-//! \[Fraichard1993\]; the beam is that of \[Lowerre1976\]. What is not theirs: all of it in every
-//! cycle, with the time to go in place of weights.
+//! The parts are known: an exact cost to go inside of a dynamic window is from \[Brock1999\]; a
+//! search through states and time that grows by short feasible motions, from \[Fraichard1993\];
+//! the beam is from \[Lowerre1976\]. New here: all of it in every cycle, with the time to go in
+//! place of weights.
 //!
-//! # What follows from it
-//! - **No contact with what stands and is seen**, with ideal motion: every command has passed the
-//!   stop rule, or is what that rule puts in its place. See there for the proof.
-//! - **No contact with what stands beyond what is seen**: it never drives faster than it can stop
-//!   within what it has seen free. On open ground that is [`Robot::sight_mps`]; where that is below
-//!   the robot's top speed, it is the top speed.
-//! - It does not stand in a narrow way because of how narrow it is: that of where it is costs
-//!   nothing.
-//! - It waits, makes way, backs up, turns around and passes behind something that moves where that
-//!   is the fastest way on; none of it is a rule of its own.
-//! - Nothing is promised about movers. They are expected to go on as they do, up to the next wall.
+//! # Properties
+//! - **No contact with observed stationary obstacles**, with ideal motion: every command has
+//!   passed the stop rule, or is the rule's substitute. See there for the proof.
+//! - **No contact with stationary obstacles beyond the observed space**: the robot never drives
+//!   faster than it can stop within observed free space. On open ground that speed is
+//!   [`Robot::sight_mps`]; if it is below the robot's top speed, it is the top speed.
+//! - The robot does not stop in a narrow passage because it is narrow: the clearance at its
+//!   present pose costs nothing.
+//! - It waits, gives way, backs up, turns around and passes behind a moving obstacle if that is
+//!   the fastest way to proceed; there is no special rule for any of these.
+//! - Nothing is guaranteed about moving obstacles. They are predicted to continue as they move,
+//!   up to the next wall.
 //!
-//! # Where it is not exact
-//! Room is that of points on the outline between the points of a grid (`room.rs`): exact at flat
-//! sides, to less than half a cell beside corners, and where the footprint is nearly too near to
-//! something its true distance. Only the first cycle, and how the robot would stop after it, are
-//! always judged exactly, by the stop rule.
+//! # Approximations
+//! Clearance is evaluated at points on the outline, interpolated between the points of a grid
+//! (`room.rs`): it is exact at flat sides and to less than half a cell beside corners, and the
+//! true distance is used if the footprint is nearly too close to an obstacle. Only the first
+//! cycle, and the braking after it, are always checked exactly, by the stop rule.
 //!
 //! # Errors / cost
-//! [`ConfigError`]; [`NoCommand`] when no course is free. Per cycle the surroundings, of `v_max` H
-//! to each side, are filled once. About W K 15 stretches are proposed; those that may be among the
-//! best are driven, or all where none leads on. Allocates nothing once the scratch is warm. The
-//! same scene gives the same command on any machine: nothing is random, and nothing depends on
-//! time.
+//! [`ConfigError`]; [`NoCommand`] if no trajectory is free. Per cycle the local window, of
+//! `v_max` H to each side, is filled once. About W K 15 stretches are proposed; those that may be
+//! among the best are simulated, or all if none of them is free. Allocates nothing once the
+//! scratch is warm. The same scene gives the same command on any machine: nothing is random, and
+//! nothing depends on wall-clock time.
 
 mod around;
 mod buckets;
@@ -121,7 +122,7 @@ use room::{Exact, Outline};
 use search::{Beam, Extent, Tally};
 use std::sync::Arc;
 
-/// The planner.
+/// The space-time planner.
 #[derive(Clone, Debug)]
 pub struct SpaceTime {
     config: SpaceTimeConfig,
@@ -131,19 +132,19 @@ pub struct SpaceTime {
     gate: StopRule,
 }
 
-/// What a decision works in.
+/// Working memory of a decision.
 #[derive(Debug, Default)]
 struct Work {
     around: Around,
     beam: Beam,
-    /// What is left of the last course.
+    /// Rest of the last trajectory.
     rest: Vec<Velocity>,
 }
 
-/// A course would touch something.
+/// Rejection: the trajectory would touch something.
 const CONTACT: &str = "contact";
 
-/// The stop rule does not let its first cycle pass.
+/// Rejection: the stop rule refuses its first cycle.
 const STOP_RULE: &str = "stop-rule";
 
 const RULES: [(&str, &str); 3] = [
@@ -153,21 +154,22 @@ const RULES: [(&str, &str); 3] = [
 ];
 
 impl SpaceTime {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "space-time";
 
-    /// Beside something a robot that is slower than the second part of its top speed may come nearer
-    /// by the first: it could not turn away otherwise.
+    /// Near an obstacle, a robot that is slower than the second fraction of its top speed may
+    /// reduce its clearance to the first fraction of the present one: it could not turn away
+    /// otherwise.
     const NEARER: [f64; 2] = [0.5, 0.2];
 
-    /// A heading that costs less is right \[s\].
+    /// A heading whose cost is below this is right \[s\].
     const TURNED_S: f64 = 0.3;
 
-    /// A planner for a robot.
+    /// Creates a planner for a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used, or the two do not fit together; the
-    /// error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid, or the two do
+    /// not fit together; the error names the field.
     pub fn new(config: SpaceTimeConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let robot = robot.into();
         let gate = StopRule::for_any_brakes(StopRuleConfig::for_robot(&robot), Arc::clone(&robot))?;
@@ -177,17 +179,17 @@ impl SpaceTime {
         Ok(Self { outline: Outline::of(&robot), rear, config, robot, gate })
     }
 
-    /// The robot that it drives.
+    /// The robot that is driven.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// As far as a course leads \[m\].
+    /// Largest length of a trajectory \[m\].
     fn reach_m(&self) -> f64 {
         self.robot.limits.v_max_mps * self.config.horizon_s
     }
 
-    /// What the first cycle of a course asks for.
+    /// Command of the first cycle of a trajectory.
     fn command(&self, scene: &Scene<'_>, first: Velocity, judge: &Judge<'_>) -> Velocity {
         let Robot { limits, cycle_s, .. } = &*self.robot;
         let asked = scene.velocity.lerp(first, cycle_s / judge.stretch_s);
@@ -196,7 +198,7 @@ impl SpaceTime {
         limits.reached(scene.velocity, asked, *cycle_s)
     }
 
-    /// How far and how wide it searches.
+    /// Size and resolution of the search.
     fn extent(&self, scene: &Scene<'_>, judge: &Judge<'_>) -> Extent {
         let SpaceTimeConfig { width, stretches, backwards, .. } = self.config;
         let width = if judge.meeting.movers.is_empty() { width.div_ceil(2) } else { width };
@@ -210,7 +212,7 @@ impl SpaceTime {
         }
     }
 
-    /// True if the stop rule lets the first cycle of a course pass.
+    /// True if the stop rule lets the first cycle of a trajectory pass.
     fn passes(
         &self,
         scene: &Scene<'_>,
@@ -219,14 +221,14 @@ impl SpaceTime {
         scratch: &mut Scratch,
     ) -> bool {
         let command = self.command(scene, first, judge);
-        // What its rear may be on is asked of every course.
+        // The observed space behind the robot is checked for every trajectory already.
         let seen = SeenCells { behind: None, ..scene.seen };
         let around = Surroundings { seen, ..Surroundings::standing(scene) };
         self.gate.lets_pass(&around, command, scratch)
     }
 
-    /// The best course whose first cycle the stop rule lets pass; empty when there is none. What is
-    /// left of the last course competes with what is found anew.
+    /// Finds the best trajectory whose first cycle the stop rule admits; empty if there is none.
+    /// The rest of the last trajectory competes with the new one.
     fn search(
         &self,
         scene: &Scene<'_>,
@@ -238,8 +240,8 @@ impl SpaceTime {
         let tally = beam.search(*start, judge, &extent, |_| true);
         let lowest_mps = extent.lowest_mps;
         let found_s = polish(&mut beam.best, start, judge, (&STEPS, lowest_mps));
-        // Movers do other things than they are expected to do: what was best a moment ago is not
-        // any more.
+        // Moving obstacles deviate from their prediction: the trajectory that was best a moment
+        // ago is not any more.
         if judge.meeting.movers.is_empty() {
             let rest_s = polish(rest, start, judge, (&FINEST, lowest_mps));
             let is_best = rest_s.is_finite()
@@ -255,7 +257,8 @@ impl SpaceTime {
         beam.search(*start, judge, &extent, passes)
     }
 
-    /// No course lasts longer, however its stretches are rounded \[s\].
+    /// Upper limit of the duration of a trajectory, including the rounding of its stretches
+    /// \[s\].
     fn farthest_s(&self) -> f64 {
         1.001 * self.config.horizon_s
     }
@@ -266,7 +269,7 @@ impl SpaceTime {
         Meeting { movers: &around.movers, comfortable_m: mover_room_m, contact, horizon_s }
     }
 
-    /// Where courses begin, and what they are judged by.
+    /// The initial state of trajectories, and the criteria by which they are judged.
     fn judge<'a>(
         &'a self,
         scene: &Scene<'a>,
@@ -284,8 +287,8 @@ impl SpaceTime {
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
         let [nearer, slow] = Self::NEARER;
         let is_slow = scene.velocity.v.abs() <= slow * self.robot.limits.v_max_mps;
-        // Who stands nearer may turn away, by which its tail comes nearer; who touches something
-        // has less than no room.
+        // A robot inside the margin may turn away, although its tail then comes nearer; one that
+        // touches something has a negative clearance.
         let nearest_m = (now_m - 1e-6).min(if is_slow { nearer * now_m } else { now_m });
         let mut judge = Judge {
             limits: &self.robot.limits,
@@ -307,11 +310,11 @@ impl SpaceTime {
             stretch_s: self.config.stretch_s(),
             remaining_m: scene.remaining_m,
         };
-        // Who has to turn elsewhere may have to leave the end of its way once more.
+        // A robot that has to turn elsewhere may have to leave the end of its route once more.
         if around.pose_cost.of(at, ahead).is_some_and(|heading_s| heading_s > Self::TURNED_S) {
             judge.remaining_m = f64::INFINITY;
         }
-        // No course need be longer than the way: near the end, stretches become finer.
+        // No trajectory needs to be longer than the route: near the end, stretches become finer.
         let shorter_s = judge.time_to_go_s(&start) / f64::from(self.config.stretches);
         let whole_s = judge.stretch_s;
         judge.stretch_s = shorter_s.clamp(self.robot.cycle_s, whole_s);
@@ -322,7 +325,7 @@ impl SpaceTime {
         (start, judge)
     }
 
-    /// The command, and the evidence for it.
+    /// The command, and the evaluation behind it.
     fn decided(
         &self,
         scene: &Scene<'_>,
@@ -351,8 +354,8 @@ impl SpaceTime {
     }
 }
 
-/// The same robot, no faster than it can stop within what its sensor surely sees, ahead and back.
-/// One that surely sees no farther than its own front creeps.
+/// The same robot, limited to the speed from which it can stop within the certain range of its
+/// sensor, ahead and backwards. If that range ends at its own front, it creeps.
 fn within_sight(robot: Arc<Robot>) -> Arc<Robot> {
     const CREEPING_MPS: f64 = 0.02;
     let sight_mps = robot.sight_mps().max(CREEPING_MPS);
@@ -369,13 +372,12 @@ fn local(frame: &GridFrame, point: Point) -> Point {
     frame.grid_from_world(point) * frame.resolution_m()
 }
 
-/// What is known of the stretches that were tried, and of the course that was chosen, which may
-/// begin with standing.
+/// The evaluation of the tried stretches and of the chosen trajectory, which may begin at rest.
 fn evaluation(tally: Tally, chosen: Option<&Total>, stands: bool) -> Evaluation {
     let comes_near = |total: &Total| total.cost.movers_s > Beam::MEETING_S;
     let near_mover = tally.meets && chosen.is_some_and(comes_near);
-    // To come near to something that moves takes time, and is not forbidden. Where the best course
-    // stands because of it, all that lead on are not driven because of it.
+    // Coming near to a moving obstacle costs time, and is not forbidden. If the best trajectory
+    // waits because of it, all driving ones count as rejected because of it.
     let waiting = if near_mover && stands { tally.driving } else { 0 };
     let mut rejected = Rejections::none_by(&RULES);
     rejected.add_many(CONTACT, tally.touching);
@@ -391,9 +393,9 @@ fn evaluation(tally: Tally, chosen: Option<&Total>, stands: bool) -> Evaluation 
     }
 }
 
-/// What a course costs, by reason; less is better.
+/// Costs of a trajectory by reason; less is better.
 fn shares(total: &Total) -> Shares {
-    // Of 0 that is 0, without a sign.
+    // A raw value of 0 gives 0 without a sign.
     let share =
         |term: &'static str, raw: f64| Share { term: term.into(), raw, weighted: 0.0 - raw };
     Shares::from_iter([

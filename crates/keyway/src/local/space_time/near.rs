@@ -1,27 +1,27 @@
-//! The points of a lattice that are near a way.
+//! The points of a lattice that are near a path.
 
 use super::lattice::Lattice;
 use crate::geometry::Point;
 use arrayvec::ArrayVec;
 
-/// Points near a way, numbered. Each has a place in a grid with a border, so that a step from it is
-/// always on the grid.
+/// Points near a path, numbered. Each has a place in a grid with a border, so that a step from it
+/// is always on the grid.
 #[derive(Debug, Default)]
 pub(super) struct Near {
     pub(super) lattice: Lattice,
-    /// The number of each place; `NONE` where there is none.
+    /// Number of the point at each place; `NONE` if there is none.
     numbers: Vec<u32>,
-    /// The place of each point.
+    /// Place of each point.
     places: Vec<u32>,
 }
 
 const NONE: u32 = u32::MAX;
 
-/// No step is longer, along an axis.
+/// Width of the border: the longest step along an axis.
 const BORDER: usize = 2;
 
 impl Near {
-    /// Collects the points that are no farther than this from a way.
+    /// Collects the points that are no farther than this from a path.
     pub(super) fn collect(&mut self, lattice: Lattice, way: &[Point], within_m: f64) {
         self.lattice = lattice;
         self.numbers.clear();
@@ -49,17 +49,17 @@ impl Near {
         }
     }
 
-    /// The number of points.
+    /// Number of points.
     pub(super) const fn count(&self) -> usize {
         self.places.len()
     }
 
-    /// The places of all of them, in the order of their numbers.
+    /// Places of all points, in the order of their numbers.
     pub(super) fn places(&self) -> &[u32] {
         &self.places
     }
 
-    /// The number of places.
+    /// Number of places.
     pub(super) const fn place_count(&self) -> usize {
         self.numbers.len()
     }
@@ -78,18 +78,18 @@ impl Near {
         (place % self.stride() - BORDER, place / self.stride() - BORDER)
     }
 
-    /// The number of the point at a place, if one is near the way.
+    /// Number of the point at a place, if one is near the path.
     #[inline]
     pub(super) fn number(&self, place: usize) -> Option<usize> {
         Some(self.numbers[place]).filter(|&number| number != NONE).map(|number| number as usize)
     }
 
-    /// From a place to the one that is so many columns and rows away.
+    /// Offset from a place to the one this many columns and rows away.
     pub(super) const fn step(&self, (columns, rows): (i32, i32)) -> isize {
         rows as isize * self.stride() as isize + columns as isize
     }
 
-    /// The numbers of those around a position, whose squares it lies in or beside.
+    /// Numbers of the points around a position, in or beside whose squares it lies.
     pub(super) fn around(&self, at: Point) -> impl Iterator<Item = usize> + use<> {
         let [columns, rows] = self.lattice.within(self.lattice.place(at), 1.0);
         let places = rows.flat_map(|y| columns.clone().map(move |x| self.place((x, y))));

@@ -1,13 +1,13 @@
-//! Makes a course better by small changes of one velocity after the other.
+//! Improves a trajectory by small changes of one velocity after the other.
 
 use super::course::{Cost, Judge, State};
 use crate::geometry::Velocity;
 
-/// What a whole course costs, by reason.
+/// Cost of a whole trajectory, by reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Total {
     pub(super) cost: Cost,
-    /// Its time, and the time to go after it \[s\].
+    /// Duration, including the time to go after it \[s\].
     pub(super) time_s: f64,
 }
 
@@ -16,13 +16,13 @@ impl Total {
         self.time_s + self.cost.sum_s()
     }
 
-    /// That of a course from a state, up to where it arrives; `None` where it touches something.
+    /// Cost of a trajectory from a state, up to its arrival; `None` if it touches something.
     pub(super) fn of(start: &State, course: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
         Self::below(f64::INFINITY, &Begun::at(start), course, judge)
     }
 
-    /// That of a course that goes on; also `None` where it is `most_s` and more. Mostly that is
-    /// known from where the course leads, without looking at what is there.
+    /// Cost of a trajectory that continues; also `None` if it is `most_s` or more. That mostly
+    /// follows from its end state, without checking the surroundings.
     fn below(most_s: f64, begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> Option<Self> {
         let (least, stretches) = Self::least(begun, rest, judge);
         let spare_s = most_s - least.sum_s();
@@ -41,8 +41,8 @@ impl Total {
         (total.sum_s() < most_s).then_some(total)
     }
 
-    /// That of a course that goes on if its way costs nothing, and how many stretches it has up to
-    /// where it arrives.
+    /// Cost of a trajectory that continues, without the cost of the surroundings, and its number
+    /// of stretches up to its arrival.
     fn least(begun: &Begun, rest: &[Velocity], judge: &Judge<'_>) -> (Self, usize) {
         let Begun { mut state, mut cost } = *begun;
         let (mut left_s, mut stretches) = (judge.time_to_go_s(&state), 0);
@@ -58,7 +58,7 @@ impl Total {
     }
 }
 
-/// A course up to the beginning of one of its stretches.
+/// A trajectory up to the beginning of one of its stretches.
 #[derive(Clone, Copy, Debug)]
 struct Begun {
     state: State,
@@ -71,20 +71,20 @@ impl Begun {
     }
 }
 
-/// Steps of the changes, as parts of what the velocity can change in a stretch.
+/// Steps of the changes, as fractions of the largest velocity change in a stretch.
 pub(super) const STEPS: [f64; 3] = [0.25, 0.1, 0.04];
 
-/// Of a course that has been polished before.
+/// Steps for a trajectory that has been polished before.
 pub(super) const FINEST: [f64; 1] = [STEPS[2]];
 
-/// Sums of the same costs in another order differ by less \[s\].
+/// Upper bound of the rounding of a sum of the same costs in another order \[s\].
 const ROUNDING_S: f64 = 1e-9;
 
-/// Less is no gain \[s\].
+/// A smaller gain does not count \[s\].
 const LEAST_GAIN_S: f64 = 1e-9;
 
-/// Changes the velocities of a course, by smaller and smaller steps, where that makes it better.
-/// What it costs then \[s\]; infinite when it touches something, or there is none.
+/// Changes the velocities of a trajectory, by smaller and smaller steps, if that improves it.
+/// Returns its final cost \[s\]; infinite if it touches something, or is empty.
 pub(super) fn polish(
     course: &mut [Velocity],
     start: &State,
@@ -108,8 +108,8 @@ pub(super) fn polish(
     best_s
 }
 
-/// Changes the first of the velocities with which a course goes on, by a part of what it can
-/// change: to the better one of two opposite sides.
+/// Changes the first of the remaining velocities by a fraction of its largest change, to the
+/// better of two opposite sides.
 fn polish_at(
     rest: &mut [Velocity],
     begun: &Begun,
@@ -138,8 +138,8 @@ fn polish_at(
     }
 }
 
-/// True if the robot could stop at the end of each stretch of a free course, up to where it
-/// arrives.
+/// True if the robot could stop at the end of each stretch of a free trajectory, up to its
+/// arrival.
 pub(super) fn can_stop(start: &State, course: &[Velocity], judge: &Judge<'_>) -> bool {
     let mut state = *start;
     for &to in course {

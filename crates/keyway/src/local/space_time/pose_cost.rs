@@ -1,19 +1,19 @@
-//! The cost of a heading where the robot cannot turn everywhere: the time to go of places and
-//! headings, less that of places.
+//! The cost of a heading if the robot cannot turn everywhere: the time to go by position and
+//! heading, less that by position.
 //!
-//! In the open, a robot turns on its way and what is left is that of a point. In a
-//! narrow place it is not: a robot that stands nose first in a bay has to get out of it to turn
-//! around, and one that is to stand there tail first turns before it. This finds the least time from
-//! every place and heading near the way ahead to its end, of motions on a lattice: turning on the
-//! spot, ahead and, where the robot can, back, each straight on or with a turn to the next heading.
-//! A place is free at a heading where the footprint fits somewhere in the lattice's square around
-//! it, at that heading or half-way to the next ones. The time without headings is found on the same
-//! lattice, so that what the lattice adds is in both.
+//! On open ground, a robot turns while it drives, and its time to go is that of a point. In a
+//! narrow passage it is not: a robot that is nose first in a bay has to leave it to turn around,
+//! and one that is to be there tail first turns before it. This computes the least time from
+//! every position and heading near the path ahead to its end, over motions on a lattice: turning
+//! on the spot, ahead and, if the robot can, back, each straight on or with a turn to the next
+//! heading. A place is free at a heading if the footprint fits somewhere in the lattice's square
+//! around it, at that heading or halfway to the next ones. The time without headings is computed
+//! on the same lattice, so that both contain the same discretization error.
 //!
 //! # Cost
-//! Nothing for round robots, nor where the robot can turn everywhere on the way that it takes.
-//! Otherwise linear in the places near that way, 32 headings each; headings are free or not only
-//! where the search comes to.
+//! None for round robots, nor if the robot can turn everywhere along its path. Otherwise linear
+//! in the places near that path, with 32 headings each; headings are checked only at places that
+//! the search reaches.
 
 use super::cost_to_go::CostToGo;
 use super::fitting::{Fitting, Ground};
@@ -23,14 +23,14 @@ use super::pose_times::{HEADING_RAD, HEADINGS, Motions, PoseTimes, STEP_TICKS, W
 use crate::geometry::Point;
 use crate::robot::Limits;
 
-/// Values of the places near the way.
+/// Costs of headings at the places near the path.
 #[derive(Debug, Default)]
 pub(super) struct PoseCost {
     near: Near,
     fitting: Fitting,
     times: PoseTimes,
     tick_s: f64,
-    /// The cost of a heading that leads nowhere \[s\].
+    /// Cost of a heading from which no path exists \[s\].
     most_s: f64,
     is_active: bool,
     way: Vec<Point>,
@@ -44,7 +44,7 @@ pub(super) struct Driven<'a> {
 }
 
 impl PoseCost {
-    /// Takes a lattice in, and looks whether headings matter on the way from the robot.
+    /// Takes a lattice, and determines if headings matter along the path from the robot.
     pub(super) fn fill(
         &mut self,
         (lattice, cost_to_go): (Lattice, &CostToGo),
@@ -72,12 +72,12 @@ impl PoseCost {
         self.is_active = true;
     }
 
-    /// True if headings matter somewhere on the way.
+    /// True if headings matter somewhere along the path.
     pub(super) const fn is_active(&self) -> bool {
         self.is_active
     }
 
-    /// Follows the way of a point from the robot to the end.
+    /// Follows the path of a point from the robot to the end.
     fn follow(&mut self, (lattice, cost_to_go): (&Lattice, &CostToGo), robot: Point, end: Point) {
         self.way.clear();
         let step_m = lattice.spacing_m;
@@ -98,8 +98,8 @@ impl PoseCost {
         self.way.push(end);
     }
 
-    /// The cost of a heading at a place, a direction of length 1 \[s\]; `None` where headings do
-    /// not matter, or away from the way.
+    /// Cost of a heading at a position, given as a direction of length 1 \[s\]; `None` if
+    /// headings do not matter, or away from the path.
     pub(super) fn of(&self, at: Point, ahead: Point) -> Option<f64> {
         if !self.is_active {
             return None;
@@ -139,9 +139,9 @@ impl PoseCost {
         if known <= 0.0 {
             return None;
         }
-        // Weights that are hardly any are rounding.
+        // Tiny weights are rounding errors.
         let heading_s = if weights > 1e-3 { sum_s / weights } else { self.most_s };
-        // What rounding adds must not decide between two courses.
+        // Rounding must not decide between two trajectories.
         Some(f64::from(heading_s as f32))
     }
 }

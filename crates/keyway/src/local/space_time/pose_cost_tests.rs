@@ -22,7 +22,7 @@ fn hall_and_lane() -> DistanceField {
     DistanceField::new(&frame, map.occupied(), &FieldConfig::default())
 }
 
-/// That of a robot of 0.8 m x 0.4 m at a place, whose way ends at another one.
+/// Cost of headings for a robot of 0.8 m x 0.4 m at a position, for a path to another one.
 fn pose_cost(robot: &Robot, from: Point, end: WayEnd) -> PoseCost {
     let field = hall_and_lane();
     let lattice = Lattice::around(field.frame(), from, 3.0, CELL_M);
@@ -72,7 +72,7 @@ fn backwards_through_a_lane_takes_as_long_as_the_drive_back() {
     assert!(cost.of(from, AHEAD).unwrap() < 0.05);
     let back_s = cost.of(from, BACK).unwrap();
     assert!((back_s - 1.5).abs() < 0.15, "{back_s}");
-    // Who cannot reverse has to leave the lane, to turn, and to come back.
+    // A robot that cannot reverse has to leave the lane, to turn, and to come back.
     let cost = pose_cost(&robot(0.0), from, end);
     let around_s = cost.of(from, BACK).unwrap();
     assert!(around_s > 3.0 + 2.0 * 0.5, "{around_s}");
@@ -103,7 +103,7 @@ fn in_the_open_and_for_a_disc_headings_do_not_matter() {
     assert!(!pose_cost(&disc, Point::new(3.5, 3.0), end).is_active());
 }
 
-/// For the slowest turner, too, the headings at the end are those from which the way goes on.
+/// For the slowest turner, too, the headings at the end are those in which the path continues.
 #[test]
 fn a_slow_turner_is_not_lost_at_the_end_of_the_way() {
     let mut slow = robot(0.0);
@@ -112,7 +112,7 @@ fn a_slow_turner_is_not_lost_at_the_end_of_the_way() {
     let cost = pose_cost(&slow, from, WayEnd { at: end, facing: Facing::On(0.0) });
     assert!(cost.of(from, AHEAD).unwrap() < 0.05);
     assert!(cost.of(from, BACK).unwrap() > 5.0);
-    // Backwards to the end: that costs what it costs there to turn on, and the drive back.
+    // Backwards to the end: the cost is that of turning there, and of the drive back.
     slow.limits.v_min_mps = -0.5;
     let (from, end) = (Point::new(3.6, 3.0), Point::new(4.6, 3.0));
     let cost = pose_cost(&slow, from, WayEnd { at: end, facing: Facing::On(0.0) });

@@ -1,11 +1,11 @@
-//! The least times from places, and from places and headings, to the end of a way.
+//! Least times from places, and from places and headings, to the end of a path.
 //!
-//! There are few lengths of motions, and what is done at a time is kept together. So what is
-//! reached at a time is found from what was done so many ticks before, for each length, and nothing
-//! is ever reached twice: no queue, and a bit for each pose.
+//! There are few durations of motions, and the poses settled at a time are stored together. So
+//! the poses reached at a time are found from those settled the right number of ticks before, for
+//! each duration, and no pose is reached twice: no queue, and a bit for each pose.
 //!
 //! # Source
-//! Dijkstra's search, from the end on; by places with buckets \[Dial1969\].
+//! Dijkstra's search, backwards from the end; by places with buckets \[Dial1969\].
 
 use super::fitting::{Fitting, Ground, Sectors};
 use super::near::Near;
@@ -20,48 +20,48 @@ pub(super) struct PoseTimes {
     by_pose: Vec<[u16; HEADINGS]>,
     by_place: Vec<u16>,
     buckets: Buckets,
-    /// The free headings at each place that are not reached.
+    /// The free headings at each place that are not reached yet.
     open: Vec<Sectors>,
-    /// The poses that are done: all of them, and by kinds of steps that lead to them.
+    /// The settled poses: all of them, and by kinds of steps that lead to them.
     all: Done,
     along: [Done; KINDS],
-    /// The poses at the end of the way, by their times.
+    /// The poses at the end of the path, by their times.
     ends: Vec<(u16, u32, Sectors)>,
 }
 
-/// The end of the way, and how to face there.
+/// The end of the path, and the required heading there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WayEnd {
     pub(super) at: Point,
     pub(super) facing: Facing,
 }
 
-/// The heading at the end of the way \[rad\], from the x axis of the lattice on.
+/// Heading at the end of the path \[rad\], from the x axis of the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Facing {
     /// Any heading is right.
     Any,
-    /// At the goal.
+    /// Heading at the goal.
     At(f64),
-    /// The way goes on in this direction.
+    /// The path continues in this direction.
     On(f64),
-    /// The way goes on backwards, and the robot cannot turn any more.
+    /// The path continues backwards, and the robot cannot turn any more.
     Back(f64),
 }
 
-/// The headings of a search.
+/// Number of headings of a search.
 pub(super) const HEADINGS: usize = Sectors::BITS as usize;
 
-/// Between two headings \[rad\].
+/// Angle between two headings \[rad\].
 pub(super) const HEADING_RAD: f64 = TAU / HEADINGS as f64;
 
 /// Angles that differ by less are the same \[rad\].
 const ROUNDING_RAD: f64 = 1e-6;
 
-/// Not reached.
+/// Marks a place or pose that is not reached.
 const NEVER: u16 = u16::MAX;
 
-/// Later times are as good as none.
+/// Time at which the search ends.
 const END: u16 = NEVER - 2 * Done::TICKS as u16;
 
 /// Ticks of a step to the next point ahead.
@@ -70,7 +70,7 @@ pub(super) const STEP_TICKS: f64 = 4.0;
 /// Ticks of a step ahead, by kinds.
 const AHEAD: [u16; KINDS] = [4, 9, 6];
 
-/// Points of the lattice that a robot comes to next, in 16 directions.
+/// Steps to the next points of the lattice, in 16 directions.
 const STEPS: [(i32, i32); 16] = [
     (1, 0),
     (2, 1),
@@ -99,8 +99,8 @@ const fn kind(direction: usize) -> usize {
 }
 
 impl PoseTimes {
-    /// Finds the times to the end of a way of everything near it, in ticks. Looks at all points that
-    /// are reached.
+    /// Computes the times, in ticks, to the end of a path from everything near it. Evaluates all
+    /// points that are reached.
     pub(super) fn fill(
         &mut self,
         (near, fitting): (&Near, &mut Fitting),
@@ -115,12 +115,12 @@ impl PoseTimes {
         self.grow_poses(near, fitting, motions, end);
     }
 
-    /// The time from a place, in any direction; `None` where no way leads on.
+    /// Time from a place, in any direction; `None` if no path exists.
     pub(super) fn of_place(&self, number: usize) -> Option<u16> {
         Some(self.by_place[number]).filter(|&ticks| ticks != NEVER)
     }
 
-    /// The time from a place and a heading.
+    /// Time from a place and a heading.
     pub(super) fn of_pose(&self, number: usize, heading: usize) -> Option<u16> {
         Some(self.by_pose[number][heading]).filter(|&ticks| ticks != NEVER)
     }
@@ -131,7 +131,8 @@ impl PoseTimes {
         all.filter(|&ticks| ticks != NEVER).max().unwrap_or_default()
     }
 
-    /// Times of places: those around the end, whatever is there, and others where something fits.
+    /// Computes the times of places: those around the end unconditionally, others if some heading
+    /// fits.
     fn grow_places(&mut self, near: &Near, end: Point, mut fits: impl FnMut(usize) -> bool) {
         self.by_place.clear();
         self.by_place.resize(near.count(), NEVER);
@@ -157,7 +158,7 @@ impl PoseTimes {
         }
     }
 
-    /// Times of poses.
+    /// Computes the times of poses.
     fn grow_poses(&mut self, near: &Near, fitting: &Fitting, motions: &Motions, end: &WayEnd) {
         self.by_pose.clear();
         self.by_pose.resize(near.count(), [NEVER; HEADINGS]);
@@ -195,7 +196,7 @@ impl PoseTimes {
         }
     }
 
-    /// Collects the poses at the end of the way.
+    /// Collects the poses at the end of the path.
     fn begin_at_ends(&mut self, near: &Near, motions: &Motions, end: &WayEnd) {
         self.ends.clear();
         for number in near.around(end.at) {
@@ -207,7 +208,7 @@ impl PoseTimes {
         self.ends.sort_unstable();
     }
 
-    /// Reaches the headings from which the robot turns to those that were done a turn before.
+    /// Reaches the headings from which the robot turns to those settled one turn before.
     fn turn_to(&mut self, now: u16, (near, fitting): (&Near, &Fitting), motions: &Motions) {
         for index in self.all.before(now, motions.turn) {
             let Pose { place, heading, .. } = self.all.get(index);
@@ -218,8 +219,8 @@ impl PoseTimes {
         }
     }
 
-    /// Reaches the poses from which the robot comes by a step of a kind to those that were done so
-    /// many ticks before; on the way it may turn to the next heading, if that does not take longer.
+    /// Reaches the poses from which the robot drives a step of a kind to those settled this many
+    /// ticks before; meanwhile it may turn to the next heading, if that does not take longer.
     fn step_to(
         &mut self,
         now: u16,
@@ -284,12 +285,12 @@ struct Pose {
 struct Done {
     /// Place << 9 | heading << 4 | direction.
     poses: Vec<u32>,
-    /// Their number at the end of each of the last ticks.
+    /// Number of poses at the end of each of the last ticks.
     ends: Vec<u32>,
 }
 
 impl Done {
-    /// More than those of the longest motion.
+    /// More ticks than the longest motion takes.
     const TICKS: usize = 512;
 
     fn clear(&mut self) {
@@ -313,12 +314,12 @@ impl Done {
         Pose { place: packed >> 9, heading: packed >> 4 & 31, direction: packed & 15 }
     }
 
-    /// No more comes at this time.
+    /// Closes a time: no more poses are added to it.
     fn end(&mut self, now: u16) {
         self.ends[usize::from(now) % Self::TICKS] = self.poses.len() as u32;
     }
 
-    /// Those that were done so many ticks before.
+    /// The poses settled this many ticks before.
     fn before(&self, now: u16, ticks: u16) -> Range<usize> {
         let Some(then) = now.checked_sub(ticks) else { return 0..0 };
         let end = |at: u16| self.ends[usize::from(at) % Self::TICKS] as usize;
@@ -326,7 +327,7 @@ impl Done {
     }
 }
 
-/// Places that wait for their time.
+/// Waiting places, by time.
 #[derive(Debug, Default)]
 struct Buckets {
     waiting: Vec<Vec<u32>>,
@@ -347,7 +348,7 @@ impl Buckets {
         self.count += 1;
     }
 
-    /// The place that comes first, and its time. At the end it begins anew.
+    /// Removes the earliest place, and returns it with its time. Resets itself at the end.
     fn pop(&mut self) -> Option<(u16, usize)> {
         while self.count > 0 && self.now < END {
             if let Some(what) = self.waiting[usize::from(self.now) % Self::COUNT].pop() {
@@ -362,18 +363,18 @@ impl Buckets {
     }
 }
 
-/// Costs of motions, in ticks.
+/// Durations of motions, in ticks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motions {
-    /// To the next heading.
+    /// Turn to the next heading.
     turn: u16,
     can_reverse: bool,
-    /// A step back, by kinds.
+    /// Step back, by kinds.
     back: [u16; KINDS],
 }
 
 impl Motions {
-    /// Those of a robot, in ticks of `tick_s`.
+    /// Durations for a robot, in ticks of `tick_s`.
     pub(super) fn new(limits: &Limits, can_reverse: bool, tick_s: f64) -> Self {
         let Limits { v_max_mps, v_min_mps, omega_max_radps, .. } = *limits;
         let ticks = |time_s: f64| (time_s / tick_s).round().clamp(1.0, 255.0) as u16;
@@ -383,13 +384,12 @@ impl Motions {
         Self { turn, can_reverse, back }
     }
 
-    /// That of the longest motion.
+    /// Duration of the longest motion.
     fn longest(&self) -> u16 {
         self.back.into_iter().chain(AHEAD).fold(self.turn, u16::max)
     }
 
-    /// The time that is left at the end of the way at a heading; `None` where the way does not end
-    /// there.
+    /// Time to go at the end of the path at a heading; `None` if the path does not end there.
     fn at_end(&self, heading: usize, facing: Facing) -> Option<u16> {
         let off_rad = |wanted_rad: f64| wrap_angle(HEADING_RAD * heading as f64 - wanted_rad).abs();
         match facing {
@@ -400,7 +400,7 @@ impl Motions {
             Facing::Back(wanted_rad) => {
                 (off_rad(wanted_rad) <= FRAC_PI_4 + ROUNDING_RAD).then_some(0)
             }
-            // About as far aside it goes on as well.
+            // The path continues equally well up to this angle aside.
             Facing::On(wanted_rad) => {
                 let aside_rad = (off_rad(wanted_rad) - FRAC_PI_4).max(0.0);
                 let ticks = (aside_rad / HEADING_RAD).round() as u16 * self.turn;

@@ -9,7 +9,7 @@ use crate::robot::Robot;
 
 const SIDE: usize = 13;
 
-/// All points of a small lattice, a way through its middle, and its middle.
+/// All points of a small lattice, a path through its middle, and its middle.
 fn everywhere() -> (Near, Point) {
     let frame = GridFrame::new(20, 20, 1.0, WorldPose::default()).unwrap();
     let middle = Point::new(10.5, 10.5);
@@ -21,7 +21,7 @@ fn everywhere() -> (Near, Point) {
     (near, middle)
 }
 
-/// By the definition: what leads to a pose in how many ticks.
+/// By definition: the poses that lead to a pose, with their ticks.
 fn relaxed(
     near: &Near,
     fitting: &Fitting,
@@ -80,7 +80,7 @@ fn relaxed(
 fn times_are_those_of_the_relaxation_of_all_motions() {
     let (near, middle) = everywhere();
     let mut random = Random::new(46);
-    // The same memory for all: nothing of the one before may be left.
+    // The same memory for all: nothing of the previous one may be left.
     let mut times = PoseTimes::default();
     for round in 0..40 {
         let mut bits = |share: f64| {

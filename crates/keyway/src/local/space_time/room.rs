@@ -1,4 +1,4 @@
-//! How much room a footprint has: nearly, and fast.
+//! Clearance of a footprint: approximate, and fast.
 
 use super::lattice::Lattice;
 use crate::geometry::{Point, Pose};
@@ -7,7 +7,7 @@ use crate::map::{Cell, DistanceField};
 use crate::robot::{Footprint, Robot};
 use std::f64::consts::SQRT_2;
 
-/// Distances to what stands around the robot, and to the border of the map.
+/// Distances to the obstacles around the robot, and to the border of the map.
 #[derive(Debug, Default)]
 pub(super) struct Room {
     lattice: Lattice,
@@ -15,15 +15,14 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Between points that are a metre apart, an interpolated distance is too large by no more than
-    /// this, which it is at the corner of a square in the middle between four points \[m\].
+    /// Largest excess of an interpolated distance between points that are a metre apart; it
+    /// occurs at the corner of a square in the middle between four points \[m\].
     const EXCESS: f64 = 0.427;
 
-    /// Takes the distances at the points of a lattice; 0 and less outside the map.
+    /// Fills in the distances at the points of a lattice; 0 and less outside the map.
     ///
-    /// Where cells are divided, the robot is not larger than what interpolation does not see.
-    /// There, up to `enough_m`, distances are made so much smaller that none in between is too
-    /// large.
+    /// If cells are divided, the robot is no larger than the error of interpolation. Distances up
+    /// to `enough_m` are then reduced so that no interpolated one is too large.
     pub(super) fn fill(&mut self, lattice: Lattice, obstacles: &DistanceField, enough_m: f64) {
         self.lattice = lattice;
         self.distances_m.clear();
@@ -51,7 +50,8 @@ impl Room {
         }
     }
 
-    /// A row of points that are centres of cells: those before the map, on it, and after it.
+    /// Fills in a row of points that are centres of cells: those before the map, on it, and after
+    /// it.
     fn fill_row(&mut self, y: usize, obstacles: &DistanceField) {
         let (lattice, frame) = (self.lattice, obstacles.frame());
         let Cell { x: low, y: row } = lattice.cell(0, y);
@@ -87,14 +87,14 @@ impl Room {
         self.distances_m.extend((end..lattice.side).map(outside));
     }
 
-    /// By how much distances between the points may be too small \[m\]: in the middle of four of
-    /// them, on a narrow way.
+    /// Largest deficit of distances between the points \[m\]: in the middle of four of them, in a
+    /// narrow passage.
     fn too_small_by_m(&self) -> f64 {
         let reduced = if self.lattice.is_of_centres() { 0.0 } else { Self::EXCESS };
         (0.5 * SQRT_2 + reduced) * self.lattice.spacing_m
     }
 
-    /// Distance of the points \[m\].
+    /// Spacing of the points \[m\].
     pub(super) const fn spacing_m(&self) -> f64 {
         self.lattice.spacing_m
     }
@@ -107,15 +107,15 @@ impl Room {
         Self { lattice, distances_m: vec![9.0; lattice.count()] }
     }
 
-    /// Distance of a point to what stands \[m\], interpolated.
+    /// Distance of a point to obstacles \[m\], interpolated.
     #[inline]
     pub(super) fn of_point(&self, at: Point) -> f64 {
         self.lattice.value(&self.distances_m, at)
     }
 }
 
-/// Distance of the centre of a cell to what stands and to the border \[m\]; below 0 outside the
-/// map, and half a cell below where something stands, so that the distance in between is 0 at its
+/// Distance of the centre of a cell to obstacles and to the border \[m\]; below 0 outside the
+/// map, and minus half a cell in an occupied cell, so that the interpolated distance is 0 at its
 /// side.
 fn of_centre_m(cell: Cell, obstacles: &DistanceField) -> f64 {
     let frame = obstacles.frame();
@@ -129,7 +129,7 @@ fn of_centre_m(cell: Cell, obstacles: &DistanceField) -> f64 {
     obstacles.half_cells_sq(cell).map_or(border_m, to_square).min(border_m)
 }
 
-/// The same of any point along the axes of the cells.
+/// The same for any point along the axes of the cells.
 fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
     let frame = obstacles.frame();
     let cell_m = frame.resolution_m();
@@ -140,8 +140,8 @@ fn exact_m(at: Point, obstacles: &DistanceField, enough_m: f64) -> f64 {
     obstacles.clearance().of_point(world, enough_m).min(border_m)
 }
 
-/// The footprint itself, where points and what is between them are too rough: in the middle of a
-/// narrow way, whose sides are nearer to the points beside it.
+/// The footprint itself, for poses at which interpolation is too rough: in the middle of a narrow
+/// passage whose sides are nearer to the points beside it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exact<'a> {
     pub(super) footprint: &'a Footprint,
@@ -149,8 +149,8 @@ pub(super) struct Exact<'a> {
 }
 
 impl Exact<'_> {
-    /// Room between the footprint and what stands \[m\], up to `enough_m`; 0 where it touches. What
-    /// rounding adds is taken away again: it must not decide between two courses.
+    /// Clearance between the footprint and obstacles \[m\], up to `enough_m`; 0 on contact. The
+    /// result is rounded: rounding errors must not decide between two trajectories.
     fn room_m(&self, (at, ahead): (Point, Point), enough_m: f64) -> f64 {
         let (frame, clearance) = (self.obstacles.frame(), self.obstacles.clearance());
         let world = frame.world_from_grid(at * frame.resolution_m().recip());
@@ -165,22 +165,22 @@ impl Exact<'_> {
 /// A footprint as points on its outline.
 #[derive(Clone, Debug)]
 pub(super) struct Outline {
-    /// In their order, the first one again at the end; none for a disc.
+    /// In order, with the first one repeated at the end; empty for a disc.
     points: Vec<Point>,
-    /// No two successive ones are farther apart \[m\].
+    /// Upper limit of the distance between successive points \[m\].
     spacing_m: f64,
     pub(super) inscribed_m: f64,
     pub(super) circumscribed_m: f64,
 }
 
 impl Outline {
-    /// Distance of two points on the outline, in inscribed radii.
+    /// Distance between two points on the outline, in inscribed radii.
     pub(super) const SPACING: f64 = 0.6;
 
-    /// Less room than this, in inscribed radii, is looked for between the points, too.
+    /// Below this clearance, in inscribed radii, the outline is also checked between the points.
     const NEAR: f64 = 0.25;
 
-    /// Interpolated distances change by no more than this per metre: by one along each axis.
+    /// Largest slope of interpolated distances per metre: one along each axis.
     const STEEPEST: f64 = SQRT_2;
 
     pub(super) fn of(robot: &Robot) -> Self {
@@ -194,15 +194,15 @@ impl Outline {
         }
     }
 
-    /// No part of the footprint moves farther in a turn by a radian \[m\]; 0 for a disc, which
-    /// covers the same ground.
+    /// Largest motion of any part of the footprint in a turn by a radian \[m\]; 0 for a disc,
+    /// which covers the same ground.
     pub(super) fn swing_m(&self) -> f64 {
         if self.points.is_empty() { 0.0 } else { self.circumscribed_m }
     }
 
-    /// Room between the footprint and what stands \[m\]. Less than `least_m` is not told apart, nor
-    /// is more than `enough_m`. Negative where it touches. The footprint is at `at` and faces
-    /// `ahead`, a direction of length 1.
+    /// Clearance between the footprint and obstacles \[m\]. Values below `least_m` are not
+    /// distinguished, nor are those above `enough_m`. Negative on contact. The footprint is at
+    /// `at` and faces `ahead`, a direction of length 1.
     #[inline]
     pub(super) fn room_m(
         &self,
@@ -232,8 +232,8 @@ impl Outline {
         }
     }
 
-    /// The same, exact where the footprint is nearly too near to something: where less than
-    /// `least_m` would be found, or not much more.
+    /// The same, but exact if the footprint is nearly too close to something: if the approximate
+    /// value would be below `least_m`, or not much more.
     pub(super) fn exact_room_m(
         &self,
         (room, exact): (&Room, Exact<'_>),
@@ -251,8 +251,8 @@ impl Outline {
         }
     }
 
-    /// The least of the distances along the outline; less than the first bound is not told apart,
-    /// nor is more than the second.
+    /// The least of the distances along the outline. Values below the first bound are not
+    /// distinguished, nor are those above the second.
     #[inline]
     fn along_m(&self, (least_m, most_m): (f64, f64), at_point_m: impl Fn(Point) -> f64) -> f64 {
         let (falls_m, near_m) = (Self::STEEPEST * self.spacing_m, Self::NEAR * self.inscribed_m);
@@ -265,7 +265,7 @@ impl Outline {
             let room_m = at_point_m(point);
             nearest_m = if room_m < nearest_m { room_m } else { nearest_m };
             if let Some((last, last_m)) = last {
-                // Between the two it is no less than this.
+                // Lower bound between the two points.
                 let between_m = 0.5 * (last_m + room_m - falls_m);
                 if between_m < nearest_m.min(near_m) {
                     let parts = [0.25, 0.5, 0.75].map(|part| at_point_m(last.lerp(point, part)));
@@ -318,7 +318,7 @@ mod tests {
             let found_m = outline.room_m(&room, (at, Point::new(cos, sin)), (f64::NEG_INFINITY, 2.0));
             if exact_m > 0.0 {
                 // Between points, a distance is off by up to half a cell beside a square, and by
-                // less elsewhere; the outline is looked at every 0.375 m where it is near.
+                // less elsewhere; the outline is checked every 0.375 m if it is near.
                 prop_assert!((found_m.min(2.0) - exact_m.min(2.0)).abs() < 0.6, "{found_m} {exact_m}");
             } else {
                 prop_assert!(found_m < 0.6, "{found_m}");
@@ -362,7 +362,7 @@ mod tests {
             room.fill(lattice, &field, 2.0);
             let exact_m = field.clearance().of_point(at, 2.0);
             let found_m = room.of_point(at).min(2.0);
-            // Of a point itself; in between it changes by no more than the way.
+            // At a point itself; in between it changes by no more than the distance.
             let least_m = exact_m - (Room::EXCESS + 1.0) * lattice.spacing_m;
             prop_assert!(found_m <= exact_m + 1e-6 && found_m >= least_m - 1e-6, "{found_m} {exact_m}");
         }

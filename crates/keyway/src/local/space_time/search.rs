@@ -1,4 +1,4 @@
-//! The search for a course: the most promising ones are followed from stretch to stretch.
+//! Beam search for a trajectory: the most promising ones are extended from stretch to stretch.
 
 use super::course::{Cost, Judge, State};
 use super::targets::Targets;
@@ -6,7 +6,7 @@ use crate::geometry::Velocity;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A state that some course leads to.
+/// A state that some trajectory leads to.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     state: State,
@@ -15,29 +15,29 @@ struct Node {
     parent: u32,
     /// Time and cost so far, and the time to go \[s\].
     total_s: f64,
-    /// It is at the end of the route before the next stretch ends.
+    /// True if it reaches the end of the route before the next stretch ends.
     arrives: bool,
 }
 
-/// A stretch that may become a node. Where it leads is known at once; what it costs on its way
-/// takes longer to find, and is looked at only when the course might be one of the best.
+/// A stretch that may become a node. Its end state is known at once; the cost of its surroundings
+/// is more expensive, and computed only if the trajectory might be one of the best.
 #[derive(Clone, Copy, Debug)]
 struct Proposal {
-    /// What the course costs at least, until it `is_driven`: then, what it costs \[s\].
+    /// Lower bound of the cost of the trajectory until it `is_driven`; then, its cost \[s\].
     total_s: f64,
-    /// Proposals of a level are numbered.
+    /// Number of the proposal within its level.
     number: u32,
     parent: u32,
     is_driven: bool,
-    /// It touches nothing, and at its end the robot is elsewhere: known once it `is_driven`.
+    /// True if it touches nothing and ends elsewhere; known once it `is_driven`.
     leads_elsewhere: bool,
-    /// Its cost is that without what its way costs, until it `is_driven`.
+    /// Its cost lacks that of the surroundings until it `is_driven`.
     state: State,
     cost: Cost,
     left_s: f64,
 }
 
-/// The one with the lowest total comes first, of equal ones the first one.
+/// The one with the lowest total comes first; ties go to the first one.
 impl Ord for Proposal {
     fn cmp(&self, other: &Self) -> Ordering {
         other.total_s.total_cmp(&self.total_s).then(other.number.cmp(&self.number))
@@ -58,54 +58,55 @@ impl PartialEq for Proposal {
 
 impl Eq for Proposal {}
 
-/// How far and how wide a search looks.
+/// Size and resolution of a search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub(super) stretches: u32,
     pub(super) width: usize,
-    /// The slowest speed of a course \[m/s\].
+    /// The slowest speed of a trajectory \[m/s\].
     pub(super) lowest_mps: f64,
-    /// Of courses that lead to nearly the same state, only the best one is followed: the positions
-    /// of a bin are no farther apart than this along each axis \[m\].
+    /// Width of the bins along each axis \[m\]: of the trajectories that lead to nearly the same
+    /// state, only the best one is extended.
     pub(super) bin_m: f64,
-    /// Who comes no farther than this within the horizon does not drive, but has no room to \[m\].
+    /// A robot that moves no farther than this within the horizon does not drive, for lack of
+    /// space \[m\].
     pub(super) elsewhere_m: f64,
 }
 
-/// What became of the stretches that a search has looked at. Each is counted once: it touches
-/// something, is refused, drives, or none of these.
+/// Counters of a search over the evaluated stretches. Each is counted once: it touches something,
+/// is refused, drives, or none of these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub(super) tried: u32,
-    /// They touch something.
+    /// Stretches with a contact.
     pub(super) touching: u32,
-    /// From their end the robot could not stop, or they are beginnings that are not let pass.
+    /// Stretches from whose end the robot could not stop, and beginnings that are not admitted.
     pub(super) refused: u32,
-    /// At their end the robot is elsewhere.
+    /// Stretches at whose end the robot is elsewhere.
     pub(super) driving: u32,
-    /// Some that lead elsewhere come near a mover.
+    /// True if some that lead elsewhere come near a moving obstacle.
     pub(super) meets: bool,
 }
 
-/// Memory to search in, and the result.
+/// Working memory of a search, and the result.
 #[derive(Debug, Default)]
 pub(super) struct Beam {
     nodes: Vec<Node>,
     open: BinaryHeap<Proposal>,
     /// The bins of the nodes of a level.
     bins: Vec<u64>,
-    /// The best course: its velocities at the ends of its stretches; empty when none is free.
+    /// The best trajectory: its velocities at the ends of its stretches; empty if none is free.
     pub(super) best: Vec<Velocity>,
 }
 
 impl Beam {
-    /// So many stretches at the beginning of a course have more targets than later ones.
+    /// Number of stretches at the beginning of a trajectory with more targets than later ones.
     const NEAR: u32 = 2;
 
-    /// Costs of movers of more than this count as near to one \[s\].
+    /// Costs of moving obstacles above this count as near to one \[s\].
     pub(super) const MEETING_S: f64 = 0.1;
 
-    /// Finds the best course from a state, of those whose first velocity `begins` lets pass.
+    /// Finds the best trajectory from a state, of those whose first velocity `begins` admits.
     pub(super) fn search(
         &mut self,
         start: State,
@@ -139,7 +140,7 @@ impl Beam {
             let best = level.clone().find(|&node| self.nodes[node].arrives);
             arrived = self.better(arrived, best);
         }
-        // Without a stretch there is no course.
+        // Without a stretch there is no trajectory.
         let farthest = Some(level.start).filter(|&node| node > 0);
         self.trace(self.better(arrived, farthest));
         tally
@@ -151,7 +152,8 @@ impl Beam {
         both.min_by(|&a, &b| self.nodes[a].total_s.total_cmp(&self.nodes[b].total_s))
     }
 
-    /// Where the next stretches of a node lead, and what they cost at least.
+    /// Proposes the next stretches of a node, with their end states and lower bounds of their
+    /// costs.
     fn propose(&mut self, parent: usize, judge: &Judge<'_>, targets: &Targets) {
         let Node { state: from, cost: so_far, .. } = self.nodes[parent];
         for to in targets.velocities() {
@@ -170,12 +172,12 @@ impl Beam {
         }
     }
 
-    /// The best proposals of different bins from which the robot could stop become nodes, the best
-    /// one first.
+    /// Turns the best proposals of different bins from which the robot could stop into nodes, the
+    /// best one first.
     ///
-    /// A proposal comes up again once its cost is known, which is no less than what it was before.
-    /// So proposals come up in the order of their costs, and those that come up too late are never
-    /// looked at. Where nothing drives, all are.
+    /// A proposal returns to the queue once its cost is known, which is no less than its bound.
+    /// So proposals come up in the order of their costs, and those that come up too late are
+    /// never evaluated. If nothing drives, all are.
     fn keep(
         &mut self,
         judge: &Judge<'_>,
@@ -208,7 +210,7 @@ impl Beam {
         }
     }
 
-    /// Looks at the way of a proposal, which may come up again.
+    /// Evaluates the surroundings of a proposal, which may return to the queue.
     fn drive(&mut self, proposal: Proposal, judge: &Judge<'_>, extent: &Extent, tally: &mut Tally) {
         let Node { state: from, cost, .. } = self.nodes[proposal.parent as usize];
         tally.tried += 1;
@@ -250,9 +252,9 @@ impl Node {
     }
 }
 
-/// States of one bin are nearly the same. Bins are those of somebody who stands at the start and
-/// looks ahead: where that is on the map changes nothing. What is to the left of the line ahead
-/// shares no bin with what is to the right, and a mirror changes nothing, either.
+/// The bin of a state; states of one bin are nearly the same. Bins are relative to the start
+/// pose, so its position on the map changes nothing. Positions to the left of the line ahead
+/// share no bin with those to the right, so a mirror changes nothing, either.
 fn bin(start: &State, state: &State, bin_m: f64) -> u64 {
     const HEADING_RAD: f64 = 0.35;
     let (ahead, off) = (start.ahead, state.at - start.at);
@@ -267,8 +269,7 @@ fn bin(start: &State, state: &State, bin_m: f64) -> u64 {
     parts.into_iter().fold(0, |bin, part| bin << 16 | part as u64 & 0xffff)
 }
 
-/// The number of a bin to the left, or the same below 0 to the right; 0 for what is straight ahead,
-/// but for rounding.
+/// Number of a bin to the left, or its negative to the right; 0 straight ahead, up to rounding.
 fn part_to_a_side(value: f64, width: f64) -> i64 {
     const ROUNDING: f64 = 1e-6;
     ((value / width).abs() - ROUNDING).ceil().copysign(value) as i64

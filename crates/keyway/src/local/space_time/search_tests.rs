@@ -1,5 +1,5 @@
-//! The search drives only what may be among the best. It finds what one finds that drives
-//! everything.
+//! The search evaluates only stretches that may be among the best. It finds the result of a
+//! search that evaluates all of them.
 
 use super::super::{Around, Scene, SpaceTime, SpaceTimeConfig};
 use super::*;
@@ -9,7 +9,7 @@ use crate::robot::Robot;
 use crate::sense::Mover;
 use proptest::prelude::*;
 
-/// Every stretch of a level is driven, then all are sorted.
+/// Evaluates every stretch of a level, then sorts all of them.
 fn search_all(
     start: State,
     judge: &Judge<'_>,
@@ -72,7 +72,7 @@ proptest! {
     #[test]
     fn what_is_not_driven_is_not_missed(
         occupied in proptest::collection::vec((40..120, 40..120), 0..60),
-        // Where a wall around the start has this radius, nothing leads elsewhere.
+        // If a wall around the start has this radius, nothing leads elsewhere.
         around_m in prop_oneof![Just(f64::INFINITY), 0.36..0.44],
         (x, y, theta) in (3.0..5.0, 3.0..5.0, -3.0..3.0_f64),
         (v, omega) in (prop_oneof![Just(0.0), -0.3..1.5_f64], -1.0..1.0_f64),
@@ -129,7 +129,7 @@ proptest! {
         let (best, all) = search_all(start, &judge, &extent, begins);
         prop_assert_eq!(&beam.best, &best);
         prop_assert!(tally.driving == 0 || all.driving > 0);
-        // Of nearly the same ones, only the first is looked at once something drives: that one may
+        // Of nearly equal ones, only the first is evaluated once something drives: that one may
         // be refused.
         prop_assert!(tally.driving > 0 || all.driving == 0 || tally.refused > 0);
         prop_assert!(all.meets || !tally.meets);

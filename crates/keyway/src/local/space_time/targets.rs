@@ -1,4 +1,4 @@
-//! The velocities that a course may have at the end of its next stretch.
+//! The velocities that a trajectory may have at the end of its next stretch.
 
 use super::course::{Judge, State};
 use crate::geometry::Velocity;
@@ -15,17 +15,18 @@ impl Targets {
     /// Half a degree.
     const FACING_RAD: f64 = 0.0087;
 
-    /// The part of what it can accelerate where there is no room for more.
+    /// Fraction of the possible acceleration for a gentle start in a tight space.
     const GENTLY: f64 = 0.25;
 
-    /// The parts of the turn rate that it can reach on wide arcs.
+    /// Fractions of the reachable turn rate on wide arcs.
     const WIDELY: [f64; 2] = [1.0 / 16.0, 1.0 / 64.0];
 
-    /// Those of a state: as fast and as slow as the robot can be, as fast as it is; as far to the
-    /// left and to the right as it can, straight on, what turns it to the way, and on a narrow one
-    /// to its middle. At the beginning of a course, where it `is_near`, also those half-way to the
-    /// slowest and to the sides; from rest, or nearly, also gently ahead, and in wide arcs where
-    /// there is no room to turn on the spot: on them a polygon gets away from a wall.
+    /// Targets of a state. Speeds: the fastest and the slowest that can be reached, and the
+    /// present one. Turn rates: the largest to the left and to the right, straight on, the one
+    /// that turns towards the path, and in a narrow passage the one that leads to its middle. At
+    /// the beginning of a trajectory (`is_near`), also those halfway to the slowest and to the
+    /// sides. Near rest, also a gentle acceleration, and wide arcs if there is no space to turn
+    /// on the spot: on them a polygon gets away from a wall.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
         let Velocity { v, omega, .. } = state.velocity;
@@ -41,7 +42,7 @@ impl Targets {
         for speed_mps in [fastest, v.max(lowest_mps), slowest] {
             add(&mut targets.speeds_mps, speed_mps);
         }
-        // Less is not worth a turn.
+        // A smaller angle is not worth a turn.
         let bearing_rad = if bearing_rad.abs() < Self::FACING_RAD { 0.0 } else { bearing_rad };
         for rate_radps in [left, right, rate(0.0), rate(bearing_rad / stretch_s)] {
             add(&mut targets.rates_radps, rate_radps);
@@ -76,7 +77,7 @@ impl Targets {
     }
 }
 
-/// Adds a value that is not there yet.
+/// Adds a value unless it is there already.
 fn add<const MOST: usize>(values: &mut ArrayVec<f64, MOST>, value: f64) {
     if values.iter().all(|known| (known - value).abs() > 1e-6) {
         values.push(value);

@@ -25,7 +25,7 @@ fn world_of(cell_m: f64, cells: u64, is_occupied: impl Fn(i32, i32) -> bool) -> 
     DistanceField::new(&frame, map.occupied(), &FieldConfig::default())
 }
 
-/// A robot in a world, with a route and what moves.
+/// A robot in a world, with a route and moving obstacles.
 struct Drive<'a> {
     planner: SpaceTime,
     world: &'a DistanceField,
@@ -87,7 +87,7 @@ impl<'a> Drive<'a> {
         })
     }
 
-    /// A cycle of ideal motion, and the poses of its fiftieths.
+    /// Simulates a cycle of ideal motion, and returns the poses of its fiftieths.
     fn cycle(&mut self) -> Vec<Pose> {
         let command = self.decide().map_or_else(|why| why.fallback, |decision| decision.command);
         let Robot { limits, cycle_s, .. } = self.planner.robot().clone();
@@ -108,8 +108,8 @@ impl<'a> Drive<'a> {
         self.pose.point().distance(*self.path.points().last().unwrap())
     }
 
-    /// Drives until it is at the end of the route, for so long at most \[s\]; the time that it
-    /// took.
+    /// Drives until it is at the end of the route, for at most `longest_s` \[s\]; returns the
+    /// time that it took.
     fn arrive(&mut self, longest_s: f64) -> Option<f64> {
         let cycle_s = self.planner.robot().cycle_s;
         let cycles = (longest_s / cycle_s) as usize;
@@ -150,7 +150,7 @@ fn it_turns_around_where_it_faces_away() {
     let open = world(200, |_, _| false);
     let robot = Robot::small();
     let mut drive = Drive::new(&robot, &open, Pose::new(5.0, 5.0, 3.0), &[[5.0, 5.0], [8.0, 5.0]]);
-    // 3 m take 7 s, half a turn 2.1 s and half a second to begin and to end it.
+    // 3 m take 7 s, half a turn takes 2.1 s, and half a second more to begin and to end it.
     assert!(drive.arrive(12.0).is_some());
 }
 
@@ -167,7 +167,7 @@ fn it_backs_out_of_a_dead_end() {
     assert!(drive.arrive(20.0).is_some(), "{:?}", drive.pose);
 }
 
-/// What it would meet behind itself it would touch before it sees it.
+/// It would touch an obstacle behind itself before it sees it.
 #[test]
 fn it_backs_up_only_where_it_has_looked() {
     let open = world(200, |_, _| false);
@@ -218,7 +218,7 @@ fn it_lets_pass_what_crosses_its_way() {
 
 #[test]
 fn a_walker_in_the_way_is_waited_for() {
-    // A corridor of 0.8 m: nobody can pass.
+    // A corridor of 0.8 m: there is no space to pass.
     let corridor = world(200, |_, y| !(92..108).contains(&y));
     let robot = Robot::small();
     let mut drive =
@@ -271,8 +271,8 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
     assert_eq!(info.count_total, 0);
 }
 
-/// On which side of the pillar at the middle of the world the course passes; none where it does not
-/// come so far.
+/// The side of the pillar at the middle of the world on which the trajectory passes; none if it
+/// does not reach that far.
 fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
     let course = drive.memory.course().cloned()?;
     let step_s = 0.05;
@@ -286,8 +286,8 @@ fn side(drive: &Drive<'_>, middle_m: f64) -> Option<bool> {
     (pose.x >= middle_m).then_some(pose.y > middle_m)
 }
 
-/// A pillar stands on the straight way: either side is as good, and one is kept, though the robot
-/// takes itself to be somewhat to the left and to the right of where it is in turns.
+/// A pillar on the straight line to the goal: either side is as good, and one is kept, although
+/// the estimated pose is off to the left and to the right in turns.
 #[test]
 fn a_side_that_is_taken_is_kept() {
     const MIDDLE_M: f64 = 10.025;
@@ -345,8 +345,8 @@ fn the_chosen_course_is_that_of_the_decision() {
     }
 }
 
-/// With 7.5 cm of room: at full acceleration it drives 6.7 cm in the first stretch, and as far
-/// again until it stands.
+/// With 7.5 cm of clearance: at full acceleration it drives 6.7 cm in the first stretch, and as
+/// far again until it is stationary.
 #[test]
 fn from_rest_it_may_begin_gently() {
     let walled = world(100, |x, y| (x - 50).abs().max((y - 50).abs()) == 5);
@@ -359,8 +359,8 @@ fn from_rest_it_may_begin_gently() {
     assert!(ahead.any(|candidate| matches!(candidate.fate, Fate::Admissible { .. })));
 }
 
-/// In a cell in which it can turn, but not drive: waiting does not help, and neither does turning.
-/// A smaller footprint does.
+/// In an enclosure in which it can turn, but not drive: waiting does not help, and neither does
+/// turning. A smaller footprint does.
 #[test]
 fn what_would_free_a_robot_that_is_walled_in() {
     let walled = world(100, |x, y| (x - 50).abs().max((y - 50).abs()) == 4);
@@ -416,8 +416,8 @@ fn blocks() -> impl Strategy<Value = DistanceField> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Wherever its route leads, also through obstacles: a robot that starts free never touches
-    /// what stands around it.
+    /// For any route, also through obstacles: a robot that starts free never touches stationary
+    /// obstacles.
     #[test]
     fn never_touches_what_stands_still(
         world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), shape in 0..3usize,
@@ -436,8 +436,8 @@ proptest! {
         }
     }
 
-    /// Wherever a stretch of the chosen course ends, braking along the arc touches nothing, to less
-    /// than a cell.
+    /// At the end of any stretch of the chosen trajectory, braking along the arc touches nothing,
+    /// to less than a cell.
     #[test]
     fn it_could_stop_at_the_end_of_every_stretch(
         world in blocks(), heading in -3.0..3.0f64, end in (0.1..3.9f64, 0.1..3.9f64), v_mps in 0.5..2.0f64,
@@ -472,8 +472,9 @@ proptest! {
         }
     }
 
-    /// Unless something moves, a world seen in a mirror is driven in a mirror: of random courses no
-    /// two are equally good. The cells are a sixteenth of a metre, so that their mirrored centres are exact.
+    /// Unless something moves, a mirrored world gives a mirrored drive: no two random
+    /// trajectories are equally good. The cells are a sixteenth of a metre, so that their
+    /// mirrored centres are exact.
     #[test]
     fn left_and_right_are_alike(
         blocks in prop::collection::vec((0i32..80, 0i32..80), 0..50), (x, y, heading) in (1.0..4.0f64, 1.0..4.0f64, -3.0..3.0f64),

@@ -5,7 +5,7 @@ use crate::geometry::Point;
 use crate::local::Scene;
 
 /// Collects the route from an arc length on, until it leaves the square of this half-width around
-/// the robot, in the positions of a lattice. The length of the route beyond \[m\].
+/// the robot, in the positions of a lattice. Returns the length of the route beyond \[m\].
 pub(super) fn collect(
     route: &mut Vec<Point>,
     scene: &Scene<'_>,
@@ -30,7 +30,7 @@ pub(super) fn collect(
             continue;
         }
         let to = local(frame, segment.b);
-        // A route that begins outside is followed until it comes in.
+        // A route that begins outside is followed until it enters.
         if is_inside(from) && !is_inside(to) {
             let end = last_inside(from, to, is_inside);
             route.push(end);

@@ -2,13 +2,14 @@ use super::*;
 use crate::map::{BitGrid, FieldConfig, GridFrame};
 use proptest::prelude::*;
 
-/// Room to what stands and to the border \[m\].
+/// Clearance from stationary obstacles and the border \[m\].
 fn room_m(robot: &Robot, around: &Surroundings<'_>, pose: Pose) -> f64 {
     let (footprint, clearance) = (&robot.footprint, around.obstacles.clearance());
     footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
 }
 
-/// The least room on the way of a command until the robot stands \[m\], looked at in small steps.
+/// The least clearance from a command until the robot is stationary \[m\], checked in small
+/// steps.
 fn least_room_m(robot: &Robot, around: &Surroundings<'_>, command: Velocity) -> f64 {
     let room_m = |pose: Pose| room_m(robot, around, pose);
     let ramps = robot.motion_to_stop(around.pose, around.velocity, command);
@@ -57,7 +58,7 @@ proptest! {
         let command = if brakes { robot.limits.braked(velocity, robot.cycle_s) } else { asked };
         let least_m = least_room_m(&robot, &around, command);
         match rule.admits(&around, command, &mut Scratch::default()) {
-            // Steps may use up half of what is kept.
+            // Steps may use up half of the kept clearance.
             Ok(()) => prop_assert!(least_m >= 0.5 * margin_m.min(begins_m) - 1e-9, "{least_m}"),
             Err(why) => {
                 prop_assert!(matches!(why, Refusal::Standing { .. }), "{why:?}");

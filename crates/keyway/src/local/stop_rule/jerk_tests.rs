@@ -1,4 +1,4 @@
-//! Robots with limits of jerk: what is looked at is what the robot itself does.
+//! Robots with jerk limits: the motion of the robot itself is checked.
 
 use super::tests::{Ground, commands, every_cycle, instants, robots, rule};
 use super::*;
@@ -7,7 +7,7 @@ use crate::map::{BitGrid, GridFrame};
 use crate::robot::CommandWindow;
 use proptest::prelude::*;
 
-/// A robot whose commands are averaged, as it drives.
+/// A moving robot whose commands are averaged.
 #[derive(Clone, Debug)]
 struct Averaged {
     robot: Robot,
@@ -22,7 +22,7 @@ impl Averaged {
         Self { robot, window, pose, velocity: Velocity::ZERO }
     }
 
-    /// The surroundings of it and its reference.
+    /// The surroundings of the robot and its reference.
     fn among<'a>(&'a self, ground: &'a Ground) -> Surroundings<'a> {
         let &Self { ref robot, ref window, pose, velocity } = self;
         let reference = window.reference_pose(pose, velocity, robot.cycle_s);
@@ -30,7 +30,8 @@ impl Averaged {
         Surroundings { smoothed, ..ground.around(reference, window.reference(), &[]) }
     }
 
-    /// Drives for a cycle in which the reference goes towards a command; the poses on the way.
+    /// Drives for a cycle in which the reference moves towards a command; returns the poses on
+    /// the way.
     fn drive(&mut self, command: Velocity) -> Vec<Pose> {
         let Self { robot, window, pose, velocity } = self;
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
@@ -50,7 +51,7 @@ impl Averaged {
     }
 }
 
-/// A time of averaging \[s\], and how much stronger the brakes are.
+/// Robots at a pose, with random averaging times \[s\] and brakes.
 fn averaged(pose: Pose) -> impl Strategy<Value = Averaged> {
     (robots(), 0.12..1.9f64, prop_oneof![Just(1.0), 0.5..2.0f64]).prop_map(
         move |(mut robot, smoothed_s, brakes)| {
@@ -91,7 +92,7 @@ fn stops_before_a_wall_by_hand() {
         robot.velocity = ahead;
         rule.gate(&robot.among(&ground), ahead, &mut Scratch::default())
     };
-    // What a robot without limits of jerk needs, and the way of 0.45 s.
+    // The distance of a robot without jerk limits, and that of 0.45 s.
     let least_m = 0.05 + 0.25 + 0.18 + 0.0025 + 0.225;
     assert!(!at(least_m + 1e-6).changed());
     let refused = at(least_m - 1e-6);
@@ -99,7 +100,7 @@ fn stops_before_a_wall_by_hand() {
     assert!(refused.command.v > 0.45 && refused.command.v < 0.5, "{refused:?}");
 }
 
-/// It looks at where the robot still comes by what is averaged, also where it is asked to stand.
+/// Considers the remaining motion of the averaged velocities, also if a stop is requested.
 #[test]
 fn what_is_averaged_counts() {
     let mut robot = Robot::small();
@@ -114,19 +115,19 @@ fn what_is_averaged_counts() {
         rule.gate(&robot.among(&ground), turn, &mut Scratch::default()).changed()
     };
     assert!(!changed(&robot));
-    // 0.1 m before the wall, and 0.12 m to come.
+    // 0.1 m before the wall, and 0.12 m of remaining motion.
     robot.window.refill(Velocity::new(0.3, 0.0));
     robot.velocity = robot.window.push(Velocity::ZERO);
     assert!(changed(&robot));
 }
 
-/// Ground has to be seen to which the average leads, ahead or back, whatever else is asked for.
+/// Ground that the average leads to, ahead or back, has to be observed, whatever is requested.
 #[test]
 fn what_is_averaged_stays_on_seen_ground() {
     let mut robot = Robot::small();
     (robot.limits.v_min_mps, robot.limits.jerk_mps3) = (-0.5, Some(1.0));
     let (ground, rule) = (Ground::open(), rule(&robot));
-    // 0.18 m of robot, and over 0.2 m to come.
+    // 0.18 m of robot, and over 0.2 m of remaining motion.
     let refusal = |v: f64, sees_m: f64| {
         let mut cells = BitGrid::new(200, 200, false);
         let reach = (sees_m * 10.0).round() as i32;
@@ -147,7 +148,7 @@ fn what_is_averaged_stays_on_seen_ground() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Whatever is asked for, and whenever it then brakes.
+    /// For any requested commands, and braking at any time.
     #[test]
     fn a_mad_planner_touches_nothing_that_stands(
         cells in cells(), robot in somewhere().prop_flat_map(averaged), commands in commands(),
@@ -164,7 +165,7 @@ proptest! {
             let gated = rule.gate(&around, command, &mut scratch);
             if !rule.is_braking(&around, gated.command) {
                 kept_m = ground.room_m(&robot.robot.footprint, robot.pose).min(rule.config.margin_m);
-                // The noise of one that stands.
+                // The noise of a stationary robot.
                 let (core, _) = robot.robot.footprint.core();
                 let is_noise = robot.robot.stands(robot.velocity) && robot.window.is_still(&robot.robot);
                 let drift_s = if is_noise { 0.5 * robot.robot.cycle_s } else { 0.0 };

@@ -1,4 +1,4 @@
-//! What happens when a command is issued and the robot then brakes, and what that may touch.
+//! The manoeuvre of a command, braking included, and its checks against contact.
 
 use super::start::{Body, Covered, ROUNDING_M, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
@@ -10,18 +10,18 @@ use crate::robot::Robot;
 use crate::sense::{Mover, MoverBounds};
 use arrayvec::ArrayVec;
 
-/// Memory to work in.
+/// Working memory.
 #[derive(Debug, Default)]
 pub(super) struct Work {
     near: Vec<Mover>,
     shrunk: Vec<Point>,
     touched: Touched,
-    /// Of each body.
+    /// For each body.
     boxes: [NearBoxes; 2],
     turned: [Turned; 2],
 }
 
-/// A body among what stands around it.
+/// A body among the obstacles around it.
 struct Ground<'a> {
     body: Body<'a>,
     squares: map::NearObstacles<'a>,
@@ -36,14 +36,14 @@ pub(super) struct Manoeuvres<'a> {
     /// Ground within which it must stop, and ground over which it may back up; `None`: anywhere.
     ahead: Option<SeenAhead<'a>>,
     behind: Option<Seen<'a>>,
-    /// Movers that may matter.
+    /// Moving obstacles that may matter.
     near: &'a [Mover],
-    /// None when nothing that stands is within reach of any manoeuvre; two when the robot touches
+    /// Empty if no stationary obstacle is within reach of any manoeuvre; two if the robot touches
     /// something.
     grounds: ArrayVec<Ground<'a>, 2>,
     touched: &'a Touched,
-    /// The pose at which the room from places of the scan was computed last, and the room to spare
-    /// there \[m\].
+    /// The pose at which the clearance from the scan's hits was computed last, and the spare
+    /// clearance there \[m\].
     looked: Option<(Pose, f64)>,
     is_covered: bool,
     /// Steps are never shorter than this \[m\].
@@ -56,7 +56,7 @@ struct Stretch {
     start: Pose,
     velocity: Velocity,
     duration_s: f64,
-    /// From now to its beginning \[s\].
+    /// Time from now to its beginning \[s\].
     after_s: f64,
 }
 
@@ -77,28 +77,28 @@ impl Stretch {
     }
 }
 
-/// How far any manoeuvre of a cycle can lead.
+/// Upper bounds of all manoeuvres of a cycle.
 struct Reach {
-    /// No part of the footprint moves farther \[m\].
+    /// Largest motion of any part of the footprint \[m\].
     moves_m: f64,
-    /// None takes longer \[s\].
+    /// Longest duration \[s\].
     duration_s: f64,
 }
 
 impl Reach {
-    /// Of all manoeuvres whose velocities lie between the present ones and what was asked for.
+    /// Bounds of all manoeuvres whose velocities lie between the present and the requested one.
     fn new(robot: &Robot, core: &Core<'_>, around: &Surroundings<'_>, asked: Velocity) -> Self {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
         let from = around.smoothed.map_or(around.velocity, |robot| robot.fastest());
         let v = from.v.abs().max(asked.v.abs());
         let omega = from.omega.abs().max(asked.omega.abs());
         let stop_s = (v / limits.deceleration_mps2).max(omega / limits.angular_deceleration_radps2);
-        // The mean speed while braking is half of the first one; the last cycle may be braked more
-        // gently.
+        // The mean speed while braking is half of the initial one; the last cycle may be braked
+        // more gently.
         let full_s = cycle_s + 0.5 * (stop_s + cycle_s);
         let duration_s = 2.0 * cycle_s + stop_s;
-        // A robot comes no farther for an average than the reference, and what is still averaged;
-        // one that does not drive as it was told first brakes to where it does.
+        // With averaging, a robot moves no farther than the reference, and what is still
+        // averaged; one that deviates from its commands first brakes to them.
         let (more_s, later_s) = around.smoothed.map_or((0.0, 0.0), |_| {
             let smoothed_s = 2.0 * robot.smoothing_lag_s() + cycle_s;
             (smoothed_s + full_s, smoothed_s + duration_s)
@@ -109,10 +109,10 @@ impl Reach {
 }
 
 impl<'a> Manoeuvres<'a> {
-    /// What is nearer than this cannot be told from contact \[m\].
+    /// Distances below this cannot be distinguished from contact \[m\].
     const LEAST_STEP_M: f64 = 1e-4;
 
-    /// Those whose first velocity lies between braking and what was asked for.
+    /// The manoeuvres whose first velocity lies between braking and the requested one.
     pub(super) fn new(
         StopRule { config, robot, front, rear }: &'a StopRule,
         around: &'a Surroundings<'a>,
@@ -156,7 +156,7 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// True if a manoeuvre that begins with a cycle towards `first` is admissible.
+    /// Checks that a manoeuvre that begins with a cycle towards `first` is admissible.
     pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
         let from = self.from(first);
         let is_moved = self.around.smoothed.is_some_and(|robot| !robot.window.is_zero());
@@ -166,7 +166,7 @@ impl<'a> Manoeuvres<'a> {
         if self.is_covered {
             return Err(Refusal::Covered);
         }
-        // What is left of a motion that is reversed leads back, too, and has to.
+        // The rest of a motion that is reversed leads back, too, which is unavoidable.
         let leads = |sign: f64| {
             let is_there = |v: f64| v * sign > 0.0;
             is_there(first.v) || self.around.smoothed.is_some_and(|robot| robot.leads(is_there))
@@ -189,7 +189,7 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// Refuses a manoeuvre that is not admissible: it begins with a velocity and has those at the
+    /// Refuses a manoeuvre that is not admissible, given its initial velocity and those at the
     /// ends of its cycles.
     fn follow(
         &mut self,
@@ -200,7 +200,7 @@ impl<'a> Manoeuvres<'a> {
         let arc_s = self.robot.cycle_s / f64::from(Pose::RAMP_ARCS);
         let (mut pose, mut after_s) = (self.around.robot().0, self.around.delay_s);
         let mut spare_m = f64::NEG_INFINITY;
-        // How far it has driven ahead since its front was looked at.
+        // Distance driven ahead since the front was checked last.
         let (mut unlooked_m, cell_m) = (0.0, self.around.obstacles.frame().resolution_m());
         for to in velocities {
             for velocity in Pose::ramp_arcs(from, to) {
@@ -215,15 +215,15 @@ impl<'a> Manoeuvres<'a> {
                 if velocity.v < 0.0 && behind.is_some_and(refuses) {
                     return Err(Refusal::Unseen { after_s });
                 }
-                // Cells need not be looked at more than once.
+                // Cells need not be checked more than once.
                 unlooked_m += velocity.v.max(0.0) * arc_s;
                 if unlooked_m >= 0.5 * cell_m {
                     self.check_sight(ahead, pose, after_s)?;
                     unlooked_m = 0.0;
                 }
             }
-            // Where steps are longer than what is to spare, the ends of cycles are looked at,
-            // because there the next command begins.
+            // If steps are longer than the spare clearance, the ends of cycles are checked,
+            // because the next command begins there.
             if spare_m < 0.0 {
                 spare_m = self.look(pose, after_s, 0.0)?;
             }
@@ -232,7 +232,7 @@ impl<'a> Manoeuvres<'a> {
         if unlooked_m > 0.0 { self.check_sight(ahead, pose, after_s) } else { Ok(()) }
     }
 
-    /// Refuses a pose whose front is not within what has been seen.
+    /// Refuses a pose whose front is not within observed free space.
     fn check_sight(
         &self,
         ahead: Option<SeenAhead<'_>>,
@@ -243,18 +243,17 @@ impl<'a> Manoeuvres<'a> {
         if is_seen { Ok(()) } else { Err(Refusal::OutOfSight { after_s }) }
     }
 
-    /// True if a pose is on some cells, asked with its place from the corner of the grid \[m\] and
-    /// its direction there.
+    /// True if a pose is on some cells. The predicate gets its position from the corner of the
+    /// grid \[m\] and its direction there.
     fn is_on(&self, pose: Pose, holds: impl Fn(Point, Point) -> bool) -> bool {
         let frame = self.around.obstacles.frame();
         let (origin, ahead) = on_grid(pose, frame);
         holds(origin * frame.resolution_m(), ahead * frame.resolution_m())
     }
 
-    /// The velocity at which a manoeuvre begins. What odometry shows of a robot that stands is
-    /// noise, as long as it is asked for nothing else: otherwise it could not turn away from a wall
-    /// that the noise seems to lead to. If it is no noise, it is the end of a manoeuvre that was
-    /// admissible.
+    /// The velocity at which a manoeuvre begins. The odometry of a stationary robot is noise,
+    /// unless it is asked to move: otherwise it could not turn away from a wall that the noise
+    /// seems to lead to. If it is not noise, it is the end of a manoeuvre that was admissible.
     fn from(&self, first: Velocity) -> Velocity {
         let (_, now) = self.around.robot();
         let Velocity { v, omega, .. } = now;
@@ -265,10 +264,10 @@ impl<'a> Manoeuvres<'a> {
         Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))
     }
 
-    /// Follows a stretch at whose beginning there is at least this to spare (nothing is known when
-    /// it is negative); what is known of its end.
+    /// Follows a stretch with at least this spare clearance at its beginning (unknown if
+    /// negative); returns that at its end.
     fn check_standing(&mut self, stretch: &Stretch, known_m: f64) -> Result<f64, Refusal> {
-        // Of the whole footprint, also where a part of it counts.
+        // Motion of the whole footprint, even if only a part of it counts.
         let (core, _) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);
         let (mut fraction, mut spare_m) = (0.0, known_m);
@@ -291,8 +290,8 @@ impl<'a> Manoeuvres<'a> {
         }
     }
 
-    /// What is to spare at a pose \[m\]; more than `wanted_m` need not be told apart. Refused when
-    /// it is too little.
+    /// Spare clearance at a pose \[m\]; values above `wanted_m` need not be distinguished.
+    /// Refused if it is negative.
     fn look(&mut self, pose: Pose, after_s: f64, wanted_m: f64) -> Result<f64, Refusal> {
         let obstacles = self.around.obstacles;
         let spare_m =
@@ -303,9 +302,9 @@ impl<'a> Manoeuvres<'a> {
         if spare_m >= 0.0 { Ok(spare_m) } else { Err(Refusal::Standing { after_s }) }
     }
 
-    /// A lower bound of the room from the places that the scan met, beyond what must be kept
-    /// \[m\]. Not computed again where it is more than `wanted_m`, nor, like other steps, within
-    /// what must be kept.
+    /// Lower bound of the clearance from the scan's hits, beyond the distance to keep \[m\]. Not
+    /// recomputed if it is more than `wanted_m`, nor, like other steps, within the distance to
+    /// keep.
     fn places_spare_m(&mut self, pose: Pose, wanted_m: f64) -> f64 {
         if self.touched.places.is_empty() {
             return f64::INFINITY;
@@ -324,7 +323,8 @@ impl<'a> Manoeuvres<'a> {
         spare_m
     }
 
-    /// Shows that a mover cannot touch the footprint on a stretch, unless nothing moves on it.
+    /// Shows that a moving obstacle cannot touch the footprint on a stretch, unless the robot is
+    /// at rest.
     fn check_mover(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, _) = self.robot.footprint.core();
         let stands = stretch.moves_m(&core) <= ROUNDING_M;
@@ -332,8 +332,8 @@ impl<'a> Manoeuvres<'a> {
     }
 
     /// Shows it: at the middle of the stretch the footprint is farther from all ground that the
-    /// mover may cover meanwhile than any part of it moves from there. Otherwise each half is
-    /// looked at.
+    /// moving obstacle may cover meanwhile than any part of it moves from there. Otherwise each
+    /// half is checked.
     fn check_apart(&self, stretch: &Stretch, mover: &Mover) -> Result<(), Refusal> {
         let (core, radius_m) = self.robot.footprint.core();
         let moves_m = stretch.moves_m(&core);
@@ -356,7 +356,7 @@ impl<'a> Manoeuvres<'a> {
 }
 
 impl Ground<'_> {
-    /// A lower bound of the room beyond what must be kept \[m\]: exact where it is neither
+    /// Lower bound of the clearance beyond the distance to keep \[m\]: exact if it is neither
     /// `wanted_m` nor a cell.
     fn spare_m(&mut self, pose: Pose, field: &DistanceField, wanted_m: f64) -> f64 {
         let Body { core, radius_m, kept_m, keeps_border } = &self.body;
@@ -381,7 +381,7 @@ fn gap_m(core: &Core<'_>, radius_m: f64, pose: Pose, disc: &Disc) -> f64 {
     core.distance_to_m(pose, disc.centre) - disc.radius_m - radius_m
 }
 
-/// The movers that some manoeuvre may come near to.
+/// Collects the moving obstacles that some manoeuvre may come near to.
 fn collect_near(
     near: &mut Vec<Mover>,
     config: &StopRuleConfig,
@@ -401,7 +401,8 @@ fn collect_near(
     }
 }
 
-/// A disc that holds all ground which a mover may cover between two instants by its estimate.
+/// A disc that contains all ground which a moving obstacle may cover between two instants by its
+/// estimate.
 fn estimated_between(
     mover: &Mover,
     from_s: f64,

@@ -1,5 +1,5 @@
-//! The stop rule: a command is issued only if the robot can then still brake to a stop before it
-//! touches anything. A gate of its own, behind any local planner.
+//! The stop rule: a command is issued only if the robot can still brake to a stop afterwards
+//! before it touches anything. It is a gate that works behind any local planner.
 //!
 //! # Source
 //! \[Mitsch2017\], passive safety: no contact while the robot moves, proved there for a robot that
@@ -15,119 +15,124 @@
 //! | `p_r`, `p_o` | the footprint at its pose; obstacle squares, and the discs of [`Mover`]s | m |
 //!
 //! # The rule
-//! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one to
-//! what the limits let the robot reach of the command; then, cycle by cycle, it brakes along its
-//! arc ([`Limits::braked`](crate::robot::Limits::braked)) until it stands. A command is admissible
-//! when on the whole manoeuvre
+//! The *manoeuvre* of a command: in one cycle the velocity changes linearly from the present one
+//! to the velocity that the limits let the robot reach towards the command. Then, cycle by cycle,
+//! it brakes along its arc ([`Limits::braked`](crate::robot::Limits::braked)) until it is
+//! stationary. A command is admissible if on the whole manoeuvre
 //!
 //! 1. the footprint keeps `margin_m` from all obstacle squares and from the map's border;
-//! 2. at every instant it keeps `margin_m` from all ground that a mover may cover by then
-//!    ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]);
-//! 3. its rear keeps to the ground of [`Surroundings::seen`] wherever it drives backwards, if its
-//!    sensor does not see all around: to where nobody can have come by then, seen before or not
-//!    ([`SeenGround`](crate::sense::SeenGround)), and it stands within the time for which that is
-//!    known. What is left of a way back that is reversed in the cycle is not asked about.
-//! 4. wherever it drives ahead, its front stays three quarters of a cell before the end of what has
-//!    been seen ([`Surroundings::seen`]); to either side, the next cell is as good. Within what has
-//!    been seen it may come as near as it likes to an obstacle that is known and to the end of the
-//!    map, where nothing else stands. What stands farther away is met too late. So the robot never
-//!    drives faster than it can stop within what it has seen free: within its sensor's range,
-//!    before it can look around a corner, and where no beam says anything.
+//! 2. at every instant it keeps `margin_m` from all ground that a moving obstacle may cover by
+//!    then ([`Mover::by_speed`] or, if an acceleration is given, [`Mover::by_estimate`]);
+//! 3. if the sensor does not see all around, the rear stays on the ground of
+//!    [`Surroundings::seen`] wherever the robot drives backwards: ground that no moving obstacle
+//!    can have reached by then, seen before or not ([`SeenGround`](crate::sense::SeenGround)).
+//!    The robot also stops within the time for which that is known. The rest of a backward motion
+//!    that the command reverses in the cycle is not checked.
+//! 4. wherever the robot drives ahead, its front stays three quarters of a cell before the end of
+//!    the observed free space ([`Surroundings::seen`]); the next cell to either side counts as
+//!    well. From within observed free space, it may come arbitrarily close to a known obstacle
+//!    and to the map's border, as nothing else can be there. An obstacle beyond the observed
+//!    space would be detected too late. So the robot never drives faster than it can stop within
+//!    observed free space: within its sensor's range, before it can see around a corner, and
+//!    where no beam gives information.
 //!
-//! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at which
-//! the movers are known. What the robot does until then was decided before, when it was the
+//! The manoeuvre begins when the command acts, [`Surroundings::delay_s`] after the instant at
+//! which the moving obstacles were observed. The motion until then was decided earlier, as the
 //! beginning of the manoeuvre of an earlier command.
 //!
-//! Of a robot with limits of jerk ([`Surroundings::smoothed`]), what is asked for is a velocity of
-//! its reference, and so is braking; the manoeuvre is that of the robot itself: in every cycle it
-//! gets the mean of the last velocities of the reference
-//! ([`CommandWindow`](crate::robot::CommandWindow)), those of the cycles before included, until
-//! nothing of them is left. (3) and (4) are then asked, too, where only what is left leads back or
-//! ahead.
+//! For a robot with jerk limits ([`Surroundings::smoothed`]), a command is a velocity of its
+//! reference, and braking is that of the reference; the manoeuvre is that of the robot itself. In
+//! every cycle the robot gets the mean of the last velocities of the reference
+//! ([`CommandWindow`](crate::robot::CommandWindow)), including those of earlier cycles, until
+//! none of them is left. (3) and (4) are then also checked if only those earlier velocities lead
+//! back or ahead.
 //!
-//! An admissible command passes unchanged. Otherwise the gate goes from there towards braking along
-//! the present arc and issues the nearest velocity on that line which it finds admissible; and
-//! braking when there is none. Who asks for braking along the present arc always gets it.
+//! An admissible command passes unchanged. Otherwise the gate moves from the command towards
+//! braking along the present arc and issues the nearest velocity on that line that it finds
+//! admissible, or braking if there is none. A command to brake along the present arc always
+//! passes.
 //!
-//! # What follows from it
-//! With ideal motion (as above), a pose and velocity that are right, a delay that is known, and
-//! every mover in view:
+//! # Guarantees
+//! With ideal motion (as above), a correct pose and velocity, a known delay, and every moving
+//! obstacle in view:
 //!
-//! - no contact ever with anything that stands in view;
-//! - none with anything that stands out of view while the robot drives ahead, if its sensor looks
-//!   at all of its front: such a thing stands on ground that has not been seen, and the robot could
-//!   stop before that. One that is narrower than three cells may be missed between other things,
-//!   and one that is narrower than 6 cm, or than a cell, between two beams;
-//! - no contact with a mover while the robot moves. A mover may run into a robot that stands, or
-//!   into a disc that turns on the spot, which covers no other ground.
+//! - no contact ever with a stationary obstacle in view;
+//! - no contact with a stationary obstacle out of view while the robot drives ahead, if its
+//!   sensor covers all of its front: such an obstacle is on ground that has not been seen, and
+//!   the robot can stop before that. An obstacle narrower than three cells may be missed between
+//!   other obstacles, and one narrower than 6 cm, or than a cell, between two beams;
+//! - no contact with a moving obstacle while the robot moves. A moving obstacle may run into a
+//!   stationary robot, or into a disc that turns on the spot, which covers no other ground.
 //!
-//! With a sensor that does not see all around, the robot backs into nobody, to within a cell: all
-//! of the manoeuvre lies within the time for which cells are known to be free. Nobody is expected
-//! to come through walls that the map shows, or through what was seen to stand. Who comes from
-//! where it does not look may still run into the robot while it drives ahead, and into the corners
-//! of a polygon that turns.
+//! With a sensor that does not see all around, the robot backs into no moving obstacle, to within
+//! a cell: all of the manoeuvre lies within the time for which cells are known to be free. Moving
+//! obstacles are assumed not to come through walls of the map, or through observed stationary
+//! obstacles. One that comes from outside the field of view may still run into the robot while it
+//! drives ahead, and into the corners of a polygon that turns.
 //!
-//! *Proof sketch.* Say that a state is safe when braking along the present arc touches nothing,
-//! whatever the movers do within their bounds. A robot at rest is safe: its manoeuvre is standing
-//! still. Let the state be safe. If the gate issues an admissible command, (1) to (4) hold on its
-//! manoeuvre: obstacles stand, what was seen stays seen, and a mover that is inside its disc and
-//! keeps the bounds is inside the discs of all later instants. Its first cycle is what happens, and
-//! the rest of it is braking along the arc of the next state, which is therefore safe. If the gate
-//! brakes, what happens is the first cycle of a manoeuvre that touches nothing, and the next state
-//! has the rest of it. So every state is safe, and the way from one to the next is part of a
-//! manoeuvre that touches nothing. It does not matter that estimates change from cycle to cycle, if
-//! each of them holds the mover. With limits of jerk, a state is that of the robot along with what
-//! is averaged, and braking is that of its reference. The first cycle of a manoeuvre is again what
-//! happens, and leaves a state from which braking is the rest of that manoeuvre; the rest of the
-//! proof needs no more. ∎
+//! *Proof sketch.* Call a state safe if braking along the present arc touches nothing, whatever
+//! the moving obstacles do within their bounds. A robot at rest is safe: its manoeuvre is to stay
+//! at rest. Let the state be safe. If the gate issues an admissible command, (1) to (4) hold on
+//! its manoeuvre: obstacles are stationary, observed space stays observed, and a moving obstacle
+//! that is inside its disc and keeps the bounds is inside the discs of all later instants. The
+//! robot executes the first cycle of the manoeuvre, and the rest of it is braking along the arc
+//! of the next state, which is therefore safe. If the gate brakes, the robot executes the first
+//! cycle of a manoeuvre that touches nothing, and the next state has the rest of it. So every
+//! state is safe, and the motion from one to the next is part of a manoeuvre that touches
+//! nothing. Estimates may change from cycle to cycle, if each of them contains the moving
+//! obstacle. With jerk limits, a state is that of the robot along with the averaged velocities,
+//! and braking is that of its reference. The robot again executes the first cycle of a manoeuvre,
+//! which leaves a state from which braking is the rest of that manoeuvre; the rest of the proof
+//! needs no more. ∎
 //!
-//! No place of a manoeuvre is skipped: between two poses no part of the footprint moves farther
-//! than [`Core::moves_m`], so a step as long as the room less the margin stays clear of the margin.
-//! Steps are never shorter than the margin; on one of that length at least half of the margin is
-//! left.
+//! No pose of a manoeuvre is skipped: between two poses no part of the footprint moves farther
+//! than [`Core::moves_m`], so a step as long as the clearance less the margin stays clear of the
+//! margin. Steps are never shorter than the margin; on a step of that length at least half of the
+//! margin is left.
 //!
 //! # A start inside the margin or in contact
-//! An obstacle nearer than the margin may be as near as it is when a command is admitted, but not
-//! nearer, until the next command is admitted: the robot may leave it or pass along it. Braking is
-//! not admitted anew. So where the robot has meanwhile come farther from something, and then
-//! brakes, it may come as near again as it was at the last command that was. All of this holds to a
-//! nanometre for each command, which is more than rounding takes, and, where the robot counts as
-//! standing, to what it drifts until the end of the cycle: such a velocity is taken for noise of
-//! odometry (at most half of a cycle at a hundredth of full speed). In between two instants that
-//! are looked at, half of a distance of at least 0.1 mm is kept. No such exception is made for
-//! movers: beside one that may touch it, no part of a robot moves farther than a nanometre in
-//! a quarter of a cycle, until the mover is gone, or has stood so long that it counts as standing
-//! ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
+//! An obstacle nearer than the margin may stay as near as it is when a command is admitted, but
+//! not come nearer, until the next command is admitted: the robot may leave it or pass along it.
+//! Braking is not admitted anew. So if the robot has meanwhile moved away from an obstacle, and
+//! then brakes, it may come as near again as it was at the last admitted command. All of this
+//! holds to a nanometre for each command, which exceeds the rounding errors, and, while the robot
+//! counts as stationary, to its drift until the end of the cycle: such a velocity is taken for
+//! odometry noise (at most half of a cycle at a hundredth of full speed). Between two checked
+//! instants, half of a distance of at least 0.1 mm is kept. There is no such exception for moving
+//! obstacles: beside one that may touch it, no part of a robot moves farther than a nanometre in
+//! a quarter of a cycle, until the moving obstacle is gone, or has been still so long that it
+//! counts as stationary ([`TrackerConfig::standing_s`](crate::sense::TrackerConfig::standing_s)).
 //!
-//! A robot that touches something when a command is admitted, or is nearer to it than 0.1 mm, may
-//! touch nothing else until the next one is, but for the squares beside those that it touches in
-//! which the latest scan met something ([`SeenCells::scan`]). There it keeps away from the very
-//! places that the scan met, as it does from obstacles, so that it may go along a wall whose
-//! squares it touches. What such squares hold is met by no more than two beams are apart there.
-//! From what it touches, a disc may be as far as it is, while a polygon is shrunk around its centre
-//! of rotation until it touches nothing, and that part of it may touch nothing. A robot whose
-//! centre of rotation is inside an obstacle or outside the map is stopped: no way out can be told
-//! from a way in. When not even braking is admissible (something came into view too late, or a
-//! mover broke the bounds), the robot brakes.
+//! A robot that touches an obstacle when a command is admitted, or is nearer to it than 0.1 mm,
+//! may touch nothing else until the next command is, except the squares beside the touched ones
+//! in which the latest scan has hits ([`SeenCells::scans`]). There it keeps its distance from the
+//! hits themselves, as from obstacles, so that it may drive along a wall whose squares it
+//! touches. It overlaps the contents of such squares by no more than the distance of two beams
+//! there. From the obstacle that it touches, a disc keeps its present distance, while a polygon
+//! is shrunk around its centre of rotation until it touches nothing, and the shrunk polygon may
+//! touch nothing. A robot whose centre of rotation is inside an obstacle or outside the map is
+//! stopped: a motion out cannot be told from a motion in. If not even braking is admissible (an
+//! obstacle came into view too late, or a moving obstacle broke the bounds), the robot brakes.
 //!
 //! # Where this differs from the paper
-//! - Directional: what counts is the ground that the footprint covers on its arc, not a distance to
-//!   all sides.
+//! - Directional: the rule considers the ground that the footprint covers on its arc, not a
+//!   distance to all sides.
 //! - The footprint is a disc or a polygon; the paper's robot is a point.
-//! - The cycle's motion is known, where the paper allows anything up to A.
+//! - The motion of the cycle is known, where the paper allows any acceleration up to A.
 //!
 //! # Out of scope
-//! Who comes out of what the sensor does not see, but for (3): beyond its range, from the shadow of
-//! something. He counts as a mover as soon as about 0.1 m of him is where the robot has seen
-//! through before ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). Whoever
-//! needs more adds a mover where one could come from. Errors of pose and motion: the margin is what
-//! there is for them.
+//! Occlusion, except for (3): an unseen obstacle may emerge from beyond the sensor's range or
+//! from behind another obstacle. It counts as a moving obstacle as soon as about 0.1 m of it is
+//! on ground that the robot has seen through before
+//! ([`Tracker::possible_movers`](crate::sense::Tracker::possible_movers)). A caller that needs
+//! more adds a moving obstacle wherever one could emerge. Errors of pose and motion: the margin
+//! covers them.
 //!
 //! # Errors / cost
-//! [`ConfigError`]. Where nothing is near, one look into the field and one distance per mover;
-//! otherwise a look-up for every step, which are few in the open and at most as many as margins fit
-//! into the manoeuvre. Up to four manoeuvres are looked at. Allocates nothing once the scratch is
-//! warm.
+//! [`ConfigError`]. With nothing near, one look-up in the distance field and one distance per
+//! moving obstacle. Otherwise one look-up per step: few steps on open ground, and at most as many
+//! as margins fit into the manoeuvre. Up to four manoeuvres are checked. Allocates nothing once
+//! the scratch is warm.
 
 #[cfg(test)]
 mod admits_tests;
@@ -163,16 +168,18 @@ use thiserror::Error;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StopRuleConfig {
-    /// The footprint is kept this far from everything, once it is that far away \[m\]; positive.
+    /// Distance that the footprint keeps from everything, once it is that far away \[m\];
+    /// positive.
     pub margin_m: f64,
-    /// What movers can do at most.
+    /// Bounds on the motion of moving obstacles.
     pub movers: MoverBounds,
 }
 
 impl StopRuleConfig {
-    /// For a robot: half of what its local planner keeps from obstacles
-    /// ([`Robot::safety_margin_m`]), so that the gate leaves alone what such a planner finds
-    /// admissible. Movers are people: they walk at up to 1.5 m/s, and may turn around at once.
+    /// Defaults for a robot: half of the margin that its local planner keeps from obstacles
+    /// ([`Robot::safety_margin_m`]), so that the gate does not change commands that such a
+    /// planner finds admissible. Moving obstacles are people: they walk at up to 1.5 m/s, and may
+    /// turn around at once.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             margin_m: 0.5 * robot.safety_margin_m(),
@@ -183,27 +190,28 @@ impl StopRuleConfig {
     /// Checks every value.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns an error that names the first invalid field.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_positive("margin_m", self.margin_m)?;
         self.movers.validate().map_err(|error| error.within("movers"))
     }
 }
 
-/// What is around a robot in one cycle.
+/// The surroundings of a robot in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Surroundings<'a> {
-    /// Distances to the squares of everything that stands, known and sensed.
+    /// Distances to the squares of all stationary obstacles, mapped and sensed.
     pub obstacles: &'a DistanceField,
-    /// Ground that has been seen ([`SeenGround::cells`](crate::sense::SeenGround::cells)): to where
-    /// it may drive so fast that it can just stop before, and over what it may back up.
+    /// Observed ground ([`SeenGround::cells`](crate::sense::SeenGround::cells)): the cells within
+    /// which the robot must be able to stop, and those over which it may back up.
     pub seen: SeenCells<'a>,
-    /// Everything that moves, or may move, as it was observed last. One with a number that is not
-    /// finite, or a negative length, is left out.
+    /// Everything that moves, or may move, as last observed. An entry with a number that is not
+    /// finite, or a negative length, is ignored.
     pub movers: &'a [Mover],
-    /// From that instant to the one at which the command acts \[s\].
+    /// Time from that instant to the one at which the command acts \[s\].
     pub delay_s: f64,
-    /// Pose of the robot when the command acts; that of its reference, if its commands are averaged.
+    /// Pose of the robot when the command acts; that of its reference, if its commands are
+    /// averaged.
     pub pose: Pose,
     /// Its velocity then.
     pub velocity: Velocity,
@@ -212,15 +220,15 @@ pub struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    /// Everything that stands, as a local planner sees it. Nothing is asked about what has been
-    /// seen, and nothing moves.
+    /// The stationary obstacles, as a local planner sees them. Observed space is not checked, and
+    /// nothing moves.
     pub const fn standing(scene: &Scene<'a>) -> Self {
         let Scene { obstacles, pose, velocity, smoothed, .. } = *scene;
         let (seen, movers, delay_s) = (SeenCells::ANYWHERE, &[], 0.0);
         Self { obstacles, seen, movers, delay_s, pose, velocity, smoothed }
     }
 
-    /// The robot itself.
+    /// Pose and velocity of the robot itself.
     fn robot(&self) -> (Pose, Velocity) {
         self.smoothed.map_or((self.pose, self.velocity), |robot| (robot.pose, robot.velocity))
     }
@@ -238,56 +246,57 @@ fn is_finite(velocity: Velocity) -> bool {
     velocity.v.is_finite() && velocity.omega.is_finite()
 }
 
-/// What became of a command.
+/// The result of the gate for a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gated {
     /// The command to issue.
     pub command: Velocity,
-    /// Why it is not the one that was asked for; none when it is.
+    /// Reason for which it is not the requested command; `None` if it is.
     pub why: Option<Refusal>,
 }
 
 impl Gated {
-    /// True if the command is another one than was asked for.
+    /// True if the command differs from the requested one.
     pub const fn changed(&self) -> bool {
         self.why.is_some()
     }
 }
 
-/// Why a command was not issued.
+/// Reason for which a command was not issued.
 #[derive(Clone, Copy, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Before it could stop, the robot would come too near to something that stands, or to the
+    /// Before it could stop, the robot would come too near to a stationary obstacle, or to the
     /// map's border.
     #[error("the robot could not stop before something that stands, {after_s:.2} s from now")]
     Standing {
-        /// When, from now \[s\].
+        /// Time of the violation, from now \[s\].
         after_s: f64,
     },
-    /// Before it could stop, a mover could touch it.
+    /// Before it could stop, a moving obstacle could touch it.
     #[error(
         "the robot could not stop before what it follows as track {id} may be there, {after_s:.2} s from now"
     )]
     Mover {
-        /// The number of its track ([`Mover::id`]).
+        /// Number of the track ([`Mover::id`]).
         id: u64,
-        /// When, from now \[s\].
+        /// Time of the violation, from now \[s\].
         after_s: f64,
     },
-    /// The robot would back up where it does not look, and somebody may come before it could stop.
+    /// The robot would back up outside its field of view, and a moving obstacle may be there
+    /// before it could stop.
     #[error(
         "the robot could not stop before somebody may be behind it, where it does not look, {after_s:.2} s from now"
     )]
     Unseen {
-        /// When, from now \[s\].
+        /// Time of the violation, from now \[s\].
         after_s: f64,
     },
-    /// Before it could stop, the robot would be where it has not seen that nothing stands.
+    /// Before it could stop, the robot would leave the observed free space.
     #[error("the robot could not stop within what it has seen to be free, {after_s:.2} s from now")]
     OutOfSight {
-        /// When, from now \[s\].
+        /// Time of the violation, from now \[s\].
         after_s: f64,
     },
     /// The robot's centre of rotation is inside an obstacle or outside the map.
@@ -298,7 +307,7 @@ pub enum Refusal {
     NotANumber,
 }
 
-/// How many commands were changed, by reason.
+/// Numbers of commands that were changed, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RefusalCounts {
     /// [`Refusal::Standing`].
@@ -318,7 +327,7 @@ pub struct RefusalCounts {
 }
 
 impl RefusalCounts {
-    /// Counts one more.
+    /// Counts one refusal.
     pub const fn add(&mut self, refusal: &Refusal) {
         let count = match refusal {
             Refusal::Standing { .. } => &mut self.standing,
@@ -331,14 +340,14 @@ impl RefusalCounts {
         *count += 1;
     }
 
-    /// All of them.
+    /// Total of all reasons.
     pub const fn total(&self) -> u32 {
         let Self { standing, mover, unseen, out_of_sight, covered, not_a_number } = *self;
         standing + mover + unseen + out_of_sight + covered + not_a_number
     }
 }
 
-/// The gate.
+/// The stop rule for one robot.
 ///
 /// ```
 /// use keyway::geometry::{Pose, Velocity};
@@ -375,19 +384,20 @@ pub struct StopRule {
 }
 
 impl StopRule {
-    /// Manoeuvres that are tried between what was asked for and braking.
+    /// Number of manoeuvres that are tried between the requested command and braking.
     const HALVINGS: u32 = 3;
 
-    /// Distance of two points of the front or rear that are looked at, in inscribed radii.
+    /// Distance between two checked points of the front or rear, in inscribed radii.
     const SPACING: f64 = 0.2;
 
-    /// More cycles than this until a robot stands are a mistake in its limits.
+    /// Upper limit of the cycles until a robot stops; more are an error in its limits.
     const MAX_CYCLES: f64 = 10_000.0;
 
-    /// The gate of a robot.
+    /// The stop rule of a robot.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used; the error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid; the error
+    /// names the field.
     pub fn new(config: StopRuleConfig, robot: impl Into<Arc<Robot>>) -> Result<Self, ConfigError> {
         let rule = Self::for_any_brakes(config, robot.into())?;
         let robot = &rule.robot;
@@ -401,7 +411,8 @@ impl StopRule {
     /// The same for robots that take any number of cycles to stop.
     ///
     /// # Errors
-    /// When a value of the robot or the config cannot be used; the error names the field.
+    /// Returns a [`ConfigError`] if a value of the robot or the config is invalid; the error
+    /// names the field.
     pub(super) fn for_any_brakes(
         config: StopRuleConfig,
         robot: Arc<Robot>,
@@ -413,12 +424,12 @@ impl StopRule {
         Ok(Self { config, robot, front, rear })
     }
 
-    /// Tells whether a command is admissible: the robot keeps the margin (or what it has, where
-    /// that is less) until it stands when it brakes from the next cycle on. Asked for braking, it
-    /// tells whether that does.
+    /// Checks whether a command is admissible: braking from the next cycle on, the robot keeps
+    /// the margin (or its present clearance, if that is less) until it is stationary. For a
+    /// braking command, the check applies to braking itself.
     ///
     /// # Errors
-    /// The first reason for which it is not.
+    /// Returns the first reason for which it is not.
     pub fn admits(
         &self,
         around: &Surroundings<'_>,
@@ -432,7 +443,7 @@ impl StopRule {
         Manoeuvres::new(self, around, asked, scratch.part()).check(asked)
     }
 
-    /// Tells whether [`Self::gate`] leaves a command as it is: it is braking, or admissible.
+    /// True if [`Self::gate`] leaves a command unchanged: it is braking, or admissible.
     pub(super) fn lets_pass(
         &self,
         around: &Surroundings<'_>,
@@ -446,13 +457,13 @@ impl StopRule {
         self.robot.limits.reached(around.velocity, command, self.robot.cycle_s)
     }
 
-    /// True if a command leads to what braking along the present arc leads to.
+    /// True if a command leads to the same velocity as braking along the present arc.
     fn is_braking(&self, around: &Surroundings<'_>, command: Velocity) -> bool {
         let braking = self.robot.limits.braked(around.velocity, self.robot.cycle_s);
         self.reached(around, command) == self.reached(around, braking)
     }
 
-    /// The command to issue when `command` is asked for. See the module's documentation.
+    /// Returns the command to issue when `command` is requested. See the module's documentation.
     pub fn gate(
         &self,
         around: &Surroundings<'_>,
@@ -481,7 +492,7 @@ impl StopRule {
         }
     }
 
-    /// The velocity nearest to what was asked for, of those that are tried and admissible.
+    /// The admissible velocity nearest to the requested one, among those that are tried.
     fn nearest(manoeuvres: &mut Manoeuvres<'_>, braking: Velocity, asked: Velocity) -> Velocity {
         let mut admissible = 0.0;
         let mut refused = 1.0;

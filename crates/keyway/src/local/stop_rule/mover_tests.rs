@@ -1,4 +1,4 @@
-//! Movers that keep their bounds, and nothing else.
+//! Moving obstacles that keep their bounds, and nothing else.
 
 use super::tests::{Ground, commands, direction, every_cycle, instants, robots};
 use super::*;
@@ -8,8 +8,8 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Movers that turn around in every cycle, the first one always towards the robot; or that
-    /// accelerate as hard as they may. They are seen with errors.
+    /// Moving obstacles that turn around in every cycle, the first one always towards the robot;
+    /// or that accelerate as hard as they may. They are observed with errors.
     #[test]
     fn no_mover_touches_a_robot_that_moves(
         robot in robots(), commands in commands(), has_acceleration: bool, off_m in 0.0..0.1f64,
@@ -51,7 +51,7 @@ proptest! {
     }
 }
 
-/// A mover in the truth.
+/// The true state of a moving obstacle.
 struct Walker {
     centre: Point,
     before: Point,

@@ -1,4 +1,4 @@
-//! Backing up where the robot does not look.
+//! Backing up outside the field of view.
 
 use super::tests::{Ground, gate, rule};
 use super::*;
@@ -37,27 +37,28 @@ fn it_backs_up_over_seen_ground_only() {
     let refused = at(0.0, REST, BACK, &seen(98..=199));
     assert!(matches!(refused.why, Some(Refusal::Unseen { after_s }) if after_s < 0.2));
     assert_eq!(refused.command, REST);
-    // With its back to the seen ground, and ahead, it may go.
+    // With its back to the observed ground, and ahead, it may go.
     assert!(!at(PI, REST, BACK, &seen(0..=102)).changed());
     assert!(!at(0.0, REST, Velocity::new(0.5, 1.0), &seen(98..=199)).changed());
     assert!(!at(0.0, REST, Velocity::new(0.0, 1.0), &seen(98..=199)).changed());
-    // What is on its way back brakes as hard as it can; to turn meanwhile would be another way.
+    // A robot that backs up already brakes as hard as it can; to turn meanwhile would be another
+    // motion.
     let braking = Robot::jackal().limits.braked(BACK, 0.05);
     for command in [BACK, Velocity::new(-0.2, 0.3), REST, Velocity::new(2.0, 0.0)] {
         let gated = at(0.0, BACK, command, &seen(98..=199));
         let reached = Robot::jackal().limits.reached(BACK, gated.command, 0.05);
         assert_eq!(reached, braking, "{command:?}");
     }
-    // What is left of its way back has to be driven, or is noise of a robot that drives off.
+    // The rest of its backward motion has to be driven, or is noise of a robot that drives off.
     for v in [-0.1, -0.01] {
         let (before, ahead) = (Velocity::new(v, 0.0), Velocity::new(0.5, 0.0));
         assert!(!at(0.0, before, ahead, &seen(98..=199)).changed());
     }
-    // As far as it comes in the cycle and while it brakes: 0.025 m and 0.04 m.
+    // The distance that it moves in the cycle and while it brakes: 0.025 m and 0.04 m.
     let mut some = seen(97..=199);
     assert!(!at(0.0, BACK, BACK, &seen(96..=199)).changed());
     assert!(at(0.0, BACK, BACK, &some).changed());
-    // Who turns fast needs longer to stop than the ground is known to be free.
+    // A robot that turns fast needs longer to stop than the ground is known to be free.
     for (omega, is_refused) in [(0.5, false), (-0.5, false), (2.0, true), (-3.0, true)] {
         let arc = Velocity::new(-0.5, omega);
         let gated = at(0.0, arc, arc, &seen(0..=199));
@@ -71,8 +72,8 @@ fn it_backs_up_over_seen_ground_only() {
     assert!(at(0.0, REST, BACK, &some).changed());
 }
 
-/// In cells of 1 m, three quarters of a cell before a wall or the end of the map may be nothing
-/// that was seen: no beam goes on beyond either.
+/// In cells of 1 m, there may be no observed cell three quarters of a cell before a wall or the
+/// end of the map: no beam continues beyond either.
 #[test]
 fn it_drives_up_to_what_is_known_to_end_the_way() {
     let frame = GridFrame::new(6, 3, 1.0, Pose::default()).unwrap();
@@ -92,6 +93,6 @@ fn it_drives_up_to_what_is_known_to_end_the_way() {
     // 0.4 m before the wall, and before the end of the map.
     assert!(passes(&with_wall, 4.6, &|cell| cell != wall));
     assert!(passes(&open, 5.6, &|_| true));
-    // What was not seen may hold something.
+    // An unobserved cell may be occupied.
     assert!(!passes(&open, 4.6, &|cell| cell.x < 5));
 }

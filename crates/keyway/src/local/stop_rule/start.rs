@@ -1,4 +1,5 @@
-//! A robot at the beginning of a cycle: which parts of it must keep away from what.
+//! The start of a cycle: the parts of the robot, and the obstacles from which each must keep
+//! away.
 
 use super::Surroundings;
 use crate::geometry::{Point, Pose};
@@ -7,17 +8,17 @@ use crate::robot::Robot;
 use crate::sense::ProjectedScan;
 use arrayvec::ArrayVec;
 
-/// The most that rounding may take from a distance \[m\]: what is no farther away than this is
-/// touched, because less than nothing could be kept from it.
+/// Largest rounding error of a distance \[m\]: an obstacle at this distance or less is touched,
+/// because a negative distance cannot be kept from it.
 pub(super) const ROUNDING_M: f64 = 1e-9;
 
-/// The part of the robot that must not come near to what stands.
+/// The part of the robot that must not come near to stationary obstacles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body<'a> {
     pub(super) core: Core<'a>,
     /// The body is all ground this near to the core \[m\].
     pub(super) radius_m: f64,
-    /// Distance that it must keep from that \[m\].
+    /// Distance that it must keep \[m\].
     pub(super) kept_m: f64,
     /// True if it must keep that from the map's border, too.
     pub(super) keeps_border: bool,
@@ -26,15 +27,15 @@ pub(super) struct Body<'a> {
 /// The centre of rotation is inside an obstacle or outside the map.
 pub(super) struct Covered;
 
-/// Obstacles that a robot touches when a cycle begins.
+/// Obstacles that a robot touches at the beginning of a cycle.
 #[derive(Debug, Default)]
 pub(super) struct Touched {
     /// Obstacle squares, row by row: those that it touches, and those beside them in which the
-    /// latest scans met something.
+    /// latest scans have hits.
     pub(super) squares: Vec<Cell>,
-    /// Places at which the scans met something near the robot, outside of it.
+    /// Hits of the scans near the robot, outside of it.
     pub(super) places: Vec<Point>,
-    /// Distance that it must keep from those places \[m\].
+    /// Distance that it must keep from those hits \[m\].
     pub(super) places_kept_m: f64,
 }
 
@@ -46,15 +47,16 @@ impl Touched {
         self.places_kept_m = f64::INFINITY;
     }
 
-    /// Room of a robot from the places, beyond what must be kept \[m\]; infinite without any.
+    /// Clearance of a robot from the hits, beyond the distance to keep \[m\]; infinite without
+    /// any.
     pub(super) fn spare_m(&self, (core, radius_m): (&Core<'_>, f64), pose: Pose) -> f64 {
         let least_m = radius_m + self.places_kept_m;
         let spare_m = |&place: &Point| core.distance_to_m(pose, place) - least_m;
         self.places.iter().map(spare_m).fold(f64::INFINITY, f64::min)
     }
 
-    /// Adds the squares beside those that are touched in which scans met something: where that is,
-    /// is known better than by squares.
+    /// Adds the squares with scan hits beside those that are touched: the hits locate the
+    /// obstacle better than the squares.
     fn add_squares_met(&mut self, scans: &[ProjectedScan], clearance: &Clearance<'_>) {
         let count = self.squares.len();
         let hits = scans.iter().flat_map(ProjectedScan::hits);
@@ -70,8 +72,8 @@ impl Touched {
         self.squares.dedup();
     }
 
-    /// Notes the places around a robot at which scans met something; what lies inside of the robot
-    /// does not stand there. Returns the distance to the nearest, `reach_m` if none is nearer.
+    /// Collects the scan hits around a robot; those inside of the robot are ignored. Returns the
+    /// distance to the nearest, `reach_m` if none is nearer.
     fn note_places(
         &mut self,
         scans: &[ProjectedScan],
@@ -96,7 +98,7 @@ impl Touched {
         nearest_m
     }
 
-    /// Hits of neighbouring beams that are no farther apart than this have met the same thing
+    /// Hits of neighbouring beams that are no farther apart than this belong to the same obstacle
     /// \[cells\].
     const JOINED_CELLS: f64 = 1.5;
 }
@@ -112,9 +114,9 @@ impl<'a> Start<'a> {
     /// Halvings after which a shrunk footprint is exact enough: a part in 65536.
     const HALVINGS: u32 = 16;
 
-    /// The bodies that count on ways of up to `moves_m`: none when nothing is within reach; where
+    /// The bodies that count for motions of up to `moves_m`: none if nothing is within reach. If
     /// the robot touches something, first the part of it that may touch nothing at all, then the
-    /// whole, which may touch nothing but what is `touched`.
+    /// whole, which may touch nothing except `touched`.
     pub(super) fn bodies(
         &self,
         moves_m: f64,
@@ -149,9 +151,9 @@ impl<'a> Start<'a> {
         Ok(ArrayVec::from([part, self.whole(moves_m, touched)]))
     }
 
-    /// All of the robot, beside what it does not touch now. In the squares beside those that it
-    /// touches, it keeps away from the places that the scan met, so that a robot that touches the
-    /// squares of a wall may go along it.
+    /// The whole robot, against obstacles that it does not touch now. In the squares beside the
+    /// touched ones, it keeps away from the scan hits, so that a robot that touches the squares
+    /// of a wall may drive along it.
     fn whole(&self, moves_m: f64, touched: &mut Touched) -> Body<'a> {
         let Surroundings { obstacles, seen, .. } = *self.around;
         let (pose, _) = self.around.robot();
@@ -174,12 +176,12 @@ impl<'a> Start<'a> {
         Body { core, radius_m, kept_m: self.kept_m(room_m), keeps_border }
     }
 
-    /// The margin, or what there is now, where that is less.
+    /// The margin, or the present clearance if that is less.
     fn kept_m(&self, room_m: f64) -> f64 {
         self.margin_m.min(room_m - ROUNDING_M)
     }
 
-    /// The polygon, smaller around the centre of rotation, as large as it covers nothing.
+    /// The polygon, scaled around the centre of rotation to the largest size that covers nothing.
     fn shrink(&self, vertices: &[Point], shrunk: &'a mut Vec<Point>, reach_m: f64) -> Core<'a> {
         let (obstacles, (pose, _)) = (self.around.obstacles, self.around.robot());
         let mut fill = |scale: f64| {
@@ -198,7 +200,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// Room at a pose from obstacles and border \[m\], negative outside the map.
+/// Clearance at a pose from obstacles and border \[m\], negative outside the map.
 fn room_m(core: &Core<'_>, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
     core.distance_m(pose, clearance, reach_m).min(core.to_border_m(pose, clearance))
 }

@@ -4,7 +4,7 @@ use crate::map::{BitGrid, FieldConfig, GridFrame};
 use crate::robot::{Footprint, star};
 use proptest::prelude::*;
 
-/// What stands, with its distances.
+/// Stationary obstacles, with their distances.
 pub(super) struct Ground {
     field: DistanceField,
 }
@@ -18,7 +18,7 @@ impl Ground {
         Self { field: DistanceField::new(frame, &obstacles, &FieldConfig::default()) }
     }
 
-    /// A wall 0.2 m thick whose face stands at x = 5 m, on a map of 10 m x 8 m.
+    /// A wall 0.2 m thick whose face is at x = 5 m, on a map of 10 m x 8 m.
     pub(super) fn wall() -> Self {
         let frame = GridFrame::new(100, 80, 0.1, Pose::default()).unwrap();
         let is_wall = |i: usize| (50..52).contains(&(i % 100));
@@ -29,7 +29,7 @@ impl Ground {
         Self::new(&GridFrame::new(200, 200, 0.1, Pose::new(-10.0, -10.0, 0.0)).unwrap(), &[])
     }
 
-    /// Room of a footprint \[m\]: exact, up to 1 m.
+    /// Clearance of a footprint \[m\]: exact, up to 1 m.
     pub(super) fn room_m(&self, footprint: &Footprint, pose: Pose) -> f64 {
         let clearance = self.field.clearance();
         footprint.distance_m(pose, &clearance, 1.0).min(footprint.to_border_m(pose, &clearance))
@@ -77,12 +77,12 @@ fn stops_before_a_wall_by_hand() {
     assert_eq!(at(least_m + 1e-6), Gated { command: AHEAD, why: None });
     let refused = at(least_m - 1e-6);
     assert!(matches!(refused.why, Some(Refusal::Standing { after_s }) if after_s > 0.9));
-    // Something between braking (0.45 m/s) and what was asked for still fits.
+    // A velocity between braking (0.45 m/s) and the requested one still fits.
     assert!(refused.command.v > 0.45 && refused.command.v < 0.5, "{refused:?}");
     // Along the wall it does not matter.
     let along = Pose::new(5.0 - 0.18 - 0.003, 4.0, std::f64::consts::FRAC_PI_2);
     assert!(!gate(&rule, &ground.around(along, AHEAD, &[]), AHEAD).changed());
-    // Beyond the place where it could stop it brakes as hard as it can.
+    // Beyond the point at which it could stop it brakes as hard as it can.
     assert_eq!(at(0.35).command, Velocity::new(0.45, 0.0));
 }
 
@@ -103,21 +103,21 @@ fn movers_by_hand() {
         assert!(by_mover, "{gated:?}");
         !gated.changed()
     };
-    // It stands after 1.1 s and 0.3 m: until then a mover comes 1.1 m towards it. Shown to a
-    // margin's length.
+    // It stops after 1.1 s and 0.3 m: until then a moving obstacle approaches by 1.1 m. Accurate
+    // to a margin's length.
     assert!(admits(&any_way, 1.4 + 0.006, 1.0, 0.0) && !admits(&any_way, 1.4, 1.0, 0.0));
     // From behind it has to catch up.
     assert!(admits(&any_way, 0.8 + 0.006, -1.0, 0.0) && !admits(&any_way, 0.8, -1.0, 0.0));
-    // Whatever it seems to do.
+    // Its observed velocity does not matter.
     assert!(!admits(&any_way, 1.4, 1.0, 0.9));
-    // With a bound of its acceleration it matters: after 1.1 s it may be 0.605 m off its way.
+    // With an acceleration bound it does: after 1.1 s it may be 0.605 m off its path.
     let movers = MoverBounds { acceleration_mps2: Some(1.0), ..config.movers };
     let inert = StopRule::new(StopRuleConfig { movers, ..config }, robot).unwrap();
     assert!(admits(&inert, 0.3 + 0.605 + 0.006, 1.0, 0.0) && !admits(&inert, 0.9, 1.0, 0.0));
     assert!(admits(&inert, 0.1, 1.0, 0.8) && !admits(&inert, 0.1, 1.0, -0.8));
 }
 
-/// A mover comes nearer before the command acts.
+/// A moving obstacle approaches before the command acts.
 #[test]
 fn a_mover_has_the_delay_in_addition() {
     let (ground, robot) = (Ground::open(), Robot::small());
@@ -130,7 +130,7 @@ fn a_mover_has_the_delay_in_addition() {
         !gate(&rule, &Surroundings { delay_s, ..around }, AHEAD).changed()
     };
     for delay_s in [0.0, 0.1, 0.35] {
-        // As without a delay, and 1 m/s for as long as it is.
+        // As without a delay, plus 1 m/s times the delay.
         assert!(admits(1.4 + delay_s + 0.006, delay_s) && !admits(1.4 + delay_s, delay_s));
     }
 }
@@ -167,8 +167,8 @@ fn inside_the_margin_it_may_leave_and_pass_but_not_come_nearer() {
                 assert_eq!(nearer.command, Velocity::ZERO, "{robot:?} {depth_m}");
                 assert!(matches!(nearer.why, Some(Refusal::Standing { .. })), "{nearer:?}");
             }
-            // Odometry that shows a little speed towards the wall keeps it from neither driving
-            // back nor, when it is round, turning.
+            // A small odometry speed towards the wall prevents neither driving back nor, if the
+            // robot is round, turning.
             let noise = Velocity::new(0.004, 0.0);
             let from_noise = |command| gate(&rule, &ground.around(pose, noise, &[]), command);
             assert!(!from_noise(Velocity::new(-0.05, 0.0)).changed(), "{robot:?} {depth_m}");
@@ -180,7 +180,7 @@ fn inside_the_margin_it_may_leave_and_pass_but_not_come_nearer() {
     let rule = rule(&Robot::small());
     let along = Pose::new(5.0 - 0.18 - 0.001, 4.0, std::f64::consts::FRAC_PI_2);
     assert!(!gate(&rule, &ground.around(along, AHEAD, &[]), AHEAD).changed());
-    // From a mover it must not go away either, which could follow it.
+    // It must not move away from a moving obstacle either, which could follow it.
     let movers = [Mover::standing(1, Point::new(1.0 + 0.18 + 0.3 - 0.01, 1.0), 0.3)];
     for theta in [0.0, 3.0] {
         let around = ground.around(Pose::new(1.0, 1.0, theta), Velocity::ZERO, &movers);
@@ -210,7 +210,7 @@ fn what_cannot_be_judged_is_stopped() {
         let gated = gate(&rule, &around, AHEAD);
         assert_eq!(gated, Gated { command: Velocity::ZERO, why: Some(Refusal::NotANumber) });
     }
-    // A mover that is none.
+    // An invalid moving obstacle.
     let movers = [Mover::standing(1, Point::new(f64::NAN, 1.0), 0.3)];
     assert!(!gate(&rule, &ground.around(pose, AHEAD, &movers), AHEAD).changed());
 }
@@ -250,7 +250,7 @@ pub(super) fn robots() -> impl Strategy<Value = Robot> {
     })
 }
 
-/// What a mad local planner asks for: each command for so many cycles, in parts of the limits.
+/// Commands of a mad local planner: each for a number of cycles, as fractions of the limits.
 pub(super) fn commands() -> impl Strategy<Value = Vec<(f64, f64, usize)>> {
     let v = prop_oneof![Just(1.0), Just(0.0), -0.2..1.0f64];
     let omega = prop_oneof![Just(0.0), -1.0..1.0f64];
@@ -268,8 +268,8 @@ pub(super) fn every_cycle(robot: &Robot, commands: &[(f64, f64, usize)]) -> Vec<
     commands.iter().flat_map(asked).collect()
 }
 
-/// True if a cycle brakes along the present arc. That is issued without being looked at, as part of
-/// the manoeuvre that was admitted last: what it keeps is what there was to keep then.
+/// True if a cycle brakes along the present arc. That is issued unchecked, as part of the
+/// manoeuvre that was admitted last: it keeps the clearance of that time.
 fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
     next == robot.limits.reached(
         velocity,
@@ -278,8 +278,8 @@ fn brakes(robot: &Robot, velocity: Velocity, next: Velocity) -> bool {
     )
 }
 
-/// Distance that a robot comes in a cycle that counts as standing, and is asked for nothing else:
-/// what its odometry shows is taken for noise then.
+/// Distance that a robot moves in a cycle in which it counts as stationary and gets no other
+/// command: its odometry is then taken for noise.
 fn drifts_m(robot: &Robot, velocity: Velocity, next: Velocity) -> f64 {
     if !robot.stands(velocity) {
         return 0.0;
@@ -350,7 +350,7 @@ proptest! {
         }
     }
 
-    /// A robot that begins in contact may leave it, and touches nothing else on the way.
+    /// A robot that begins in contact may leave it, and touches nothing else meanwhile.
     #[test]
     fn a_mad_planner_in_contact_touches_nothing_more(
         cells in cells(), robot in robots(), x in 3.0..37.0f64, y in 3.0..27.0f64, theta in -3.1..3.1f64,
@@ -358,7 +358,7 @@ proptest! {
     ) {
         let at = frame().world_from_grid(Point::new(x, y));
         let (mut pose, mut velocity) = (Pose::new(at.x, at.y, theta), Velocity::ZERO);
-        // Something stands beside the middle of the robot: mostly within it.
+        // An obstacle beside the middle of the robot: mostly within it.
         let mut cells = cells;
         let post = frame().cell_from_world(pose.world_from_body(Point::new(0.12 + beside, 0.05)));
         prop_assume!(post.is_some());
@@ -381,7 +381,7 @@ proptest! {
             let gated = rule.gate(&ground.around(pose, velocity, &[]), command, &mut scratch);
             let next = robot.limits.reached(velocity, gated.command, robot.cycle_s);
             if !brakes(&robot, velocity, next) {
-                // What is nearer cannot be told from contact.
+                // Smaller distances cannot be distinguished from contact.
                 allowed = near_at(pose, 1e-4 + drifts_m(&robot, velocity, next));
             }
             for (on_way, ..) in instants(&robot, pose, velocity, next) {
@@ -444,7 +444,7 @@ proptest! {
         }
     }
 
-    /// Where there is room for everything the robot can do, it may do everything.
+    /// If there is space for everything the robot can do, it may do everything.
     #[test]
     fn nothing_is_changed_in_the_open(
         robot in robots(), commands in commands(), theta in -3.1..3.1f64, bearing in -3.1..3.1f64,

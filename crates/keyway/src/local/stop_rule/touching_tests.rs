@@ -1,4 +1,4 @@
-//! Robots that hardly touch what is beside them, and what is ahead of them.
+//! Robots that barely touch obstacles beside them and ahead of them.
 
 use super::tests::{Ground, commands, every_cycle, gate, instants, robots, rule};
 use super::*;
@@ -17,7 +17,7 @@ fn corner() -> Ground {
     Ground::new(&frame, &(0..8000).map(is_wall).collect::<Vec<_>>())
 }
 
-/// An obstacle nearer than rounding tells apart is touched: it does not open the way to anything
+/// An obstacle within rounding distance is touched: it does not permit contact with anything
 /// else.
 #[test]
 fn what_is_beside_a_robot_by_less_than_rounding_opens_no_way_ahead() {
@@ -39,7 +39,7 @@ fn what_is_beside_a_robot_by_less_than_rounding_opens_no_way_ahead() {
     }
 }
 
-/// A robot among discs that it knows by its lidar only, cell by cell.
+/// A robot among discs that it senses only by its lidar, cell by cell.
 struct AmongDiscs {
     robot: Robot,
     discs: Vec<(Point, f64)>,
@@ -97,8 +97,8 @@ impl AmongDiscs {
         gate(&rule(&self.robot), &around, command)
     }
 
-    /// The least room on the way while a planner asks for these commands, until it is none: what
-    /// the robot has met is taken for a part of its body.
+    /// The least clearance while a planner requests these commands, until the first contact: from
+    /// then on hits inside the footprint would be taken for a part of the robot.
     fn drive(&mut self, mut pose: Pose, commands: &[Velocity]) -> f64 {
         let mut velocity = Velocity::ZERO;
         let mut least_m = self.room_m(pose);
@@ -121,15 +121,15 @@ impl AmongDiscs {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// A robot that covers a part of an obstacle's squares may go on, and still does not touch the
-    /// obstacle by more than two beams are apart there.
+    /// A robot that covers a part of an obstacle's squares may go on, and still overlaps the
+    /// obstacle by no more than the distance of two beams there.
     #[test]
     fn what_squares_hide_is_not_touched(
         robot in robots(), (x, y, theta) in (1.2..1.3f64, 1.2..1.3f64, -3.1..3.1f64), commands in commands(),
         beside in prop::collection::vec((-3.1..3.1f64, 0.001..0.03f64, 0.03..0.2f64), 1..3),
         discs in prop::collection::vec((0.2..2.4f64, 0.2..2.4f64, 0.03..0.2f64), 0..6),
     ) {
-        // It looks all around, from within.
+        // Its sensor covers all directions, from within the footprint.
         prop_assume!(robot.footprint.covers(Point::default()) || robot.footprint.inscribed_radius_m() > 0.0);
         let robot = Robot { sensors: Robot::small().sensors, ..robot };
         let mut among = AmongDiscs::new(robot, &discs);

@@ -3,7 +3,7 @@
 
 pub(in crate::local) const NAME: &str = "distance";
 
-/// The distance of a rollout, larger ones counted as the cap \[m\].
+/// The distance of a rollout, limited to the cap \[m\].
 pub(in crate::local) const fn raw(distance_m: f64, cap_m: f64) -> f64 {
     if distance_m < cap_m { distance_m } else { cap_m }
 }

@@ -1,22 +1,22 @@
-//! heading(v, omega) of \[You2021, eq. (9)\]: how well the robot looks at the guide point, at a
-//! predicted pose.
+//! heading(v, omega) of \[You2021, eq. (9)\]: the alignment of the robot with the guide point, at
+//! a predicted pose.
 
 use crate::geometry::{Point, Pose};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 pub(in crate::local) const NAME: &str = "heading";
 
-/// Pi less the absolute bearing of the guide point \[rad\]; the pose is that at the end of the
-/// trajectory in the paper.
+/// Pi less the absolute bearing of the guide point \[rad\]; in the paper, the pose is that at the
+/// end of the trajectory.
 ///
-/// There is no branch in it, so the compiler makes it for several poses at once.
+/// The function has no branches, so that the compiler vectorizes it over several poses.
 pub(in crate::local) fn raw(judged: Pose, guide: Point) -> f64 {
     let bearing_rad = direction_rad(guide - judged.point()) - judged.theta;
     PI - (bearing_rad - TAU * rounded(bearing_rad * (1.0 / TAU))).abs()
 }
 
-/// The nearest whole number, for numbers of less than 2^51: nothing smaller than 1 is left beside
-/// so large a number.
+/// The nearest integer, for numbers below 2^51: next to a number this large, fractions are
+/// rounded away.
 fn rounded(number: f64) -> f64 {
     const LARGE: f64 = 6_755_399_441_055_744.0;
     number + LARGE - LARGE
@@ -40,8 +40,8 @@ const ARC_TANGENT: [f64; 11] = [
     1.628_582_011_536_578_2e-2,
 ];
 
-/// The sum of the coefficients with the powers of a number: every other one apart, so that two sums
-/// grow at a time.
+/// The polynomial with these coefficients, split into even and odd powers, so that two sums are
+/// computed at a time.
 fn series(number: f64) -> f64 {
     let [a, b, c, d, e, f, g, h, i, j, k] = ARC_TANGENT;
     let square = number * number;
@@ -60,7 +60,7 @@ fn direction_rad(Point { x, y }: Point) -> f64 {
     let offset = if is_oblique { FRAC_PI_4 } else { 0.0 };
     let opposite = less - if is_oblique { more } else { 0.0 };
     let adjacent = more + if is_oblique { less } else { 0.0 };
-    // Of no direction at all it is 0.
+    // The direction of a zero vector is 0.
     let tangent = opposite / if adjacent > 0.0 { adjacent } else { 1.0 };
     let squared = tangent * tangent;
     let acute = offset + (tangent - tangent * squared * series(squared));

@@ -1,4 +1,4 @@
-//! Terms of an evaluation: what is good about a candidate, larger is better. One file each.
+//! Terms of an evaluation; larger values are better. One file each.
 
 pub(super) mod distance;
 pub(super) mod heading;

@@ -4,7 +4,7 @@ use crate::geometry::Velocity;
 
 pub(in crate::local) const NAME: &str = "speed";
 
-/// Its magnitude \[m/s\].
+/// Magnitude of the speed \[m/s\].
 pub(in crate::local) const fn raw(candidate: Velocity) -> f64 {
     candidate.v.abs()
 }

@@ -1,8 +1,9 @@
 //! Certified distances from cubic curves to the nearest obstacle square.
 //!
-//! A cubic curve has no closed form, so it is halved until it is known well enough: neither it nor
-//! its chord is anywhere farther from the other than the control polygon is from the chord
-//! ([`Cubic::deviation`]), and the chord's distance is exact. Nothing rests on samples alone.
+//! The distance from a cubic curve has no closed form, so the curve is halved until its bounds
+//! are tight enough. The curve and its chord deviate from each other by no more than the control
+//! polygon from the chord ([`Cubic::deviation`]), and the chord's distance is exact. No result
+//! depends on samples alone.
 
 use crate::geometry::{Cubic, Point, Segment, Square};
 use crate::map::clearance::scan::{Around, CERTAIN_CELLS};
@@ -11,14 +12,14 @@ use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
 use crate::map::{Clearance, ClearanceBounds};
 use std::ops::Range;
 
-/// No curve is located more exactly than to this distance \[cells\].
+/// Smallest tolerance of distances from a curve \[cells\].
 const CURVE_TOLERANCE_CELLS: f64 = 1e-6;
 
-/// Halvings after which a curve is given up: only coordinates too large to be told apart need as
-/// many.
+/// Number of halvings after which a curve is given up: only coordinates too large to be
+/// distinguished need as many.
 const MAX_HALVINGS: u32 = 20;
 
-/// Room for this many squares near a curve is made at once.
+/// Initial capacity for the squares near a curve.
 const NEAR_SQUARES: usize = 64;
 
 impl Clearance<'_> {
@@ -33,8 +34,8 @@ impl Clearance<'_> {
         let mut at_most_m = self.of_point(cubic.end(), self.of_point(cubic.start, reach_m));
         let mut at_least_m = at_most_m;
         let resolution = self.frame.resolution_m();
-        // The squares that may be near: those of a part come after those of the curve that it is a
-        // part of. All others are farther from that curve than the nearest so far.
+        // The squares that may be near; those of a part come after those of its parent curve. All
+        // others are farther from the parent than the nearest so far.
         let mut near = Vec::with_capacity(NEAR_SQUARES);
         let reach = (at_most_m + rounded_up_deviation(&cubic)) / resolution;
         self.scan(self.to_grid(cubic.chord()), reach, |square| {
@@ -45,7 +46,7 @@ impl Clearance<'_> {
         while let Some((part, halvings, around)) = parts.pop() {
             near.truncate(around.end);
             let deviation = rounded_up_deviation(&part);
-            // What lies beyond this reach cannot be nearer to the part than the nearest so far.
+            // Squares beyond this reach cannot be nearer to the part than the nearest so far.
             let reach = (at_most_m + deviation) / resolution;
             let chord = self.to_grid(part.chord());
             let nearest_sq = push_near(&mut near, around.clone(), chord, reach);
@@ -66,7 +67,7 @@ impl Clearance<'_> {
         ClearanceBounds { at_least_m: at_least_m.min(at_most_m), at_most_m }
     }
 
-    /// A certified lower bound of the distance from a cubic to the map's border. The distance is
+    /// Certified lower bound of the distance from a cubic to the map's border. The distance is
     /// concave, so over the hull of the control polygon it is smallest at a corner.
     pub(in crate::map) fn cubic_to_border(
         &self,
@@ -89,9 +90,9 @@ impl Clearance<'_> {
         ))
     }
 
-    /// True when two cubics that lie in the triangle of two segments, one after the other, are
-    /// certainly clear, and nowhere nearer to obstacles than these, or than `kept_m`, by more than
-    /// twice a tolerance; false only when one is nearer by more than the tolerance.
+    /// True if two successive cubics in the triangle of two segments are certainly clear, and
+    /// nowhere nearer to obstacles than these segments, or than `kept_m`, by more than twice a
+    /// tolerance. False only if one is nearer by more than the tolerance.
     pub(crate) fn keep_distance_of(
         &self,
         cubics: [Cubic; 2],
@@ -100,7 +101,7 @@ impl Clearance<'_> {
         tolerance_m: f64,
     ) -> bool {
         let resolution = self.frame.resolution_m();
-        // Nothing farther than what is nearest to the corner matters.
+        // Squares farther than the nearest one to the corner do not matter.
         let reach = self.of_point(edges[1].a, kept_m) / resolution;
         let edges = edges.map(|edge| self.to_grid(edge));
         let base = Segment::new(edges[0].a, edges[1].b);
@@ -138,20 +139,20 @@ impl Clearance<'_> {
         cubics.into_iter().all(|cubic| {
             let keeps =
                 distance <= 0.0 || judge.is_clear(&self.cubic_to_grid(cubic), all.clone(), 0);
-            // A curve that keeps a distance touches no obstacle.
+            // A curve that keeps a positive distance touches no obstacle.
             let is_clear = distance > tolerance && self.is_hull_on_map(cubic);
             keeps && (is_clear || self.is_clear_cubic(cubic, 0.0))
         })
     }
 
-    /// True when a cubic certainly stays inside the map: one whose control points do.
+    /// True if a cubic certainly stays inside the map, because its control points do.
     fn is_hull_on_map(&self, cubic: Cubic) -> bool {
         let second = cubic.start + cubic.legs[0];
         let corners = [cubic.start, second, second + cubic.legs[1], cubic.end()];
         corners.iter().all(|&at| self.is_inside(self.frame.grid_from_world(at), 0.0))
     }
 
-    /// True when a cubic is certainly clear, see [`Self::is_clear_curve`].
+    /// True if a cubic is certainly clear, see [`Self::is_clear_curve`].
     pub(in crate::map) fn is_clear_cubic(&self, cubic: Cubic, clearance_m: f64) -> bool {
         Judge {
             clearance: self,
@@ -172,25 +173,25 @@ impl Clearance<'_> {
     }
 }
 
-/// Judges whether a curve keeps its distance from obstacles \[cells\].
+/// Test of a curve's distance from obstacles \[cells\].
 struct Judge<'a> {
     clearance: &'a Clearance<'a>,
-    /// What has to be kept; for 0 squares may be touched, as in [`Clearance::is_clear`].
+    /// Required distance; for 0 squares may be touched, as in [`Clearance::is_clear`].
     distance: f64,
-    /// True if it has to be kept from the map's border as well.
+    /// True if the distance is also required from the map's border.
     is_border_kept: bool,
-    /// True if a part that is known is judged by its control polygon's hull, or counts as not
-    /// clear.
+    /// Selects the test of a part known well enough: by its control polygon's hull if true, else
+    /// it counts as not clear.
     is_hull_judged: bool,
-    /// A part that deviates from its chord by no more than this counts as known.
+    /// Largest deviation of a part from its chord at which it counts as known well enough.
     known: f64,
-    /// The squares that may be too near to a part, those of a part after those of the curve that it
-    /// is a part of.
+    /// The squares that may be too near to a part; those of a part come after those of its
+    /// parent.
     near: Vec<Square>,
 }
 
-/// Appends to a list of squares those of a range of it that are nearer to a segment than a distance
-/// \[cells\]; returns the least squared distance of all.
+/// Appends the squares of the range `some` that are nearer to a segment than a distance
+/// \[cells\]; returns the smallest squared distance of all.
 fn push_near(near: &mut Vec<Square>, some: Range<usize>, segment: Segment, distance: f64) -> f64 {
     let around = Around::new(segment, distance + CERTAIN_CELLS);
     let limit_sq = distance * distance;
@@ -221,7 +222,7 @@ impl Judge<'_> {
         self.is_clear(&cubic, all, 0)
     }
 
-    /// True if a part is clear of the squares that are near the curve that it is a part of.
+    /// True if a part is clear of the squares that are near its parent curve.
     fn is_clear(&mut self, part: &Cubic, near: Range<usize>, halvings: u32) -> bool {
         let (chord, deviation) = (part.chord(), rounded_up_deviation(part));
         let is_straight = deviation <= TOUCH_TOLERANCE_CELLS;
@@ -255,11 +256,11 @@ impl Judge<'_> {
             && self.is_clear(&after, near, halvings + 1)
     }
 
-    /// True when the hull of a thin curve's control polygon keeps the distance: this decides for a
-    /// curve that leaves a line along which the distance is just kept.
+    /// True if the hull of a thin curve's control polygon keeps the distance. It decides for a
+    /// curve that leaves a line which only just keeps the distance.
     ///
-    /// The hull is thinner than any square, so what is nearest to a square lies on its border, and
-    /// that border is among the lines between the corners.
+    /// The hull is thinner than any square, so its point nearest to a square lies on its border,
+    /// and that border consists of lines between the corners.
     fn is_clear_hull(&self, part: &Cubic, near: Range<usize>) -> bool {
         let [a, b, c] = part.legs;
         let corners = [part.start, part.start + a, part.start + a + b, part.start + a + b + c];
@@ -300,7 +301,7 @@ impl Judge<'_> {
     }
 }
 
-/// The deviation with room for rounding: what is certified must not depend on it.
+/// The deviation with slack for rounding: certified results must not depend on rounding.
 fn rounded_up_deviation(cubic: &Cubic) -> f64 {
     cubic.deviation() * (1.0 + 10.0 * CLEARANCE_TOLERANCE)
 }

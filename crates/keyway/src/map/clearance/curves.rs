@@ -1,5 +1,5 @@
-//! Exact distances from arcs to the nearest obstacle square, and all that can be asked about the
-//! pieces of a path. An arc is measured square by square in closed form.
+//! Exact distances from arcs to the nearest obstacle square, and all clearance queries on the
+//! pieces of a path. Arcs are measured square by square in closed form.
 
 use crate::geometry::{Arc, Path, PathPiece, Point, Segment, Square};
 use crate::map::Clearance;
@@ -8,13 +8,13 @@ use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_8, TAU};
 
-/// The smallest distance of a curve from the obstacles lies between these.
+/// Lower and upper bound of the smallest distance of a curve from the obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ClearanceBounds {
-    /// The curve is nowhere nearer than this \[m\].
+    /// No point of the curve is nearer than this \[m\].
     pub at_least_m: f64,
-    /// The curve is somewhere as near as this \[m\].
+    /// At least one point of the curve is as near as this \[m\].
     pub at_most_m: f64,
 }
 
@@ -25,7 +25,7 @@ impl ClearanceBounds {
 }
 
 impl Clearance<'_> {
-    /// Distance from an arc to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
+    /// Distance from an arc to the nearest obstacle square \[m\]; `reach_m` if none is nearer
     /// than that. Exact up to rounding. Costs a scan of the cells near the arc.
     pub fn of_arc(&self, arc: Arc, reach_m: f64) -> f64 {
         let near_m = self.of_point(arc.start(), reach_m);
@@ -51,7 +51,8 @@ impl Clearance<'_> {
         let margin = self.margin(clearance_m).max(0.0);
         if grid.sagitta() <= TOUCH_TOLERANCE_CELLS {
             let is_clear = self.is_clear(chord(&arc), clearance_m);
-            // The chord is nearer to what the arc bends around, which matters for a tiny clearance.
+            // The chord is nearer to the obstacle inside the bend, which matters for a tiny
+            // clearance.
             if is_clear || margin == 0.0 {
                 return is_clear;
             }
@@ -75,12 +76,12 @@ impl Clearance<'_> {
     }
 
     /// Bounds of the distance from a piece of a path to the nearest obstacle square, at most
-    /// `tolerance_m` apart (but not less than a millionth of a cell). Neither is more than
-    /// `reach_m`, and both are that when nothing is nearer than the two together. Segments and arcs
-    /// are exact.
+    /// `tolerance_m` apart (but not less than a millionth of a cell). Both are capped at
+    /// `reach_m`, and equal it if no obstacle is nearer than `reach_m` + `tolerance_m`. Segments
+    /// and arcs are exact.
     ///
-    /// A cubic of size h costs up to about sqrt(h / tolerance) exact distances of segments, where
-    /// all of it is equally far from obstacles, and about ten where one place is the nearest.
+    /// A cubic of size h costs up to about sqrt(h / tolerance) exact segment distances if all of
+    /// it is equally far from obstacles, and about ten if a single point is the nearest.
     pub fn of_curve(&self, piece: &PathPiece, reach_m: f64, tolerance_m: f64) -> ClearanceBounds {
         match piece {
             PathPiece::Segment(segment) => {
@@ -92,7 +93,7 @@ impl Clearance<'_> {
     }
 
     /// Bounds of the distance from a path to the nearest obstacle square, as for
-    /// [`Self::of_curve`]; `None` when the map has no obstacle or the path no piece.
+    /// [`Self::of_curve`]; `None` if the map has no obstacle or the path no piece.
     pub fn of_path(&self, path: &Path, tolerance_m: f64) -> Option<ClearanceBounds> {
         let first = path.pieces().first()?;
         let mut bounds = ClearanceBounds::exactly(self.of_point(first.start(), f64::INFINITY));
@@ -104,13 +105,13 @@ impl Clearance<'_> {
         bounds.at_most_m.is_finite().then_some(bounds)
     }
 
-    /// True when a piece of a path certainly stays inside the map and keeps `clearance_m` from
+    /// True if a piece of a path certainly stays inside the map and keeps `clearance_m` from
     /// every obstacle square; see [`Self::is_clear`] and [`Self::is_clear_arc`] for segments and
     /// arcs.
     ///
-    /// A cubic that keeps the clearance by less than a millionth of a cell may be refused, and so
-    /// may a bent one that touches an obstacle at a clearance of 0. One that does not keep it is
-    /// never accepted.
+    /// A cubic may be refused if it keeps the clearance by less than a millionth of a cell, or if
+    /// it is bent and touches an obstacle at a clearance of 0. A cubic that violates the
+    /// clearance is never accepted.
     pub fn is_clear_curve(&self, piece: &PathPiece, clearance_m: f64) -> bool {
         match piece {
             PathPiece::Segment(segment) => self.is_clear(*segment, clearance_m),
@@ -119,7 +120,7 @@ impl Clearance<'_> {
         }
     }
 
-    /// True when a piece of a path is certainly nowhere nearer to an obstacle than a distance;
+    /// True if a piece of a path is certainly nowhere nearer to an obstacle than a distance;
     /// false does not mean that it is nearer. Costs one scan of the cells near it.
     pub(crate) fn certainly_keeps(&self, piece: &PathPiece, distance_m: f64) -> bool {
         let (chord, deviation_m) = match piece {
@@ -127,12 +128,12 @@ impl Clearance<'_> {
             PathPiece::Arc(arc) => (chord(arc), arc.sagitta()),
             PathPiece::Cubic(cubic) => (cubic.chord(), cubic.deviation()),
         };
-        // With room for rounding.
+        // With slack for rounding.
         let within_m = distance_m + deviation_m * (1.0 + CLEARANCE_TOLERANCE);
         self.obstacle_within(chord, within_m).is_none()
     }
 
-    /// True when [`Self::is_clear_curve`] holds for all pieces of a path.
+    /// True if [`Self::is_clear_curve`] holds for all pieces of a path.
     pub fn is_clear_path(&self, path: &Path, clearance_m: f64) -> bool {
         path.pieces().iter().all(|piece| self.is_clear_curve(piece, clearance_m))
     }
@@ -167,14 +168,14 @@ impl Clearance<'_> {
     fn arc_slips_past(&self, arc: &Arc, touched: Square) -> bool {
         let centre = touched.corner + Point::new(0.5, 0.5);
         touched.corners().into_iter().any(|corner| {
-            // From the centre through the corner and as far again.
+            // The point opposite the centre, at the same distance beyond the corner.
             let across = corner + (corner - centre);
             arc.distance_to_point(corner) <= TOUCH_TOLERANCE_CELLS && self.is_obstacle(across)
         })
     }
 }
 
-/// A part of an arc, and how near it is to its chord.
+/// Part of an arc, with its chord and its sagitta.
 struct ShortArc {
     arc: Arc,
     chord: Segment,
@@ -186,16 +187,16 @@ impl ShortArc {
         Self { arc, chord: chord(&arc), sagitta: arc.sagitta() }
     }
 
-    /// True if a square is certainly farther than this. The distance from the chord, which takes no
-    /// trigonometry, decides it for most squares.
+    /// True if a square is certainly farther than `distance`. The distance from the chord, which
+    /// needs no trigonometry, decides this for most squares.
     fn is_beyond(&self, square: Square, distance: f64) -> bool {
         let limit = distance + self.sagitta + TOUCH_TOLERANCE_CELLS;
         self.chord.distance_sq_to_square(square) > limit * limit
     }
 }
 
-/// The arc in parts of at most an eighth of half a turn: each is near its chord, which is what a
-/// scan walks along.
+/// Splits the arc into parts of at most an eighth of a half turn: each is close to its chord,
+/// along which the scan runs.
 fn short_parts(arc: Arc) -> impl Iterator<Item = Arc> {
     let parts = (arc.sweep_rad.abs() / FRAC_PI_8).ceil().max(1.0) as u32;
     let fraction = move |part: u32| f64::from(part) / f64::from(parts);
@@ -208,7 +209,7 @@ fn chord(arc: &Arc) -> Segment {
 
 /// True if the arc enters the square's interior by more than the tolerance.
 fn enters(arc: &Arc, square: Square) -> bool {
-    // The unit square, on coordinates scaled so that the shrunk square is one.
+    // The test of the unit square, on coordinates scaled to map the shrunk square onto it.
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
     let centre = (arc.centre - inner) * (1.0 / shrunk);
@@ -279,7 +280,7 @@ mod tests {
         assert!(is_clear_arc(&one, touching, 0.0) && !is_clear_arc(&one, touching, 0.01));
         let two = grid(&["..#", ".#.", "..."]);
         assert!(!is_clear_arc(&two, circumscribed, 0.0), "between them at (2, 2)");
-        // As good as straight, along the joint of a wall, and a point.
+        // Almost straight, along the joint of a wall, and a point.
         let wall = grid(&["...", ".#.", ".#."]);
         let straight = Arc::new(Point::new(1.5, 1.0 - 1e12), 1e12, FRAC_PI_2 - 5e-13, 1e-12);
         assert!(!is_clear_arc(&wall, straight, 0.0));
@@ -302,7 +303,7 @@ mod tests {
         assert!(clearance(&grid).is_clear_curve(&piece, 1.2499));
         assert!(!clearance(&grid).is_clear_curve(&piece, 1.2501), "nearer than that");
         assert!(!clearance(&grid).is_clear_curve(&piece, 1.25 + 1e-6), "by a little");
-        // Halved where it is nearest, so that a leg of either half lies along the limit.
+        // Split at its nearest point, so that a leg of either half lies along the limit.
         assert!(clearance(&grid).is_clear_curve(&piece, 1.25));
     }
 

@@ -1,11 +1,11 @@
-//! True if a line touches the cells around obstacles.
+//! Test of lines against the expanded cells around obstacles.
 
 use crate::geometry::{Point, Segment, Square};
 use crate::map::Clearance;
 use crate::map::clearance::TOUCH_TOLERANCE_CELLS;
 
 impl Clearance<'_> {
-    /// True when the segment touches an obstacle cell, or one that is at most `expansion_cells`
+    /// True if the segment touches an obstacle cell, or one that is at most `expansion_cells`
     /// rows and columns away from an obstacle cell. Touching a cell's corner is enough.
     pub(crate) fn touches_expanded(&self, segment: Segment, expansion_cells: u32) -> bool {
         let to_grid = |point| self.frame.grid_from_world(point);
@@ -19,7 +19,7 @@ impl Clearance<'_> {
 
 /// True if the segment touches the square with `reach` added on all sides.
 fn meets_expanded(segment: Segment, square: Square, reach: f64) -> bool {
-    // On coordinates scaled so that the larger square is the unit square.
+    // Tested on coordinates scaled so that the larger square is the unit square.
     let corner = square.corner - Point::new(reach, reach);
     let scale = |point: Point| (point - corner) * (1.0 / (1.0 + 2.0 * reach));
     let unit = Square { corner: Point::default() };

@@ -12,27 +12,27 @@ use crate::map::cell::floor_to_i32;
 use crate::map::layers::dilation::CLEARANCE_TOLERANCE;
 use crate::map::{BitGrid, Cell, GridFrame};
 
-/// A line that enters a square by less than this \[cells\] touches its border: coordinates such as
-/// 1/3 are rounded.
+/// Tolerance \[cells\]: a line that enters a square by less than this touches its border, because
+/// coordinates such as 1/3 are rounded.
 pub(in crate::map) const TOUCH_TOLERANCE_CELLS: f64 = 1e-9;
 
 /// Distance queries on the obstacle cells of a map, in world coordinates.
 ///
-/// Distances are to the obstacle cells' *squares*: 0 on a square's border and inside. What lies
-/// outside the map does not count as an obstacle for a distance, but no line and no footprint may
-/// leave the map. A query reads only the rows within its reach, 64 cells at a time.
+/// Distances are measured to the obstacle cells' *squares*: 0 on a square's border and inside.
+/// The area outside the map does not count as an obstacle for a distance, but no line and no
+/// footprint may leave the map. A query reads only the rows within its reach, 64 cells at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Clearance<'a> {
     pub(in crate::map) frame: &'a GridFrame,
     pub(in crate::map) obstacles: &'a BitGrid,
 }
 
-/// What keeps a segment from being clear.
+/// Reason why a segment is not clear.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Obstruction {
-    /// It comes too near to the map's border, or leaves the map.
+    /// The segment comes too close to the map's border, or leaves the map.
     Border,
-    /// It comes too near to an obstacle square \[cells\].
+    /// The segment comes too close to an obstacle square \[cells\].
     Obstacle(Square),
 }
 
@@ -42,7 +42,7 @@ impl<'a> Clearance<'a> {
         Self { frame, obstacles }
     }
 
-    /// Where the map lies.
+    /// Geometry of the map: size, resolution and origin.
     pub const fn frame(&self) -> &'a GridFrame {
         self.frame
     }
@@ -52,8 +52,8 @@ impl<'a> Clearance<'a> {
         self.obstacles
     }
 
-    /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` when nothing is nearer
-    /// than that. A position that is not finite has no clearance: 0.
+    /// Distance from a point to the nearest obstacle square \[m\]; `reach_m` if none is nearer
+    /// than that. A non-finite position has no clearance: 0.
     pub fn of_point(&self, point: Point, reach_m: f64) -> f64 {
         if !point.is_finite() {
             return 0.0;
@@ -63,15 +63,15 @@ impl<'a> Clearance<'a> {
         self.within_m(self.of_grid_point(grid, reach, |_| {}), (reach.powi(2).sqrt(), reach_m))
     }
 
-    /// The square nearest to a point, if one is nearer than a reach \[cells\].
+    /// The obstacle square nearest to a point, if one is nearer than `reach` \[cells\].
     pub(crate) fn nearest_square(&self, grid: Point, reach: f64) -> Option<Square> {
         let mut nearest = None;
         self.of_grid_point(grid, reach, |square| nearest = Some(square));
         nearest
     }
 
-    /// Distance from a point to the nearest square, up to a reach \[cells\]; each square that is
-    /// nearer than those before it is told.
+    /// Distance from a point to the nearest square, up to a reach \[cells\]. Calls `nearer` for
+    /// each square that is nearer than all before it.
     fn of_grid_point(&self, grid: Point, reach: f64, mut nearer: impl FnMut(Square)) -> f64 {
         let mut best_sq = reach.powi(2);
         let row = floor_to_i32(grid.y).clamp(0, self.obstacles.height() as i32 - 1);
@@ -79,7 +79,7 @@ impl<'a> Clearance<'a> {
         let reach = best_sq.sqrt();
         let all =
             self.obstacles.columns(floor_to_i32(grid.x - reach), floor_to_i32(grid.x + reach));
-        // Rows in the order of their distance, alternately above and below.
+        // Rows in order of their distance, alternately above and below.
         for step in 0.. {
             let mut in_reach = false;
             let rows = [row.saturating_add(step), row.saturating_sub(step)];
@@ -112,9 +112,9 @@ impl<'a> Clearance<'a> {
         best_sq.sqrt()
     }
 
-    /// A distance \[cells\] in metres where it is less than the reach, which is given in cells and
-    /// in metres; the reach itself where it is not, to the last digit: callers tell by that whether
-    /// anything is near.
+    /// Converts a distance \[cells\] to metres if it is less than the reach, which is given in
+    /// cells and in metres. Otherwise it returns the reach itself, to the last digit: callers
+    /// tell by it that no obstacle is near.
     pub(in crate::map) fn within_m(&self, distance: f64, (reach, reach_m): (f64, f64)) -> f64 {
         if distance < reach { (distance * self.frame.resolution_m()).min(reach_m) } else { reach_m }
     }
@@ -128,22 +128,22 @@ impl<'a> Clearance<'a> {
         y <= start && y >= 0
     }
 
-    /// Distance from a segment to the nearest obstacle square \[m\]; `reach_m` when nothing is
-    /// nearer than that.
+    /// Distance from a segment to the nearest obstacle square \[m\]; `reach_m` if none is nearer
+    /// than that.
     pub fn of_segment(&self, segment: Segment, reach_m: f64) -> f64 {
-        // What is near the ends says how far to look.
+        // The clearances of the end points limit the reach of the scan.
         let near_m = self.of_point(segment.b, self.of_point(segment.a, reach_m));
         self.of_segment_within(segment, near_m)
     }
 
-    /// The same, looking everywhere within reach.
+    /// Like [`Self::of_segment`], but always scans up to the full reach.
     pub(in crate::map) fn of_segment_within(&self, segment: Segment, reach_m: f64) -> f64 {
         let grid = self.to_grid(segment);
         let mut best_sq = (reach_m / self.frame.resolution_m()).powi(2);
         let reach = best_sq.sqrt();
         let (along, length) = (grid.b - grid.a, grid.length());
         self.scan(grid, reach, |square| {
-            // Most squares are known to be farther by their distance from the segment's line.
+            // Most squares are ruled out by their distance from the segment's line.
             let middle = square.corner + Point::new(0.5, 0.5) - grid.a;
             let from_line = along.cross(middle).abs() - 0.5 * (along.x.abs() + along.y.abs());
             if from_line <= best_sq.sqrt() * length {
@@ -154,14 +154,14 @@ impl<'a> Clearance<'a> {
         self.within_m(best_sq.sqrt(), (reach, reach_m))
     }
 
-    /// Distance from a line to the nearest obstacle square \[m\]; `None` when the map has no
+    /// Distance from a line to the nearest obstacle square \[m\]; `None` if the map has no
     /// obstacle or the line no point.
     pub fn of_line(&self, line: &Polyline) -> Option<f64> {
-        // Turns are often near obstacles: then they say how far to look.
+        // Turns are often near obstacles: their clearance limits the reach of the scans.
         let turns = line.merged();
         let near_turns =
             turns.points().iter().fold(f64::INFINITY, |near, &turn| self.of_point(turn, near));
-        // Nothing is that far away only where there is nothing at all.
+        // The clearance of the turns is infinite only if the map has no obstacle.
         let nearer = |nearest, segment| self.of_segment(segment, nearest);
         near_turns.is_finite().then(|| line.segments().fold(near_turns, nearer))
     }
@@ -173,7 +173,7 @@ impl<'a> Clearance<'a> {
         self.obstruction(segment, clearance_m).is_none()
     }
 
-    /// What keeps a segment from being clear ([`Self::is_clear`]); of several obstacles, one near
+    /// The reason why a segment is not clear ([`Self::is_clear`]); of several obstacles, one near
     /// its first end.
     pub(crate) fn obstruction(&self, segment: Segment, clearance_m: f64) -> Option<Obstruction> {
         if !self.is_on_map(segment, clearance_m) {
@@ -181,7 +181,7 @@ impl<'a> Clearance<'a> {
         }
         let grid = self.to_grid(segment);
         let margin = self.margin(clearance_m);
-        // A margin whose square is 0 does not count.
+        // A margin whose square underflows to 0 does not count.
         let found = if margin * margin > 0.0 {
             self.first_within(grid, margin)
         } else {
@@ -190,32 +190,33 @@ impl<'a> Clearance<'a> {
         found.map(Obstruction::Obstacle)
     }
 
-    /// The first square that a segment in grid coordinates enters, or that it slips past.
+    /// The first square that a segment in grid coordinates enters or slips past.
     fn first_crossed(&self, grid: Segment) -> Option<Square> {
         self.first_that(grid, 0.0, |square| enters(grid, square) || self.slips_past(grid, square))
     }
 
-    /// True when a segment in grid coordinates crosses no obstacle: what it touches, it may touch
-    /// ([`Self::is_clear`]). From inside a square it may go anywhere, as no way out can be told
-    /// from a way in.
+    /// True if a segment in grid coordinates crosses no obstacle; touching is allowed as in
+    /// [`Self::is_clear`]. A segment that begins inside a square is always allowed, because the
+    /// test cannot tell leaving the square from entering it.
     pub(in crate::map) fn crosses_nothing(&self, grid: Segment) -> bool {
         let begin = Segment::new(grid.a, grid.a);
         self.first_crossed(grid).is_none()
             || self.first_that(begin, 0.0, |square| enters(begin, square)).is_some()
     }
 
-    /// True when a segment stays inside the map and keeps a clearance from its border.
+    /// True if a segment stays inside the map and keeps a clearance from its border.
     pub(crate) fn is_on_map(&self, segment: Segment, clearance_m: f64) -> bool {
         let (grid, margin) = (self.to_grid(segment), self.margin(clearance_m));
         self.is_inside(grid.a, margin) && self.is_inside(grid.b, margin)
     }
 
-    /// What has to be kept for a clearance \[cells\].
+    /// The margin that a clearance requires \[cells\].
     pub(crate) fn margin(&self, clearance_m: f64) -> f64 {
         clearance_m / self.frame.resolution_m() * (1.0 - CLEARANCE_TOLERANCE)
     }
 
-    /// An obstacle square that is nearer to a segment than a distance, one near its first end.
+    /// An obstacle square nearer to a segment than a distance; of several, one near its first
+    /// end.
     pub(crate) fn obstacle_within(&self, segment: Segment, distance_m: f64) -> Option<Square> {
         let distance = distance_m / self.frame.resolution_m();
         if distance > 0.0 { self.first_within(self.to_grid(segment), distance) } else { None }
@@ -226,7 +227,7 @@ impl<'a> Clearance<'a> {
         self.first_that(grid, distance, |square| grid.distance_sq_to_square(square) < limit_sq)
     }
 
-    /// The first square within reach \[cells\] for which something holds.
+    /// The first square within reach \[cells\] for which `holds` is true.
     fn first_that(
         &self,
         grid: Segment,
@@ -252,7 +253,7 @@ impl<'a> Clearance<'a> {
         self.grid_to_border(self.frame.grid_from_world(point)) * self.frame.resolution_m()
     }
 
-    /// The same in grid coordinates \[cells\].
+    /// Distance from a point in grid coordinates to the map's border \[cells\].
     pub(in crate::map) fn grid_to_border(&self, grid: Point) -> f64 {
         let (width, height) = (f64::from(self.frame.width()), f64::from(self.frame.height()));
         grid.x.min(grid.y).min(width - grid.x).min(height - grid.y)
@@ -284,8 +285,8 @@ impl<'a> Clearance<'a> {
         let on_line = |p: Point| {
             segment.distance_sq_to_point(p) <= TOUCH_TOLERANCE_CELLS * TOUCH_TOLERANCE_CELLS
         };
-        // Along an edge: the square on its other side. A wall that ends at the map's border leaves
-        // no gap there, so beyond the border counts as solid.
+        // Along an edge: the square on its other side. A wall that ends at the map's border
+        // leaves no gap there, so cells outside the map count as solid.
         let beyond = |dx: i32, dy: i32| {
             let cell = Cell::new(x as i32 + dx, y as i32 + dy);
             !self.frame.contains(cell) || self.obstacles.get(cell)
@@ -317,7 +318,7 @@ pub(in crate::map) fn square(x: i32, y: i32) -> Square {
 pub(in crate::map) fn enters(segment: Segment, square: Square) -> bool {
     let shrunk = 1.0 - 2.0 * TOUCH_TOLERANCE_CELLS;
     let inner = square.corner + Point::new(TOUCH_TOLERANCE_CELLS, TOUCH_TOLERANCE_CELLS);
-    // The slab test of the unit square, on coordinates scaled so that the shrunk square is one.
+    // The slab test of the unit square, on coordinates scaled to map the shrunk square onto it.
     let scale = |p: Point| (p - inner) * (1.0 / shrunk);
     Segment::new(scale(segment.a), scale(segment.b)).meets(Square { corner: Point::new(0.0, 0.0) })
 }
@@ -360,7 +361,7 @@ mod tests {
         let wall = map(&["...", ".#.", ".#."]);
         assert!(!clear(&wall, [0.5, 1.0], [2.5, 1.0], 0.0), "along the joint of a wall");
         assert!(clear(&wall, [1.0, 0.0], [1.0, 3.0], 0.0), "along its side");
-        // One square on each side of the line, at different places: a line may touch both.
+        // One square on each side of the line, staggered: a line may touch both.
         let staggered = map(&["..#", "...", "#.."]);
         assert!(clear(&staggered, [0.0, 1.0], [3.0, 1.0], 0.0));
         let stairs = map(&["..#", ".#.", "#.."]);

@@ -1,26 +1,25 @@
-//! Which obstacle squares may be near a segment: row by row along it, 64 cells at a time.
+//! Scans for obstacle squares near a segment: row by row along it, 64 cells at a time.
 
 use crate::geometry::{Point, Segment, Square};
 use crate::map::Clearance;
 use crate::map::cell::floor_to_i32;
 use crate::map::clearance::{TOUCH_TOLERANCE_CELLS, square};
 
-/// Spans are wider by this than they have to be \[cells\]: far more than rounding can take off
-/// them.
+/// Extra width of spans \[cells\]: far more than rounding can take off them.
 const SLACK_CELLS: f64 = 0.01;
 
-/// Whatever is farther from a shape than a clearance by this \[cells\] certainly keeps it.
+/// Distance beyond a clearance \[cells\] at which a shape certainly keeps it.
 pub(in crate::map) const CERTAIN_CELLS: f64 = 1e-6;
 
-/// In fewer columns than this every square is looked at individually.
+/// Number of columns below which every square is tested individually.
 const NARROW_CELLS: i32 = 24;
 
-/// Segments that rise by less than this \[cells\] are treated as level ones.
+/// Segments that rise by less than this \[cells\] are treated as level.
 const LEVEL_CELLS: f64 = 1e-6;
 
 impl Clearance<'_> {
     /// Visits the obstacle squares that may lie within `reach` \[cells\] of the segment until
-    /// `visit` returns false; true when it never did. Row by row from the first end on.
+    /// `visit` returns false; returns true if it never did. Row by row from the first end on.
     pub(in crate::map) fn scan(
         &self,
         grid: Segment,
@@ -61,7 +60,7 @@ impl Clearance<'_> {
 }
 
 impl Clearance<'_> {
-    /// True when every segment within a triangle is certainly clear ([`Self::is_clear`]); false
+    /// True if every segment within a triangle is certainly clear ([`Self::is_clear`]); false
     /// does not mean that one is not. Costs about as much as three segments.
     pub(crate) fn is_clear_triangle(&self, corners: [Point; 3], clearance_m: f64) -> bool {
         let margin = (clearance_m / self.frame.resolution_m()).max(0.0) + CERTAIN_CELLS;
@@ -75,8 +74,8 @@ impl Clearance<'_> {
             })
     }
 
-    /// Visits the obstacle squares that may lie within `reach` \[cells\] of a triangle, or in it,
-    /// until `visit` returns false; true when it never did.
+    /// Visits the obstacle squares that may lie in a triangle or within `reach` \[cells\] of it
+    /// until `visit` returns false; returns true if it never did.
     fn scan_triangle(
         &self,
         edges: &[Segment; 3],
@@ -88,7 +87,7 @@ impl Clearance<'_> {
         let (first, last) =
             rows.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
         (first.max(0)..=last.min(self.obstacles.height() as i32 - 1)).all(|y| {
-            // What is in the triangle lies between its edges.
+            // Squares in the triangle lie between its edges.
             let beside = nears.iter().filter(|near| near.has_row(y)).map(|near| near.columns(y));
             let (from, to) =
                 beside.fold((i32::MAX, i32::MIN), |all, own| (all.0.min(own.0), all.1.max(own.1)));
@@ -97,21 +96,22 @@ impl Clearance<'_> {
     }
 }
 
-/// True if a square through which no edge of a triangle passes lies within it.
+/// True if a square that no edge of a triangle crosses lies within the triangle.
 fn is_within(edges: &[Segment; 3], square: Square) -> bool {
     let middle = square.corner + Point::new(0.5, 0.5);
     let side = |edge: &Segment| (edge.b - edge.a).cross(middle - edge.a);
     edges.iter().all(|edge| side(edge) > 0.0) || edges.iter().all(|edge| side(edge) < 0.0)
 }
 
-/// A quick test for squares that are farther from a segment than a distance \[cells\], except for
-/// rounding.
+/// Quick rejection test for squares that are farther from a segment than a distance \[cells\], up
+/// to rounding.
 pub(in crate::map) struct Around {
     a: Point,
     along: Point,
-    /// Where a square's middle is farther from the segment's line than this, times its length.
+    /// Limit of the distance of a square's centre from the segment's line, times the segment's
+    /// length.
     off: f64,
-    /// The box outside which a square's lower left corner is too far.
+    /// Bounding box for the lower left corners of squares within the distance.
     low: Point,
     high: Point,
 }
@@ -125,7 +125,7 @@ impl Around {
         Self { a, along, off, low, high }
     }
 
-    /// True only for a square that is farther; false does not mean that it is not.
+    /// True only for a square that is farther; false does not mean that it is near.
     pub(in crate::map) fn excludes(&self, Square { corner }: Square) -> bool {
         let middle = corner + Point::new(0.5, 0.5) - self.a;
         corner.x < self.low.x
@@ -136,19 +136,19 @@ impl Around {
     }
 }
 
-/// What lies near a segment: within reach of its line, and of the part of it that is beside a row.
+/// The area near a segment: within reach of its line, and of the part of it that is beside a row.
 struct Near {
     a: Point,
     reach: f64,
-    /// The lower and the upper end's row coordinate.
+    /// Row coordinates of the lower and the upper end.
     rows: (f64, f64),
     /// Columns per row along the segment; `None` for a level one.
     slope: Option<f64>,
-    /// The smaller and the larger end's column coordinate.
+    /// Column coordinates of the left and the right end.
     ends: (f64, f64),
-    /// How far in a row a square's centre may be from the line.
+    /// Largest distance along a row from a square's centre to the line.
     half_width: f64,
-    /// The rows that are not beside an end: there the line alone says which columns are near.
+    /// The rows that are beside neither end: there the line alone determines the near columns.
     between: (f64, f64),
 }
 
@@ -157,7 +157,8 @@ impl Near {
         let along = b - a;
         let rise = along.y.abs();
         let slope = (rise > LEVEL_CELLS).then(|| along.x / along.y);
-        // A square reaches as far to the side of a line as its shadow on the normal is wide.
+        // A square extends to the side of a line by half the width of its projection on the
+        // normal.
         let half_shadow = 0.5 * (along.x.abs() + rise);
         let half_width = (reach * along.norm() + half_shadow) / rise + SLACK_CELLS;
         let rows = (a.y.min(b.y), a.y.max(b.y));
@@ -165,7 +166,7 @@ impl Near {
         Self { a, reach, rows, slope, ends: (a.x.min(b.x), a.x.max(b.x)), half_width, between }
     }
 
-    /// The rows in which squares may be near.
+    /// The range of rows in which squares may be near.
     fn all_rows(&self) -> (i32, i32) {
         let margin = self.reach + SLACK_CELLS;
         whole(self.rows.0 - margin - 1.0, self.rows.1 + margin)
@@ -176,7 +177,7 @@ impl Near {
         (first..=last).contains(&y)
     }
 
-    /// The columns in which squares may be near, whatever the row.
+    /// The range of columns in which squares may be near, for any row.
     fn all_columns(&self) -> (i32, i32) {
         let margin = self.reach + SLACK_CELLS;
         whole(self.ends.0 - margin - 1.0, self.ends.1 + margin)
@@ -188,7 +189,7 @@ impl Near {
         let y = f64::from(y);
         let at = |row: f64| self.a.x + (row - self.a.y) * slope;
         let middle = at(y + 0.5) - 0.5;
-        // None before column 0. There is slack, so that rounding up and down takes off nothing.
+        // Clipped at column 0. The slack exceeds the effect of rounding up and down.
         let left = (middle - self.half_width + 1.0).max(0.0) as i32;
         let right = (middle + self.half_width + 1.0).max(0.0) as i32 - 1;
         if y >= self.between.0 && y <= self.between.1 {
@@ -202,7 +203,7 @@ impl Near {
     }
 }
 
-/// The whole numbers between two numbers.
+/// The range of whole numbers between two numbers.
 fn whole(from: f64, to: f64) -> (i32, i32) {
     let below = from as i32;
     (below.saturating_add(i32::from(f64::from(below) < from)), floor_to_i32(to))
@@ -235,14 +236,14 @@ mod tests {
             obstacles.set(cell, true);
             Clearance::new(&frame, &obstacles).is_clear_triangle(triangle, 0.2)
         };
-        // Far from all edges; on one; outside.
+        // Far from all edges, on one, and outside.
         assert!(!is_clear(Cell::new(4, 3)) && !is_clear(Cell::new(4, 0)));
         assert!(is_clear(Cell::new(0, 8)) && is_clear(Cell::new(8, 4)));
     }
 
     proptest! {
-        /// All squares within reach are visited, and few others: none that are farther than a
-        /// cell's diagonal beyond.
+        /// All squares within reach are visited, and few others: none farther than a cell's
+        /// diagonal beyond it.
         #[test]
         fn visits_what_is_within_reach(a in (-3.0..83.0f64, -3.0..12.0f64), b in (-3.0..83.0f64, -3.0..12.0f64),
                                        level in prop_oneof![Just(1.0), Just(0.0), Just(1e-7), Just(1e-5)],
@@ -269,14 +270,14 @@ mod tests {
                 prop_assert!(is_visited || distance > reach, "{cell} is not visited");
                 prop_assert!(!is_visited || distance < 1.5 * reach + 1.5, "{cell} is visited");
             }
-            // From the first end on.
+            // Order: from the first end on.
             let rows: Vec<i32> = visited.iter().map(|cell| cell.y).collect();
             let is_in_order = if a.y <= b.y { rows.is_sorted() } else { rows.iter().rev().is_sorted() };
             prop_assert!(is_in_order);
         }
 
-        /// Whatever lies in a triangle that is clear is clear, and a triangle that keeps a little
-        /// more is clear.
+        /// Every segment in a clear triangle is clear, and a triangle that keeps slightly more
+        /// than the clearance is clear.
         #[test]
         fn clear_triangles(cells in prop::collection::vec(prop::bool::weighted(0.05), 16 * 12),
                            corners in prop::array::uniform3((-1.0..17.0f64, -1.0..13.0f64)),
@@ -304,7 +305,7 @@ mod tests {
                     prop_assert!(clearance.is_clear(segment, clearance_m), "{segment:?}");
                 }
             } else {
-                // Something is near an edge, or in the triangle.
+                // An obstacle is near an edge, or in the triangle.
                 let [a, b, c] = triangle;
                 let edges = [[a, b], [b, c], [c, a]].map(|[a, b]| Segment::new(a, b));
                 let is_near = |&cell: &Cell| {

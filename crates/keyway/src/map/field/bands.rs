@@ -1,4 +1,5 @@
-//! The whole field, in bands of rows that fit the cache and are shared among threads.
+//! Computation of a whole field, in bands of rows that fit the cache and are shared among
+//! threads.
 
 use super::columns::{nearest_in_rows, step};
 use super::envelope::{Envelope, FAR_ROWS};
@@ -7,24 +8,25 @@ use crate::map::BitGrid;
 use std::num::NonZeroUsize;
 use std::sync::Mutex;
 
-/// Cells of a band: both passes' results then stay in the cache of one core.
+/// Number of cells of a band: both passes' results then stay in the cache of one core.
 const BAND_CELLS: usize = 1 << 17;
 
-/// Threads that this machine can run at once.
+/// Number of threads that this machine can run at once.
 pub(super) fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// What a whole field is computed from.
+/// Inputs of the computation of a whole field.
 pub(super) struct Work<'a> {
     pub(super) obstacles: &'a BitGrid,
     pub(super) envelope: Envelope,
-    /// Numbers from one row of the field to the next.
+    /// Distance between rows of the field in the vector.
     pub(super) stride: usize,
     pub(super) threads: usize,
 }
 
-/// Some rows of the field, and how far the obstacles of the rows below and above them are.
+/// A band of rows of the field, with the distances of the obstacles in the rows below and above
+/// it.
 struct Band<'a> {
     first_row: i32,
     /// Per column, rows from the row below the band to the nearest obstacle at or below that.
@@ -59,7 +61,7 @@ impl Work<'_> {
             .collect();
         self.look_beyond(&mut bands);
         let threads = self.threads.clamp(1, bands.len());
-        // Whichever thread is free takes the next band: no band depends on another one.
+        // A free thread takes the next band: no band depends on another one.
         let bands = Mutex::new(bands.into_iter());
         let next = || bands.lock().ok().and_then(|mut bands| bands.next());
         let work = || {
@@ -76,7 +78,7 @@ impl Work<'_> {
         });
     }
 
-    /// Sets for every band what lies below and above it.
+    /// Sets the distances to the obstacles below and above every band.
     fn look_beyond(&self, bands: &mut [Band<'_>]) {
         let far = vec![FAR_ROWS; self.obstacles.width() as usize];
         let mut below = far.clone();
@@ -98,8 +100,8 @@ impl Work<'_> {
         band.first_row..band.first_row + rows as i32
     }
 
-    /// Turns rows to the nearest obstacle, counted from the row before a band, into those from the
-    /// band's last row; `rows` come in the order from that last row back.
+    /// Converts row distances to the nearest obstacle, counted from the row before a band, to
+    /// those from the band's last row; `rows` come in the order from that last row back.
     fn carry(&self, nearest: &mut [i16], rows: impl ExactSizeIterator<Item = i32>) {
         let height = rows.len().min(FAR_ROWS as usize) as i16;
         for distance in nearest.iter_mut() {
@@ -108,7 +110,7 @@ impl Work<'_> {
         nearest_in_rows(self.obstacles, rows, 0, nearest);
     }
 
-    /// Both passes for one band.
+    /// Runs both passes for one band.
     fn fill(&self, band: Band<'_>, scratch: &mut Scratch) {
         let width = self.obstacles.width() as usize;
         let Band { first_row, mut below, mut above, half_cells_sq } = band;

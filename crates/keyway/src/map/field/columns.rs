@@ -1,18 +1,18 @@
-//! Along the columns: how many rows away the nearest obstacle of the same column is.
+//! Distances along the columns: rows to the nearest obstacle of the same column.
 
 use super::CellWindow;
 use super::envelope::FAR_ROWS;
 use crate::map::{BitGrid, Cell};
 
-/// One row further from every column's nearest obstacle.
+/// Moves one row further from every column's nearest obstacle.
 pub(super) fn step(rows: &mut [i16]) {
     for rows in rows {
         *rows = (*rows + 1).min(FAR_ROWS);
     }
 }
 
-/// For every column from `first` on that has an obstacle in one of the rows: the number of the
-/// first such row, counted from 0; other columns keep their number. 64 columns are looked at
+/// Sets, for every column from `first` on with an obstacle in one of the rows, the number of the
+/// first such row, counted from 0; other columns keep their number. Processes 64 columns
 /// together.
 pub(super) fn nearest_in_rows(
     obstacles: &BitGrid,
@@ -48,7 +48,8 @@ pub(super) fn nearest_in_rows(
     }
 }
 
-/// For every cell of a rectangle, rows to the nearest obstacle of its column, at most [`FAR_ROWS`].
+/// Rows to the nearest obstacle of its column, for every cell of a rectangle; at most
+/// [`FAR_ROWS`].
 #[derive(Default)]
 pub(super) struct ColumnRows {
     /// Lowest row.
@@ -58,8 +59,8 @@ pub(super) struct ColumnRows {
 }
 
 impl ColumnRows {
-    /// Rows to the obstacles of a map for the cells of a window; obstacles below row `low_y` and
-    /// above row `high_y` do not count.
+    /// Computes the rows to the obstacles of a map for the cells of a window; obstacles below row
+    /// `low_y` and above row `high_y` do not count.
     pub(super) fn fill(
         &mut self,
         obstacles: &BitGrid,
@@ -75,8 +76,8 @@ impl ColumnRows {
         self.between(obstacles, window, below, above);
     }
 
-    /// Rows to the obstacles of a grid whose cell (0, 0) is `origin`, seen from a window; there are
-    /// no others.
+    /// Computes the rows from the cells of a window to the obstacles of a grid whose cell (0, 0)
+    /// is at `origin`; there are no others.
     pub(super) fn of_grid(grid: &BitGrid, origin: Cell, window: CellWindow) -> Self {
         let CellWindow { low, high } = window;
         let far = vec![FAR_ROWS; (high.x - low.x + 1) as usize];
@@ -89,8 +90,8 @@ impl ColumnRows {
         Self { low_y: low.y, ..columns }
     }
 
-    /// Rows to the obstacles within a window and to those whose rows from the row below it and from
-    /// the row above it are given.
+    /// Computes the rows to the obstacles within a window and to those outside, given their rows
+    /// from the row below the window and from the row above it.
     fn between(
         &mut self,
         grid: &BitGrid,

@@ -1,23 +1,23 @@
-//! Along one row: from the distances within the columns to the distances in the plane.
+//! Distances along one row: from the distances within the columns to the distances in the plane.
 
 use serde::{Deserialize, Serialize};
 
-/// Rows to the nearest obstacle of a column that has none, or none near enough.
+/// Number of rows to the nearest obstacle in a column that has none, or none near enough.
 ///
-/// Twice this still fits, so squares are those of 16-bit numbers, which a machine multiplies eight
-/// at a time, and the sum of two squares fits 31 bits.
+/// Twice this still fits, so squares are those of 16-bit numbers, eight of which are multiplied
+/// by one instruction, and the sum of two squares fits 31 bits.
 pub(super) const FAR_ROWS: i16 = i16::MAX / 2;
 
-/// What the distance from a cell's centre to an obstacle cell is.
+/// Definition of the distance from a cell's centre to an obstacle cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum DistanceTo {
-    /// The distance to its square: what a robot's centre there keeps from the obstacle.
+    /// The distance to the obstacle's square: the clearance of a robot's centre there.
     #[default]
     Squares,
-    /// The distance between the two centres, as costmaps of ROS count.
+    /// The distance between the two centres, as in ROS costmaps.
     Centres,
 }
 
@@ -30,16 +30,16 @@ impl DistanceTo {
         }
     }
 
-    /// Squared distance, in half cells, along a row or column: from the cell at `at` to the nearest
-    /// of those from `low` to `high`.
+    /// Squared distance, in half cells, along a row or column: from the cell at `at` to the
+    /// nearest of those from `low` to `high`.
     pub(super) fn away_sq(self, low: i32, high: i32, at: i32) -> i32 {
         let cells = (low - at).max(at - high).max(0);
         self.half_cells_sq(cells.min(i32::from(FAR_ROWS)) as i16)
     }
 
-    /// Where the parabola of the step between columns `step - 1` and `step` stands, in half cells
-    /// from the left end of the row (column p's centre is at 2 p + 1), given the two columns' rows:
-    /// on the nearer column's edge or centre.
+    /// Apex of the parabola of the step between columns `step - 1` and `step`, in half cells from
+    /// the left end of the row (column p's centre is at 2 p + 1), given the two columns' rows. It
+    /// is on the nearer column's edge or centre.
     fn apex(self, step: usize, left: i16, right: i16) -> i64 {
         let edge = 2 * step as i64;
         match self {
@@ -53,28 +53,28 @@ fn square(half_cells: i16) -> i32 {
     i32::from(half_cells) * i32::from(half_cells)
 }
 
-/// How the distances of a row follow from those within its columns.
+/// Computes the distances of a row from those within its columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Envelope {
     pub(super) to: DistanceTo,
-    /// Distances of this and more are all stored as this.
+    /// Upper limit of stored squared distances.
     pub(super) limit_sq: i32,
 }
 
-/// A parabola of the lower envelope: squared distances, in half cells, to an obstacle that is as
-/// far as its apex along the row and `height` across.
+/// A parabola of the lower envelope: squared distances, in half cells, to an obstacle that is at
+/// its apex along the row and `height` across.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parabola {
     /// Half cells from the left end of the row.
     apex: i64,
     height: i32,
-    /// The first column where it is the lowest one.
+    /// The first column in which it is the lowest one.
     from: i64,
 }
 
 impl Parabola {
     /// The first column in which `right`, a parabola with its apex further right, is at least as
-    /// low: the least p with height' + (2 p + 1 - apex')² <= height + (2 p + 1 - apex)².
+    /// low: the smallest p with height' + (2 p + 1 - apex')² <= height + (2 p + 1 - apex)².
     fn crossing(&self, right: &Self) -> i64 {
         let apart = right.apex - self.apex;
         let rise = i64::from(right.height - self.height);
@@ -82,15 +82,15 @@ impl Parabola {
         (self.apex + half_cells) >> 1
     }
 
-    /// Its value in a column.
+    /// Value of the parabola in a column.
     const fn at(&self, column: i64) -> i64 {
         let half_cells = 2 * column + 1 - self.apex;
         self.height as i64 + half_cells * half_cells
     }
 
-    /// Lowers the values of columns `from..to` to this parabola, and of some beyond, which it can
-    /// only bring nearer to what they become: whole runs of cells take fewer branches than an exact
-    /// end.
+    /// Lowers the values of columns `from..to` to this parabola, and of some columns beyond,
+    /// which only brings them nearer to their final values: whole runs of cells take fewer
+    /// branches than an exact end.
     fn lower(&self, out: &mut [i32], from: i64, to: i64) {
         const RUN: usize = 8;
         // Farther columns are beyond every limit, and their squares would not fit.
@@ -119,12 +119,12 @@ impl Parabola {
 }
 
 impl Envelope {
-    /// Lowers squared distances along a row to those to the obstacles of some columns: `rows` says
-    /// how far across each column's obstacle is, and starts with column `offset` of `out`, which
-    /// may lie before its start. `hull` is scratch memory.
+    /// Lowers squared distances along a row to those to the obstacles of some columns. `rows`
+    /// holds the distance across the row to each column's obstacle. It starts with column
+    /// `offset` of `out`, which may lie before its start. `hull` is scratch memory.
     ///
-    /// Every column gives its own distance. Along the row it helps others only at a step: an
-    /// equally near neighbour is nearer to whatever lies on its side.
+    /// Every column contributes its own distance. Along the row it lowers others only at a step:
+    /// an equally near neighbour is nearer to all cells on its side.
     pub(super) fn lower(
         &self,
         rows: &[i16],
@@ -139,7 +139,7 @@ impl Envelope {
         self.lower_beside(rows, offset, out, hull);
     }
 
-    /// The same, without what the columns give themselves.
+    /// Like [`Self::lower`], without the columns' own distances.
     pub(super) fn lower_beside(
         &self,
         rows: &[i16],
@@ -162,11 +162,12 @@ impl Envelope {
     }
 }
 
-/// Adds a parabola whose apex lies right of (or at) all others' to the lower envelope up to `end`.
+/// Adds a parabola whose apex lies right of (or at) all others' to the lower envelope up to
+/// `end`.
 fn push(hull: &mut Vec<Parabola>, mut new: Parabola, end: i64) {
     while let Some(last) = hull.last() {
         if last.apex == new.apex {
-            // A column nearer than both its neighbours.
+            // A column nearer than both of its neighbours.
             return;
         }
         if last.at(last.from) < new.at(last.from) {
@@ -187,7 +188,7 @@ fn for_each_step(rows: &[i16], mut visit: impl FnMut(usize)) {
     let mut start = 1;
     while start < rows.len() {
         let end = (start + BLOCK).min(rows.len());
-        // Compared as a whole: most blocks have no step.
+        // Compared as a whole, because most blocks have no step.
         if end - start < BLOCK || rows[start - 1..start - 1 + BLOCK] != rows[start..start + BLOCK] {
             // Collected without branches, which would be unpredictable.
             let mut steps = [0; BLOCK];

@@ -1,51 +1,55 @@
-//! Along one row: each obstacle is followed to both sides as far as it is the nearest one.
+//! Distances along one row: each obstacle is followed to both sides as far as it is the nearest
+//! one.
 //!
-//! The lower envelope takes its parabolas one by one, with divisions, and branches that no
-//! processor can predict. Here squares are numbers of 16 bits, and a parabola lowers eight cells an
-//! instruction, until they are as low already. What is too far for 16 bits is left to the envelope.
+//! The lower envelope processes its parabolas one by one, with divisions and branches that no
+//! processor can predict. Here squares are numbers of 16 bits, and a parabola lowers eight cells
+//! per instruction, until they are as low already. Distances too large for 16 bits are left to
+//! the envelope.
 
 use super::DistanceTo;
 use super::envelope::{Envelope, Parabola};
 use super::squares_16_bit::{FAR, NEAR_ROWS, RUN, lower};
 use std::ops::Range;
 
-/// Columns that are looked at together.
+/// Number of columns that are processed together.
 const BLOCK: usize = 64;
-/// Columns from a cell beside a far one to what it is nearest to, at most.
+/// Largest number of columns from a cell beside a far one to its nearest obstacle.
 const NEAR_COLUMNS: usize = NEAR_ROWS as usize + 1;
-/// No column has more blocks than this between it and what is near it.
+/// Largest number of blocks between a column and its near obstacles.
 const NEAR_BLOCKS: usize = (NEAR_ROWS as usize).div_ceil(BLOCK);
-/// What is known from a row holds for this many rows after it.
+/// Number of rows after a row for which its bounds hold.
 const ROWS_KNOWN: i16 = 4;
-/// In a block with this many steps the columns are compared directly.
+/// Number of steps in a block from which on its columns are compared directly.
 const MANY_STEPS: u32 = 16;
 
-/// Scratch memory for rows, and what is known from the row before.
+/// Scratch memory for rows, and the bounds known from the row before.
 #[derive(Default)]
 pub(super) struct RowScratch {
     hull: Vec<Parabola>,
-    /// Quarters across, to each column's own obstacle: whole blocks, and a run at both ends.
+    /// Squared distance across the row to each column's own obstacle \[quarters\]: whole blocks,
+    /// and a run at both ends.
     across: Vec<i16>,
-    /// Quarters to the nearest obstacle; 0 beside the row, where nothing can be lowered.
+    /// Squared distance to the nearest obstacle \[quarters\]; 0 beside the row, where nothing can
+    /// be lowered.
     nearest: Vec<i16>,
-    /// Bits of each block for the columns that are nearer to their obstacle than the next ones.
+    /// Bit mask of each block: columns that are nearer to their obstacle than the next ones.
     rises: Vec<u64>,
-    /// Bits of each block for the columns that are farther from their obstacle than the next ones.
+    /// Bit mask of each block: columns that are farther from their obstacle than the next ones.
     falls: Vec<u64>,
-    /// Per block of columns, no cell of the next rows is farther than this from its nearest
-    /// obstacle, in rows; 0 for blocks whose cells are not asked for; empty when it is not known.
+    /// Per block of columns, an upper bound of the distance from a cell of the next rows to its
+    /// nearest obstacle, in rows; 0 for blocks whose cells are not needed; empty if unknown.
     most_rows: Vec<i16>,
-    /// Per block of columns, no obstacle of theirs that is more rows away is the nearest one to a
-    /// cell of the next rows; empty when it is not known.
+    /// Per block of columns, the number of rows beyond which an obstacle of theirs is not the
+    /// nearest one to any cell of the next rows; empty if unknown.
     near_rows: Vec<i16>,
-    /// Most cells of a row were far: the next ones are left to the envelope.
+    /// Most cells of a row were far: the next rows are left to the envelope.
     is_far: bool,
-    /// How many rows "the next rows" are, less one.
+    /// Number of the next rows, minus one.
     rows_left: i16,
 }
 
 impl RowScratch {
-    /// Forgets the row before.
+    /// Forgets the previous row.
     pub(super) fn start(&mut self) {
         self.most_rows.clear();
         self.near_rows.clear();
@@ -55,7 +59,7 @@ impl RowScratch {
 
 impl Envelope {
     /// Squared distances of the columns `own` of a row, from the rows to each column's nearest
-    /// obstacle. Between two calls without [`RowScratch::start`] lies one row.
+    /// obstacle. Two calls without [`RowScratch::start`] in between must be for adjacent rows.
     pub(super) fn row(
         &self,
         rows: &[i16],
@@ -97,7 +101,7 @@ impl Envelope {
         }
     }
 
-    /// The distances of the cells that are far from all obstacles, by the lower envelope.
+    /// Distances of the cells that are far from all obstacles, by the lower envelope.
     fn far(&self, rows: &[i16], own: Range<usize>, out: &mut [i32], hull: &mut Vec<Parabola>) {
         let far_sq = self.to.half_cells_sq_of_quarter(FAR);
         let mut start = 0;
@@ -105,8 +109,8 @@ impl Envelope {
             let from = start + from;
             let to = out[from..].iter().position(|&value| value < far_sq);
             let to = to.map_or(out.len(), |to| from + to);
-            // What a cell is nearest to lies no farther beyond the run than what the cell there is
-            // nearest to.
+            // The nearest obstacle of a cell in the run lies no farther beyond the run than that
+            // of the cell at its end.
             let (mut left, mut right) = (0, rows.len());
             if from > 0 {
                 left = (own.start + from).saturating_sub(NEAR_COLUMNS);
@@ -119,8 +123,8 @@ impl Envelope {
         }
     }
 
-    /// The distances of some columns of a row, the first of which is `first`, to the obstacles of
-    /// the columns `sources`, by the lower envelope.
+    /// Distances of some columns of a row, beginning at `first`, to the obstacles of the columns
+    /// `sources`, by the lower envelope.
     fn part(
         &self,
         rows: &[i16],
@@ -138,7 +142,7 @@ impl Envelope {
 }
 
 impl RowScratch {
-    /// What each column knows by itself, if its obstacle is near enough to matter.
+    /// Computes each column's distance to its own obstacle, if that is near enough to matter.
     fn look_across(&mut self, rows: &[i16], first: usize, to: DistanceTo) {
         let nearer = i16::from(to == DistanceTo::Squares);
         let blocks = rows.len().div_ceil(BLOCK);
@@ -168,7 +172,7 @@ impl RowScratch {
         }
     }
 
-    /// Keeps how far the cells of each block are from their nearest obstacles, for the next rows.
+    /// Stores bounds of the distances in each block for the next rows.
     fn remember(&mut self, first: usize, own: &Range<usize>, columns: usize, envelope: &Envelope) {
         self.rows_left = ROWS_KNOWN - 1;
         let blocks = columns.div_ceil(BLOCK);
@@ -179,7 +183,7 @@ impl RowScratch {
             let to = own.end.min(BLOCK * (block + 1)) - BLOCK * first;
             let largest = largest(&self.nearest[RUN + from..RUN + to]);
             let sq = envelope.to.half_cells_sq_of_quarter(largest).min(envelope.limit_sq);
-            // A row further all distances are at most a cell larger; and rounding.
+            // One row further, all distances grow by at most one cell; plus rounding.
             let cells = f64::from(sq).sqrt() as i16 / 2 + 1;
             self.most_rows[block] = (cells + ROWS_KNOWN).min(NEAR_ROWS);
         }
@@ -195,10 +199,11 @@ impl RowScratch {
         }
     }
 
-    /// Finishes blocks with many steps where obstacles are near: each column with those beside it.
+    /// Finishes blocks with many steps near obstacles by comparing each column with those beside
+    /// it.
     ///
-    /// Beyond such a block only what is near its ends can matter: whatever a cell there is nearest
-    /// to is not farther than what the block's last cell has, and the way from there.
+    /// Beyond such a block only the obstacles near its ends can matter: the nearest obstacle of a
+    /// cell there is not farther than that of the block's last cell plus the distance from it.
     fn compare(&mut self, first: usize, to: DistanceTo) {
         let Self { across, nearest, rises, falls, most_rows, .. } = self;
         let (nearest, _) = nearest[RUN..].as_chunks_mut::<BLOCK>();
@@ -226,10 +231,11 @@ impl RowScratch {
 
     /// Follows the obstacles along the row.
     ///
-    /// Along the row, an obstacle helps only beyond a step to a column whose own is farther: an
-    /// equally near one is nearer to whatever lies on its side. From there it is followed until a
-    /// cell is as near to one that lies further on: that one is as near, or nearer, to all that
-    /// follow. So all that lie further on are taken first, and none that lies on the other side.
+    /// An obstacle lowers distances along the row only beyond a step to a column whose own
+    /// obstacle is farther: an equally near one is nearer to every cell on its side. From there
+    /// it is followed until a cell is as near to an obstacle further on, which is then at least
+    /// as near to all cells that follow. All obstacles further on are therefore processed first,
+    /// and none of those on the other side.
     fn follow(&mut self, to: DistanceTo) {
         let Self { across, nearest, rises, falls, .. } = self;
         let along = to.along();
@@ -256,8 +262,9 @@ impl RowScratch {
     }
 }
 
-/// What a block's columns are nearest to, from their own and a run's at both ends, and how many
-/// columns away that is at most; `None` when farther columns might matter.
+/// Nearest distances of a block's columns, from their own obstacles and those of a run at both
+/// ends, and the largest number of columns to a nearest obstacle; `None` if farther columns might
+/// matter.
 fn compared(across: &[i16], to: DistanceTo) -> Option<([i16; BLOCK], usize)> {
     let mut nearest = [0; BLOCK];
     nearest.copy_from_slice(&across[RUN..RUN + BLOCK]);
@@ -280,7 +287,7 @@ fn largest(quarters: &[i16]) -> i16 {
     quarters.iter().fold(0, |largest, &quarter| largest.max(quarter))
 }
 
-/// Bits for the columns that are nearer than the next ones.
+/// Bit mask of the columns that are nearer than the next ones.
 fn ones(left: &[i16; BLOCK], right: &[i16; BLOCK]) -> u64 {
     let mut flags = [0; BLOCK];
     for (flag, (left, right)) in flags.iter_mut().zip(left.iter().zip(right)) {
@@ -302,7 +309,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// By comparing each column with each other.
+    /// Compares each column with every other.
     fn brute_force(rows: &[i16], own: Range<usize>, envelope: &Envelope) -> Vec<i32> {
         let nearest = |at: usize| {
             let values = rows.iter().enumerate().map(|(x, &rows)| {
@@ -320,7 +327,8 @@ mod tests {
             seed: u64, parts in prop::collection::vec((1i16..500, 0.0..1.0f64, 1usize..200), 1..6),
             centres: bool, limit in prop_oneof![Just(32_766), 1..800], from in 0.0..1.0f64, to in 0.0..1.0f64,
         ) {
-            // Stretches that differ in how far obstacles are, and in how often that changes.
+            // Stretches that differ in the distances of obstacles and in the frequency of
+            // changes.
             let mut random = Random(seed | 1);
             let mut rows = Vec::new();
             for (most, change, columns) in parts {
@@ -337,7 +345,7 @@ mod tests {
             let start = (from * (rows.len() - 1) as f64) as usize;
             let own = start..start + 1 + (to * (rows.len() - 1 - start) as f64) as usize;
             let (mut scratch, mut out) = (RowScratch::default(), vec![0; own.len()]);
-            // Every column's obstacle one row farther: distances grow by at most a cell.
+            // Moves every column's obstacle one row away: distances grow by at most a cell.
             for _ in 0..10 {
                 envelope.row(&rows, own.clone(), &mut out, &mut scratch);
                 prop_assert_eq!(&out, &brute_force(&rows, own.clone(), &envelope));

@@ -1,4 +1,4 @@
-//! What a field answers: distances at cells, bounds at points.
+//! Queries of a field: distances at cells, bounds at points.
 
 use super::{DistanceField, DistanceTo};
 use crate::geometry::Point;
@@ -11,60 +11,60 @@ impl DistanceField {
         Clearance::new(&self.frame, &self.obstacles)
     }
 
-    /// Distance from a cell's centre to the nearest obstacle \[m\]: 0 in an obstacle cell; infinite
-    /// where none lies within [`Self::reach_m`]; `None` outside the map.
+    /// Distance from a cell's centre to the nearest obstacle \[m\]: 0 in an obstacle cell;
+    /// infinite if none lies within [`Self::reach_m`]; `None` outside the map.
     pub fn distance_m(&self, cell: Cell) -> Option<f64> {
         let half_cells_sq = self.half_cells_sq(cell)?;
         Some(self.within_reach_m(half_cells_sq).unwrap_or(f64::INFINITY))
     }
 
-    /// The square of a cell's distance, in half cells: exact. [`Self::limit_half_cells_sq`] where
-    /// no obstacle lies within reach; `None` outside the map.
+    /// Squared distance of a cell, in half cells: exact. [`Self::limit_half_cells_sq`] if no
+    /// obstacle lies within reach; `None` outside the map.
     pub(crate) fn half_cells_sq(&self, cell: Cell) -> Option<u32> {
         self.frame.contains(cell).then(|| self.half_cells_sq[self.index(cell)] as u32)
     }
 
-    /// The squared distances of row `y` in half cells, from left to right, in memory; `None` where
-    /// the map has no such row.
+    /// Squared distances of row `y` in half cells, from left to right, as stored; `None` if the
+    /// map has no such row.
     pub(crate) fn row_squares(&self, y: i32) -> Option<&[i32]> {
         let is_there = (0..self.frame.height() as i32).contains(&y);
         is_there.then(|| &self.half_cells_sq[self.row(y)])
     }
 
-    /// What stands for every distance beyond the reach, in half cells squared.
+    /// The value stored for every distance beyond the reach, in half cells squared.
     pub const fn limit_half_cells_sq(&self) -> u32 {
         self.limit_sq as u32
     }
 
-    /// Distances of this and more are not told apart \[m\].
+    /// Distance from which on values are not distinguished \[m\].
     pub fn reach_m(&self) -> f64 {
         self.metres(self.limit_half_cells_sq())
     }
 
-    /// A lower bound of the distance from a point to the nearest obstacle \[m\]: at most half a
-    /// cell's diagonal less than the true one (and at most [`Self::reach_m`] less that). Outside
-    /// the map, or for a position that is not finite, it is lower still, and never negative.
+    /// Lower bound of the distance from a point to the nearest obstacle \[m\]: at most a cell's
+    /// diagonal less than the true one, and never more than [`Self::reach_m`]. Outside the map,
+    /// or for a position that is not finite, it is lower still, and never negative.
     ///
-    /// Between two points the distance changes by no more than the way from one to the other: this
-    /// is the nearest centre's distance less the way to that centre.
+    /// Between two points the distance changes by no more than their distance from each other:
+    /// the bound is the nearest centre's distance minus the distance to that centre.
     pub fn lower_bound_m(&self, point: Point) -> f64 {
         self.bounds_on_grid(self.frame.grid_from_world(point)).0 * self.frame.resolution_m()
     }
 
-    /// An upper bound of the distance from a point to the nearest obstacle \[m\]; infinite where
-    /// none lies within reach.
+    /// Upper bound of the distance from a point to the nearest obstacle \[m\]; infinite if none
+    /// lies within reach.
     pub fn upper_bound_m(&self, point: Point) -> f64 {
         self.bounds_on_grid(self.frame.grid_from_world(point)).1 * self.frame.resolution_m()
     }
 
-    /// Bounds of the distance from a point to the nearest obstacle *square* \[m\], whatever the
-    /// field's distances are measured to.
+    /// Bounds of the distance from a point to the nearest obstacle *square* \[m\], for either
+    /// definition of the field's distances.
     pub(crate) fn square_bounds_m(&self, point: Point) -> (f64, f64) {
         let (lower, upper) = self.square_bounds_on_grid(self.frame.grid_from_world(point));
         (lower * self.frame.resolution_m(), upper * self.frame.resolution_m())
     }
 
-    /// The same at a point in grid coordinates \[cells\].
+    /// Like [`Self::square_bounds_m`], at a point in grid coordinates \[cells\].
     #[inline]
     pub(crate) fn square_bounds_on_grid(&self, grid: Point) -> (f64, f64) {
         let (lower, upper) = self.bounds_on_grid(grid);
@@ -75,12 +75,12 @@ impl DistanceField {
         }
     }
 
-    /// True only when no obstacle square is nearer than `distance` to a point inside the map, in
-    /// grid coordinates \[cells\]: one load and no root. False where it might be.
+    /// True only if no obstacle square is nearer than `distance` to a point inside the map, in
+    /// grid coordinates \[cells\]: one load and no root. False if one might be.
     #[inline]
     pub(crate) fn is_beyond(&self, grid: Point, distance: f64) -> bool {
-        // No point of a cell is farther from its centre than half a diagonal, nor a square's centre
-        // from its border.
+        // Largest distance from a cell's centre to its points, and from a square's border to its
+        // centre: half a diagonal each.
         let slack = match self.to {
             DistanceTo::Squares => FRAC_1_SQRT_2,
             DistanceTo::Centres => 2.0 * FRAC_1_SQRT_2,
@@ -89,7 +89,7 @@ impl DistanceField {
         f64::from(self.half_cells_sq[self.index(self.nearest_cell(grid))]) >= least * least
     }
 
-    /// The cell that holds a point in grid coordinates, or the one nearest to it.
+    /// The cell that contains a point in grid coordinates, or the one nearest to it.
     #[inline]
     pub(crate) fn nearest_cell(&self, grid: Point) -> Cell {
         let nearest = |value: f64, count: u32| (value as i32).clamp(0, count as i32 - 1);

@@ -1,25 +1,25 @@
 //! Exact Euclidean distance from every cell's centre to the nearest obstacle.
 //!
-//! The squared distance to a cell splits into a part along the column and a part along the row. The
-//! first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells an instruction.
-//! The second one takes, along each row, the lowest of the parabolas that stand where the first
-//! pass's result changes: each is followed to its side as long as it is the lowest; in clutter the
-//! few columns that matter are compared; far from everything the lower envelope is built. Both
-//! passes run band by band, in cache, on several cores; all numbers are integers, so any number of
-//! threads gives the same bytes.
+//! The squared distance to a cell splits into a part along the column and a part along the row.
+//! The first pass finds the nearest obstacle of each cell's own column, 8 to 16 cells per
+//! instruction. The second pass takes, along each row, the lowest of the parabolas with an apex
+//! at each change of the first pass's result. Each parabola is followed to its side as long as it
+//! is the lowest; in clutter the few relevant columns are compared; far from all obstacles the
+//! lower envelope is built. Both passes run band by band, in cache, on several cores. All numbers
+//! are integers, so any number of threads gives the same bytes.
 //!
 //! # Source
 //! Two passes: \[Meijster2000\]. Lower envelope: \[Felzenszwalb2012\].
 //!
-//! # Where this differs from the papers
+//! # Differences from the papers
 //! - Distances are measured to the obstacle cells' squares (or to their centres, by choice). The
-//!   distance to a square is the distance to the nearer of its edges: parabolas stand on edges.
+//!   distance to a square is the distance to the nearer of its edges: parabolas have their apexes
+//!   on edges.
 //! - Between two columns whose nearest obstacles are equally far, no parabola is needed: walls
 //!   along the axes cost nothing.
 //! - Up to 181 cells from an obstacle no envelope is built. A parabola is followed, 16 cells at a
-//!   time, until a cell is as low already because of one that stands further on; these are taken
-//!   first.
-//! - A changed window is followed outwards only as far as a changed cell could matter
+//!   time, until a cell is as low already because of one further on; these are processed first.
+//! - A changed window is followed outwards only as far as a changed cell can matter
 //!   ([`DistanceField::update`]).
 //!
 //! # Errors / cost
@@ -44,16 +44,16 @@ use envelope::{Envelope, FAR_ROWS};
 use std::num::NonZeroUsize;
 pub use window::CellWindow;
 
-/// How a [`DistanceField`] is made.
+/// Configuration of a [`DistanceField`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldConfig {
-    /// What the distance to an obstacle cell is.
+    /// Definition of the distance to an obstacle cell.
     pub to: DistanceTo,
-    /// Distances of more than this are not told apart \[m\]; infinity for none. Smaller is faster
-    /// to update on open ground.
+    /// Reach \[m\]: larger distances are not distinguished; infinity for no limit. A smaller one
+    /// makes updates in open areas faster.
     pub reach_m: f64,
-    /// Threads that compute a whole field; `None` for as many as there are cores. A window is
-    /// updated on one.
+    /// Number of threads that compute a whole field; `None` for one per core. A window is updated
+    /// on one.
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -63,7 +63,8 @@ impl Default for FieldConfig {
     }
 }
 
-/// For every cell of a map, the exact distance from its centre to the nearest obstacle.
+/// Distance field: for every cell of a map, the exact distance from its centre to the nearest
+/// obstacle.
 ///
 /// A cell stores the squared distance in half cells, a whole number: no rounding, and one
 /// comparison decides whether a radius fits. Memory: 4 bytes and one bit per cell.
@@ -73,15 +74,15 @@ pub struct DistanceField {
     to: DistanceTo,
     obstacles: BitGrid,
     /// Squared distance in half cells, at most `limit_sq` and never negative; row by row from the
-    /// bottom, `stride` from one to the next.
+    /// bottom, with rows `stride` apart.
     half_cells_sq: Vec<i32>,
     stride: usize,
     limit_sq: i32,
-    /// Threads that compute all of it, at most.
+    /// Largest number of threads that compute a whole field.
     threads: usize,
 }
 
-/// The same distances to the same obstacles; how many threads compute them does not matter.
+/// Compares the distances and the obstacles, but not the number of threads.
 impl PartialEq for DistanceField {
     fn eq(&self, other: &Self) -> bool {
         (self.frame, self.to, self.limit_sq) == (other.frame, other.to, other.limit_sq)
@@ -91,13 +92,13 @@ impl PartialEq for DistanceField {
 }
 
 impl DistanceField {
-    /// Distances of this many cells and more are not told apart (819 m in cells of 0.05 m).
+    /// Number of cells from which on distances are not distinguished (819 m in cells of 0.05 m).
     pub const MAX_REACH_CELLS: f64 = (FAR_ROWS - 1) as f64;
 
     /// Computes the distances to the set bits of `obstacles`, a grid of `frame`'s size.
     ///
     /// # Panics
-    /// When the sizes differ.
+    /// Panics if the sizes differ.
     pub fn new(frame: &GridFrame, obstacles: &BitGrid, config: &FieldConfig) -> Self {
         let stride = stride(frame.width() as usize);
         let mut field = Self {
@@ -113,10 +114,10 @@ impl DistanceField {
         field
     }
 
-    /// Computes all distances anew, in the same memory.
+    /// Recomputes all distances in the same memory.
     ///
     /// # Panics
-    /// When the grids differ in size.
+    /// Panics if the grids differ in size.
     pub fn recompute(&mut self, obstacles: &BitGrid) {
         self.assert_same_size(obstacles);
         self.obstacles.clone_from(obstacles);
@@ -129,17 +130,17 @@ impl DistanceField {
         work.run(&mut self.half_cells_sq);
     }
 
-    /// Where the field lies.
+    /// Geometry of the field: size, resolution and origin.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
-    /// What the distances are measured to.
+    /// Definition of the distances.
     pub const fn to(&self) -> DistanceTo {
         self.to
     }
 
-    /// The obstacles that the field knows.
+    /// The obstacles of the field.
     pub const fn obstacles(&self) -> &BitGrid {
         &self.obstacles
     }
@@ -154,21 +155,21 @@ impl DistanceField {
         assert_eq!((obstacles.width(), obstacles.height()), own, "grids differ in size");
     }
 
-    /// Where row `y` lies in the vector.
+    /// Index range of row `y` in the vector.
     const fn row(&self, y: i32) -> std::ops::Range<usize> {
         let start = y as usize * self.stride;
         start..start + self.frame.width() as usize
     }
 }
 
-/// Numbers from one row to the next: in a wide field an odd number of cache lines, so that the
-/// cells of a column do not compete for the same places of the cache.
+/// Distance between rows in the vector: in a wide field an odd number of cache lines, so that the
+/// cells of a column do not compete for the same cache sets.
 fn stride(width: usize) -> usize {
     const LINE: usize = 16;
     if width < 32 * LINE { width } else { (width.div_ceil(LINE) | 1) * LINE }
 }
 
-/// The square of a reach, in half cells: at least one cell, and what fits.
+/// Squared reach in half cells: at least one cell, and no more than fits.
 fn limit_sq(reach_cells: f64) -> i32 {
     let half_cells = (2.0 * reach_cells.clamp(0.5, DistanceField::MAX_REACH_CELLS)).ceil() as i32;
     half_cells * half_cells

@@ -1,24 +1,23 @@
-//! Squared distances in numbers of 16 bits, which a machine adds and compares eight at a time.
+//! Squared distances in 16-bit numbers, eight of which are added or compared by one instruction.
 
 use super::DistanceTo;
 
-/// Rows or columns whose quarters fit 16 bits.
+/// Largest number of rows or columns whose quarters fit 16 bits.
 pub(super) const NEAR_ROWS: i16 = 181;
-/// Stands for what is farther.
+/// Value for anything farther.
 pub(super) const FAR: i16 = i16::MAX;
-/// Cells that are lowered together.
+/// Number of cells that are lowered together.
 pub(super) const RUN: usize = 16;
-/// Runs beside an obstacle until all is far.
+/// Number of runs beside an obstacle after which everything is far.
 const RUNS: usize = NEAR_ROWS as usize / RUN + 1;
 
-/// Quarters: squared distances in numbers a fourth as large, whose sums stand for the sums of the
-/// squares.
+/// Quarters: squared distances scaled by a fourth, whose sums represent the sums of the squares.
 ///
 /// Between centres a square in half cells is 4 r². To a square's edge it is (2 r - 1)² = 4 q - 3
-/// with the odd q = r² - r + 1, and 0 with q = 0. In a sum of two, the parity of q shows how often
-/// the 3 is taken off: 4 q - 3, or 4 q - 6 and never less than 0.
+/// with the odd q = r² - r + 1, and 0 with q = 0. In a sum of two, the parity of q shows if the 3
+/// is subtracted once or twice: 4 q - 3, or 4 q - 6 and never less than 0.
 impl DistanceTo {
-    /// What stands for a distance along a row or column.
+    /// The quarter of a distance along a row or column.
     pub(super) const fn quarter(self, rows: i32) -> i16 {
         let quarter = match self {
             Self::Squares if rows == 0 => 0,
@@ -28,9 +27,9 @@ impl DistanceTo {
         if quarter < FAR as i32 { quarter as i16 } else { FAR }
     }
 
-    /// The squared distance, in half cells, that a quarter or a sum of two stands for.
+    /// The squared distance, in half cells, that a quarter or a sum of two represents.
     pub(super) fn half_cells_sq_of_quarter(self, quarter: i16) -> i32 {
-        // Never negative: without signs, a machine widens it faster.
+        // Never negative: without a sign, the conversion is faster.
         let quarter = u32::from(quarter as u16) as i32;
         match self {
             Self::Squares => (4 * quarter - 6 + 3 * (quarter & 1)).max(0),
@@ -68,8 +67,8 @@ impl Along {
     }
 }
 
-/// Lowers runs of cells, one after the other, to an obstacle `across` from their row, up to the
-/// first one whose `last` cell is as low already.
+/// Lowers runs of cells, one after the other, to an obstacle with the quarter `across` from their
+/// row, up to the first run whose `last` cell is as low already.
 pub(super) fn lower<'a>(
     runs: impl Iterator<Item = (&'a mut [i16; RUN], &'a [i16; RUN])>,
     last: usize,

@@ -193,8 +193,8 @@ proptest! {
         };
         let (one, four) = (by(1), by(4));
         prop_assert!(one == four);
-        // Bands agree with each other: every obstacle is at 0, and neighbours differ by one cell at
-        // most.
+        // Bands agree with each other: every obstacle is at 0, and neighbours differ by at most
+        // one cell.
         for cell in one.frame().cells() {
             let here = one.half_cells_sq(cell).unwrap();
             prop_assert_eq!(here == 0, obstacles.get(cell));

@@ -1,4 +1,4 @@
-//! Which part of a field may change with some obstacles.
+//! The part of a field that may change with some obstacles.
 
 use super::envelope::Envelope;
 use super::{CellWindow, DistanceField};
@@ -6,12 +6,13 @@ use crate::map::Cell;
 use std::ops::Range;
 
 impl DistanceField {
-    /// A rectangle around obstacles that holds every cell to which one of them is nearest.
+    /// A rectangle around obstacles that contains every cell to which one of them is nearest.
     ///
-    /// It grows until every cell of its rim is farther from them than from its nearest obstacle, by
-    /// at least one cell: on the way from an obstacle to a cell that it is nearest to, it is the
-    /// nearest one everywhere, and where that way crosses the rim, half a cell from some centre,
-    /// its distance and the nearest one there differ by at most twice that half.
+    /// It grows until every cell of its rim is farther from them than from its nearest obstacle,
+    /// by at least one cell. This is enough: along the straight line from an obstacle to a cell
+    /// that it is nearest to, it is the nearest one everywhere. At the point where that line
+    /// crosses the rim, half a cell from some centre, its distance and the nearest one there
+    /// differ by at most twice that half.
     pub(super) fn touched(&self, obstacles: &CellWindow) -> CellWindow {
         let mut touched = *obstacles;
         let mut rims = SIDES.map(|side| Rim { side, far: None });
@@ -26,10 +27,10 @@ impl DistanceField {
         }
     }
 
-    /// How far a side of the rectangle must move out for the cells of its rim: half of the distance
-    /// by which a cell's nearest obstacle is farther away than the changed ones, because the way
-    /// goes from these towards that one, and a little more, to be there soon; 0 when all are far
-    /// enough.
+    /// Number of cells by which a side of the rectangle must move outwards for the cells of its
+    /// rim; 0 if all are far enough. It is half of the distance by which a cell's nearest
+    /// obstacle is farther away than the changed ones, because the side moves from these towards
+    /// that one. A few more cells save steps.
     fn missing_cells(&self, obstacles: &CellWindow, side: Side, rim: &CellWindow) -> i32 {
         const MORE_CELLS: i32 = 6;
         let CellWindow { low, high } = *obstacles;
@@ -51,27 +52,29 @@ impl DistanceField {
                 }
             }
         }
-        // All of these are equally far from the changed ones.
+        // All of these are equally far from the changed obstacles.
         if let Some(&nearest) = rows(beside).flatten().max() {
             ask(beside.low, nearest);
         }
-        // At most two half cells nearer; and rounding.
+        // At most two half cells nearer, plus rounding.
         if most < -2.0 - 1e-6 { 0 } else { (0.25 * most.max(0.0)) as i32 + MORE_CELLS }
     }
 
-    /// A rectangle that holds a nearest obstacle of every cell of another one, around which the
-    /// distances are right.
+    /// A rectangle that contains a nearest obstacle of every cell of another one, around which
+    /// the distances are correct.
     ///
-    /// On the way from a cell to its nearest obstacle, that obstacle is the nearest one everywhere.
-    /// Where the way crosses the row or column of cells around the rectangle, half a cell from some
-    /// centre, it is at most one cell farther from that centre than what is nearest there.
+    /// Along the straight line from a cell to its nearest obstacle, that obstacle is the nearest
+    /// one everywhere. At the point where the line crosses the row or column of cells around the
+    /// rectangle, half a cell from some centre, it is at most one cell farther from that centre
+    /// than the nearest one there.
     pub(super) fn sources(&self, touched: &CellWindow) -> CellWindow {
         let CellWindow { low, high } = *touched;
         let map = self.map_window();
         let mut sources = *touched;
         let mut reach = |cell: Cell| {
             if map.contains(cell) {
-                // Half a cell from the obstacle's edge to its centre, one as above, and rounding.
+                // Half a cell from the obstacle's edge to its centre, one as above, plus
+                // rounding.
                 let half_cells = f64::from(self.half_cells_sq[self.index(cell)]).sqrt();
                 let cells = (0.5 * half_cells) as i32 + 2;
                 sources = sources.union(&CellWindow {
@@ -104,7 +107,7 @@ enum Side {
 const SIDES: [Side; 4] = [Side::Left, Side::Right, Side::Bottom, Side::Top];
 
 impl Side {
-    /// The cells along this side, outside, and one more at both ends.
+    /// The cells along the outside of this side, and one more at both ends.
     const fn rim(self, CellWindow { low, high }: &CellWindow) -> CellWindow {
         let (mut from, mut to) =
             (Cell::new(low.x - 1, low.y - 1), Cell::new(high.x + 1, high.y + 1));
@@ -117,7 +120,7 @@ impl Side {
         CellWindow { low: from, high: to }
     }
 
-    /// The parts of some cells along this side that lie before a window, beside it and after it.
+    /// Splits cells along this side into the parts before a window, beside it and after it.
     fn split(self, cells: &CellWindow, by: &CellWindow) -> [CellWindow; 3] {
         let (mut before, mut beside, mut after) = (*cells, *cells, *cells);
         if matches!(self, Self::Left | Self::Right) {
@@ -147,12 +150,12 @@ impl Side {
 /// The cells along a side of a growing rectangle.
 struct Rim {
     side: Side,
-    /// Those that are known to be far enough away at the side's present place.
+    /// Cells known to be far enough away at the side's present position.
     far: Option<CellWindow>,
 }
 
 impl Rim {
-    /// Moves the side outwards if cells along it require that.
+    /// Moves the side outwards if cells along it require it.
     fn move_out(
         &mut self,
         rectangle: &mut CellWindow,
@@ -178,8 +181,8 @@ impl Rim {
 }
 
 impl Envelope {
-    /// The columns between which, in some rows of the field, cells may be nearest to an obstacle in
-    /// `changed`: these are no farther away than what is nearest.
+    /// The range of columns in which, in some rows of the field, cells may be nearest to an
+    /// obstacle in `changed`: it is no farther away than their nearest obstacle.
     pub(super) fn may_change<'a>(
         &self,
         rows: impl Iterator<Item = (i32, &'a [i32])>,
@@ -200,9 +203,9 @@ impl Envelope {
     }
 }
 
-/// The first and the last column with a nearest obstacle of some columns of a few rows, outside
-/// which the distances are right: what a cell is nearest to lies no farther beyond the end of its
-/// row than what the cell beyond that end is nearest to.
+/// First and last column with a nearest obstacle of some columns of a few rows, outside of which
+/// the distances are correct. The nearest obstacle of a cell lies no farther beyond the end of
+/// its row than that of the cell just beyond that end.
 pub(super) fn sources_beside<'a>(
     rows: impl Iterator<Item = (i32, &'a [i32])>,
     own: &Range<usize>,
@@ -212,7 +215,7 @@ pub(super) fn sources_beside<'a>(
         left = left.max(own.start.checked_sub(1).map_or(0, |before| row[before]));
         right = right.max(row.get(own.end).copied().unwrap_or(0));
     }
-    // Half a cell from the obstacle's edge to its centre, the cell beyond the end, and rounding.
+    // Half a cell from the obstacle's edge to its centre, the cell beyond the end, plus rounding.
     let cells = |half_cells_sq: i32| (0.5 * f64::from(half_cells_sq).sqrt()) as i32 + 3;
     (own.start as i32 - cells(left), own.end as i32 + cells(right))
 }

@@ -1,10 +1,10 @@
-//! What a changed window changes in the field, and nothing else.
+//! Updates of the field after changes in a window, limited to the affected cells.
 //!
-//! Every cell that gets another distance was nearest to an obstacle that has vanished, or is
-//! nearest to one that has appeared. All such cells lie in a rectangle around these obstacles
-//! ([`DistanceField::touched`]). What stands far apart has rectangles of its own; those that meet
-//! become one. In each, distances are lowered to the new obstacles, or computed anew when some have
-//! vanished or many are new.
+//! Every cell whose distance changes was nearest to an obstacle that has vanished, or is nearest
+//! to one that has appeared. All such cells lie in a rectangle around these obstacles
+//! ([`DistanceField::touched`]). Changes far apart have rectangles of their own; rectangles that
+//! meet are joined. In each, distances are lowered to the new obstacles, or recomputed if some
+//! have vanished or many are new.
 
 use super::columns::ColumnRows;
 use super::envelope::Envelope;
@@ -13,15 +13,15 @@ use super::touched::sources_beside;
 use super::{CellWindow, DistanceField};
 use crate::map::{BitGrid, Cell};
 
-/// Cells of blocks of this side belong together.
+/// Side of the blocks by which changed cells are grouped \[cells\].
 const BLOCK_CELLS: i32 = 64;
-/// Where new obstacles begin in more columns than this, computing distances anew is faster than
-/// lowering them.
+/// Number of columns beyond which recomputing distances is faster than lowering them; counts the
+/// columns in which runs of new obstacles begin.
 const FEW_COLUMNS: usize = 40;
-/// Rows of a rectangle that are computed together.
+/// Number of rows of a rectangle that are computed together.
 const BAND_ROWS: usize = 64;
 
-/// Obstacles that appear or vanish near each other, and what they may change.
+/// Obstacles that appear or vanish near each other, and the cells that they may change.
 struct Change {
     cells: Vec<Cell>,
     /// The smallest window that holds them.
@@ -31,15 +31,15 @@ struct Change {
 }
 
 impl DistanceField {
-    /// Takes over the cells of a window from `obstacles`, and corrects every distance that they
-    /// change, inside and outside the window: the field is then the same as one computed anew.
+    /// Copies the cells of a window from `obstacles`, and corrects every distance that they
+    /// change, inside and outside the window: the field then equals one built from scratch.
     ///
-    /// Returns a window of cells outside which nothing has changed; `None` when no obstacle has
-    /// changed. Cost: a few nanoseconds for each cell of that window. On open ground it is large; a
+    /// Returns a window outside which no cell has changed; `None` if no obstacle has changed.
+    /// Cost: a few nanoseconds for each cell of that window. In open areas it is large; a
     /// [`FieldConfig::reach_m`](super::FieldConfig::reach_m) limits it.
     ///
     /// # Panics
-    /// When the grids differ in size.
+    /// Panics if the grids differ in size.
     pub fn update(&mut self, obstacles: &BitGrid, window: CellWindow) -> Option<CellWindow> {
         self.assert_same_size(obstacles);
         let groups = groups(self.changed_cells(obstacles, window));
@@ -97,7 +97,7 @@ impl DistanceField {
         Envelope { to: self.to, limit_sq: self.limit_sq }
     }
 
-    /// The cells of a window in row `y` of the field.
+    /// Index range of a window's cells in row `y` of the field.
     pub(super) fn part_of_row(&self, y: i32, window: &CellWindow) -> std::ops::Range<usize> {
         let start = self.row(y).start;
         start + window.low.x as usize..start + window.high.x as usize + 1
@@ -111,7 +111,7 @@ impl DistanceField {
         for cell in &added.cells {
             grid.set(Cell::new(cell.x - low.x, cell.y - low.y), true);
         }
-        // One column more on both sides shows that the obstacles end there.
+        // One column more on both sides marks the end of the obstacles.
         let columns = CellWindow {
             low: Cell::new(low.x - 1, touched.low.y),
             high: Cell::new(high.x + 1, touched.high.y),
@@ -125,13 +125,13 @@ impl DistanceField {
         }
     }
 
-    /// Computes the distances of the touched cells anew; those around them are right.
+    /// Recomputes the distances of the touched cells; those around them are correct.
     fn renew(&mut self, Change { touched, window: changed, .. }: &Change) {
         let sources = self.sources(touched);
         let (obstacles, envelope, stride) = (&self.obstacles, self.envelope(), self.stride);
         let rows = touched.low.y as usize * stride..(touched.high.y as usize + 1) * stride;
         let (mut columns, mut scratch) = (ColumnRows::default(), RowScratch::default());
-        // On one thread: starting another one takes longer than most windows do, at times by
+        // On one thread: starting another one takes longer than most windows do, sometimes by
         // milliseconds.
         for (i, band) in self.half_cells_sq[rows].chunks_mut(BAND_ROWS * stride).enumerate() {
             let low = touched.low.y + (i * BAND_ROWS) as i32;
@@ -154,7 +154,7 @@ impl DistanceField {
     }
 }
 
-/// In how many columns runs of cells along a row begin.
+/// Number of columns in which runs of cells along a row begin.
 fn first_columns(cells: &[Cell]) -> usize {
     let follows = |cell: Cell, before: Cell| (cell.x - 1, cell.y) == (before.x, before.y);
     let begins = |&i: &usize| i == 0 || !follows(cells[i], cells[i - 1]);
@@ -164,7 +164,7 @@ fn first_columns(cells: &[Cell]) -> usize {
     columns.len()
 }
 
-/// Cells in groups of what is near each other; all in one when they are everywhere.
+/// Groups cells that are near each other; one group if they are everywhere.
 fn groups(cells: Vec<Cell>) -> Vec<Vec<Cell>> {
     if cells.is_empty() {
         return Vec::new();
@@ -192,7 +192,7 @@ fn groups(cells: Vec<Cell>) -> Vec<Vec<Cell>> {
     groups
 }
 
-/// The smallest window that holds some cells, of which there is at least one.
+/// The smallest window that holds the given cells, of which there is at least one.
 fn bounds(cells: &[Cell]) -> CellWindow {
     let none =
         CellWindow { low: Cell::new(i32::MAX, i32::MAX), high: Cell::new(i32::MIN, i32::MIN) };
@@ -200,7 +200,7 @@ fn bounds(cells: &[Cell]) -> CellWindow {
     windows.fold(none, |all, one| all.union(&one))
 }
 
-/// Changes whose rectangles overlap or touch are one: around those that are left no distance
+/// Joins changes whose rectangles overlap or touch: around the resulting rectangles no distance
 /// changes.
 fn joined(changes: Vec<Change>) -> Vec<Change> {
     let mut apart: Vec<Change> = Vec::new();
@@ -216,7 +216,7 @@ fn joined(changes: Vec<Change>) -> Vec<Change> {
     apart
 }
 
-/// True when two rectangles have cells that are the same or neighbours.
+/// True if two rectangles share cells or have adjacent ones.
 const fn meet(a: &CellWindow, b: &CellWindow) -> bool {
     a.low.x <= b.high.x + 1
         && b.low.x <= a.high.x + 1
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn what_vanishes_with_its_neighbour_leaves_the_next_one_nearest() {
-        // Each of the two is all that is near the other's part of the row.
+        // Each of the two is the only obstacle near the other's part of the row.
         let mut obstacles = BitGrid::new(400, 1, false);
         for x in [10, 200, 399] {
             obstacles.set(Cell::new(x, 0), true);
@@ -330,7 +330,7 @@ mod tests {
             let mut field = DistanceField::new(&frame, &obstacles, &config);
             let all = CellWindow { low: Cell::new(0, 0), high: Cell::new(329, 299) };
             let low = at(Cell::new(0, 0), 200);
-            // What has appeared vanishes when other cells appear.
+            // Obstacles that have appeared vanish when other cells appear.
             let mut standing: Vec<Cell> = Vec::new();
             for _ in 0..3 {
                 for cell in std::mem::take(&mut standing) {

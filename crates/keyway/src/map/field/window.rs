@@ -14,8 +14,8 @@ pub struct CellWindow {
 }
 
 impl CellWindow {
-    /// The cells of a grid that are within a distance of a place along its axes; for a place that
-    /// is not finite some at the border.
+    /// The cells of a grid within a distance of a position along the grid's axes; some cells at
+    /// the border if the position is not finite.
     pub fn around(frame: &GridFrame, place: Point, reach_m: f64) -> Self {
         let centre = frame.grid_from_world(place);
         let reach = reach_m / frame.resolution_m();
@@ -45,7 +45,7 @@ impl CellWindow {
         self.low.x > self.high.x || self.low.y > self.high.y
     }
 
-    /// The smallest window that holds both.
+    /// The smallest window that contains both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl CellWindow {
         }
     }
 
-    /// The part inside another window that it overlaps.
+    /// The intersection with another window, which must overlap.
     pub(super) fn clipped(&self, other: &Self) -> Self {
         Self {
             low: Cell::new(self.low.x.max(other.low.x), self.low.y.max(other.low.y)),

@@ -1,24 +1,24 @@
-//! How far a footprint is from what stands around it.
+//! Distances from a footprint to obstacles, points and other footprints.
 //!
-//! A footprint is all ground within a radius of its *core*: of the centre of rotation for a disc,
-//! of the polygon itself (radius 0) for a polygon. So one rule measures both.
+//! A footprint is the area within a radius of its *core*: the centre of rotation for a disc, the
+//! polygon itself (radius 0) for a polygon. One rule thus measures both.
 
 use crate::geometry::{Point, Pose, Segment, holds_point, outline};
 use crate::map::{Cell, Clearance, GridFrame};
 use crate::robot::Footprint;
 
-/// The centre of rotation, or a polygon around it.
+/// The core of a footprint: the centre of rotation, or a polygon around it.
 #[derive(Clone, Copy, Debug)]
 pub struct Core<'a> {
-    /// In the robot's frame \[m\]; none for the centre alone.
+    /// Vertices in the robot's frame \[m\]; empty for the centre alone.
     vertices: &'a [Point],
     /// Distance of the farthest vertex from the centre of rotation \[m\].
     swing_m: f64,
 }
 
 impl Footprint {
-    /// Distance from the footprint at a pose to the nearest obstacle square \[m\]: 0 when it
-    /// touches or covers one, `reach_m` when none is nearer than that.
+    /// Distance from the footprint at a pose to the nearest obstacle square \[m\]: 0 if it
+    /// touches or covers one, `reach_m` if none is nearer than that.
     pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         let (core, radius_m) = self.core();
         let core_reach_m = reach_m + radius_m;
@@ -26,7 +26,7 @@ impl Footprint {
         if apart_m >= core_reach_m { reach_m } else { (apart_m - radius_m).max(0.0).min(reach_m) }
     }
 
-    /// Distance from the footprint at a pose to the map's border \[m\]; negative when it leaves the
+    /// Distance from the footprint at a pose to the map's border \[m\]; negative if it leaves the
     /// map.
     pub fn to_border_m(&self, pose: Pose, clearance: &Clearance<'_>) -> f64 {
         let (core, radius_m) = self.core();
@@ -43,13 +43,13 @@ impl Footprint {
 }
 
 impl<'a> Core<'a> {
-    /// A polygon of these vertices in the robot's frame \[m\].
+    /// Builds a polygon from its vertices in the robot's frame \[m\].
     pub fn polygon(vertices: &'a [Point]) -> Self {
         let swing_m = vertices.iter().map(|vertex| vertex.norm()).fold(0.0, f64::max);
         Self { vertices, swing_m }
     }
 
-    /// The polygon's vertices; none for the centre alone.
+    /// The polygon's vertices; empty for the centre alone.
     pub const fn vertices(&self) -> &'a [Point] {
         self.vertices
     }
@@ -59,13 +59,14 @@ impl<'a> Core<'a> {
         self.swing_m
     }
 
-    /// No part moves farther than this when the robot drives and turns so far.
+    /// Upper bound of the distance that any point of the core moves when the robot drives and
+    /// turns by these amounts \[m\].
     pub fn moves_m(&self, driven_m: f64, turned_rad: f64) -> f64 {
         driven_m.abs() + self.swing_m * turned_rad.abs()
     }
 
-    /// Distance to the nearest obstacle square: 0 when the core touches or covers one, `reach_m`
-    /// when none is nearer than that.
+    /// Distance to the nearest obstacle square: 0 if the core touches or covers one, `reach_m` if
+    /// none is nearer than that.
     pub fn distance_m(&self, pose: Pose, clearance: &Clearance<'_>, reach_m: f64) -> f64 {
         if self.vertices.is_empty() {
             return clearance.of_point(pose.point(), reach_m);
@@ -80,7 +81,8 @@ impl<'a> Core<'a> {
         if nearest > 0.0 && covers() { 0.0 } else { nearest }
     }
 
-    /// Notes the obstacle squares that are no farther than `touch_m` from the core, row by row.
+    /// Collects the obstacle squares that are no farther than `touch_m` from the core, row by
+    /// row.
     pub(crate) fn touched(
         &self,
         pose: Pose,
@@ -89,7 +91,7 @@ impl<'a> Core<'a> {
         touched: &mut Vec<Cell>,
     ) {
         touched.clear();
-        // Distances are up to a reach: it has to be beyond those that count.
+        // Distances are capped at the reach, so it must exceed `touch_m`.
         let reach_m = touch_m + clearance.frame().resolution_m();
         self.for_each_near(pose, clearance, reach_m, |at, apart_m| {
             if apart_m <= touch_m {
@@ -98,8 +100,8 @@ impl<'a> Core<'a> {
         });
     }
 
-    /// Distance to the nearest obstacle square but for some \[m\], which are in the order of rows
-    /// and columns; `reach_m` when none is nearer than that.
+    /// Distance to the nearest obstacle square that is not in `without` \[m\], a list sorted by
+    /// rows and columns; `reach_m` if none is nearer than that.
     pub(crate) fn distance_without_m(
         &self,
         pose: Pose,
@@ -116,8 +118,8 @@ impl<'a> Core<'a> {
         nearest_m
     }
 
-    /// Visits the obstacle squares around the core row by row, at least those within `reach_m`,
-    /// each with its distance, which is at most that.
+    /// Visits the obstacle squares around the core row by row, at least those within `reach_m`.
+    /// Each comes with its distance, capped at `reach_m`.
     fn for_each_near(
         &self,
         pose: Pose,
@@ -155,7 +157,7 @@ impl<'a> Core<'a> {
         if holds_point(placed.edges(), point) { 0.0 } else { boundary_sq.sqrt() }
     }
 
-    /// Distance to the map's border; negative when the core leaves the map.
+    /// Distance to the map's border; negative if the core leaves the map.
     pub(crate) fn to_border_m(self, pose: Pose, clearance: &Clearance<'_>) -> f64 {
         if self.vertices.is_empty() {
             return clearance.to_border(pose.point());
@@ -169,18 +171,18 @@ impl<'a> Core<'a> {
 struct Placed<'a> {
     vertices: &'a [Point],
     origin: Point,
-    /// Where the robot's x axis points, as long as a metre.
+    /// Direction of the robot's x axis; its length is one metre.
     ahead: Point,
 }
 
 impl<'a> Placed<'a> {
-    /// In world coordinates \[m\].
+    /// Places a core in world coordinates \[m\].
     fn in_world(core: &Core<'a>, pose: Pose) -> Self {
         let (sin, cos) = libm::sincos(pose.theta);
         Self { vertices: core.vertices, origin: pose.point(), ahead: Point::new(cos, sin) }
     }
 
-    /// In grid coordinates \[cells\].
+    /// Places a core in grid coordinates \[cells\].
     fn on_grid(core: &Core<'a>, pose: Pose, frame: &GridFrame) -> Self {
         let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
         let ahead = Point::new(cos, sin) * (1.0 / frame.resolution_m());
@@ -197,7 +199,7 @@ impl<'a> Placed<'a> {
         outline(self.vertices())
     }
 
-    /// True when an obstacle square's middle lies inside the polygon (on the grid).
+    /// True if the centre of an obstacle square lies inside the polygon (on the grid).
     fn covers(&self, clearance: &Clearance<'_>) -> bool {
         let low = self.vertices().fold(self.origin, |a, b| Point::new(a.x.min(b.x), a.y.min(b.y)));
         let high = self.vertices().fold(self.origin, |a, b| Point::new(a.x.max(b.x), a.y.max(b.y)));
@@ -213,8 +215,8 @@ impl<'a> Placed<'a> {
 }
 
 impl Footprint {
-    /// Distance between two footprints at their poses \[m\]: 0 when they touch or one covers the
-    /// other, `reach_m` when they are at least that far apart.
+    /// Distance between two footprints at their poses \[m\]: 0 if they touch or one covers the
+    /// other, `reach_m` if they are at least that far apart.
     pub fn distance_to_footprint_m(
         &self,
         pose: Pose,
@@ -231,8 +233,8 @@ impl Footprint {
 }
 
 impl Core<'_> {
-    /// Distance between two cores: 0 when they touch or one covers the other, `reach_m` when they
-    /// are at least that far apart. Costs a few operations per pair of edges, and fewer beyond the
+    /// Distance between two cores: 0 if they touch or one covers the other, `reach_m` if they are
+    /// at least that far apart. Costs a few operations per pair of edges, and fewer beyond the
     /// reach.
     fn distance_to_core_m(
         &self,
@@ -261,8 +263,9 @@ impl Core<'_> {
 }
 
 impl Placed<'_> {
-    /// Distance between two polygons: 0 when they meet. Two that do not are nearest at a vertex of
-    /// one of them, and two whose edges do not cross hold all vertices of each other or none.
+    /// Distance between two polygons: 0 if they meet. Polygons that do not meet are nearest at a
+    /// vertex of one of them. If their edges do not cross, each polygon contains all vertices of
+    /// the other or none.
     fn distance_to(&self, other: &Placed<'_>) -> f64 {
         let holds_first = |one: &Placed<'_>, two: &Placed<'_>| {
             two.vertices().next().is_some_and(|vertex| holds_point(one.edges(), vertex))
@@ -284,7 +287,7 @@ impl Placed<'_> {
     }
 }
 
-/// True when each segment has the ends of the other one on both of its sides.
+/// True if the end points of each segment lie on opposite sides of the other.
 fn cross(one: Segment, other: Segment) -> bool {
     let side = |line: Segment, point: Point| (line.b - line.a).cross(point - line.a);
     side(one, other.a) * side(one, other.b) < 0.0 && side(other, one.a) * side(other, one.b) < 0.0
@@ -298,8 +301,8 @@ mod tests {
     use crate::robot::star;
     use proptest::prelude::*;
 
-    /// The least distance between a polygon and a square by comparing all their edges; 0 when one
-    /// holds a corner of the other.
+    /// The smallest distance between a polygon and a square, found by comparing all their edges;
+    /// 0 if one contains a corner of the other.
     fn to_square(vertices: &[Point], square: Square) -> f64 {
         let middle = square.corner + Point::new(0.5, 0.5);
         let is_inside = |p: Point| {
@@ -371,7 +374,8 @@ mod tests {
     }
 
     proptest! {
-        /// Callers tell by that whether anything is near, so not even the last bit may differ.
+        /// Callers tell by the exact value that no obstacle is near, so not even the last bit may
+        /// differ.
         #[test]
         fn where_nothing_is_near_the_reach_is_given_back(
             cell_m in 0.01..1.0f64, (x, y) in (30.0..40.0f64, 30.0..40.0f64), (theta, yaw) in (-3.1..3.1f64, -3.1..3.1f64),
@@ -398,7 +402,7 @@ mod tests {
         }
     }
 
-    /// A polygon around a point, with its vertices at these distances from it.
+    /// A polygon around a point, with vertices at these distances from it.
     fn around(radii: &[f64], offset: (f64, f64)) -> Footprint {
         Footprint::polygon(star(radii, offset)).unwrap()
     }
@@ -435,7 +439,7 @@ mod tests {
     }
 
     proptest! {
-        /// Points of the one outline, at most 3.5 mm apart, against the other footprint.
+        /// Samples one outline at most 3.5 mm apart and measures to the other footprint.
         #[test]
         fn distances_between_footprints_are_those_of_their_points(
             radii in prop::collection::vec(0.05..0.6f64, 3..9), offset in (-0.4..0.4f64, -0.4..0.4f64),

@@ -1,4 +1,4 @@
-//! True if a footprint is free while the robot drives straight on.
+//! Collision checks of a footprint that drives straight on.
 
 use super::turn::LEAST_CELLS;
 use crate::geometry::{Point, Pose, Segment};
@@ -6,19 +6,19 @@ use crate::map::DistanceField;
 use crate::robot::{Footprint, Polygon};
 
 impl Footprint {
-    /// True when the footprint is certainly free ([`Self::is_free`]) at every pose of a straight
-    /// drive from `pose` on, by `length_m` along its heading, negative backwards. Also false where
-    /// a polygon comes within a thousandth of a cell of an obstacle or of the map's border in
+    /// True if the footprint is certainly free ([`Self::is_free`]) at every pose of a straight
+    /// drive from `pose` on, by `length_m` along its heading, negative backwards. Also false if a
+    /// polygon comes within a thousandth of a cell of an obstacle or of the map's border in
     /// between, and for numbers that are not finite.
     ///
-    /// No poses are sampled: around each that is looked at, no part of the footprint moves farther
-    /// than the robot, and where that is not less than the room it has, the drive is halved.
+    /// The test does not sample poses. Around each pose tested, no part of the footprint moves
+    /// farther than the robot; if that is not less than the clearance, the drive is halved.
     pub fn is_free_drive(&self, pose: Pose, length_m: f64, field: &DistanceField) -> bool {
         self.keeps_room_driving(pose, length_m, 0.0, field)
     }
 
-    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border
-    /// of the map during a straight drive: a margin for [`Self::is_free_drive`].
+    /// True if the footprint certainly keeps a clearance of `room_m` \[m\] from obstacles and from
+    /// the border of the map during a straight drive: [`Self::is_free_drive`] with a margin.
     pub fn keeps_room_driving(
         &self,
         pose: Pose,
@@ -57,7 +57,7 @@ impl Polygon {
         let moves_m = 0.5 * (to_m - from_m).abs();
         let cell_m = clearance.frame().resolution_m();
         let (moves, room, least) = (moves_m / cell_m, room_m / cell_m, 1e-3 * LEAST_CELLS);
-        // Whatever the heading, nearly all stretches in the open are decided by one look-up.
+        // One lookup decides nearly all stretches in open areas, for any heading.
         let point = middle.point();
         let nearest_m = field.square_bounds_m(point).0.min(clearance.to_border(point));
         if nearest_m > self.circumscribed_radius_m() + room_m + moves_m + least * cell_m {
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn drives_by_hand() {
-        // A lane of 1 m with a cell in the way at x = 5 m.
+        // A lane of 1 m with a blocked cell ahead at x = 5 m.
         let lane = OccupancyGrid::from_ascii(&["########", ".....#..", "########"]);
         let pose = Pose::new(2.0, 1.5, 0.0);
         for footprint in [Footprint::circle(0.4).unwrap(), Footprint::rectangle(0.8, 0.8).unwrap()]
@@ -136,7 +136,8 @@ mod tests {
     }
 
     proptest! {
-        /// A motion that keeps room keeps it at 200 poses; any other comes nearer at one of them.
+        /// A motion reported to keep a clearance keeps it at 200 poses; any other comes nearer at
+        /// one of them.
         #[test]
         fn room_agrees_with_dense_samples(cells in prop::collection::vec(prop::bool::weighted(0.05), 20 * 16),
                 radii in prop::collection::vec(0.05..0.5f64, 3..8), x in 0.2..0.8f64, y in 0.2..0.6f64,
@@ -163,8 +164,8 @@ mod tests {
             prop_assert!(says || nearest_m <= room_m + 1.3e-3 + 2.0 * LEAST_CELLS * 0.05, "{nearest_m}");
         }
 
-        /// What is called free is free at 200 poses; what is not comes near something at one of
-        /// them.
+        /// A drive reported as free is free at 200 poses; any other comes near an obstacle or the
+        /// border at one of them.
         #[test]
         fn agrees_with_dense_samples(cells in prop::collection::vec(prop::bool::weighted(0.05), 20 * 16),
                 radii in prop::collection::vec(0.05..0.5f64, 3..8), is_round in prop::bool::ANY,

@@ -1,6 +1,6 @@
-//! A number that changes linearly along a way.
+//! A value that changes linearly during a motion.
 
-/// Its values at the beginning and at the end of the way.
+/// The values at the beginning and at the end of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Line {
     pub(crate) begin: f64,
@@ -12,12 +12,12 @@ impl Line {
         Self { begin: value, end: value }
     }
 
-    /// At a fraction of the way.
+    /// Value at a fraction of the motion.
     pub(crate) fn at(self, fraction: f64) -> f64 {
         self.begin + (self.end - self.begin) * fraction
     }
 
-    /// On the way between two fractions.
+    /// The line restricted to the part between two fractions.
     pub(crate) fn between(self, [from, to]: [f64; 2]) -> Self {
         Self { begin: self.at(from), end: self.at(to) }
     }
@@ -34,7 +34,7 @@ impl Line {
         0.5 * (self.begin + self.end)
     }
 
-    /// Nowhere above either of two lines.
+    /// A line that is nowhere above either of two lines.
     pub(crate) fn below(self, other: Self) -> Self {
         Self { begin: self.begin.min(other.begin), end: self.end.min(other.end) }
     }

@@ -1,4 +1,4 @@
-//! True if the ground that a robot covers is free at a pose.
+//! Collision checks of a robot's footprint.
 
 use super::clearance::{TOUCH_TOLERANCE_CELLS, enters};
 use super::{Clearance, DistanceField};
@@ -20,12 +20,12 @@ pub(crate) use near_obstacles::{NearBoxes, NearObstacles, Reach};
 pub(crate) use turned::{Placement, Turned, on_grid};
 
 impl Footprint {
-    /// True when the footprint at a pose stays inside the map and enters no obstacle square; it may
+    /// True if the footprint at a pose stays inside the map and enters no obstacle square; it may
     /// touch one. False for a pose that is not finite.
     ///
-    /// Most poses are decided by one look into the field: free when the nearest obstacle is farther
-    /// than the circumscribed radius, not free when it is nearer than the inscribed one. In between
-    /// the shape itself is compared with the squares around it.
+    /// One lookup in the field decides most poses: free if the nearest obstacle is farther than
+    /// the circumscribed radius, not free if it is nearer than the inscribed one. In between, the
+    /// shape itself is tested against the squares around it.
     pub fn is_free(&self, pose: Pose, field: &DistanceField) -> bool {
         let point = pose.point();
         if !(point.is_finite() && pose.theta.is_finite()) {
@@ -37,8 +37,8 @@ impl Footprint {
         })
     }
 
-    /// True when the footprint is free at a pose and keeps this much room to obstacles and to the
-    /// border of the map \[m\].
+    /// True if the footprint is free at a pose and keeps a clearance of `room_m` \[m\] from
+    /// obstacles and from the border of the map.
     pub fn keeps_room(&self, pose: Pose, room_m: f64, field: &DistanceField) -> bool {
         if !self.is_free(pose, field) {
             return false;
@@ -57,13 +57,13 @@ impl Footprint {
         }
     }
 
-    /// True if nothing is within the circumscribed radius and this much more \[m\].
+    /// True if no obstacle is within the circumscribed radius plus `room_m` \[m\].
     fn is_far(&self, point: Point, room_m: f64, field: &DistanceField) -> bool {
         let nearest_m = field.square_bounds_m(point).0.min(field.clearance().to_border(point));
         nearest_m > 0.0 && nearest_m >= self.circumscribed_radius_m() + room_m
     }
 
-    /// What the two radii decide, whatever the heading; `None` where that is not enough.
+    /// The result if the two radii decide it for any heading; `None` if they do not.
     fn is_free_by_radii(&self, point: Point, field: &DistanceField) -> Option<bool> {
         let border_m = field.clearance().to_border(point);
         let (lower_m, upper_m) = field.square_bounds_m(point);
@@ -107,7 +107,7 @@ impl Polygon {
     }
 }
 
-/// True when a polygon covers part of a square: an edge enters it, or all of it lies inside.
+/// True if a polygon covers part of a square: an edge enters it, or all of it lies inside.
 fn overlaps(vertices: &[Point], square: Square) -> bool {
     outline(vertices.iter().copied()).any(|edge| enters(edge, square))
         || holds_point(outline(vertices.iter().copied()), square.corner + Point::new(0.5, 0.5))
@@ -162,8 +162,8 @@ mod tests {
         assert!(!is_free(&polygon(&fork).unwrap(), Pose::new(2.5, 2.5, 0.5), &pillar));
     }
 
-    /// The area that a polygon and a unit square share, by cutting the polygon along the square's
-    /// four sides; cuts of a polygon that is not convex leave edges that cover each other.
+    /// The area that a polygon and a unit square share, from clipping the polygon along the
+    /// square's four sides; clips of a non-convex polygon leave edges that overlap.
     fn shared_area(vertices: &[Point], corner: Point) -> f64 {
         let mut rest: Vec<Point> = vertices.iter().map(|&vertex| vertex - corner).collect();
         let sides: [fn(Point) -> f64; 4] = [|p| p.x, |p| 1.0 - p.x, |p| p.y, |p| 1.0 - p.y];

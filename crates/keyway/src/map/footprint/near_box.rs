@@ -1,20 +1,21 @@
-//! How far a core is from a box, at one place and along a straight way. All lengths are in cells.
+//! Distances from a core to a box, at one pose and along a short straight motion. All lengths are
+//! in cells.
 
 use super::line::Line;
 use super::turned::{Placement, Turned};
 use crate::geometry::{Point, Segment};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Obstacle squares that make up a rectangle.
+/// A rectangle of obstacle squares.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NearBox {
     pub(super) low: Point,
     pub(super) high: Point,
-    /// Its distance from the tile's middle.
+    /// Distance from the tile's middle.
     pub(super) from_middle: f64,
 }
 
-/// A core on a short straight way on which it does not turn: from `-half` to `half` of its middle.
+/// A core on a short straight motion without rotation: from `-half` to `half` of its middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep<'a> {
     pub(crate) middle: Placement<'a>,
@@ -22,19 +23,19 @@ pub(crate) struct Sweep<'a> {
     pub(crate) half_length: f64,
 }
 
-/// Bounds of a distance on such a way.
+/// Bounds of a distance during such a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Apart {
     pub(crate) at_least: Line,
     pub(crate) at_most: Line,
 }
 
-/// Which way the outline of a polygon turns at its vertices.
+/// Winding of a polygon's outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Winding {
     Left,
     Right,
-    /// It is not convex.
+    /// Not convex.
     Both,
 }
 
@@ -57,8 +58,8 @@ impl Winding {
         }
     }
 
-    /// 1 for an outline that turns to the left, -1 for one that turns to the right: by this the
-    /// normals of its edges point outwards.
+    /// 1 for an outline that turns to the left, -1 for one that turns to the right. With this
+    /// sign the normals of its edges point outwards.
     pub(super) const fn outward(self) -> Option<f64> {
         match self {
             Self::Left => Some(1.0),
@@ -68,8 +69,8 @@ impl Winding {
     }
 }
 
-/// An upright rectangle around a core at both ends of a way. Each of its vertices goes straight
-/// from one to the other, so none leaves it on the way.
+/// Bounding box of a core at both ends of a motion. Each vertex moves straight from one end to
+/// the other, so none leaves the box in between.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     low: Point,
@@ -90,13 +91,13 @@ impl Frame {
 }
 
 impl<'a> Sweep<'a> {
-    /// A core that stays where it is.
+    /// A core that is stationary.
     pub(super) fn still(middle: Placement<'a>) -> Self {
         Self { middle, half: Point::default(), half_length: 0.0 }
     }
 }
 
-/// A part of a way from -1 to 1.
+/// A part of a motion, within -1 to 1.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     begin: f64,
@@ -106,8 +107,8 @@ struct Part {
 impl Part {
     const WHOLE: Self = Self { begin: -1.0, end: 1.0 };
 
-    /// Keeps what of it is at least so far, when it goes on at this rate; `None` when nothing is
-    /// left.
+    /// Keeps the part in which a value that grows at `rate` is at least `at_least`; `None` if
+    /// nothing is left.
     #[inline]
     fn keep(&mut self, rate: f64, at_least: f64) -> Option<()> {
         if rate > 0.0 {
@@ -120,13 +121,14 @@ impl Part {
         (self.begin <= self.end).then_some(())
     }
 
-    /// Both parts and what is between them.
+    /// The smallest part that contains both.
     fn hull(self, other: Self) -> Self {
         Self { begin: self.begin.min(other.begin), end: self.end.max(other.end) }
     }
 }
 
-/// The length of a shortest way, and the tangent of that length in the middle of the way of a core.
+/// Length of a shortest connection, and the tangent of that length at the middle of the motion of
+/// a core.
 #[inline]
 fn tangent(sweep: &Sweep<'_>, shortest: Point) -> (f64, Line) {
     let distance = length(shortest);
@@ -134,7 +136,7 @@ fn tangent(sweep: &Sweep<'_>, shortest: Point) -> (f64, Line) {
     (distance, Line { begin: distance + nearer, end: distance - nearer })
 }
 
-/// The length of a way that is often along an axis: then no root is taken.
+/// Length of a vector that is often parallel to an axis: then no root is taken.
 #[inline]
 fn length(way: Point) -> f64 {
     if way.y == 0.0 {
@@ -146,14 +148,14 @@ fn length(way: Point) -> f64 {
     }
 }
 
-/// The larger of two numbers, the second one where the first is NaN: one instruction, unlike
+/// The larger of two numbers, the second one if the first is NaN: one instruction, unlike
 /// [`f64::max`].
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 impl NearBox {
-    /// The shortest way from a point to the box; 0 inside.
+    /// Vector of the shortest connection from a point to the box; 0 inside.
     pub(super) fn way_to_point(&self, point: Point) -> Point {
         let beside = |low: f64, high: f64, at: f64| {
             if at < low {
@@ -170,21 +172,21 @@ impl NearBox {
         )
     }
 
-    /// Bounds of the distance from a core on a short way, if it may be less than a limit there.
+    /// Bounds of the distance from a core during a short motion, if it may be less than a limit.
     ///
-    /// The distance between two convex shapes is a convex function of where they are. So it is
-    /// nowhere less than its tangent in the middle of the way, which says how much of the way leads
-    /// towards the box. And the distance of a convex part of the core, one vertex or edge, is
-    /// nowhere more than the straight line between what it is at the two ends of the way; no core
-    /// is farther away than a part of it. Where a vertex stays beside one face, both are the
-    /// distance itself.
+    /// The distance between two convex shapes is a convex function of their positions. It is
+    /// therefore never less than its tangent at the middle of the motion, whose slope is the
+    /// share of the motion that leads towards the box. The distance of a convex part of the core,
+    /// one vertex or edge, is never more than the straight line between its values at both ends
+    /// of the motion, and no core is farther away than a part of it. For a vertex that stays
+    /// beside one face, both bounds equal the distance.
     #[inline]
     pub(super) fn apart(&self, sweep: &Sweep<'_>, winding: Winding, limit: f64) -> Option<Apart> {
         let at = &sweep.middle;
         let Turned { left, right, lowest, highest, vertices } = at.turned;
         let near = Self { low: self.low - at.origin, high: self.high - at.origin, ..*self };
         let (low, high) = (near.low, near.high);
-        // A frame around the core that touches it at these four vertices is not farther away.
+        // A bounding box of the core that touches it at these four vertices is not farther away.
         let (beside, vertex_x) = if left.x >= high.x {
             (high.x - left.x, left)
         } else {
@@ -200,7 +202,7 @@ impl NearBox {
         if to_frame.norm_sq() >= limit * limit {
             return None;
         }
-        // Mostly such a vertex is the nearest.
+        // Usually such a vertex is the nearest.
         let is_level = |vertex: &Point| vertex.y >= low.y && vertex.y <= high.y;
         let is_upright = |vertex: &Point| vertex.x >= low.x && vertex.x <= high.x;
         if vertices.is_empty() || beside != 0.0 && above == 0.0 && is_level(vertex_x) {
@@ -216,8 +218,8 @@ impl NearBox {
         near.apart_from_convex(sweep, outward, is_apart, limit)
     }
 
-    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to the box, if one
-    /// is found.
+    /// A part of a motion, within -1 to 1, during which a core is nearer than a distance to the
+    /// box, if one is found.
     pub(super) fn meets(
         &self,
         sweep: &Sweep<'_>,
@@ -233,8 +235,8 @@ impl NearBox {
         part.map(|Part { begin, end }| [begin, end])
     }
 
-    /// The same for the centre alone. The ground within the distance is convex and holds the box
-    /// grown along either axis, and grown less along both.
+    /// Like [`Self::meets`], for the centre alone. The area within the distance is convex. It
+    /// contains the box grown along either axis, and the box grown by less along both.
     fn meets_point(&self, sweep: &Sweep<'_>, distance: f64) -> Option<Part> {
         let Sweep { middle, half, .. } = sweep;
         let (low, high) = (self.low - middle.origin, self.high - middle.origin);
@@ -251,10 +253,10 @@ impl NearBox {
         parts.into_iter().flatten().reduce(Part::hull)
     }
 
-    /// The same for a convex core; for `outward` see [`Winding::outward`].
+    /// Like [`Self::meets`], for a convex core; for `outward` see [`Winding::outward`].
     ///
-    /// They meet where no line along a side of either parts them, and what is on one side of a line
-    /// is a part of the way.
+    /// Core and box meet unless a line along a side of either separates them. Each of these lines
+    /// restricts the motion to a part.
     fn meets_convex(&self, sweep: &Sweep<'_>, outward: f64) -> Option<Part> {
         let Placement { origin, turned } = sweep.middle;
         let near = Self { low: self.low - origin, high: self.high - origin, ..*self };
@@ -274,14 +276,13 @@ impl NearBox {
         Some(part)
     }
 
-    /// The same where the nearest point of a core may be anywhere on its outline, the core is
-    /// convex, and the box is given around the centre of rotation. `outward` is 1 for an outline
-    /// that turns to the left, -1 for one that turns to the right.
+    /// Bounds for a convex core whose nearest point may be anywhere on its outline, with the box
+    /// given relative to the centre of rotation. For `outward` see [`Winding::outward`].
     ///
-    /// A line along an edge that has the core on one side and the box on the other is as far from
-    /// the box as its nearest corner. Where that is beside the edge, nothing is nearer. Where it is
-    /// at no edge, a vertex is the nearest, unless no line along a side of either parts them: then
-    /// they meet.
+    /// If a line along an edge separates the core from the box, its distance from the box is that
+    /// of the box's nearest corner. If that corner is beside the edge, nothing is nearer. If it
+    /// is beside no edge, a vertex is the nearest, unless no line along a side of either
+    /// separates them: then they meet.
     fn apart_from_convex(
         &self,
         sweep: &Sweep<'_>,
@@ -326,7 +327,7 @@ impl NearBox {
         (nearest.2 < limit * limit).then(|| self.apart_at(sweep, nearest.0, nearest.1))
     }
 
-    /// The same from any polygon: no part of it is nearer or farther by more than it moves.
+    /// Bounds for any polygon: no part of it gets nearer or farther by more than it moves.
     fn apart_from_any(&self, sweep: &Sweep<'_>) -> Apart {
         let at = Placement { origin: Point::default(), ..sweep.middle };
         let to_edge = |edge| self.way_to_edge(edge).norm_sq();
@@ -337,7 +338,7 @@ impl NearBox {
         }
     }
 
-    /// Bounds where a vertex is nearest, with the shortest way from it to the box.
+    /// Bounds if a vertex is nearest, with the shortest connection from it to the box.
     #[inline]
     fn apart_at(&self, sweep: &Sweep<'_>, shortest: Point, vertex: Point) -> Apart {
         let (distance, at_least) = tangent(sweep, shortest);
@@ -349,7 +350,7 @@ impl NearBox {
         Apart { at_least, at_most }
     }
 
-    /// The same where the inside of an edge is.
+    /// Bounds if the inside of an edge is nearest.
     #[inline]
     fn apart_on(&self, sweep: &Sweep<'_>, shortest: Point, edge: Segment) -> Apart {
         let (distance, at_least) = tangent(sweep, shortest);
@@ -361,7 +362,7 @@ impl NearBox {
         Apart { at_least, at_most }
     }
 
-    /// The shortest way from an edge to the box; 0 when they meet.
+    /// Vector of the shortest connection from an edge to the box; 0 if they meet.
     ///
     /// Two convex shapes that do not meet are nearest at a corner of one of them. Among the box's
     /// corners this can only be the one nearest to the edge's line.
@@ -376,7 +377,7 @@ impl NearBox {
         );
         let normal =
             if is_left { Point::new(-along.y, along.x) } else { Point::new(along.y, -along.x) };
-        // How far the corner is from the line, times the edge's length; at most 0 where the line
+        // Distance of the corner from the line, times the edge's length; at most 0 if the line
         // meets the box.
         let off = normal.dot(corner);
         let (ahead, length_sq) = (along.dot(corner), along.norm_sq());
@@ -394,19 +395,20 @@ impl NearBox {
         if from_a.norm_sq() <= from_b.norm_sq() { from_a } else { from_b }
     }
 
-    /// True if a frame is so far to the left, to the right, above or below: what is in it then
-    /// keeps this distance.
+    /// True if a frame is at least this distance to the left, to the right, above or below:
+    /// everything in it then keeps the distance.
     #[inline]
     pub(super) fn is_beside(&self, frame: &Frame, distance: f64) -> bool {
         let (before, after) = (self.low - frame.high, frame.low - self.high);
         larger(larger(before.x, after.x), larger(before.y, after.y)) >= distance
     }
 
-    /// True if a whole convex core surely keeps a distance on a way; for `outward` see
+    /// True if a whole convex core surely keeps a distance during a motion; for `outward` see
     /// [`Winding::outward`].
     ///
-    /// It does where all its vertices are, at both ends, that far from the box on the other side of
-    /// a line: along one of its edges half-way, or across the shortest way from a vertex.
+    /// It does if, at both ends, all its vertices are that far from the box on the other side of
+    /// a line: along one of the edges at the middle of the motion, or across the shortest
+    /// connection from a vertex.
     pub(super) fn is_kept_by_convex(
         &self,
         [from, to]: [&Placement<'_>; 2],
@@ -443,7 +445,7 @@ impl NearBox {
         shortest != Point::default() && is_across(shortest, distance * shortest.norm())
     }
 
-    /// The corner that is least far in a direction.
+    /// The corner that is the least far in a direction.
     #[inline]
     fn nearest_corner(&self, direction: Point) -> Point {
         Point::new(
@@ -452,7 +454,7 @@ impl NearBox {
         )
     }
 
-    /// True if an edge that moves keeps a distance; see [`NearObstacles::is_kept`].
+    /// True if a moving edge keeps a distance; see [`NearObstacles::is_kept`].
     pub(super) fn is_kept_by(&self, from: Segment, to: Segment, distance: f64) -> bool {
         let half_way = Segment::new(from.a.lerp(to.a, 0.5), from.b.lerp(to.b, 0.5));
         let shortest = self.way_to_edge(half_way);

@@ -1,9 +1,10 @@
-//! Exact distances of a core at many places near each other.
+//! Exact distances of a core at many nearby poses.
 //!
-//! What can be nearest to a core depends little on where exactly it is. So for each small tile that
-//! its centre of rotation comes to, the obstacle squares that can be nearest are gathered once,
-//! joined to boxes, the nearest box first: from those of a larger block, whose rows are read once.
-//! After that a measurement is a few comparisons. All lengths are in cells.
+//! The obstacles that can be nearest to a core depend little on its exact position. The obstacle
+//! squares that can be nearest are therefore gathered once for each small tile that the centre of
+//! rotation enters, joined to boxes and sorted by distance. They are taken from the boxes of a
+//! larger block, whose rows are read once. A measurement then costs a few comparisons. All
+//! lengths are in cells.
 
 use super::core::Core;
 use super::line::Line;
@@ -15,20 +16,20 @@ use crate::map::{Cell, DistanceField};
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::ops::Range;
 
-/// The boxes of the tiles visited so far: memory, which can be used again for other fields and
+/// The boxes of the tiles visited so far: scratch memory that can be reused for other fields and
 /// cores.
 #[derive(Debug, Default)]
 pub(crate) struct NearBoxes {
-    /// A hash table of tiles with open addressing; entries of an earlier round are free places.
+    /// Hash table of tiles with open addressing; entries of an earlier round are free slots.
     slots: Vec<Slot>,
-    /// A few.
+    /// The blocks gathered so far: only a few, searched linearly.
     blocks: Vec<Block>,
     boxes: Vec<NearBox>,
     used: usize,
     round: u32,
 }
 
-/// The boxes of a tile.
+/// Hash table entry: a tile and its boxes.
 #[derive(Clone, Copy, Debug)]
 struct Slot {
     round: u32,
@@ -36,12 +37,12 @@ struct Slot {
     known: Around,
 }
 
-/// The boxes of a tile: indices in the memory.
+/// The boxes around a tile, as indices into the memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around {
     first: u32,
     end: u32,
-    /// All boxes that are no farther than this from the tile's middle are among them.
+    /// All boxes no farther than this from the tile's middle are included.
     reach: f64,
 }
 
@@ -51,13 +52,13 @@ impl Slot {
 }
 
 impl Around {
-    /// The nearest to the middle of the tile first.
+    /// Indices of the boxes, sorted by distance from the tile's middle.
     pub(crate) fn boxes(&self) -> Range<u32> {
         self.first..self.end
     }
 }
 
-/// The boxes of a square of tiles, from which those of each tile are taken.
+/// The boxes of a square block of tiles, from which those of each tile are taken.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     at: Cell,
@@ -65,16 +66,16 @@ struct Block {
     known: Around,
 }
 
-/// What is asked for in one round.
+/// Query limits of one round.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach {
-    /// Distances of at least this are not told apart.
+    /// Upper limit of distances: larger ones are not distinguished.
     pub(crate) distance: f64,
-    /// The distance and half the length of a way for which [`NearObstacles::is_kept`] is asked,
-    /// together.
+    /// Largest sum of a distance and half a motion's length for which [`NearObstacles::is_kept`]
+    /// can answer.
     pub(crate) way: f64,
-    /// On a way that is no longer than this to both sides, what is nearest anywhere is around its
-    /// middle.
+    /// Largest half length of a motion for which the boxes around its middle include the nearest
+    /// obstacle at every point of it.
     pub(crate) spread: f64,
 }
 
@@ -89,25 +90,25 @@ pub(crate) struct NearObstacles<'a> {
     winding: Winding,
     /// A tile has 2 to the power of this cells along each side.
     tile_bits: u32,
-    /// No point of a tile is farther from its middle.
+    /// Largest distance of a point of a tile from its middle.
     half_diagonal: f64,
     reach: Reach,
-    /// Squares that do not count, row by row.
+    /// Squares that are ignored, row by row.
     left_out: &'a [Cell],
     memory: &'a mut NearBoxes,
 }
 
 impl<'a> NearObstacles<'a> {
-    /// So many boxes are looked at for one that goes on in the next row.
+    /// Number of recent boxes that are checked for one that continues in the next row.
     const OPEN: usize = 16;
 
-    /// Tiles are at most so large.
+    /// Largest tile size, as a power of 2.
     const MOST_TILE_BITS: u32 = 4;
 
     /// A block has 2 to the power of this tiles along each side.
     const BLOCK_BITS: u32 = 3;
 
-    /// A new round: what the memory holds of an earlier one is forgotten.
+    /// Starts a new round: entries of earlier rounds in the memory become invalid.
     pub(crate) fn new(
         core: &Core<'_>,
         field: &'a DistanceField,
@@ -118,7 +119,7 @@ impl<'a> NearObstacles<'a> {
         let cell_m = field.frame().resolution_m();
         let swing = core.swing_m() / cell_m;
         let aside = core.distance_to_m(Pose::default(), Point::default()) / cell_m;
-        // Tiles small beside the core: their size hardly makes more boxes near.
+        // Tiles are small compared with the core, so their size adds few boxes.
         let tile_bits = ((swing / 3.0).max(1.0).log2() as u32).min(Self::MOST_TILE_BITS);
         let half_diagonal = half_diagonal(tile_bits);
         let winding = Winding::of(core.vertices());
@@ -126,21 +127,21 @@ impl<'a> NearObstacles<'a> {
         Self { field, swing, aside, winding, tile_bits, half_diagonal, reach, left_out, memory }
     }
 
-    /// The same without some squares, each row's in the order of its columns.
+    /// Ignores some squares, each row's in the order of its columns.
     pub(crate) fn without(self, left_out: &'a [Cell]) -> Self {
         Self { left_out, ..self }
     }
 
-    /// True only when at no heading the core is nearer than `distance` to an obstacle square. One
-    /// load.
+    /// True only if the core is at no heading nearer than `distance` to an obstacle square. Costs
+    /// one load.
     #[inline]
     pub(crate) fn is_beyond(&self, origin: Point, distance: f64) -> bool {
         self.field.is_beyond(origin, distance + self.swing)
     }
 
-    /// Distance to the nearest obstacle square: 0 when an edge touches one, `most` when none is
-    /// nearer than that or than the reach. What lies wholly inside a polygon is not seen: for poses
-    /// on a way that begins free.
+    /// Distance to the nearest obstacle square: 0 if an edge touches one, `most` if none is
+    /// nearer than that or than the reach. Squares wholly inside a polygon are not detected: use
+    /// it only for poses on a motion that begins in free space.
     pub(crate) fn distance(&mut self, at: &Placement<'_>, most: f64) -> f64 {
         let around = self.around(at.origin);
         let still = Sweep::still(*at);
@@ -156,33 +157,34 @@ impl<'a> NearObstacles<'a> {
         nearest
     }
 
-    /// The boxes near a place of the centre of rotation.
+    /// The boxes near a position of the centre of rotation.
     #[inline]
     pub(crate) fn around(&mut self, origin: Point) -> Around {
         let tile = self.tile(origin);
         self.memory.find(tile).unwrap_or_else(|| self.gather(tile))
     }
 
-    /// All boxes that are not around a place are at least so far from a core there.
+    /// Lower bound of the distance from a core at that position to any box not in `around`.
     pub(crate) fn to_others(&self, around: &Around) -> f64 {
         around.reach - self.slack()
     }
 
-    /// False when a box, and all after it, is at least as far as `distance` from a core in the tile
-    /// of which it is around.
+    /// False if a box and all after it are at least `distance` away from a core in the tile that
+    /// they are around.
     #[inline]
     pub(crate) fn may_be_nearer(&self, index: u32, distance: f64) -> bool {
         self.memory.boxes[index as usize].from_middle - self.slack() < distance
     }
 
-    /// Bounds of the distance from a box to a core on a way, if it may be less than `limit` there.
+    /// Bounds of the distance from a box to a core during a motion, if it may be less than
+    /// `limit`.
     #[inline]
     pub(crate) fn apart(&self, index: u32, sweep: &Sweep<'_>, limit: f64) -> Option<Apart> {
         self.memory.boxes[index as usize].apart(sweep, self.winding, limit)
     }
 
-    /// A part of a way, from -1 to 1, on which a core is nearer than a distance to a box, if one is
-    /// found. Polygons that are not convex are not looked at.
+    /// A part of a motion, from -1 to 1, during which a core is nearer than a distance to a box,
+    /// if one is found. Non-convex polygons are not tested.
     #[inline]
     pub(crate) fn meets(&self, index: u32, sweep: &Sweep<'_>, distance: f64) -> Option<[f64; 2]> {
         self.memory.boxes[index as usize].meets(sweep, self.winding, distance)
@@ -193,7 +195,7 @@ impl<'a> NearObstacles<'a> {
         self.to_sides(at).into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// Its distances from the four sides of the map.
+    /// Distances of a core from the four sides of the map.
     fn to_sides(&self, at: &Placement<'_>) -> [f64; 4] {
         let frame = self.field.frame();
         let (width, height) = (f64::from(frame.width()), f64::from(frame.height()));
@@ -206,8 +208,9 @@ impl<'a> NearObstacles<'a> {
         ]
     }
 
-    /// Bounds of this distance on a way. The distance is the least of four that change linearly:
-    /// each of them is a bound above, and a line between two places is one below.
+    /// Bounds of the distance from the border during a motion. The distance is the minimum of
+    /// four linear functions: each of them is an upper bound, and the line between two of its
+    /// values is a lower bound.
     pub(crate) fn border_apart(&self, sweep: &Sweep<'_>) -> Apart {
         let [before, middle, after] = [-sweep.half, Point::default(), sweep.half].map(|by| {
             let origin = sweep.middle.origin + by;
@@ -221,14 +224,15 @@ impl<'a> NearObstacles<'a> {
         }
     }
 
-    /// True only when the core keeps a distance from all obstacle squares on a short way on which
-    /// each of its vertices (or the centre, where it is alone) moves along a straight line. False
-    /// for ways and distances beyond [`Reach::way`]. Where the distance is 0 or less, the core may
-    /// touch a square but not enter it; the centre alone is then a line
-    /// ([`Clearance::crosses_nothing`](crate::map::Clearance::crosses_nothing)).
+    /// True only if the core keeps a distance from all obstacle squares during a short motion in
+    /// which each of its vertices (or the centre, if it is alone) moves along a straight line.
+    /// Returns false for motions and distances beyond [`Reach::way`]. For a distance of 0 or
+    /// less, the core may touch a square but not enter it; the centre alone is then tested as a
+    /// line ([`Clearance::crosses_nothing`](crate::map::Clearance::crosses_nothing)).
     ///
-    /// An edge is then always in the hull of its four ends, and if these are all on one side of a
-    /// line, so is the edge. The line is put across the shortest connection half-way.
+    /// An edge stays in the convex hull of the four end points of its first and last position, so
+    /// it stays on one side of a line if these four do. The line is put across the shortest
+    /// connection at the middle of the motion.
     pub(crate) fn is_kept(
         &mut self,
         from: &Placement<'_>,
@@ -268,8 +272,8 @@ impl<'a> NearObstacles<'a> {
         })
     }
 
-    /// True if the centre alone may drive along a line. A distance cannot tell touching from
-    /// entering, as it is 0 for both.
+    /// True if the centre alone may drive along a line. A distance cannot distinguish touching
+    /// from entering, as it is 0 for both.
     fn is_line_free(&mut self, way: Segment) -> bool {
         let is_beyond = |to_way: Point| to_way.norm() > 2.0 * TOUCH_TOLERANCE_CELLS;
         let around = self.around(way.a.lerp(way.b, 0.5));
@@ -280,8 +284,8 @@ impl<'a> NearObstacles<'a> {
             || self.field.clearance().crosses_nothing(way)
     }
 
-    /// No point of the core is farther from the middle of the tile in which its centre of rotation
-    /// is.
+    /// Largest distance from a point of the core to the middle of the tile that contains its
+    /// centre of rotation.
     fn slack(&self) -> f64 {
         self.swing + self.half_diagonal
     }
@@ -289,7 +293,7 @@ impl<'a> NearObstacles<'a> {
     /// The tile that holds a point, on the map or not.
     #[inline]
     fn tile(&self, point: Point) -> Cell {
-        // Rounded down: that is one less than towards 0 below 0.
+        // Rounds down: one less than rounding towards 0 for negative values.
         let cell = |value: f64| {
             let towards_0 = value as i32;
             towards_0.saturating_sub(i32::from(value < f64::from(towards_0)))
@@ -297,7 +301,7 @@ impl<'a> NearObstacles<'a> {
         Cell::new(cell(point.x) >> self.tile_bits, cell(point.y) >> self.tile_bits)
     }
 
-    /// The boxes of a tile, from those of the block of tiles that it is in.
+    /// Gathers the boxes of a tile from those of the block of tiles that contains it.
     #[inline(never)]
     fn gather(&mut self, tile: Cell) -> Around {
         let Ground { middle, reach } = self.ground(tile, self.tile_bits);
@@ -321,7 +325,7 @@ impl<'a> NearObstacles<'a> {
         around
     }
 
-    /// The boxes of a block, in no order: all that are near to any of its tiles.
+    /// Gathers the boxes of a block, unsorted: all that are near any of its tiles.
     fn gather_block(&mut self, block: Cell) -> Block {
         let Ground { middle, reach } = self.ground(block, self.tile_bits + Self::BLOCK_BITS);
         let frame = self.field.frame();
@@ -355,14 +359,16 @@ impl<'a> NearObstacles<'a> {
         block
     }
 
-    /// What of a square of the grid, of 2 to the power of `bits` cells, has to be known. One of the
-    /// core's points is not much farther from the obstacle that is nearest to its middle.
+    /// The area that has to be read around a square of the grid, of 2 to the power of `bits`
+    /// cells. A point of the core is not much farther from the obstacle that is nearest to the
+    /// square's middle.
     fn ground(&self, square: Cell, bits: u32) -> Ground {
         let middle = |index: i32| (f64::from(index) + 0.5) * f64::from(1 << bits);
         let middle = Point::new(middle(square.x), middle(square.y));
         let half_diagonal = half_diagonal(bits);
         let (_, at_most) = self.field.square_bounds_on_grid(middle);
-        // Of all squares: without some of them the nearest one may be anywhere.
+        // The bound is for all squares: with some of them ignored, the nearest one may be
+        // anywhere.
         let at_most = if self.left_out.is_empty() { at_most } else { f64::INFINITY };
         let nearest = at_most + half_diagonal + self.aside;
         let Reach { distance, way, spread } = self.reach;
@@ -371,19 +377,19 @@ impl<'a> NearObstacles<'a> {
     }
 }
 
-/// A square of the grid, and how far around its middle.
+/// A square of the grid and the search radius around its middle.
 #[derive(Clone, Copy, Debug)]
 struct Ground {
     middle: Point,
     reach: f64,
 }
 
-/// No point of a square of 2 to the power of so many cells is farther from its middle.
+/// Largest distance of a point from the middle of a square of 2 to the power of `bits` cells.
 fn half_diagonal(bits: u32) -> f64 {
     f64::from(1 << bits) * FRAC_1_SQRT_2 + 1e-9
 }
 
-/// Visits the same runs without some of their columns, which are in order.
+/// Visits the same runs without the columns `left_out`, which are in order.
 fn for_each_run_without(
     row: &[u64],
     columns: [i32; 2],
@@ -427,7 +433,7 @@ fn for_each_run(row: &[u64], [from, to]: [i32; 2], mut visit: impl FnMut(i32, i3
 }
 
 impl NearBoxes {
-    /// Places at first: a cycle comes to some hundred tiles.
+    /// Initial number of slots: one cycle visits some hundred tiles.
     const FIRST_SLOTS: usize = 1024;
 
     fn begin(&mut self) {
@@ -443,7 +449,7 @@ impl NearBoxes {
         }
     }
 
-    /// The place of a tile, or the free one where it belongs.
+    /// The slot of a tile, or the free one for it.
     fn place(&self, tile: Cell) -> usize {
         let mask = self.slots.len() - 1;
         let mixed = (tile.x as u32).wrapping_add((tile.y as u32).wrapping_mul(0x9e37_79b1));

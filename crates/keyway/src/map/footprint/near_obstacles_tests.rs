@@ -23,7 +23,8 @@ fn footprint(radii: &[f64], offset: (f64, f64), is_round: bool) -> Footprint {
     if is_round { disc } else { Footprint::polygon(star(radii, offset)).unwrap() }
 }
 
-/// A disc, a star, and what is convex, with an outline that turns to the left and to the right.
+/// Footprints of all kinds: a disc, a star, and convex polygons wound to the left and to the
+/// right.
 fn shaped(shape: usize, radii: &[f64], offset: (f64, f64)) -> Footprint {
     let box_of = |mirror: f64| {
         let corners = [[0.25, 0.2], [-0.25, 0.2], [-0.25, -0.2], [0.25, -0.2]];
@@ -78,7 +79,7 @@ proptest! {
             let placement = Placement { origin, turned: &turned };
             let expected = core.distance_m(pose, &field.clearance(), 10.0) / CELL_M;
             if expected == 0.0 {
-                // What lies wholly inside is not seen.
+                // A square wholly inside the polygon is not detected.
                 continue;
             }
             let measured = near.distance(&placement, most);
@@ -94,9 +95,10 @@ proptest! {
         }
     }
 
-    /// At many places of a way each box is between its bounds, a box without bounds is beyond the
-    /// limit, and so is what is not around; and so is the border. Where a box is said to be met, it
-    /// is within the limit.
+    /// Samples poses along a motion. The distance to each box lies between its bounds; a box
+    /// without bounds is beyond the limit, and a square in no box is no nearer than `to_others`.
+    /// The distance to the border lies between its bounds, too. A box reported as met is within
+    /// the limit.
     #[test]
     fn bounds_hold_on_the_whole_way(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
@@ -145,8 +147,8 @@ proptest! {
                 let (at, distance) = (2.0 * fraction - 1.0, to_box(near));
                 let is_on = |by: f64| part.is_some_and(|[begin, end]| at >= begin - by && at <= end + by);
                 prop_assert!(!is_on(0.0) || distance < limit + 1e-9, "{part:?} {at} {distance} {limit}");
-                // Where a convex core meets it, that is always found; half as far, at a corner, the
-                // centre alone, too.
+                // A convex core that meets the box is always detected; so is the centre alone
+                // within half the distance, even at a corner.
                 let is_surely = if is_point { distance < 0.5 * limit } else { is_convex && distance == 0.0 };
                 prop_assert!(!is_surely || is_on(1e-9), "{part:?} {at} {distance} {limit}");
             }
@@ -162,7 +164,8 @@ proptest! {
         }
     }
 
-    /// What is certain is true, and what is true by a good part of the way is certain.
+    /// A motion reported as kept keeps its distance; one that keeps it by a wide margin is
+    /// reported.
     #[test]
     fn straight_ways_that_keep_a_distance(
         cells in prop::collection::vec(prop::bool::weighted(0.01), 70 * 20),
@@ -202,7 +205,7 @@ proptest! {
     }
 }
 
-/// Quarters of a cell: there, ways touch corners and edges.
+/// Coordinates in quarters of a cell, so that motions touch corners and edges.
 fn coordinate(cells: u32) -> impl Strategy<Value = f64> {
     let most = f64::from(cells);
     prop_oneof![(0..=4 * cells).prop_map(|quarters| 0.25 * f64::from(quarters)), 0.0..=most]
@@ -211,8 +214,8 @@ fn coordinate(cells: u32) -> impl Strategy<Value = f64> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
-    /// If no distance is asked for, a point may touch a square's corner or edge, as a line may; it
-    /// enters no square and slips between none. It may leave a square that it is in.
+    /// With a distance of 0 a point may touch a square's corner or edge, as a line may. It enters
+    /// no square and slips between none, but may leave a square that contains it.
     #[test]
     fn straight_ways_of_a_point_are_lines(
         cells in prop::collection::vec(prop::bool::weighted(0.1), 12 * 12), is_disc: bool,
@@ -245,8 +248,8 @@ proptest! {
 }
 
 proptest! {
-    /// The outline of a polygon enters no square at a hundred places of a way that is kept, or by
-    /// no more than what is asked for.
+    /// At a hundred poses of a motion reported as kept, the outline of a polygon enters no
+    /// square, or by no more than requested.
     #[test]
     fn straight_ways_of_a_polygon_enter_nothing(
         cells in prop::collection::vec(prop::bool::weighted(0.02), 70 * 20),
@@ -276,7 +279,7 @@ proptest! {
             let moved = ends[0].iter().zip(&ends[1]).map(|(a, b)| a.lerp(*b, part));
             for edge in outline(moved.collect::<Vec<_>>().into_iter()) {
                 let enters = |cell: Cell| {
-                    // A square that is smaller by the tolerance.
+                    // A square shrunk by the tolerance.
                     let corner = Point::new(f64::from(cell.x), f64::from(cell.y)) + Point::new(1e-6, 1e-6);
                     let scale = |point: Point| (point - corner) * (1.0 / (1.0 - 2e-6));
                     let unit = crate::geometry::Square { corner: Point::default() };
@@ -314,7 +317,7 @@ fn many_cells_are_remembered_until_the_next_round() {
     assert_eq!(memory.used, 0);
 }
 
-/// No point of a tile is farther from its middle than is reckoned with, on the map or not.
+/// No point of a tile is farther from its middle than `half_diagonal`, on the map or not.
 #[test]
 fn tiles_hold_their_points() {
     let field = field(&[false; 70 * 20], 0.0, DistanceTo::Squares, f64::INFINITY);
@@ -333,7 +336,7 @@ fn tiles_hold_their_points() {
     }
 }
 
-/// A box that drives along a wall, towards it and away from it: its bounds are its distance.
+/// A box that drives along a wall, towards it and away from it: its bounds equal its distance.
 #[test]
 fn beside_a_wall_the_bounds_meet() {
     let mut obstacles = BitGrid::new(70, 20, false);

@@ -1,22 +1,22 @@
-//! True if a footprint is free while it turns on the spot.
+//! Collision checks of a footprint that turns on the spot.
 
 use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::map::{Clearance, DistanceField};
 use crate::robot::{Footprint, Polygon};
 use std::f64::consts::TAU;
 
-/// Anything nearer to an obstacle than this while turning \[cells\] is not free.
+/// Distance from an obstacle below which a turning footprint is not free \[cells\].
 pub(super) const LEAST_CELLS: f64 = 1e-3;
 
 impl Footprint {
-    /// True when the footprint is certainly free ([`Self::is_free`]) at every heading of a turn on
-    /// the spot, from `from_rad` on by `turn_rad`, positive to the left. Also false where it comes
+    /// True if the footprint is certainly free ([`Self::is_free`]) at every heading of a turn on
+    /// the spot, from `from_rad` on by `turn_rad`, positive to the left. Also false if it comes
     /// within a thousandth of a cell of an obstacle or of the map's border in between, and for
     /// numbers that are not finite.
     ///
-    /// No headings are sampled: around each that is looked at, no part of the footprint moves
-    /// farther than the circumscribed radius times the angle, and where that is not less than the
-    /// room it has, the turn is halved.
+    /// The test does not sample headings. Around each heading tested, no part of the footprint
+    /// moves farther than the circumscribed radius times the angle; if that is not less than the
+    /// clearance, the turn is halved.
     pub fn is_free_turn(
         &self,
         point: Point,
@@ -27,9 +27,9 @@ impl Footprint {
         self.keeps_room_turning(point, [from_rad, turn_rad], 0.0, field)
     }
 
-    /// True when the footprint certainly keeps this much room \[m\] to obstacles and to the border
-    /// of the map during a turn: a margin for [`Self::is_free_turn`]. The turn is given by the
-    /// heading at which it begins, and by how far it goes \[rad\].
+    /// True if the footprint certainly keeps a clearance of `room_m` \[m\] from obstacles and from
+    /// the border of the map during a turn: [`Self::is_free_turn`] with a margin. The turn is
+    /// given by its initial heading and its angle \[rad\].
     pub fn keeps_room_turning(
         &self,
         point: Point,
@@ -56,7 +56,7 @@ impl Footprint {
 }
 
 impl Polygon {
-    /// With room around it \[cells\].
+    /// The test with a clearance of `room` \[cells\].
     fn is_free_between(
         &self,
         point: Point,
@@ -78,7 +78,7 @@ impl Polygon {
             && self.is_free_between(point, [middle_rad, to_rad], room, clearance)
     }
 
-    /// True if a pose is clear with this much room \[cells\] around the footprint.
+    /// True if a pose is free with a clearance of `room` \[cells\] around the footprint.
     pub(super) fn has_room(&self, pose: Pose, room: f64, clearance: &Clearance<'_>) -> bool {
         let frame = clearance.frame();
         let to_grid = |&vertex: &Point| frame.grid_from_world(pose.world_from_body(vertex));
@@ -148,7 +148,7 @@ mod tests {
         assert!(turns(0.1) && !turns(0.103) && !turns(-0.103));
         assert!(!turns(PI), "free at both ends");
         assert!(!turns(f64::NAN) && !turns(f64::INFINITY));
-        // The box ahead of its centre: a pillar at its left is hit by a turn to the left alone.
+        // The box is ahead of its centre: only a turn to the left hits a pillar on its left.
         let pillar = OccupancyGrid::from_ascii(&["#....", ".....", ".....", "....."]);
         let ahead = polygon(&[[0.0, 0.3], [0.0, -0.3], [1.9, -0.3], [1.9, 0.3]]);
         let turns = |turn_rad| is_free_turn(&ahead, [2.0, 2.0], FRAC_PI_2, turn_rad, &pillar);
@@ -168,11 +168,11 @@ mod tests {
             assert!(!is_free_turn(&ahead, [2.0, 2.0], 0.0, endless, &empty));
             assert!(!is_free_turn(&ahead, [2.0, 2.0], endless, 0.0, &empty));
         }
-        // What touches both walls is free only as long as it does not turn.
+        // A footprint that touches both walls is free only as long as it does not turn.
         let tight = polygon(&[[1.0, 0.5], [-1.0, 0.5], [-1.0, -0.5], [1.0, -0.5]]);
         assert!(is_free_turn(&tight, [2.5, 1.5], 0.0, 0.0, &lane));
         assert!(!is_free_turn(&tight, [2.5, 1.5], 0.0, 0.01, &lane));
-        // A needle of 30 m sweeps over one cell at the very beginning: at about 0.02 to 0.05 of 0.6
+        // A needle of 30 m sweeps over one cell at the beginning: at about 0.02 to 0.05 of 0.6
         // rad.
         let frame = GridFrame::new(60, 60, 1.0, Pose::default()).unwrap();
         let post = OccupancyGrid::from_fn(frame, |cell| match (cell.x, cell.y) {
@@ -183,15 +183,15 @@ mod tests {
         assert!(!is_free_turn(&needle, [15.5, 25.5], 0.0, 0.6, &post));
         assert!(!is_free_turn(&needle, [15.5, 25.5], 0.6, -0.6, &post));
         assert!(is_free_turn(&needle, [15.5, 25.5], 0.1, 0.5, &post));
-        // A disc needs no more room than at rest.
+        // A disc needs no more space than at rest.
         let disc = Footprint::circle(0.5).unwrap();
         assert!(is_free_turn(&disc, [2.5, 1.5], 0.0, PI, &lane));
         assert!(!is_free_turn(&disc, [2.5, 1.4], 0.0, PI, &lane));
     }
 
-    /// A needle of 300 m meets a post near the end of a turn by 0.2 rad: at headings of about 0.095
-    /// to 0.0995, 28.4 m from where it is in the middle of the turn. Its tip moves by 30 m from
-    /// there.
+    /// A needle of 300 m hits a post near the end of a turn by 0.2 rad: at headings of about
+    /// 0.095 to 0.0995, 28.4 m from its position in the middle of the turn. Its tip moves by 30 m
+    /// from there.
     #[test]
     fn no_part_moves_farther_than_is_reckoned_with() {
         let needle = polygon(&[[0.0, 0.1], [0.0, -0.1], [300.0, -0.1], [300.0, 0.1]]);
@@ -230,7 +230,7 @@ mod tests {
             if free {
                 prop_assert!(poses.all(|pose| polygon.is_clear(pose, &clearance)));
             } else {
-                // Near some heading there is hardly any room.
+                // Near some heading there is hardly any clearance.
                 let between = polygon.circumscribed_radius_m() * turn_rad.abs() / f64::from(count) / 0.05;
                 let little = between + 2.0 * LEAST_CELLS;
                 prop_assert!(poses.any(|pose| !polygon.has_room(pose, little, &clearance)));

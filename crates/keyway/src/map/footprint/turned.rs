@@ -1,23 +1,23 @@
-//! A core at a heading and at a place of a grid. All lengths are in cells.
+//! A core at a heading and a position on a grid. All lengths are in cells.
 
 use super::core::Core;
 use crate::geometry::{Point, Pose, Segment, outline};
 use crate::map::GridFrame;
 
-/// A core turned to a heading: its vertices around the centre of rotation, along the grid's axes
-/// \[cells\].
+/// A core rotated to a heading: its vertices relative to the centre of rotation, in the axes of
+/// the grid \[cells\].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turned {
     pub(super) vertices: Vec<Point>,
-    /// The vertices that are farthest to the left, to the right, down and up; the centre where it
-    /// is alone.
+    /// The vertices that are farthest to the left, to the right, down and up; the centre if it is
+    /// alone.
     pub(super) left: Point,
     pub(super) right: Point,
     pub(super) lowest: Point,
     pub(super) highest: Point,
 }
 
-/// Where a core is on a grid.
+/// Pose of a core on a grid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement<'a> {
     /// The centre of rotation \[cells\].
@@ -26,7 +26,8 @@ pub(crate) struct Placement<'a> {
 }
 
 impl Turned {
-    /// Turns a core so that its x axis points along `ahead`, which is as long as a metre \[cells\].
+    /// Rotates a core so that its x axis points along `ahead`, whose length is one metre
+    /// \[cells\].
     pub(crate) fn turn(&mut self, core: &Core<'_>, ahead: Point) {
         let left = Point::new(-ahead.y, ahead.x);
         let turned = |vertex: &Point| ahead * vertex.x + left * vertex.y;
@@ -57,7 +58,8 @@ impl Placement<'_> {
     }
 }
 
-/// A pose on the grid: its place \[cells\], and where its x axis points, as long as a metre.
+/// A pose on the grid: its position \[cells\], and the direction of its x axis with a length of
+/// one metre.
 pub(crate) fn on_grid(pose: Pose, frame: &GridFrame) -> (Point, Point) {
     let (sin, cos) = libm::sincos(pose.theta - frame.origin().theta);
     (frame.grid_from_world(pose.point()), Point::new(cos, sin) * (1.0 / frame.resolution_m()))

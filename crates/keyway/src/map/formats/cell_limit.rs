@@ -1,13 +1,14 @@
-//! The limit on the number of cells of a map that is read.
+//! Limit of the number of cells of a map that is read.
 
 use crate::geometry::Pose;
 use crate::map::{FrameError, GridFrame};
 use thiserror::Error;
 
-/// The most cells of a map that is read, where nothing else is asked for: 16384 x 32768.
+/// Default limit of the number of cells of a map that is read: 16384 x 32768.
 pub const DEFAULT_MAX_CELLS: u64 = 1 << 29;
 
-/// A map of more cells than may be read. A small file can hold one that takes all memory.
+/// Error of a map with more cells than the limit. A small file can hold one that takes all
+/// memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a map of {width} x {height} cells is larger than the limit of {max_cells} cells; if it is meant \
@@ -24,13 +25,13 @@ pub struct TooManyCells {
 }
 
 impl TooManyCells {
-    /// The least limit with which the map is read.
+    /// The smallest limit with which the map is read.
     pub const fn needed(&self) -> u64 {
         self.width * self.height
     }
 }
 
-/// Refuses a size that no grid can have, or that is not to be read.
+/// Rejects a size that no grid can have, or that exceeds the limit.
 pub(super) fn check_size<E: From<FrameError> + From<TooManyCells>>(
     (width, height): (u64, u64),
     max_cells: u64,

@@ -1,38 +1,38 @@
-//! What the readers of images give: pixels, or what is wrong with them.
+//! Results of the image readers: pixels or errors.
 
 use super::TooManyCells;
 use crate::map::FrameError;
 use thiserror::Error;
 
-/// The formats that are read.
+/// The supported formats.
 #[cfg(feature = "images")]
 const KINDS: &str = "a PGM, PPM, PBM, PNG, BMP, GIF, JPEG or TIFF image";
 #[cfg(not(feature = "images"))]
 const KINDS: &str = "a PGM, PPM, PBM or PNG image; save it as one of these";
 
-/// What is wrong with an image. Rows and columns count from 0 at the top left.
+/// Error in an image. Rows and columns count from 0 at the top left.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// No bytes.
+    /// An empty file.
     #[error("the file is empty, expected {KINDS}")]
     Empty,
-    /// Another format.
+    /// An unsupported format.
     #[error("the file starts with \"{start}\", expected {KINDS}")]
     Kind {
         /// The first bytes, escaped.
         start: String,
     },
-    /// A number of the header of a PNM file.
+    /// A wrong number in the header of a PNM file.
     #[error("line {line}: the {field} of the header is {got}, expected {expected}")]
     Header {
         /// Line of the file, from 1.
         line: usize,
-        /// Which number.
+        /// Name of the number.
         field: &'static str,
-        /// What was found there.
+        /// Text found there.
         got: String,
-        /// What would be right.
+        /// Expected value.
         expected: &'static str,
     },
     /// A PNM file that is too short for its header.
@@ -42,26 +42,26 @@ pub enum ImageError {
         width: u64,
         /// Rows according to the header.
         height: u64,
-        /// The least number of bytes for that.
+        /// Minimum number of bytes for this size.
         needed: u128,
         /// Bytes after the header.
         got: usize,
     },
-    /// A pixel of a PNM file.
+    /// A wrong pixel of a PNM file.
     #[error(
         "the pixel in column {column}, row {row} from the top is {got}, expected 0 to {maximum}"
     )]
     Pixel {
-        /// Its column.
+        /// Column of the pixel.
         column: u64,
-        /// Its row, from the top.
+        /// Row of the pixel, from the top.
         row: u64,
-        /// What was found there.
+        /// Value found there.
         got: String,
-        /// The largest value, according to the header.
+        /// The largest allowed value, from the header.
         maximum: u32,
     },
-    /// A compressed file whose header claims more than any compression could deliver.
+    /// A compressed file whose header claims more pixels than any compression could deliver.
     #[error("{width} x {height} pixels cannot come from a file of {got} bytes")]
     Implausible {
         /// Columns according to the header.
@@ -80,10 +80,10 @@ pub enum ImageError {
         /// The format.
         kind: &'static str,
     },
-    /// An image of a size, or a placement, that no grid can have.
+    /// An image with a size or placement that is not valid for a grid.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// An image of more pixels than are to be read.
+    /// An image with more pixels than the limit.
     #[error(transparent)]
     TooManyCells(#[from] TooManyCells),
 }

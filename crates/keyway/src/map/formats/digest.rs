@@ -1,16 +1,16 @@
-//! A number that identifies a map.
+//! Hash that identifies a map.
 
 use crate::map::{OccupancyGrid, mix};
 
-/// 64 bits, as 16 hexadecimal digits, over the size, the resolution, the origin and the state of
-/// every cell. Occupancy values beyond the states, and the count of revisions, do not enter. Two
-/// maps share it with a chance of 1 in 2^64. The same on every platform; not made to withstand
-/// forgery. Costs about a nanosecond per 32 cells.
+/// 64-bit hash of a map, as 16 hexadecimal digits: size, resolution, origin and the state of
+/// every cell. Occupancy values beyond the states, and the revision count, are not included. Two
+/// maps share it with a probability of 1 in 2^64. The same on every platform; not designed to
+/// withstand forgery. Costs about a nanosecond per 32 cells.
 pub fn digest(grid: &OccupancyGrid) -> String {
     let frame = grid.frame();
     let origin = frame.origin();
     let size = u64::from(frame.width()) << 32 | u64::from(frame.height());
-    // Adding 0 turns -0 into 0: equal numbers count as equal.
+    // Adding 0 turns -0 into 0, so that equal numbers count as equal.
     let numbers = [frame.resolution_m(), origin.x, origin.y, origin.theta]
         .map(|number| (number + 0.0).to_bits());
     let cells = grid.occupied().words().iter().zip(grid.unknown().words());
@@ -29,7 +29,7 @@ mod tests {
     fn changes_with_cells_and_frame_only() {
         let grid = OccupancyGrid::from_ascii(&["#.?", "..."]);
         let same = digest(&grid);
-        // Computed elsewhere, from words by hand.
+        // Computed independently, from words by hand.
         assert_eq!(same, "a2a806ed3470dc36");
         let mut edited = grid.clone();
         let cell = Cell::new(1, 1);

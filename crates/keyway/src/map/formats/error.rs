@@ -1,11 +1,11 @@
-//! Why a map file could not be read or written.
+//! Errors of reading and writing map files.
 
 use super::{ImageError, MovingAiError, RosMapError, ScenarioError, TooManyCells};
 use crate::file_error::{ReadError, WriteError};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why a map file could not be read or written: the file, and what is wrong with it.
+/// Error of reading or writing a map file: the file, and the reason.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MapFileError {
@@ -15,7 +15,7 @@ pub enum MapFileError {
     /// Writing failed.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The extension names no format.
+    /// A file extension that belongs to no format.
     #[error("{}: expected a file name that ends in .yaml, .yml, .map, .pgm or .png", path.display())]
     Extension {
         /// The file.
@@ -27,48 +27,49 @@ pub enum MapFileError {
         /// The image file.
         path: PathBuf,
     },
-    /// A resolution and origin where they are known.
+    /// A placement (resolution and origin) for a map that has its own.
     #[error("{}: the YAML file says where the map lies, expected no placement for it", path.display())]
     Placement {
         /// The YAML file.
         path: PathBuf,
     },
-    /// The YAML file of a map.
+    /// Error in the YAML file of a map.
     #[error("{}: {reason}", path.display())]
     RosMap {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: RosMapError,
     },
-    /// An image, alone or named by a YAML file.
+    /// Error in an image, alone or named by a YAML file.
     #[error("{}: {reason}", path.display())]
     Image {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: ImageError,
     },
-    /// A MovingAI map.
+    /// Error in a MovingAI map.
     #[error("{}: {reason}", path.display())]
     MovingAi {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: MovingAiError,
     },
-    /// MovingAI scenarios.
+    /// Error in MovingAI scenarios.
     #[error("{}: {reason}", path.display())]
     Scenarios {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: ScenarioError,
     },
 }
 
 impl MapFileError {
-    /// The size of a map that is refused for its many cells, for those who know how to allow more.
+    /// The size of a map that was rejected for its number of cells, for callers that can raise
+    /// the limit.
     pub const fn too_many_cells(&self) -> Option<&TooManyCells> {
         match self {
             Self::Image { reason: ImageError::TooManyCells(found), .. }

@@ -1,4 +1,4 @@
-//! Map files: reading and writing them; errors name the file.
+//! Reading and writing map files; errors name the file.
 
 use super::reader::{Check, SCENARIOS_BYTES};
 use super::{
@@ -11,10 +11,10 @@ use crate::map::{GridFrame, OccupancyGrid};
 use std::path::{Path, PathBuf};
 
 /// Reads a map of at most [`DEFAULT_MAX_CELLS`](super::DEFAULT_MAX_CELLS) cells; its extension
-/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format.
+/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) selects the format.
 ///
-/// A YAML file itself says where its map lies. Other files do not: they lie where `placement` says,
-/// by default cells of 1 m from (0, 0). Images without a YAML file are read by
+/// A YAML file contains the placement of its map. Other maps are placed by `placement`, by
+/// default with cells of 1 m from (0, 0). Images without a YAML file are read by
 /// [`CellRule::IMAGE`](super::CellRule::IMAGE).
 ///
 /// ```no_run
@@ -46,9 +46,9 @@ impl MapReader {
     /// ```
     ///
     /// # Errors
-    /// If the file, or the image that it names, cannot be read or is malformed; when the extension
-    /// is not one of those; when there is a placement for a YAML file; when the map has too many
-    /// cells.
+    /// Returns [`MapFileError`] if the file, or the image that it names, cannot be read or is
+    /// malformed; if the extension is not one of those; if there is a placement for a YAML file;
+    /// or if the map has too many cells.
     pub fn read(&self, path: &Path) -> Result<LoadedMap, MapFileError> {
         self.load(path, |path, limit_bytes, check: Check<'_>| {
             read_file_if(path, limit_bytes, check)
@@ -56,13 +56,13 @@ impl MapReader {
     }
 }
 
-/// Writes a map; its extension (as for [`read_map`]) names the format. For a YAML file see
-/// [`write_ros_map`], the image is a PGM file. `.map` and image files keep neither where the map
-/// lies nor values, and `.map` files do not keep unknown cells either (they become occupied): see
-/// [`super::MapLoss`].
+/// Writes a map; its extension (as for [`read_map`]) selects the format. For a YAML file see
+/// [`write_ros_map`]; its image is a PGM file. `.map` and image files keep neither the pose of
+/// the map nor values, and `.map` files do not keep unknown cells either (they become occupied):
+/// see [`super::MapLoss`].
 ///
 /// # Errors
-/// When a file cannot be written, or the extension is not one of these.
+/// Returns [`MapFileError`] if a file cannot be written, or the extension is not one of these.
 pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> {
     let bytes = match MapFormat::of(path)? {
         MapFormat::Ros => return write_ros_map(path, grid, ImageKind::Pgm),
@@ -73,17 +73,18 @@ pub fn write_map(path: &Path, grid: &OccupancyGrid) -> Result<(), MapFileError> 
     Ok(write_atomically(path, &bytes)?)
 }
 
-/// Writes a YAML file and, next to it under the same name, its image. Both are complete on the disk
-/// before either gets its name, the YAML file first: should the program be killed just then, the
-/// image is named by a YAML file, and whoever writes the map again knows that it may be replaced.
+/// Writes a YAML file and, next to it under the same name, its image. Both are complete on the
+/// disk before either gets its name, the YAML file first: if the program is killed just then, a
+/// YAML file names the image, so a program that writes the map again knows that it may be
+/// replaced.
 ///
-/// Reading the YAML file gives the same grid (without its count of revisions). A grid without
-/// values is written in trinary mode, with the grey values of Nav2's map saver and thresholds that
-/// read unknown back as unknown; a grid with values in raw mode, which keeps them in images without
-/// transparency too, all values above 100 as [`OccupancyGrid::UNKNOWN_VALUE`].
+/// Reading the YAML file returns the same grid (without its revision count). A grid without
+/// values is written in trinary mode, with the grey values of Nav2's map saver and thresholds
+/// that read unknown back as unknown. A grid with values is written in raw mode, which keeps them
+/// in images without transparency too, all values above 100 as [`OccupancyGrid::UNKNOWN_VALUE`].
 ///
 /// # Errors
-/// When a file cannot be written, or its name is not UTF-8.
+/// Returns [`MapFileError`] if a file cannot be written, or its name is not UTF-8.
 pub fn write_ros_map(
     path: &Path,
     grid: &OccupancyGrid,
@@ -111,7 +112,7 @@ fn ros_map_files(
 /// Reads a `.scen` file, see [`parse_scenarios`](super::parse_scenarios).
 ///
 /// # Errors
-/// When the file cannot be read or is malformed.
+/// Returns [`MapFileError`] if the file cannot be read or is malformed.
 pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
     scenarios_from_bytes(path, &read_file(path, SCENARIOS_BYTES)?)
 }
@@ -119,7 +120,8 @@ pub fn read_scenarios(path: &Path) -> Result<Vec<Scenario>, MapFileError> {
 /// Reads a `.scen` file, all of whose scenarios must be for a map of this size.
 ///
 /// # Errors
-/// As for [`read_scenarios`]; and when a scenario is for a map of another size, naming its line.
+/// As for [`read_scenarios`]; also if a scenario is for a map of another size (the error names
+/// its line).
 pub fn read_scenarios_for(path: &Path, frame: &GridFrame) -> Result<Vec<Scenario>, MapFileError> {
     scenarios_for_from_bytes(path, &read_file(path, SCENARIOS_BYTES)?, frame)
 }

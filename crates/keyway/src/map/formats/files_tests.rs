@@ -25,8 +25,8 @@ fn refused(name: &str, content: impl AsRef<[u8]>) -> (MapFileError, String) {
     (error, text.replace(&folder.path("").display().to_string(), "/folder/"))
 }
 
-/// Killed between the two, a program leaves a YAML file that names the image; an image alone would
-/// look like somebody else's.
+/// A program killed between the two writes leaves a YAML file that names the image; an image
+/// alone would look like an unrelated file.
 #[test]
 fn the_yaml_file_gets_its_name_before_its_image() {
     let grid = OccupancyGrid::from_ascii(&[".#"]);
@@ -313,7 +313,7 @@ proptest! {
     }
 }
 
-/// The same map from files and from memory, or the same error.
+/// Files and memory give the same map, or the same error.
 #[test]
 fn memory_is_read_like_files() {
     let png = image_from_grid(&OccupancyGrid::from_ascii(&["#.?"]), ImageKind::Png);

@@ -1,4 +1,4 @@
-//! The formats of map files, as their extensions name them.
+//! The formats of map files and their extensions.
 
 use super::MapFileError;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use std::path::Path;
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum MapFormat {
-    /// YAML and image, as the map server of ROS reads them.
+    /// YAML and image, as read by the ROS map server.
     Ros,
     /// `.map` of the MovingAI benchmarks.
     MovingAi,
@@ -21,7 +21,7 @@ pub enum MapFormat {
 }
 
 impl MapFormat {
-    /// The format that the extension of a file names, in capitals or not.
+    /// The format for the extension of a file, in upper or lower case.
     pub fn from_path(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "yaml" | "yml" => Some(Self::Ros),

@@ -7,10 +7,10 @@ use super::rule::{CellRule, Doubts, Translator};
 use super::{DEFAULT_MAX_CELLS, ImagePlacement, check_size, png, pnm};
 use crate::map::{Cell, CellState, GridFrame, OccupancyGrid};
 
-/// The kinds of image that maps are written as.
+/// Image formats in which maps are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ImageKind {
-    /// Portable grey map, binary (P5): what map savers write.
+    /// Portable grey map, binary (P5), as written by map savers.
     #[default]
     Pgm,
     /// Portable Network Graphics, 8-bit grey.
@@ -18,7 +18,7 @@ pub enum ImageKind {
 }
 
 impl ImageKind {
-    /// The extension of its files.
+    /// The file extension of this format.
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Pgm => "pgm",
@@ -27,14 +27,15 @@ impl ImageKind {
     }
 }
 
-/// The grid that an image of at most [`DEFAULT_MAX_CELLS`] gives under `rule`: PGM, PPM, PBM or
-/// PNG, with the feature `images` also BMP, GIF, JPEG and TIFF, told apart by content.
+/// Reads the grid from an image of at most [`DEFAULT_MAX_CELLS`] under `rule`: PGM, PPM, PBM or
+/// PNG, with the feature `images` also BMP, GIF, JPEG and TIFF, detected by content.
 ///
-/// Memory is bounded by a small multiple of the length of the file, for compressed files by what
-/// its compression can deliver.
+/// Memory is bounded by a small multiple of the length of the file, for compressed files by the
+/// largest possible compression.
 ///
 /// # Errors
-/// If the bytes are not such an image, or are not complete; when it has too many pixels.
+/// Returns [`ImageError`] if the bytes are not such an image, are incomplete, or have too many
+/// pixels.
 pub fn grid_from_image(
     bytes: &[u8],
     rule: &CellRule,
@@ -43,12 +44,13 @@ pub fn grid_from_image(
     grid_of_at_most(DEFAULT_MAX_CELLS, bytes, rule, placement).map(|(grid, _)| grid)
 }
 
-/// The columns and rows that the header announces, if this beginning of a file has it all.
+/// The columns and rows that the header announces; `None` if the beginning of the file does not
+/// contain the whole header.
 pub(super) fn size_of_image(head: &[u8]) -> Option<(u64, u64)> {
     if pnm::is_pnm(head) { pnm::size(head) } else { png::size(head) }
 }
 
-/// The same with another limit, and what is usually a mistake.
+/// Like [`grid_from_image`], with another limit; also returns likely mistakes.
 pub(super) fn grid_of_at_most(
     max_cells: u64,
     bytes: &[u8],
@@ -73,7 +75,7 @@ pub(super) fn grid_of_at_most(
     Ok((rule.grid(frame, &image.values), cells.doubts))
 }
 
-/// An image of none of the formats that map savers write.
+/// Reads an image of a format that map savers do not write.
 #[cfg_attr(not(feature = "images"), expect(unused_variables))]
 fn other(
     bytes: &[u8],
@@ -88,8 +90,8 @@ fn other(
     Err(ImageError::Kind { start })
 }
 
-/// An image of the states of a grid in the grey values of Nav2's map saver: occupied 0, free 254,
-/// unknown 205. Where the grid lies in the world is not kept.
+/// Writes the states of a grid as an image with the grey values of Nav2's map saver: occupied 0,
+/// free 254, unknown 205. The pose of the grid in the world is not kept.
 pub fn image_from_grid(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
     encode(grid.frame(), kind, |cell| match grid.state(cell) {
         Some(CellState::Occupied) => 0,
@@ -98,8 +100,8 @@ pub fn image_from_grid(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
     })
 }
 
-/// The image of a grid for [`RosMap::for_grid`](super::RosMap::for_grid): its states as in
-/// [`image_from_grid`], or, of a grid with values, these as they are, all above 100 as
+/// Writes the image of a grid for [`RosMap::for_grid`](super::RosMap::for_grid): its states as in
+/// [`image_from_grid`], or for a grid with values the values themselves, all above 100 as
 /// [`OccupancyGrid::UNKNOWN_VALUE`].
 pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
     let Some(values) = grid.values() else { return image_from_grid(grid, kind) };
@@ -110,7 +112,7 @@ pub fn ros_map_image(grid: &OccupancyGrid, kind: ImageKind) -> Vec<u8> {
     })
 }
 
-/// An 8-bit grey image.
+/// Encodes an 8-bit grey image.
 fn encode(frame: &GridFrame, kind: ImageKind, grey: impl Fn(Cell) -> u8) -> Vec<u8> {
     let (width, height) = (frame.width(), frame.height());
     let mut greys = Vec::with_capacity(frame.cell_count() as usize);

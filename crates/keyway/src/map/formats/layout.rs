@@ -7,17 +7,17 @@ use super::rule::Pixel;
 pub(super) struct Layout {
     pub(super) colours: usize,
     pub(super) alpha: bool,
-    /// Two bytes a sample.
+    /// True for two bytes per sample.
     pub(super) wide: bool,
 }
 
 impl Layout {
-    /// Bytes of a pixel.
+    /// Number of bytes of a pixel.
     pub(super) const fn pixel_bytes(self) -> usize {
         (self.colours + self.alpha as usize) * if self.wide { 2 } else { 1 }
     }
 
-    /// The pixel of these bytes; `word` gives the sample of two bytes.
+    /// Converts bytes to a pixel; `word` converts the two bytes of a wide sample.
     pub(super) fn pixel(self, bytes: &[u8], word: fn([u8; 2]) -> u16) -> Pixel {
         let sample = |i: usize| {
             if self.wide {

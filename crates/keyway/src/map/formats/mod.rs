@@ -1,9 +1,9 @@
 //! Readers and writers of map files: ROS YAML with an image, MovingAI `.map` and `.scen`, and plain
 //! images.
 //!
-//! [`map_from_bytes`] and [`scenarios_from_bytes`] read from memory and pick the format by the
+//! [`map_from_bytes`] and [`scenarios_from_bytes`] read from memory and select the format by the
 //! extension of a name; each format has functions from bytes and to bytes, too. With the feature
-//! `files`, `read_map` and `write_map` do the same with files. Limits and errors are equal.
+//! `files`, `read_map` and `write_map` do the same with files, with the same limits and errors.
 
 mod cell_limit;
 mod decoded_image;

@@ -3,19 +3,19 @@
 //! A header of `type octile`, `height` and `width`, a line `map`, and then one line of text for
 //! each row, the top row first. `.`, `G` and `S` are passable, every other character is occupied.
 //!
-//! `type octile-corner` is the form of the program HOG for maps whose ground has heights. Height
-//! and width count the corners of cells. A line for each row of corners says how high they are,
-//! then come as many rows of terrain, of which the last row and the last column are not part of the
-//! map; lower-case letters are the same terrain on a slope. Heights are not kept. Files that call
-//! themselves so and have rows of terrain only are read as octile. Whether paths may cut corners is
-//! no matter of a file here, but of the planner (`planner.corners`).
+//! `type octile-corner` is the format of the program HOG for maps with terrain heights. Height
+//! and width count the corners of cells. One line per row of corners gives their heights,
+//! followed by as many rows of terrain, of which the last row and the last column are not part of
+//! the map; lower-case letters are the same terrain on a slope. Heights are not kept. Files of
+//! this type that have rows of terrain only are read as octile. The rule for cutting corners is
+//! not part of the file here, but a setting of the planner (`planner.corners`).
 
 use super::text::{TextError, numbered_lines, text_from_bytes};
 use super::{DEFAULT_MAX_CELLS, ImagePlacement, TooManyCells, check_size};
 use crate::map::{Cell, CellState, FrameError, GridFrame, MAX_CELLS, OccupancyGrid};
 use thiserror::Error;
 
-/// What is wrong with a `.map` file.
+/// Error in a `.map` file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MovingAiError {
@@ -27,9 +27,9 @@ pub enum MovingAiError {
     Header {
         /// Line, from 1.
         line: usize,
-        /// What was found there.
+        /// Text found there.
         got: String,
-        /// What would be right.
+        /// Text expected there.
         expected: &'static str,
     },
     /// More or fewer rows than the header says.
@@ -37,7 +37,7 @@ pub enum MovingAiError {
     Rows {
         /// The first line too many, or the last line of the map; from 1.
         line: usize,
-        /// What was found.
+        /// Rows found.
         got: String,
         /// The height in the header.
         expected: u64,
@@ -52,7 +52,7 @@ pub enum MovingAiError {
         /// The width in the header.
         expected: u64,
     },
-    /// A character that no map is drawn with.
+    /// A character that is no terrain.
     #[error(
         "line {line}, column {column}: {got:?} is not terrain, expected a visible ASCII character"
     )]
@@ -64,20 +64,20 @@ pub enum MovingAiError {
         /// The character.
         got: char,
     },
-    /// A size, or a placement, that no grid can have.
+    /// A size or placement that is not valid for a grid.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// A map of more cells than are to be read.
+    /// A map with more cells than the limit.
     #[error(transparent)]
     TooManyCells(#[from] TooManyCells),
 }
 
-/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format itself has no
-/// metres: `placement` says the size of a cell and where the lower-left corner lies.
+/// Reads the content of a `.map` file of at most [`DEFAULT_MAX_CELLS`]. The format has no metric
+/// units: `placement` gives the size of a cell and the position of the lower-left corner.
 ///
 /// # Errors
-/// If the bytes are not such a map, or its rows are not those that the header announces; when it
-/// has too many cells.
+/// Returns [`MovingAiError`] if the bytes are not such a map, its rows do not match the header,
+/// or it has too many cells.
 pub fn parse_movingai_map(
     bytes: &[u8],
     placement: ImagePlacement,
@@ -85,8 +85,8 @@ pub fn parse_movingai_map(
     map_of_at_most(DEFAULT_MAX_CELLS, bytes, placement).map(|octile| octile.grid)
 }
 
-/// The columns and rows that a map has at least by its header, if this beginning of a file has it
-/// all.
+/// Lower bound of the columns and rows of a map from its header; `None` if the beginning of the
+/// file does not contain the whole header.
 pub(super) fn size_of_map(head: &[u8]) -> Option<(u64, u64)> {
     // A character may be cut at the end.
     let text = String::from_utf8_lossy(head);
@@ -95,13 +95,13 @@ pub(super) fn size_of_map(head: &[u8]) -> Option<(u64, u64)> {
     Some(((header.width - corner).max(1), (header.height - corner).max(1)))
 }
 
-/// A map, and what is not kept of it.
+/// A map, and a flag for the heights that it does not keep.
 pub(super) struct Octile {
     pub(super) grid: OccupancyGrid,
     pub(super) has_heights: bool,
 }
 
-/// The same with another limit.
+/// Like [`parse_movingai_map`], with another limit.
 pub(super) fn map_of_at_most(
     max_cells: u64,
     bytes: &[u8],
@@ -113,7 +113,7 @@ pub(super) fn map_of_at_most(
     let has_heights = rows.len() as u64 > header.height;
     let Header { mut width, mut height, .. } = header;
     if has_heights {
-        // Of the terrain all but the last row and column.
+        // All of the terrain but the last row and column.
         rows = rows.split_off(height as usize);
         rows.pop();
         (width, height) = (width - 1, height - 1);
@@ -134,11 +134,11 @@ struct Header {
     height: u64,
     /// Rows of heights may come before those of terrain.
     may_have_heights: bool,
-    /// The line `map`, which is its last one; from 1.
+    /// Number of the line `map`, the last one of the header; from 1.
     end: usize,
 }
 
-/// `lines` then stands at the first row.
+/// Parses the header; `lines` then continues with the first row.
 fn parse_header<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Header, MovingAiError> {
@@ -188,7 +188,7 @@ fn size(word: &str) -> Option<u64> {
     word.parse().ok().filter(|n| digits && (1..=MAX_CELLS).contains(n))
 }
 
-/// A line for an error message: not too long.
+/// Shortens a line for an error message.
 fn shown(text: &str) -> String {
     if text.chars().count() > 40 {
         let start: String = text.chars().take(40).collect();
@@ -197,7 +197,7 @@ fn shown(text: &str) -> String {
     format!("{text:?}")
 }
 
-/// The rows, top row first. Nothing is stored for rows that are not in the text.
+/// Parses the rows, top row first. Nothing is stored for rows that are not in the text.
 fn parse_rows<'a>(
     lines: impl Iterator<Item = (usize, &'a str)>,
     header: &Header,
@@ -216,7 +216,7 @@ fn parse_rows<'a>(
             return Err(wrong(line, format!("more than {}", rows_text(rows.len()))));
         }
         if text.is_empty() {
-            // A missing row says more than a row of 0 characters.
+            // Reporting a missing row is clearer than a row of 0 characters.
             return Err(wrong(line, format!("{} before this blank line", rows_text(rows.len()))));
         }
         check_row(line, text, header.width)?;
@@ -235,7 +235,7 @@ fn rows_text(count: usize) -> String {
 }
 
 fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
-    // All bytes are looked at: the compiler then compares many at once.
+    // All bytes are checked without an early exit, so that the compiler compares many at once.
     let is_visible = text.bytes().fold(true, |all, byte| all & byte.is_ascii_graphic());
     let other = || text.chars().enumerate().find(|(_, c)| !c.is_ascii_graphic());
     if let Some((at, got)) = if is_visible { None } else { other() } {
@@ -247,8 +247,8 @@ fn check_row(line: usize, text: &str, width: u64) -> Result<(), MovingAiError> {
     Ok(())
 }
 
-/// The content of a `.map` file. The format knows only two states: **unknown cells are written as
-/// occupied** (`@`). Where the grid lies in the world is not kept either.
+/// Writes the content of a `.map` file. The format has only two states: **unknown cells are
+/// written as occupied** (`@`). The pose of the grid in the world is not kept either.
 pub fn movingai_map_from_grid(grid: &OccupancyGrid) -> String {
     let (width, height) = (grid.frame().width(), grid.frame().height());
     let mut text = format!("type octile\nheight {height}\nwidth {width}\nmap\n");

@@ -1,4 +1,4 @@
-//! What a user should know of a map that was read or written, and that is not an error.
+//! Notices to the user about a map that was read or written, other than errors.
 
 use super::rule::Doubts;
 use super::{CellRule, MapFormat, MapMode, RosMap};
@@ -7,12 +7,12 @@ use crate::map::{OccupancyError, OccupancyGrid};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Something in a map file that is allowed, and yet is usually a mistake.
+/// A property of a map file that is allowed, but usually a mistake.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapWarning {
-    /// `free_thresh` is above `occupied_thresh`: nothing is unknown, and what both claim is
-    /// occupied.
+    /// `free_thresh` is above `occupied_thresh`: no cell is unknown, and values that satisfy both
+    /// are occupied.
     Thresholds {
         /// The YAML file.
         path: PathBuf,
@@ -21,40 +21,40 @@ pub enum MapWarning {
         /// `free_thresh` of the file.
         free_thresh: f64,
     },
-    /// A raw image in which no value comes near to occupied, although not all are 0: usually a mask
-    /// of 0 and 1.
+    /// A raw image in which no value comes near to occupied, although not all are 0: usually a
+    /// mask of 0 and 1.
     Mask {
         /// The YAML file.
         path: PathBuf,
         /// Its largest occupancy, of 100.
         largest: u8,
     },
-    /// A field that the YAML file leaves out, and that has its usual value.
+    /// A field that is missing in the YAML file and takes its usual value.
     Assumed {
         /// The YAML file.
         path: PathBuf,
         /// The field.
         field: &'static str,
     },
-    /// Cells of the grey with which map savers draw unknown cells are free, because `free_thresh`
-    /// is higher.
+    /// Cells with the grey of unknown cells in map savers are free, because `free_thresh` is
+    /// higher.
     UnknownBelowThreshold {
         /// The YAML file.
         path: PathBuf,
-        /// Their number.
+        /// Number of these cells.
         cells: u64,
         /// `free_thresh` of the file.
         free_thresh: f64,
     },
-    /// Such cells are free, because the image has an alpha channel: where it is opaque it counts as
-    /// a bright colour.
+    /// Such cells are free, because the image has an alpha channel: opaque alpha counts as a
+    /// bright colour.
     UnknownBelowAlpha {
         /// The image.
         path: PathBuf,
-        /// Their number.
+        /// Number of these cells.
         cells: u64,
     },
-    /// An image of a format that keeps greys only nearly.
+    /// An image format that preserves greys only approximately.
     Lossy {
         /// The image.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum MapWarning {
         /// The file.
         path: PathBuf,
     },
-    /// An image that was read without a placement: cells of 1 m are seldom right.
+    /// An image that was read without a placement: its cells of 1 m are seldom right.
     Resolution {
         /// The image.
         path: PathBuf,
@@ -95,7 +95,7 @@ impl MapWarning {
         assumed.chain(swapped).collect()
     }
 
-    /// `path` is the file that holds the rule.
+    /// Warnings about an image; `path` is the file that holds the rule.
     pub(super) fn of_image(
         path: &Path,
         image: &Path,
@@ -175,22 +175,22 @@ impl fmt::Display for MapWarning {
     }
 }
 
-/// Something of a map that a file of some format does not keep.
+/// A property of a map that a file format does not keep.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapLoss {
     /// Side of a cell \[m\]; such files are read with cells of 1 m.
     Resolution(f64),
-    /// Where the lower-left corner lies; in such files at (0, 0).
+    /// Pose of the lower-left corner; such files are read with it at (0, 0).
     Origin(Pose),
-    /// This many unknown cells become occupied.
+    /// Number of unknown cells that become occupied.
     Unknown(u64),
-    /// This many cells have an occupancy between 0 and 100, of which only the state is kept.
+    /// Number of cells with an occupancy between 0 and 100, of which only the state is kept.
     Values(u64),
 }
 
 impl MapLoss {
-    /// Everything of a map that a file of this format does not keep.
+    /// All properties of a map that a file of this format does not keep.
     pub fn of(grid: &OccupancyGrid, format: MapFormat) -> Vec<Self> {
         if format == MapFormat::Ros {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! BMP, GIF, JPEG and TIFF images, which other programs draw maps with.
+//! BMP, GIF, JPEG and TIFF images: maps drawn with other programs.
 
 use super::cell_limit::check_size;
 use super::decoded_image::{DecodedImage, ImageError};
@@ -7,14 +7,14 @@ use super::rule::{Pixel, Translator};
 use ::image::{ColorType, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
-/// A format, and what it is called.
+/// An image format with its name.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
     format: ImageFormat,
     name: &'static str,
 }
 
-/// The format of a file, by its first bytes.
+/// Detects the format of a file by its first bytes.
 pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
     let format = ::image::guess_format(bytes).ok()?;
     let name = match format {
@@ -27,11 +27,11 @@ pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
     Some(Kind { format, name })
 }
 
-/// No map takes more memory than this times its file: what the compression of a GIF delivers at
-/// most is 10,923.
+/// Largest allowed ratio of a map's memory to its file: GIF compression reaches at most 10,923.
 const MAX_RATIO: u64 = 1 << 14;
 
-/// The most that a decoder may hold besides the pixels: tables, and those of a part of the image.
+/// Memory that a decoder may hold in addition to the pixels: tables, and the pixels of a part of
+/// the image.
 const SLACK_BYTES: u64 = 64 << 20;
 
 pub(super) fn decode(
@@ -42,7 +42,7 @@ pub(super) fn decode(
 ) -> Result<DecodedImage, ImageError> {
     let unreadable = || ImageError::Unreadable { kind: name };
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    // Until the size is known.
+    // No limits until the size is known.
     reader.no_limits();
     let mut decoder = reader.into_decoder().map_err(|_| unreadable())?;
     let (width, height) = decoder.dimensions();
@@ -58,11 +58,11 @@ pub(super) fn decode(
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(total_bytes.saturating_mul(2).saturating_add(SLACK_BYTES));
     decoder.set_limits(limits).map_err(|_| unreadable())?;
-    // Not written before the decoder does it, so that a file that ends early takes no memory.
+    // Zeroed memory that only the decoder writes, so a file that ends early takes no memory.
     let mut samples = vec![0; usize::try_from(total_bytes).map_err(|_| unreadable())?];
     decoder.read_image(&mut samples).map_err(|_| unreadable())?;
     let pixels = samples.chunks_exact(layout.pixel_bytes());
-    // In a GIF no pixel has an alpha of its own: one colour may be transparent.
+    // In a GIF no pixel has an alpha value of its own: one colour may be transparent.
     let is_opaque = format == ImageFormat::Gif && pixels.clone().all(|pixel| pixel[3] == 255);
     let pixel = |samples| {
         let pixel: Pixel = layout.pixel(samples, u16::from_ne_bytes);
@@ -73,7 +73,7 @@ pub(super) fn decode(
     Ok(DecodedImage { width, height, values })
 }
 
-/// The layout of an image of this kind.
+/// The layout of an image with this colour type.
 fn layout(colour: ColorType) -> Option<Layout> {
     let (colours, alpha, wide) = match colour {
         ColorType::L8 => (1, false, false),
@@ -111,7 +111,7 @@ mod tests {
     const FORMATS: [ImageFormat; 4] =
         [ImageFormat::Bmp, ImageFormat::Gif, ImageFormat::Jpeg, ImageFormat::Tiff];
 
-    /// Blocks of 16 x 16 pixels, of which JPEG changes nothing that matters.
+    /// Blocks of 16 x 16 pixels, in which JPEG changes nothing relevant.
     fn grey() -> DynamicImage {
         let grey = |x, y| ::image::Luma([[0, 254, 205][(x / 16 + y / 16) as usize % 3]]);
         GrayImage::from_fn(48, 32, grey).into()
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn sizes_beyond_the_content_are_refused() {
         let mut gif = written(&grey().to_rgba8().into(), ImageFormat::Gif);
-        // The size of the canvas, of which the pixels may be a part.
+        // The size of the canvas, of which the pixels may fill a part.
         gif[6..10].copy_from_slice(&[0, 0x40, 0, 0x40]);
         let error = read(&gif, MapMode::Trinary, 1 << 29).unwrap_err().to_string();
         let expected =

@@ -3,7 +3,7 @@
 use crate::geometry::Pose;
 use serde::{Deserialize, Serialize};
 
-/// Placement of a map whose file does not say where it lies.
+/// Placement of a map whose file does not contain one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImagePlacement {

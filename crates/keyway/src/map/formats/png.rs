@@ -13,9 +13,9 @@ use std::io::Cursor;
 
 pub(super) const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// No deflate stream is longer than this times its compressed form.
+/// Largest ratio of the length of a deflate stream to its compressed form.
 const MAX_DEFLATE_RATIO: u64 = 1032;
-/// For small files: stream headers, and tables that are needed anyway.
+/// Allowance for small files: stream headers, and tables that are needed anyway.
 const SLACK_BYTES: u64 = 1 << 16;
 
 pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
@@ -35,7 +35,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    // Palettes to colours, less than 8 bits to 8, transparent colours to alpha.
+    // Converts palettes to colours, less than 8 bits to 8, and transparent colours to alpha.
     decoder.set_transformations(Transformations::EXPAND);
 
     let header = decoder.read_header_info().map_err(|error| broken(&error))?;
@@ -44,12 +44,12 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     if row_bits.div_ceil(8).saturating_mul(u64::from(height)) > can_hold {
         return Err(ImageError::Implausible { width, height, got: bytes.len() });
     }
-    // Before anything of that size is made.
+    // Checked before anything of that size is allocated.
     GridFrame::new(u64::from(width), u64::from(height), 1.0, Pose::default())?;
 
     let reader = decoder.read_info().map_err(|error| broken(&error))?;
-    // The decoder looks colours up in a table that it makes of this, and panics where one is cut
-    // off.
+    // The decoder looks colours up in a table built from the palette, and panics if an entry is
+    // truncated.
     let palette = reader.info().palette.as_deref();
     let length = palette.map_or(3, <[u8]>::len);
     let is_sound = length.is_multiple_of(3) && (3..=3 * 256).contains(&length);
@@ -64,7 +64,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     Ok(DecodedImage { width: u64::from(width), height: u64::from(height), values })
 }
 
-/// The columns and rows that the header announces; nothing where there is none.
+/// The columns and rows that the header announces; `None` without a header.
 pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
     let header = bytes.strip_prefix(SIGNATURE)?.get(4..)?.strip_prefix(b"IHDR")?;
     let (width, rest) = header.split_first_chunk()?;
@@ -73,7 +73,7 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
     (width > 0 && height > 0).then_some((width, height))
 }
 
-/// The first sentence of what the decoder says, without checksums, and with a chunk's name only.
+/// The first sentence of the decoder's message, without checksums, and with a chunk's name only.
 fn broken(error: &DecodingError) -> ImageError {
     let text = error.to_string();
     let sentence = text.split(". ").next().unwrap_or(&text).trim_end_matches('.');
@@ -87,8 +87,8 @@ fn broken(error: &DecodingError) -> ImageError {
     ImageError::Png(chunk.unwrap_or_else(|| sentence.to_owned()))
 }
 
-/// The value of every pixel. Rows are translated as they come, so that one byte per pixel is the
-/// most that is held.
+/// The value of every pixel. Rows are translated as they are decoded, so that at most one byte
+/// per pixel is held.
 fn read_rows(
     mut reader: Reader<Cursor<&[u8]>>,
     cells: &mut Translator<'_>,
@@ -101,7 +101,7 @@ fn read_rows(
     }
     let interlaced = info.interlaced;
     let layout = layout(reader.output_color_type());
-    // Rows in order make the vector grow with the data, which may end early.
+    // Rows in order let the vector grow with the data, which may end early.
     let mut values = if interlaced { vec![0; width * height] } else { Vec::new() };
     let mut row_values = Vec::with_capacity(width);
     while let Some(row) = reader.next_interlaced_row()? {
@@ -120,7 +120,7 @@ fn read_rows(
     Ok(values)
 }
 
-/// The layout of an image of this kind.
+/// The layout of an image with this colour type and depth.
 fn layout((colour, depth): (ColorType, BitDepth)) -> Layout {
     let (colours, alpha) = match colour {
         // The decoder has turned palettes into colours.
@@ -197,7 +197,8 @@ mod tests {
         let grey_alpha = (ColorType::GrayscaleAlpha, BitDepth::Eight);
         let bytes = png((4, 1), grey_alpha, &[0, 255, 0, 0, 255, 255, 255, 0], |_| {});
         let values = |mode| read(&bytes, mode).unwrap();
-        // As a fourth colour, not as the second of two: opaque black has a mean of 1/4, not 1/2.
+        // Alpha is a fourth channel here, not the second of two: opaque black has a mean of 1/4,
+        // not 1/2.
         assert_eq!(values(MapMode::Trinary), [100, 100, 0, 255]);
         assert_eq!(values(MapMode::Scale), [100, 255, 0, 255]);
         let rgba = (ColorType::Rgba, BitDepth::Sixteen);
@@ -231,7 +232,7 @@ mod tests {
         (!kind_and_content.iter().fold(u32::MAX, byte)).to_be_bytes()
     }
 
-    /// The same with the checksum of its header.
+    /// Replaces the checksum of the header by the right one.
     fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
         let sum = checksum(&bytes[12..29]);
         bytes[29..33].copy_from_slice(&sum);
@@ -299,10 +300,10 @@ mod tests {
 
     type OwnChunk = ([u8; 4], Vec<u8>);
 
-    /// 4 x 1 pixels of this kind, whose other chunks are these, all with sound checksums.
+    /// A PNG of 4 x 1 pixels of this kind with these additional chunks, all with valid checksums.
     fn with_chunks((colour, depth): (u8, u8), others: &[OwnChunk]) -> Vec<u8> {
         let header = vec![0, 0, 0, 4, 0, 0, 0, 1, depth, colour, 0, 0, 0];
-        // An unfiltered row of zeros, as long as the widest pixels need it.
+        // An unfiltered row of zeros, long enough for the widest pixels.
         let grey = encode(32, 1, &[0; 32]);
         let pixels = grey[41..grey.len() - 16].to_vec();
         let ends = [(*b"IHDR", header), (*b"IDAT", pixels), (*b"IEND", vec![])];
@@ -327,7 +328,7 @@ mod tests {
             );
             assert_eq!(text, expected);
         }
-        // Colours that other images only suggest do not matter.
+        // Palettes that are only suggestions (in images of other colour types) do not matter.
         assert_eq!(raw(&with_chunks((2, 8), &[(*b"PLTE", vec![9; 4])])), Ok(vec![0; 4]));
     }
 

@@ -1,12 +1,12 @@
-//! Portable maps of bits, greys and colours: plain (P1, P2, P3) and binary (P4, P5, P6).
+//! Netpbm images of bits, greys and colours: plain (P1, P2, P3) and binary (P4, P5, P6).
 //!
-//! Comments may stand wherever white space may, in plain files among the pixels too.
+//! Comments may appear wherever white space may, in plain files among the pixels too.
 
 use super::decoded_image::{DecodedImage, ImageError};
 use super::rule::{Pixel, Translator};
 use crate::map::MAX_CELLS;
 
-/// A map of a single row or column may have [`MAX_CELLS`].
+/// Allowed sizes of a side; a map of a single row or column may have [`MAX_CELLS`].
 const SIDE: &str = "a whole number from 1 to 2147483648";
 
 pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
@@ -15,7 +15,7 @@ pub(super) fn encode(width: u32, height: u32, greys: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The kinds of samples.
+/// Kinds of samples.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Samples {
     Bits,
@@ -23,7 +23,7 @@ enum Samples {
     Colours,
 }
 
-/// The kind of samples that the first two bytes name, and true for text.
+/// Kind of samples from the first two bytes, and true for a plain (text) file.
 fn kind(bytes: &[u8]) -> Option<(Samples, bool)> {
     let &[b'P', digit, ..] = bytes else { return None };
     match digit {
@@ -45,7 +45,7 @@ pub(super) fn size(bytes: &[u8]) -> Option<(u64, u64)> {
     Some((width, text.header("height", MAX_CELLS, SIDE).ok()?))
 }
 
-/// The raster, as the header describes it.
+/// Raster parameters from the header.
 struct Raster {
     samples: Samples,
     width: u64,
@@ -58,12 +58,12 @@ impl Raster {
         u128::from(self.width) * u128::from(self.height)
     }
 
-    /// Samples of a pixel.
+    /// Number of samples of a pixel.
     fn count(&self) -> usize {
         if self.samples == Samples::Colours { 3 } else { 1 }
     }
 
-    /// Bytes that a raster of text needs at least.
+    /// Minimum size of a plain raster \[bytes\].
     fn least_text_bytes(&self) -> u128 {
         match self.samples {
             // Digits of bits need no separators.
@@ -73,7 +73,7 @@ impl Raster {
         }
     }
 
-    /// Bytes of a binary raster.
+    /// Size of a binary raster \[bytes\].
     fn bytes(&self) -> u128 {
         match self.samples {
             Samples::Bits => u128::from(self.width.div_ceil(8)) * u128::from(self.height),
@@ -85,7 +85,7 @@ impl Raster {
         if self.maximum < 256 { 1 } else { 2 }
     }
 
-    /// The pixel of these samples. Bits are ink.
+    /// Converts samples to a pixel. In bitmaps, 1 is black.
     fn pixel(&self, samples: &[u32]) -> Pixel {
         match *samples {
             [bit] if self.samples == Samples::Bits => Pixel::grey(1 - bit, 1),
@@ -100,7 +100,7 @@ impl Raster {
     }
 }
 
-/// `bytes` starts as [`is_pnm`] asks.
+/// Decodes an image; `bytes` must pass [`is_pnm`].
 pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<DecodedImage, ImageError> {
     let (samples, is_text) = kind(bytes).unwrap_or((Samples::Greys, true));
     let mut text = Scanner { bytes, at: 2, line: 1 };
@@ -147,7 +147,7 @@ fn read_text(
     Ok(())
 }
 
-/// Rows begin with a byte of their own.
+/// Reads packed bits; each row begins at a byte boundary.
 fn read_bits(bytes: &[u8], raster: &Raster, mut sink: impl FnMut(Pixel)) {
     for row in bytes.chunks_exact(raster.width.div_ceil(8) as usize) {
         for column in 0..raster.width as usize {
@@ -187,7 +187,7 @@ fn digits(word: &[u8]) -> Option<u64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A word for an error message: escaped and not too long.
+/// Escapes and shortens a word for an error message.
 fn shown(word: &[u8]) -> String {
     if word.is_empty() {
         return "missing".to_owned();
@@ -203,7 +203,7 @@ struct Scanner<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// The next word, past white space and comments; empty at the end of the file.
+    /// The next word, after white space and comments; empty at the end of the file.
     fn word(&mut self) -> &'a [u8] {
         let mut comment = false;
         while let Some(&byte) = self.bytes.get(self.at) {
@@ -222,7 +222,7 @@ impl<'a> Scanner<'a> {
         &rest[..length]
     }
 
-    /// The next word of one letter: digits of bits stand side by side.
+    /// The next word of one character: digits of bits need no separators.
     fn digit(&mut self) -> &'a [u8] {
         let word = self.word();
         self.at -= word.len().saturating_sub(1);
@@ -241,7 +241,8 @@ impl<'a> Scanner<'a> {
         number.ok_or_else(|| ImageError::Header { line, field, got: shown(word), expected })
     }
 
-    /// Passes the one white space that ends the header of a binary file, and a comment before it.
+    /// Skips the single white space that ends the header of a binary file, and a comment before
+    /// it.
     fn end_header(&mut self, raster: u128) {
         if self.bytes.get(self.at) == Some(&b'#') {
             let rest = &self.bytes[self.at..];
@@ -250,7 +251,7 @@ impl<'a> Scanner<'a> {
         }
         self.at = (self.at + 1).min(self.bytes.len());
         // Editors that rewrite line endings leave two bytes. The second could be a pixel as well;
-        // it is not when the pixels are then exactly what remains.
+        // it is not if exactly the pixels remain after it.
         let rest = &self.bytes[self.at..];
         let crlf = self.bytes[self.at - 1] == b'\r' && rest.first() == Some(&b'\n');
         if crlf && rest.len() as u128 == raster.saturating_add(1) {
@@ -306,7 +307,7 @@ mod tests {
 
     #[test]
     fn bits_and_colours() {
-        // Rows of bits begin with a byte of their own; 1 is ink.
+        // Each row of bits begins at a byte boundary; 1 is black.
         let first = [255, 255, 0, 255, 255, 255, 255, 255, 0, 255];
         let bits = [&first[..], &[0; 9], &[255]].concat();
         assert_eq!(raw(b"P4 10 2\n\x20\x80\xff\x80"), Ok((10, 2, bits.clone())));

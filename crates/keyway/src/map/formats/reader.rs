@@ -1,4 +1,5 @@
-//! Reading maps from memory: the extension of a name picks the format, errors repeat the name.
+//! Reading maps from memory: the extension of a name selects the format, and errors repeat the
+//! name.
 
 use super::image::{grid_of_at_most, size_of_image};
 use super::movingai::{Octile, map_of_at_most, size_of_map};
@@ -12,12 +13,12 @@ use crate::map::{GridFrame, MAX_CELLS, OccupancyGrid};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// No map file may be larger: what the largest map takes as a plain image, four bytes for a cell.
+/// Largest allowed map file: the size of the largest map as a plain image, four bytes per cell.
 pub const MAX_MAP_BYTES: u64 = 4 * MAX_CELLS;
 const YAML_BYTES: u64 = 1 << 20;
 pub(super) const SCENARIOS_BYTES: u64 = 1 << 30;
 
-/// A map and what identifies it in reports.
+/// A map with the data that identify it in reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedMap {
     /// The map.
@@ -26,18 +27,18 @@ pub struct LoadedMap {
     pub format: MapFormat,
     /// The [`digest`] of the map.
     pub digest: String,
-    /// The files that were read: the map's, and the image of a YAML file.
+    /// The files read: the map's, and the image of a YAML file.
     pub sources: Vec<PathBuf>,
-    /// Likely mistakes in such a file.
+    /// Likely mistakes in these files.
     pub warnings: Vec<MapWarning>,
 }
 
-/// Settings with which map files are read.
+/// Settings for reading map files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapReader {
-    /// Placement of a map whose file does not say where it lies; `None`: cells of 1 m from (0, 0).
+    /// Placement of a map whose file does not contain one; `None`: cells of 1 m from (0, 0).
     pub placement: Option<ImagePlacement>,
-    /// A map of more cells is refused before memory is taken for it.
+    /// Largest allowed number of cells; larger maps are rejected before memory is allocated.
     pub max_cells: u64,
 }
 
@@ -48,13 +49,15 @@ impl Default for MapReader {
 }
 
 /// Reads a map of at most [`DEFAULT_MAX_CELLS`] cells from memory. The extension of `name`
-/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) names the format, and errors and warnings call the map
-/// by it; nothing of this name needs to exist. `image` gives the content of the image that a YAML
-/// file names, by its name there after the folder of `name`; no other format needs it. It answers
-/// with [`ReadError::System`] and [`std::io::ErrorKind::NotFound`] where there is no such image.
+/// (`.yaml`, `.yml`, `.map`, `.pgm`, `.png`) selects the format, and errors and warnings use
+/// `name` for the map; no such file needs to exist. `image` returns the content of the image that
+/// a YAML file names, given its name there after the folder of `name`; no other format needs it.
+/// If there is no such image, it returns [`ReadError::System`] with
+/// [`std::io::ErrorKind::NotFound`].
 ///
-/// A YAML file itself says where its map lies. Other maps do not: they lie where `placement` says,
-/// by default cells of 1 m from (0, 0). Images without a YAML file are read by [`CellRule::IMAGE`].
+/// A YAML file contains the placement of its map. Other maps are placed by `placement`, by
+/// default with cells of 1 m from (0, 0). Images without a YAML file are read by
+/// [`CellRule::IMAGE`].
 ///
 /// ```
 /// use keyway::map::formats::map_from_bytes;
@@ -85,16 +88,16 @@ pub fn map_from_bytes(
     MapReader { placement, ..MapReader::default() }.from_bytes(name, bytes, image)
 }
 
-/// Refuses a file by its beginning, before the rest is read.
+/// Check that can reject a file by its beginning, before the rest is read.
 pub(super) type Check<'a> = &'a dyn Fn(&[u8]) -> Result<(), MapFileError>;
 
 impl MapReader {
     /// Reads a map from memory, like [`map_from_bytes`].
     ///
     /// # Errors
-    /// If the map, or the image that it names, is malformed or longer than a file of its kind may
-    /// be; when the extension is not one of those; when there is a placement for a YAML file; when
-    /// the map has too many cells; and what `image` returns.
+    /// Returns [`MapFileError`] if the map, or the image that it names, is malformed or longer
+    /// than a file of its kind may be; if the extension is not one of those; if there is a
+    /// placement for a YAML file; if the map has too many cells; and if `image` returns an error.
     pub fn from_bytes(
         &self,
         name: &Path,
@@ -109,8 +112,8 @@ impl MapReader {
         })
     }
 
-    /// `read` gives the content of a file of at most this many bytes, if the check of its beginning
-    /// allows it.
+    /// Loads a map; `read` returns the content of a file of at most this many bytes, if the check
+    /// of its beginning allows it.
     pub(super) fn load<B: AsRef<[u8]>>(
         &self,
         path: &Path,
@@ -188,22 +191,22 @@ impl MapReader {
     }
 }
 
-/// Reads MovingAI scenarios from memory, see [`parse_scenarios`]; errors call the file `name`.
+/// Reads MovingAI scenarios from memory, see [`parse_scenarios`]; errors use `name` for the file.
 ///
 /// # Errors
-/// If the content is malformed, or longer than a `.scen` file may be.
+/// Returns [`MapFileError`] if the content is malformed, or longer than a `.scen` file may be.
 pub fn scenarios_from_bytes(name: &Path, bytes: &[u8]) -> Result<Vec<Scenario>, MapFileError> {
     check_length(name, bytes, SCENARIOS_BYTES)?;
     parse_scenarios(bytes)
         .map_err(|reason| MapFileError::Scenarios { path: name.to_owned(), reason })
 }
 
-/// Reads MovingAI scenarios, all of which must be for a map of this size; errors call the file
-/// `name`.
+/// Reads MovingAI scenarios, all of which must be for a map of this size; errors use `name` for
+/// the file.
 ///
 /// # Errors
-/// As for [`scenarios_from_bytes`]; and when a scenario is for a map of another size, naming its
-/// line.
+/// As for [`scenarios_from_bytes`]; also if a scenario is for a map of another size (the error
+/// names its line).
 pub fn scenarios_for_from_bytes(
     name: &Path,
     bytes: &[u8],

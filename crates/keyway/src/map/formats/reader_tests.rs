@@ -4,7 +4,7 @@ use crate::file_system::test_folder::TestFolder;
 use crate::map::MAX_CELLS;
 use std::fs::File;
 
-/// Beginnings of files that hold `width` x `height` cells, and what reads them.
+/// Beginnings of files with `width` x `height` cells, each with a file name of its format.
 fn beginnings(width: u32, height: u32) -> [(&'static str, Vec<u8>); 4] {
     let plain = format!("P2 {width} {height} 255\n").into_bytes();
     let binary = format!("P5 # a map\n{width} {height}\n255\n").into_bytes();
@@ -15,7 +15,7 @@ fn beginnings(width: u32, height: u32) -> [(&'static str, Vec<u8>); 4] {
     [("a.pgm", plain), ("b.pgm", binary), ("c.map", octile), ("d.png", png)]
 }
 
-/// The error, and the most that was held in memory at a time \[bytes\].
+/// The error, and the peak memory in use \[bytes\].
 fn refused(path: &Path) -> (MapFileError, u64) {
     let mut error = None;
     let used = allocation_counter::measure(|| error = read_map(path, None).err());
@@ -27,7 +27,7 @@ fn maps_of_too_many_cells_are_refused_before_memory_is_taken() {
     let folder = TestFolder::new();
     for (name, content) in beginnings(30_000, 30_000) {
         let path = folder.write(name, content);
-        // As long as the whole map would be.
+        // As long as a file with the whole map.
         File::options().write(true).open(&path).unwrap().set_len(900_000_100).unwrap();
         let yaml = format!(
             "image: {name}\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n\
@@ -75,7 +75,7 @@ fn the_limit_itself_passes() {
     }
 }
 
-/// No limit allows more than a grid can have, and the error does not suggest it.
+/// No limit allows more cells than a grid can have, and the error does not suggest it.
 #[test]
 fn maps_that_no_grid_can_hold() {
     let folder = TestFolder::new();
@@ -115,7 +115,7 @@ fn unknown_cells_that_are_read_as_free_are_counted() {
     let quarter = YAML.replace("0.196", "0.25");
     assert_eq!(read(&quarter), [expected]);
     assert_eq!(read(&format!("{quarter}mode: scale\n")), [expected]);
-    // Nothing is free by a threshold there, or the grey means something else.
+    // No cell is free by a threshold there, or the grey has another meaning.
     assert_eq!(read(&format!("{quarter}mode: raw\n")), [""; 0]);
     assert_eq!(read(&quarter.replace("negate: 0", "negate: 1")), [""; 0]);
 

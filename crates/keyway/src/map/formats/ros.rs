@@ -1,4 +1,4 @@
-//! The YAML file of the map server of ROS, which says how an image is a map.
+//! The YAML file of the ROS map server, which defines how an image is read as a map.
 //!
 //! | field | meaning | when missing |
 //! |---|---|---|
@@ -9,8 +9,9 @@
 //! | `occupied_thresh`, `free_thresh` | see [`CellRule`] | 0.65 and 0.196, and a warning |
 //! | `mode` | `trinary`, `scale` or `raw` | `trinary` |
 //!
-//! Nav2 requires `negate` and the thresholds, too. They are missing in many files; then they are
-//! what the map saver of ROS writes ([`CellRule::IMAGE`]). Other fields are ignored, as in Nav2.
+//! Nav2 requires `negate` and the thresholds, too. Many files lack them; the values written by
+//! the map saver of ROS are then used ([`CellRule::IMAGE`]). Other fields are ignored, as in
+//! Nav2.
 
 use super::ImagePlacement;
 use super::rule::{CellRule, MapMode};
@@ -32,7 +33,7 @@ const NEGATE_FIELD: &str = "negate";
 const OCCUPIED_FIELD: &str = "occupied_thresh";
 const FREE_FIELD: &str = "free_thresh";
 
-/// What each field should be.
+/// The expected value of each field.
 const EXPECTED: [(&str, &str); 7] = [
     ("image", IMAGE),
     ("resolution", RESOLUTION),
@@ -43,24 +44,24 @@ const EXPECTED: [(&str, &str); 7] = [
     ("mode", MODE),
 ];
 
-/// Letters of a wrong value that are shown.
+/// Number of characters of a wrong value that are shown.
 const SHOWN: usize = 40;
 
-/// What the YAML file of a map says.
+/// Content of the YAML file of a map.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RosMap {
     /// The image file, absolute or relative to the folder of the YAML file.
     pub image: String,
-    /// Where the map lies.
+    /// Resolution and origin of the map.
     pub placement: ImagePlacement,
-    /// How pixels become cells.
+    /// Rule that converts pixels to cells.
     pub rule: CellRule,
-    /// The fields of the rule that are missing, and have their usual values.
+    /// The missing fields of the rule, which take their usual values.
     pub assumed: Vec<&'static str>,
 }
 
-/// What is wrong with the YAML file of a map.
+/// Error in the YAML file of a map.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RosMapError {
@@ -74,33 +75,33 @@ pub enum RosMapError {
         line: u64,
         /// Column, from 1.
         column: u64,
-        /// What is wrong there.
+        /// Description of the error.
         reason: String,
     },
-    /// A field that is not there.
+    /// A missing field.
     #[error("the field `{field}` is missing, expected {expected}")]
     Missing {
-        /// Its name.
+        /// Name of the field.
         field: &'static str,
-        /// What would be right.
+        /// Expected value.
         expected: &'static str,
     },
-    /// A field of another kind or out of range.
+    /// A field of another type or out of range.
     #[error("line {line}: `{field}` is {got}, expected {expected}")]
     Field {
         /// Line, from 1.
         line: u64,
-        /// Its name.
+        /// Name of the field.
         field: &'static str,
-        /// What was found there.
+        /// Value found there.
         got: String,
-        /// What would be right.
+        /// Expected value.
         expected: &'static str,
     },
 }
 
-/// The fields as they are written. Numbers are read as text, so that this module, not the parser,
-/// says what was expected of which field.
+/// The fields as written in the file. Numbers are read as text, so that this module, not the
+/// parser, reports which value was expected.
 #[derive(Deserialize)]
 #[serde(expecting = "a mapping with the fields of a map (image, resolution, origin, ...)")]
 struct Fields {
@@ -117,7 +118,7 @@ impl RosMap {
     /// Reads the content of a YAML file.
     ///
     /// # Errors
-    /// When it is not YAML, or a field is missing or not usable.
+    /// Returns [`RosMapError`] if the content is not YAML, or a field is missing or not usable.
     pub fn parse(bytes: &[u8]) -> Result<Self, RosMapError> {
         let text = text_from_bytes(bytes)?;
         let options = serde_saphyr::options! {
@@ -160,8 +161,8 @@ impl RosMap {
         })
     }
 
-    /// The description with which `grid` is written, its picture in the file `image`: trinary, or
-    /// raw for a grid with values.
+    /// The description for writing `grid`, with its image in the file `image`: trinary, or raw
+    /// for a grid with values.
     pub fn for_grid(grid: &OccupancyGrid, image: String) -> Self {
         let rule = grid.thresholds().map_or(CellRule::IMAGE, |thresholds| CellRule {
             mode: MapMode::Raw,
@@ -181,7 +182,8 @@ impl RosMap {
         }
     }
 
-    /// The content of a YAML file. Numbers are written so that they are read back bit by bit.
+    /// Writes the content of a YAML file. Numbers are written so that they are read back bit by
+    /// bit.
     pub fn to_yaml(&self) -> String {
         let ImagePlacement { resolution_m, origin: Pose { x, y, theta } } = self.placement;
         let CellRule { mode, negate, occupied_thresh, free_thresh } = self.rule;
@@ -200,7 +202,7 @@ impl RosMap {
     }
 }
 
-/// What is wrong where the parser of YAML stops, in words that say what to change.
+/// Converts an error of the YAML parser to one that tells the user what to change.
 fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
     use serde_saphyr::Error;
     let at = error.location().unwrap_or(Location::UNKNOWN);
@@ -224,7 +226,7 @@ fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
     RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
-/// Something other than a field, or a field with another kind of value.
+/// Error for content that is not a field, or for a field with another type of value.
 fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     if let Some(line) = indented_by_tab(text, line) {
         let reason = "the line begins with a tab, expected spaces or nothing before a field";
@@ -244,8 +246,8 @@ fn unexpected(text: &str, line: u64, column: u64) -> RosMapError {
     RosMapError::Syntax { line, column, reason: reason.to_owned() }
 }
 
-/// The line with a tab in its indentation, if it is the one at which the parser stopped, or one
-/// beside that: the parser blames the field whose value the tab breaks.
+/// The line with a tab in its indentation, if it is the line at which the parser stopped or one
+/// next to it: the parser reports the field whose value the tab breaks.
 fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
     let has_tab = |line: &str| {
         line.chars().take_while(|letter| letter.is_whitespace()).any(|letter| letter == '\t')
@@ -254,8 +256,8 @@ fn indented_by_tab(text: &str, stopped: u64) -> Option<u64> {
     lines.find(|(line, _)| has_tab(line)).map(|(_, number)| number)
 }
 
-/// The first field with something else than a space behind its colon: its name, and where that is.
-/// To YAML it is part of the value before it, so that the parser blames another line, or none.
+/// Name and position of the first field with something other than a space after its colon. For
+/// YAML it is part of the value before it, so the parser reports another line, or none.
 fn without_space(text: &str) -> Option<(&'static str, u64, u64)> {
     let of_line = |(line, number): (&str, u64)| {
         let start = line.trim_start_matches(['\u{feff}', ' ']);
@@ -338,7 +340,7 @@ fn parse_mode(text: &Spanned<String>) -> Result<MapMode, RosMapError> {
     }
 }
 
-/// A YAML scalar; in quotes unless it is plainly a file name.
+/// Writes a YAML scalar, in quotes unless it is a plain file name.
 fn quoted(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
     if text.starts_with(|c: char| c.is_ascii_alphabetic()) && text.chars().all(plain) {
@@ -348,7 +350,7 @@ fn quoted(text: &str) -> String {
     for c in text.chars() {
         match c {
             '"' | '\\' => quoted.extend(['\\', c]),
-            // Line ends would be folded, other control characters are not allowed.
+            // Line ends would be folded, and other control characters are not allowed.
             _ if c.is_control() || "\u{2028}\u{2029}\u{feff}".contains(c) => {
                 quoted.push_str("\\u");
                 for shift in [12, 8, 4, 0] {

@@ -87,7 +87,7 @@ fn missing_fields_of_the_rule_have_their_usual_values() {
     let bare = parse("image: depot.pgm\nresolution: 0.05\norigin: [1.5, -2, 0.25]\n");
     let assumed = vec![NEGATE_FIELD, OCCUPIED_FIELD, FREE_FIELD];
     assert_eq!(bare, Ok(RosMap { assumed, ..depot() }));
-    // They turn raw values into states, too.
+    // They convert raw values to states, too.
     let raw = parse("image: a.pgm\nmode: raw\nnegate: 0\nresolution: 1\norigin: [0, 0, 0]\n");
     assert_eq!(raw.unwrap().assumed, [OCCUPIED_FIELD, FREE_FIELD]);
 }
@@ -110,7 +110,7 @@ fn a_colon_without_a_space_is_named() {
     }
     let text = parse(&DEPOT.replace(": ", ":")).unwrap_err().to_string();
     assert!(text.starts_with("line 1, column 7: YAML needs a space"), "{text}");
-    // A sound file may hold it in a value.
+    // A valid file may contain it in a value.
     assert_eq!(with("image", "image: a:b.pgm").unwrap().image, "a:b.pgm");
 }
 

@@ -1,52 +1,53 @@
-//! From the brightness of a pixel to the state of a cell, as the map server of ROS does.
+//! Conversion of a pixel's brightness to the state of a cell, as in the ROS map server.
 //!
 //! # Source
-//! `nav2_map_server/src/map_io.cpp` of Nav2: the same comparisons, the same rounding.
+//! `nav2_map_server/src/map_io.cpp` of Nav2: the same comparisons and rounding.
 
 use crate::map::{CellState, GridFrame, OccupancyGrid, OccupancyThresholds};
 use serde::{Deserialize, Serialize};
 
-/// How the map server reads the pixels of an image.
+/// Mode in which the map server reads the pixels of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MapMode {
-    /// Two thresholds separate occupied, unknown and free. Where the image has transparency, it
+    /// Two thresholds separate occupied, unknown and free. In an image with transparency, alpha
     /// enters the mean as a fourth colour (opaque counts as bright).
     #[default]
     Trinary,
     /// Like trinary, but between the thresholds the occupancy rises from 0 to 100, which
-    /// [`OccupancyThresholds::default`] turns into states; pixels that are not opaque are unknown.
+    /// [`OccupancyThresholds::default`] converts to states; pixels that are not opaque are
+    /// unknown.
     Scale,
-    /// The grey value itself (0 to 255) is the occupancy in percent, which the thresholds turn into
-    /// states; above 100 it is unknown. Negation does not matter.
+    /// The grey value itself (0 to 255) is the occupancy in percent, which the thresholds convert
+    /// to states; above 100 it is unknown. Negation has no effect.
     Raw,
 }
 
-/// What makes a pixel occupied, free or unknown.
+/// Rule that makes a pixel occupied, free or unknown.
 ///
 /// The occupancy of a pixel is its darkness, 0 (white) to 1 (black), or its brightness when
-/// negated. Occupied is tested first, so that nothing is unknown when the thresholds are the wrong
-/// way round: Nav2 accepts such files, and so does this library, with a [`super::MapWarning`].
+/// negated. Occupied is tested first, so no pixel is unknown if the thresholds are exchanged:
+/// Nav2 accepts such files, and so does this library, with a [`super::MapWarning`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellRule {
-    /// How thresholds and values are used.
+    /// Mode of using thresholds and values.
     pub mode: MapMode,
     /// White is occupied and black free, instead of the reverse.
     pub negate: bool,
-    /// What has more than this occupancy is occupied.
+    /// Pixels with more than this occupancy are occupied.
     pub occupied_thresh: f64,
-    /// What has less than this occupancy is free.
+    /// Pixels with less than this occupancy are free.
     pub free_thresh: f64,
 }
 
 impl CellRule {
-    /// The rule for images that come without a YAML file: trinary, occupied above 0.65, free below
-    /// 0.196. With the 0.25 that newer map savers write, the grey that they all use for unknown
-    /// cells (205 of 255: occupancy 0.19608) would be free.
+    /// The rule for images without a YAML file: trinary, occupied above 0.65, free below 0.196.
+    /// With the 0.25 of newer map savers, the grey that they all use for unknown cells (205 of
+    /// 255: occupancy 0.19608) would be free.
     pub const IMAGE: Self =
         Self { mode: MapMode::Trinary, negate: false, occupied_thresh: 0.65, free_thresh: 0.196 };
 
-    /// 0 to 100, or [`OccupancyGrid::UNKNOWN_VALUE`].
+    /// Value of a pixel: 0 to 100, or [`OccupancyGrid::UNKNOWN_VALUE`].
     pub(super) fn value(&self, pixel: Pixel) -> u8 {
         let shade = pixel.shade(self.mode == MapMode::Trinary);
         let occupancy = if self.negate { shade } else { 1.0 - shade };
@@ -71,7 +72,7 @@ impl CellRule {
         }
     }
 
-    /// The thresholds that turn values into states.
+    /// The thresholds that convert values to states.
     fn thresholds(&self) -> OccupancyThresholds {
         match self.mode {
             MapMode::Raw => OccupancyThresholds::of_file(self.occupied_thresh, self.free_thresh),
@@ -79,7 +80,7 @@ impl CellRule {
         }
     }
 
-    /// The grid of values that [`Self::value`] gave, top row first.
+    /// Builds the grid from the results of [`Self::value`], top row first.
     pub(super) fn grid(&self, frame: GridFrame, top_row_first: &[u8]) -> OccupancyGrid {
         let width = frame.width() as usize;
         if self.mode != MapMode::Trinary {
@@ -96,22 +97,22 @@ impl CellRule {
     }
 }
 
-/// Likely mistakes of an image: pixels of the grey with which map savers draw unknown cells that
-/// are read as free all the same, and a format that does not keep greys.
+/// Likely mistakes of an image: pixels with the grey of unknown cells in map savers that are read
+/// as free, and a format that does not preserve greys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Doubts {
-    /// Because of the threshold.
+    /// Pixels read as free because of the threshold.
     pub(super) by_threshold: u64,
-    /// Because an opaque alpha counts as a bright colour.
+    /// Pixels read as free because an opaque alpha counts as a bright colour.
     pub(super) by_opacity: u64,
     pub(super) is_lossy: bool,
 }
 
-/// Makes cells of pixels, and counts what is usually a mistake.
+/// Converts pixels to cells, and counts likely mistakes.
 pub(super) struct Translator<'a> {
     rule: &'a CellRule,
     pub(super) doubts: Doubts,
-    /// The last pixel whose value is no mistake: most pixels are like the one before.
+    /// The last pixel whose value is no mistake: most pixels equal the one before.
     last: Option<(Pixel, u8)>,
 }
 
@@ -120,7 +121,7 @@ impl<'a> Translator<'a> {
         Self { rule, doubts: Doubts::default(), last: None }
     }
 
-    /// As [`CellRule::value`].
+    /// Like [`CellRule::value`].
     #[inline]
     pub(super) fn value(&mut self, pixel: Pixel) -> u8 {
         match self.last {
@@ -136,7 +137,7 @@ impl<'a> Translator<'a> {
             if trinary.value(Pixel { alpha: None, ..pixel }) == 0 {
                 self.doubts.by_threshold += 1;
             } else if self.rule.mode == MapMode::Trinary {
-                // A scale has no unknown cells between its thresholds.
+                // In scale mode no cells are unknown between the thresholds.
                 self.doubts.by_opacity += 1;
             }
         } else {
@@ -149,11 +150,11 @@ impl<'a> Translator<'a> {
 /// One pixel of any kind of image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pixel {
-    /// Red, green and blue added up; three times the grey of a grey pixel.
+    /// Sum of red, green and blue; three times the grey of a grey pixel.
     pub(super) rgb_sum: u32,
-    /// For images with transparency.
+    /// Alpha, for images with transparency.
     pub(super) alpha: Option<u32>,
-    /// The sample that stands for white, and for opaque.
+    /// The sample value for white, and for opaque.
     pub(super) white: u32,
 }
 
@@ -203,8 +204,8 @@ mod tests {
         );
         // 205 of 255 is the grey of unknown cells; only thresholds below 0.19608 keep it so.
         assert_eq!(values(rule(MapMode::Trinary, 0.65, 0.25), &[205]), [0]);
-        // 1 - 204 / 255 is 0.2 and 1 - 102 / 255 is 0.6, up to rounding: on the threshold is
-        // neither.
+        // 1 - 204 / 255 is 0.2 and 1 - 102 / 255 is 0.6, up to rounding: values on a threshold
+        // are unknown.
         let rule = rule(MapMode::Trinary, 1.0 - 102.0 / 255.0, 1.0 - 204.0 / 255.0);
         assert_eq!(values(rule, &[101, 102, 204, 205]), [100, UNKNOWN, UNKNOWN, 0]);
     }

@@ -1,16 +1,16 @@
 //! Scenarios of the MovingAI benchmarks: `.scen` files with starts, goals and optimal lengths.
 //!
-//! After a line `version 1` (it may be absent) each line holds nine fields, separated by tabs or
-//! spaces: bucket, map, width and height of the map, start x, start y, goal x, goal y, optimal
-//! length. The files count y from the top; here it counts from the bottom, as in all grids. Files
-//! of version 0, whose lines have no map size, cannot be turned that way and are refused.
+//! After an optional line `version 1`, each line holds nine fields, separated by tabs or spaces:
+//! bucket, map, width and height of the map, start x, start y, goal x, goal y, optimal length.
+//! The files count y from the top; here it counts from the bottom, as in all grids. Files of
+//! version 0, whose lines have no map size, cannot be converted that way and are rejected.
 
 use super::text::{TextError, numbered_lines, shown, text_from_bytes};
 use crate::map::{Cell, GridFrame};
 use serde::Serialize;
 use thiserror::Error;
 
-/// Letters of a wrong field that are shown.
+/// Number of characters of a wrong field that are shown.
 const SHOWN: usize = 40;
 
 /// One line of a `.scen` file.
@@ -21,22 +21,22 @@ pub struct Scenario {
     pub line: usize,
     /// Group of similar lengths.
     pub bucket: u32,
-    /// The map's name as written, often with folders that are not there.
+    /// The map's name as written, often with folders that do not exist.
     pub map: String,
     /// Columns of the map that the scenario is for.
     pub width: u32,
     /// Rows of that map.
     pub height: u32,
-    /// Where the path starts.
+    /// Start of the path.
     pub start: Cell,
-    /// Where it ends.
+    /// Goal of the path.
     pub goal: Cell,
-    /// The published length of the best path \[cells\], octile, no corner cut. 0 for two different
-    /// cells means that there is no path.
+    /// The published length of the shortest path \[cells\], octile, without cutting corners. 0
+    /// for two different cells means that no path exists.
     pub optimal_length: f64,
 }
 
-/// What is wrong with a `.scen` file.
+/// Error in a `.scen` file.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ScenarioError {
@@ -48,7 +48,7 @@ pub enum ScenarioError {
     Version {
         /// Line, from 1.
         line: usize,
-        /// What was found there.
+        /// Version found there.
         got: String,
     },
     /// A line with too few or too many fields.
@@ -67,11 +67,11 @@ pub enum ScenarioError {
     Number {
         /// Line, from 1.
         line: usize,
-        /// Which field.
+        /// Name of the field.
         field: &'static str,
-        /// What was found there.
+        /// Text found there.
         got: String,
-        /// What would be right.
+        /// Expected value.
         expected: String,
     },
     /// A scenario for a map of another size (such as a scaled one).
@@ -93,10 +93,10 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// Checks that the scenario is for a map of this size: only then are its cells the right ones.
+    /// Checks that the scenario is for a map of this size: otherwise its cells are wrong.
     ///
     /// # Errors
-    /// When the sizes differ.
+    /// Returns [`ScenarioError`] if the sizes differ.
     pub fn check_map(&self, frame: &GridFrame) -> Result<(), ScenarioError> {
         let &Self { line, width, height, .. } = self;
         let (map_width, map_height) = (frame.width(), frame.height());
@@ -107,10 +107,10 @@ impl Scenario {
     }
 }
 
-/// Reads the content of a `.scen` file, in its order.
+/// Reads the content of a `.scen` file, in the order of its lines.
 ///
 /// # Errors
-/// When a line is not a scenario; the line is named.
+/// Returns [`ScenarioError`] if a line is not a scenario; the error names the line.
 pub fn parse_scenarios(bytes: &[u8]) -> Result<Vec<Scenario>, ScenarioError> {
     let lines = numbered_lines(text_from_bytes(bytes)?);
     let mut lines = lines.filter(|(_, text)| !text.trim_ascii().is_empty()).peekable();
@@ -128,7 +128,7 @@ pub fn parse_scenarios(bytes: &[u8]) -> Result<Vec<Scenario>, ScenarioError> {
 
 fn parse_line(line: usize, text: &str) -> Result<Scenario, ScenarioError> {
     let words: Vec<&str> = text.split_ascii_whitespace().collect();
-    // Names with spaces are found by the tabs around them.
+    // Names with spaces are recognised by the tabs around them.
     let tabbed: Vec<&str> = text.trim_ascii().split('\t').map(str::trim_ascii).collect();
     let fields = if words.len() != 9 && tabbed.len() > 1 { tabbed } else { words };
     let got = fields.len();
@@ -141,7 +141,7 @@ fn parse_line(line: usize, text: &str) -> Result<Scenario, ScenarioError> {
     let cell = |fields: [&'static str; 2], x, y| -> Result<Cell, ScenarioError> {
         let x = row.number(fields[0], x, 0, width - 1)?;
         let y = row.number(fields[1], y, 0, height - 1)?;
-        // From the top to from the bottom.
+        // Converts y from the top to y from the bottom.
         Ok(Cell::new(x as i32, (height - 1 - y) as i32))
     };
     Ok(Scenario {

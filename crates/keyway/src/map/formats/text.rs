@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A file that should be text and is not.
+/// Error of a file that is not UTF-8 text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error(
     "line {line} is not UTF-8 text (byte {column} of the line is {byte:#04x}); save the file as UTF-8"
@@ -17,10 +17,10 @@ pub struct TextError {
     pub byte: u8,
 }
 
-/// The text without a byte order mark.
+/// Decodes text, without a byte order mark.
 ///
 /// # Errors
-/// When the bytes are not UTF-8; the error names the first byte that is not.
+/// Returns [`TextError`] if the bytes are not UTF-8; the error names the first invalid byte.
 pub fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text)),
@@ -35,7 +35,7 @@ pub fn text_from_bytes(bytes: &[u8]) -> Result<&str, TextError> {
     }
 }
 
-/// The beginning of a text, for an error message: in one line, and not too long.
+/// The beginning of a text for an error message: in one line, and shortened.
 pub(crate) fn shown(text: &str, letters: usize) -> String {
     let mut short = String::new();
     for letter in text.chars().take(letters) {
@@ -48,8 +48,8 @@ pub(crate) fn shown(text: &str, letters: usize) -> String {
     if text.chars().nth(letters).is_some() { short + "..." } else { short }
 }
 
-/// Lines with their numbers, from 1, without the ends (LF or CRLF). What ends with a line end has
-/// no further, empty line after that.
+/// Lines with their numbers, from 1, without the line ends (LF or CRLF). A final line end is not
+/// followed by an empty line.
 pub(super) fn numbered_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.strip_suffix('\n')
         .unwrap_or(text)

@@ -1,13 +1,13 @@
-//! Why a cell is blocked.
+//! Reasons why a cell is blocked.
 
 use crate::given::Computed;
 use crate::map::{Cell, Hindrance, SearchMap};
 
-/// Why no path may visit a cell. Where several reasons hold, the first of these is reported.
+/// Reason why no path may visit a cell. If several reasons hold, the first of these is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BlockedBy {
-    /// An obstacle stands in it.
+    /// It is an obstacle cell.
     Obstacle,
     /// It is unknown, and unknown cells are obstacles ([`crate::map::UnknownPolicy::Blocked`]).
     Unknown,
@@ -15,7 +15,7 @@ pub enum BlockedBy {
     Clearance {
         /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         radius_m: f64,
-        /// What is nearest to its centre.
+        /// The obstacle or border nearest to its centre.
         nearest: Hindrance,
     },
     /// It is in the expanded zone of an obstacle.
@@ -30,7 +30,7 @@ pub enum BlockedBy {
     },
 }
 
-/// What is wrong with the cell, after its name: "is inside an obstacle".
+/// The reason as a clause after the cell's name: "is inside an obstacle".
 impl std::fmt::Display for BlockedBy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -54,8 +54,8 @@ impl std::fmt::Display for BlockedBy {
 }
 
 impl SearchMap {
-    /// Why a cell of the map is blocked; `None` for a free one. Cells outside the map count as
-    /// obstacles.
+    /// Reason why a cell of the map is blocked; `None` for a free one. Cells outside the map
+    /// count as obstacles.
     pub fn blocked_by(&self, cell: Cell) -> Option<BlockedBy> {
         if self.is_free(cell) {
             return None;

@@ -1,14 +1,14 @@
-//! Which free cells can be reached from which.
+//! Connected components of the free cells.
 
 use crate::map::{BitGrid, Cell};
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Which neighbours of a cell are joined with it.
+/// Selects the neighbours with which a cell is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Connectivity {
-    /// The four that share a side. Diagonal steps that cut no corner reach nothing more: the cells
-    /// beside such a step are free.
+    /// The four that share a side. Diagonal steps that cut no corner reach no further cells, as
+    /// the cells beside such a step are free.
     Four,
     /// All eight: diagonal steps may pass blocked cells.
     Eight,
@@ -16,31 +16,30 @@ pub enum Connectivity {
 
 /// The connected components of the free cells of a map, numbered from 0 by their first cell in the
 /// order of rows, then columns.
-///
-/// The free cells of each row are kept as runs, each with its component; a cell is looked up by
+/// The free cells of each row are stored as runs, each with its component; a cell is looked up by
 /// binary search in its row. Memory: 8 bytes per run and 4 per row and component.
 ///
 /// Cost of computing them: a few operations per 64 cells and per run (union-find over runs that
 /// touch in neighbouring rows).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Components {
-    /// For each row the number of its first run, and the number of runs.
+    /// Index of the first run of each row, followed by the number of runs.
     first_runs: Vec<u32>,
     runs: Vec<Run>,
-    /// Cells in each component.
+    /// Number of cells in each component.
     sizes: Vec<u32>,
 }
 
-/// Free cells side by side, up to the next blocked one.
+/// A run of adjacent free cells in a row, up to the next blocked one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
     first_column: u32,
-    /// While components are sought: an earlier run of the same component, or its own number.
+    /// During the union-find: an earlier run of the same component, or its own index.
     component: u32,
 }
 
 impl Components {
-    /// Of the cells that are not set in `blocked`, whose padding is set.
+    /// Computes the components of the cells that are not set in `blocked`, whose padding is set.
     pub(in crate::map) fn new(blocked: &BitGrid, connectivity: Connectivity) -> Self {
         let count = (0..blocked.height() as i32).map(|y| run_count(blocked.row(y))).sum();
         let mut first_runs = Vec::with_capacity(blocked.height() as usize + 1);
@@ -72,7 +71,7 @@ impl Components {
         &self.sizes
     }
 
-    /// The component with the most cells (ties: the first); `None` when no cell is free.
+    /// The component with the most cells (ties: the first); `None` if no cell is free.
     pub fn largest(&self) -> Option<u32> {
         let by_size = |&i: &usize| (self.sizes[i], std::cmp::Reverse(i));
         (0..self.sizes.len()).max_by_key(by_size).map(|i| i as u32)
@@ -85,7 +84,7 @@ impl Components {
     }
 
     /// The cell of a component whose centre is nearest to that of `to`, a cell of the map (ties:
-    /// lower row, then lower column); `None` when there is no such component. Costs a few
+    /// lower row, then lower column); `None` if the component does not exist. Costs a few
     /// operations for each run that is nearer.
     pub(in crate::map) fn nearest(
         &self,
@@ -108,7 +107,7 @@ impl Components {
         nearest.best.map(|(_, y, x)| Cell::new(x, y))
     }
 
-    /// Offers the nearest cell of the component on either side, if it may be the nearest.
+    /// Updates `nearest` with the component's nearest cell on either side in row `y`.
     fn nearest_in_row(&self, blocked: &BitGrid, component: u32, y: i32, nearest: &mut Nearest) {
         let (row, x) = (self.row(y), nearest.to.x);
         let (left, right) = row.split_at(row.partition_point(|run| run.first_column <= x as u32));
@@ -178,7 +177,7 @@ fn first_bits(row: &[u64], word: usize) -> u64 {
     !row[word] & !(!row[word] << 1 | carry)
 }
 
-/// The same for the neighbour one bit higher.
+/// Like [`first_bits`], for the neighbour one bit higher.
 fn last_bits(row: &[u64], word: usize) -> u64 {
     let carry = row.get(word + 1).map_or(0, |next| !next << 63);
     !row[word] & !(!row[word] >> 1 | carry)
@@ -236,13 +235,13 @@ fn join_rows(
     }
 }
 
-/// Makes two runs one component: the earlier root becomes that of both.
+/// Merges the components of two runs: the earlier root becomes the root of both.
 fn join(runs: &mut [Run], a: u32, b: u32) {
     let (a, b) = (root(runs, a), root(runs, b));
     runs[a.max(b) as usize].component = a.min(b);
 }
 
-/// The first run of a component as known so far; shortens the way for the next time.
+/// Root of a run's component, the first run known so far; compresses the path.
 fn root(runs: &mut [Run], mut run: u32) -> u32 {
     loop {
         let parent = runs[run as usize].component;
@@ -254,7 +253,7 @@ fn root(runs: &mut [Run], mut run: u32) -> u32 {
     }
 }
 
-/// Replaces roots by numbers of components, and counts the cells of each.
+/// Replaces roots by component numbers, and counts the cells of each.
 fn number_components(runs: &mut [Run], last_columns: &[u32]) -> Vec<u32> {
     let mut sizes = Vec::new();
     for i in 0..runs.len() {
@@ -272,8 +271,8 @@ fn number_components(runs: &mut [Run], last_columns: &[u32]) -> Vec<u32> {
     sizes
 }
 
-/// The components of a map's free cells, each kind computed when it is first asked for. Equality
-/// ignores what can be computed again.
+/// The components of a map's free cells, each connectivity computed on first use. Equality
+/// ignores this cache.
 #[derive(Clone, Debug, Default)]
 pub(in crate::map) struct LazyComponents {
     four: OnceLock<Components>,
@@ -289,7 +288,7 @@ impl LazyComponents {
         known.get_or_init(|| Components::new(blocked, connectivity))
     }
 
-    /// To be called when a blocked cell has changed.
+    /// Discards the components; to be called after a blocked cell has changed.
     pub(in crate::map) fn forget(&mut self) {
         *self = Self::default();
     }

@@ -9,7 +9,7 @@ fn map(rows: &[&str]) -> SearchMap {
     SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
 }
 
-/// Numbers of components by flood fill, cell after cell; `None` for blocked cells.
+/// Component numbers from a flood fill, cell by cell; `None` for blocked cells.
 fn flooded(map: &SearchMap, connectivity: Connectivity) -> Vec<Option<u32>> {
     let width = map.frame().width() as i32;
     let index = |cell: Cell| (cell.y * width + cell.x) as usize;

@@ -1,4 +1,4 @@
-//! How the layers of a search follow from a map.
+//! Configuration of the layers that a search derives from a map.
 
 use crate::ConfigError;
 use crate::map::GridFrame;
@@ -6,40 +6,40 @@ use crate::map::layers::dilation::{BlockedNeighbourhood, check_reach};
 use crate::map::layers::published::PublishedConstraints;
 use serde::{Deserialize, Serialize};
 
-/// What a search makes of unknown cells.
+/// Treatment of unknown cells by a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum UnknownPolicy {
-    /// They are obstacles.
+    /// Unknown cells are obstacles.
     #[default]
     Blocked,
-    /// They are free.
+    /// Unknown cells are free.
     Free,
-    /// They may be crossed, but each step into one costs [`LayerConfig::unknown_penalty`] times
-    /// as much.
+    /// Unknown cells may be crossed, but each step into one costs
+    /// [`LayerConfig::unknown_penalty`] times as much.
     Penalised,
 }
 
-/// How the blocked cells of a [`crate::map::SearchMap`] follow from an
+/// Rules that derive the blocked cells of a [`crate::map::SearchMap`] from a
 /// [`crate::map::OccupancyGrid`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct LayerConfig {
-    /// What unknown cells are.
+    /// Treatment of unknown cells.
     pub unknown: UnknownPolicy,
-    /// How many times the usual cost a step into a penalised unknown cell has.
+    /// Cost factor of a step into a penalised unknown cell.
     pub unknown_penalty: u32,
-    /// Radius of the robot, or any clearance asked for: a cell is free only when its centre keeps
-    /// this distance from every obstacle square, and when a disc of this radius does not leave the
-    /// map.
+    /// Radius of the robot, or any required clearance \[m\]: a cell is free only if its centre
+    /// keeps this distance from every obstacle square, and if a disc of this radius around it
+    /// does not leave the map.
     pub clearance_m: f64,
     /// Radius of the discs around start and goal in which clearance, expansion and constraint are
     /// lifted (never obstacles) \[m\]; 0 for none.
     pub free_ends_m: f64,
-    /// Constraints of papers beside the clearance.
+    /// Constraints from papers, in addition to the clearance.
     pub published: PublishedConstraints,
 }
 
@@ -64,18 +64,18 @@ pub(in crate::map) struct Neighbourhoods {
 }
 
 impl Neighbourhoods {
-    /// What is blocked for any of the reasons.
+    /// The cells blocked for any of the reasons.
     pub(in crate::map) fn union(&self) -> BlockedNeighbourhood {
         self.clearance.clone().union(&self.expansion).union(&self.constraint)
     }
 }
 
 impl LayerConfig {
-    /// Searches add up steps in numbers of 64 bits, of which one diagonal step takes 27, and add
-    /// two such sums.
+    /// Largest number of cells times penalty. Searches sum steps in 64-bit numbers, of which one
+    /// diagonal step takes 27 bits, and add two such sums.
     const MAX_PENALISED_CELLS: u64 = 1 << 36;
 
-    /// On a map of this size.
+    /// The neighbourhoods on a map of this size.
     pub(in crate::map) fn neighbourhoods(
         &self,
         frame: &GridFrame,
@@ -98,8 +98,8 @@ impl LayerConfig {
         })
     }
 
-    /// Refuses a penalty with which the cost of a way over all cells would not fit into a search's
-    /// keys.
+    /// Rejects a penalty with which the cost of a path over all cells would not fit into a
+    /// search's keys.
     pub(in crate::map) fn check_penalty(&self, cells: u64) -> Result<(), ConfigError> {
         let penalty = u64::from(self.unknown_penalty);
         if self.unknown != UnknownPolicy::Penalised

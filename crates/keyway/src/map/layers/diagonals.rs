@@ -1,27 +1,27 @@
-//! The cells of diagonals at which a search has something to do.
+//! The cells on diagonals at which a search has an event.
 
 use super::stops::StopBitmaps;
 use crate::map::{BitGrid, Cell};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// For each of the four diagonal directions the cells at which anything happens to a search that
-/// walks that way: a scan along their row or their column ends at a jump point, or the step onward
-/// is not free. A diagonal is passed from one of them to the next, 64 cells at a time.
+/// Events of diagonal scans, for each of the four diagonal directions: the cells at which a scan
+/// along their row or column ends at a jump point, or at which the diagonal step onward is not
+/// free. A search goes from one event to the next, 64 cells at a time.
 ///
-/// Diagonals are rows here. A cell whose bit in the padded map is in column X and row Y is bit X of
-/// row (X - Y) mod P where diagonals rise to the east, and of row (X + Y) mod P where they fall; P
-/// is the number of padded rows. So every cell is there once; a diagonal that leaves the map meets
-/// the padding, whose bits are set. Memory: four bits per cell.
+/// Diagonals are stored as rows. A cell whose bit in the padded map is in column X and row Y is
+/// bit X of row (X - Y) mod P for diagonals that rise to the east, and of row (X + Y) mod P for
+/// those that fall; P is the number of padded rows. So every cell is stored once; a diagonal that
+/// leaves the map meets the padding, whose bits are set. Memory: four bits per cell.
 #[derive(Clone, Debug)]
 pub(crate) struct DiagonalEvents {
-    /// By (to the east, to the north): see [`Self::words`].
+    /// Indexed by (to the east, to the north): see [`Self::words`].
     directions: [Vec<u64>; 4],
     /// Padded rows of the map.
     rows: usize,
     /// Bits from one row to the next.
     stride: usize,
-    /// The share of free cells with an event.
+    /// Share of free cells with an event.
     share: f64,
 }
 
@@ -56,18 +56,18 @@ impl DiagonalEvents {
         Self { directions, rows, stride: blocked.stride(), share }
     }
 
-    /// The events of a direction.
+    /// Events of a direction.
     #[inline]
     pub(crate) const fn words<const TO_EAST: bool, const TO_NORTH: bool>(&self) -> &[u64] {
         self.directions[2 * TO_EAST as usize + TO_NORTH as usize].as_slice()
     }
 
-    /// The bit of a cell among them.
+    /// Index of a cell's bit among them.
     #[inline]
     pub(crate) const fn bit<const TO_EAST: bool, const TO_NORTH: bool>(&self, cell: Cell) -> usize {
         let (x, y) = ((cell.x + 1) as usize, (cell.y + 1) as usize);
         let mut row = if TO_EAST == TO_NORTH { x + self.rows - y } else { x + y };
-        // Divisions are slow, and maps are seldom many times as wide as they are high.
+        // Avoids divisions, which are slow; maps are seldom many times as wide as they are high.
         if row >= self.rows {
             row -= self.rows;
             if row >= self.rows {
@@ -84,7 +84,7 @@ impl DiagonalEvents {
 }
 
 impl Plane {
-    /// The events of a direction, by the jump points along rows and columns.
+    /// Events of a direction, from the jump points along rows and columns.
     fn of(
         row_jumps: &BitGrid,
         column_jumps: &BitGrid,
@@ -95,7 +95,8 @@ impl Plane {
         let height = cramped.height() as i32;
         let mut words = Vec::with_capacity(words_per_row * (height as usize + 2));
         for y in -1..=height {
-            // The 2 x 2 cells that a step needs, by the western and southern one.
+            // Row of the 2 x 2 cells that a step needs, which are indexed by their south-western
+            // one.
             let block = if to_north { y } else { y - 1 };
             if block < -1 {
                 words.extend((0..words_per_row).map(|_| u64::MAX));
@@ -114,13 +115,13 @@ impl Plane {
         Self { words, words_per_row }
     }
 
-    /// Set bits at cells that are not blocked.
+    /// Number of set bits at cells that are not blocked.
     fn count_outside(&self, blocked: &BitGrid) -> u64 {
         let pairs = self.words.iter().zip(blocked.words());
         pairs.map(|(own, blocked)| u64::from((own & !blocked).count_ones())).sum()
     }
 
-    /// The same with diagonals as rows: those that rise to the east, or those that fall.
+    /// Events with diagonals as rows: those that rise to the east, or those that fall.
     fn sheared(&self, rises: bool) -> Vec<u64> {
         let rows = self.words.len() / self.words_per_row;
         let mut sheared = vec![0; self.words.len()];
@@ -129,7 +130,7 @@ impl Plane {
             for (y, own) in strip.iter_mut().enumerate() {
                 *own = self.words[y * self.words_per_row + word];
             }
-            // Column i of the strip moves by i rows: by powers of two.
+            // Column i of the strip moves by i rows, in powers of two.
             for (power, moves) in COLUMNS.into_iter().enumerate() {
                 let by = (1 << power) % rows;
                 let by = if rises { by } else { (rows - by) % rows };
@@ -151,14 +152,14 @@ impl Plane {
     }
 }
 
-/// Some bits of one, the others of the other.
+/// Combines two columns of words: bits in `moves` from `comes`, the others from `stays`.
 fn merge(own: &mut [u64], stays: &[u64], comes: &[u64], moves: u64) {
     for (own, (stays, comes)) in own.iter_mut().zip(stays.iter().zip(comes)) {
         *own = stays & !moves | comes & moves;
     }
 }
 
-/// The columns of 64 whose numbers have a binary digit.
+/// Masks of the columns of a word whose index has the n-th binary digit set.
 const COLUMNS: [u64; 6] = [
     0xaaaa_aaaa_aaaa_aaaa,
     0xcccc_cccc_cccc_cccc,
@@ -168,12 +169,12 @@ const COLUMNS: [u64; 6] = [
     0xffff_ffff_0000_0000,
 ];
 
-/// The cells from which a scan towards higher bits ends at a jump point, and not at a blocked cell.
+/// Cells from which a scan towards higher bits ends at a jump point, not at a blocked cell.
 fn jumps_upwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
     let mut jumps = blocked.clone();
     for y in 0..stops.height() as i32 {
         let (stops, blocked) = (stops.row(y), blocked.row(y));
-        // True if a scan from the last bit of a word meets one.
+        // True if a scan from the last bit of a word meets a jump point.
         let mut beyond = 0;
         for word in (0..stops.len()).rev() {
             let jump = stops[word] & !blocked[word];
@@ -189,7 +190,7 @@ fn jumps_upwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
     jumps
 }
 
-/// The same towards lower bits.
+/// Like [`jumps_upwards`], towards lower bits.
 fn jumps_downwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
     let mut jumps = blocked.clone();
     for y in 0..stops.height() as i32 {
@@ -209,22 +210,23 @@ fn jumps_downwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
     jumps
 }
 
-/// The events of a map, computed when searches have done so much on it that they pay: a map that
-/// changes all the time, or is asked once, does without.
+/// Events of a map, computed once searches have walked enough on it for them to pay: a map that
+/// changes all the time, or is searched once, does without.
 #[derive(Debug, Default)]
 pub(in crate::map) struct LazyDiagonals {
-    /// Cells of diagonals that searches have walked since the last change.
+    /// Number of cells on diagonals that searches have walked since the last change.
     walked: AtomicU64,
     known: OnceLock<Option<DiagonalEvents>>,
 }
 
 impl LazyDiagonals {
-    /// The largest share of free cells with an event at which they are of use to a jump point
-    /// search. Measured: at 0.4 (a maze with corridors of four cells) it takes a tenth fewer
-    /// instructions, at 0.9 (clutter) as many more.
+    /// Largest share of free cells with an event at which the events help a jump point search.
+    /// Measured: at 0.4 (a maze with corridors of four cells) it takes a tenth fewer
+    /// instructions, at 0.9 (clutter) a tenth more.
     const MOST: f64 = 0.5;
 
-    /// To compute them costs about as much as to walk so many cells for each 64 of the map.
+    /// Computing the events costs about as much as walking this many cells for each 64 of the
+    /// map.
     const CELLS_PER_WORD: u64 = 6;
 
     /// The events, once they pay.
@@ -246,12 +248,12 @@ impl LazyDiagonals {
         self.known.get_or_init(new).as_ref()
     }
 
-    /// Notes that a search has walked so many cells.
+    /// Records the number of cells that a search has walked.
     pub(in crate::map) fn note(&self, cells: u64) {
         self.walked.fetch_add(cells, Ordering::Relaxed);
     }
 
-    /// To be called when a blocked cell has changed.
+    /// Discards the events; to be called after a blocked cell has changed.
     pub(in crate::map) fn forget(&mut self) {
         *self = Self::default();
     }
@@ -306,7 +308,7 @@ mod tests {
             || ends_at_jump(map, at, (0, dy))
     }
 
-    /// The next event of a free cell, both ways, found cell by cell and by bits.
+    /// Compares the next event of a free cell found cell by cell with that found by bits.
     fn check<const TO_EAST: bool, const TO_NORTH: bool>(
         map: &SearchMap,
         events: &DiagonalEvents,
@@ -351,7 +353,8 @@ mod tests {
         }
     }
 
-    /// They come once searches have done enough, and go with the first change.
+    /// The events are computed once searches have walked enough, and discarded at the first
+    /// change.
     #[test]
     fn they_come_when_they_pay() {
         let mut map = SearchMap::new(

@@ -1,16 +1,16 @@
-//! Which cells around an obstacle cell are blocked because of it.
+//! The cells around an obstacle cell that it blocks.
 
 use crate::ConfigError;
 use crate::map::{BitGrid, Cell};
 
-/// A comparison of a clearance with a distance tolerates this share of the clearance: both are sums
-/// and products of decimal fractions, and 0.225 m must equal 4.5 cells of 0.05 m.
+/// Relative tolerance for comparing a clearance with a distance: both are sums and products of
+/// decimal fractions, and 0.225 m must equal 4.5 cells of 0.05 m.
 pub(crate) const CLEARANCE_TOLERANCE: f64 = 1e-9;
 
-/// No wider neighbourhood than this may be asked for around an obstacle \[cells\].
+/// Largest allowed reach of a neighbourhood around an obstacle \[cells\].
 const MAX_REACH_CELLS: f64 = 100_000.0;
 
-/// Refuses the value of a field that gives a neighbourhood a reach that none can have.
+/// Rejects a field's value if its neighbourhood exceeds the largest allowed reach.
 pub(in crate::map) fn check_reach(
     field: &str,
     reach_cells: f64,
@@ -23,8 +23,8 @@ pub(in crate::map) fn check_reach(
     Err(ConfigError::must_be(field, expected, value))
 }
 
-/// The neighbourhood of an obstacle cell that it blocks: symmetric in both axes and in their
-/// exchange, and without gaps in a row.
+/// The neighbourhood of cells that an obstacle cell blocks: symmetric in both axes and under
+/// their exchange, and without gaps in a row.
 ///
 /// `half_widths[k]` is the largest |dx| that is blocked in the rows k above and k below.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) struct BlockedNeighbourhood {
 
 impl BlockedNeighbourhood {
     /// Cells whose offset (dx, dy >= 0) satisfies `blocked`, which must shrink monotonically in
-    /// |dx| and |dy|, and the obstacle cell itself; none that are farther than `side` columns or rows.
+    /// |dx| and |dy|, and the obstacle cell itself; at most `side` columns and rows away.
     fn new(side: i32, blocked: impl Fn(i32, i32) -> bool) -> Self {
         let mut half_widths = Vec::new();
         let mut half_width = side;
@@ -73,7 +73,7 @@ impl BlockedNeighbourhood {
         Self::new(side, |dx, dy| f64::from(dx + dy) < limit)
     }
 
-    /// What either neighbourhood blocks.
+    /// Cells that either neighbourhood blocks.
     #[must_use]
     pub(crate) fn union(mut self, other: &Self) -> Self {
         for (i, &width) in other.half_widths.iter().enumerate() {
@@ -85,12 +85,12 @@ impl BlockedNeighbourhood {
         self
     }
 
-    /// Rows (and columns) that it reaches to either side.
+    /// Number of rows (and columns) that it reaches to either side.
     pub(crate) fn reach(&self) -> i32 {
         self.half_widths.len() as i32 - 1
     }
 
-    /// Row offsets with the half width of each.
+    /// Row offsets, each with its half width.
     fn rows(&self) -> impl Iterator<Item = (i32, i32)> + '_ {
         let reach = self.reach();
         (-reach..=reach).map(|dy| (dy, self.half_widths[dy.unsigned_abs() as usize]))
@@ -102,7 +102,7 @@ impl BlockedNeighbourhood {
         let (height, reach) = (obstacles.height() as i32, self.reach());
         let mut wide = vec![0; obstacles.row(0).len()];
         let mut scratch = wide.clone();
-        // Rows of the target without a free cell, to which nothing can be added.
+        // Rows of the target without a free cell, in which nothing changes.
         let mut is_full = vec![false; height as usize];
         for y in 0..height {
             wide.copy_from_slice(obstacles.row(y));
@@ -110,7 +110,8 @@ impl BlockedNeighbourhood {
             if wide.iter().all(|&word| word == 0) || rows.iter().all(|&is_full| is_full) {
                 continue;
             }
-            // Farthest rows first: their spans are the narrowest, and each is widened to the next.
+            // Farthest rows first: their spans are the narrowest, and each is widened to the
+            // next.
             let mut width = 0;
             for dy in (0..=reach).rev() {
                 let half = self.half_widths[dy as usize];
@@ -133,7 +134,7 @@ impl BlockedNeighbourhood {
         }
     }
 
-    /// The farthest reach for which [`Self::word`] sees all that blocks.
+    /// Largest reach for which [`Self::word`] reads all obstacles that block.
     pub(crate) const MOST_WORD_REACH: i32 = 63;
 
     /// The bits of a word of row `y` that some obstacle blocks: column x is bit x + 1 of the row.
@@ -169,14 +170,14 @@ impl BlockedNeighbourhood {
         wide[1]
     }
 
-    /// True when some obstacle blocks `cell`.
+    /// True if some obstacle blocks `cell`.
     pub(crate) fn is_blocked(&self, cell: Cell, obstacles: &BitGrid) -> bool {
         self.rows()
             .any(|(dy, half)| obstacles.any_in_span(cell.y + dy, cell.x - half, cell.x + half))
     }
 }
 
-/// From this reach on rows may well become full, so that it pays to look \[cells\].
+/// Reach from which on rows often become full, so that a check pays off \[cells\].
 const WIDE_REACH: i32 = 64;
 
 fn is_all_set(words: &[u64]) -> bool {
@@ -198,7 +199,7 @@ fn widen(words: &mut [u64], by: i32, scratch: &mut [u64]) {
 /// ORs `source` into `target`, shifted by `shift` places both ways.
 fn or_shifted(target: &mut [u64], source: &[u64], shift: usize) {
     let (whole, bits) = (shift / 64, shift % 64);
-    // The upper part of a word moves on to the next one; two shifts, as one by 64 is not defined.
+    // The upper part of a word moves on to the next one; two shifts, as one by 64 is undefined.
     let carried = |word: u64| word >> 1 >> (63 - bits);
     let carried_down = |word: u64| word << 1 << (63 - bits);
     for (i, &word) in source.iter().enumerate() {
@@ -242,7 +243,7 @@ mod tests {
         assert_eq!(both.half_widths, [3, 2, 1, 0]);
     }
 
-    /// What is farther away than the map is wide is no cell of it.
+    /// A neighbourhood contains no cells farther away than the map is wide.
     #[test]
     fn no_larger_than_the_map() {
         let whole = BlockedNeighbourhood { half_widths: vec![32; 33] };

@@ -3,8 +3,8 @@
 use crate::map::{Cell, CellWindow};
 use arrayvec::ArrayVec;
 
-/// The windows that hold all edited cells. There are few of them, so that what follows from the
-/// cells of each is computed once and not for every edit; and they are kept small.
+/// The windows that contain all edited cells. There are few of them, so that data derived from
+/// the cells of each are computed once and not for every edit, and they are kept small.
 #[derive(Debug, Default)]
 pub(super) struct EditedWindows {
     windows: ArrayVec<EditedWindow, { Self::MOST }>,
@@ -14,17 +14,17 @@ pub(super) struct EditedWindows {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EditedWindow {
     pub(super) window: CellWindow,
-    /// An obstacle has gone from it.
+    /// True if an obstacle was removed from it.
     pub(super) is_cleared: bool,
 }
 
 impl EditedWindows {
     const MOST: usize = 24;
 
-    /// A window may become larger by so many cells rather than that there is another one.
+    /// Number of cells by which a window may grow to avoid another one.
     const CELLS: i64 = 64 * 64;
 
-    /// Notes a cell that has changed.
+    /// Records a cell that has changed.
     pub(super) fn note(&mut self, cell: Cell, is_cleared: bool) {
         let own = EditedWindow { window: CellWindow { low: cell, high: cell }, is_cleared };
         let grown =

@@ -1,26 +1,25 @@
-//! A number that tells one set of blocked cells from another.
+//! Hash that distinguishes sets of blocked cells.
 
 use crate::map::BitGrid;
 use std::sync::OnceLock;
 
-/// 64 bits over the size and the bits of a grid: the same on every platform; two grids that differ
-/// in one word never share it; others do with a chance of 1 in 2^64. Not made to withstand
-/// forgery. Costs about a nanosecond per 64 cells.
+/// 64-bit hash of the size and the bits of a grid, the same on every platform. Two grids that
+/// differ in one word never share it; others do with a probability of 1 in 2^64. Not designed to
+/// withstand forgery. Costs about a nanosecond per 64 cells.
 pub(in crate::map) fn fingerprint(grid: &BitGrid) -> u64 {
     let size = u64::from(grid.width()) << 32 | u64::from(grid.height());
     let words = std::iter::once(&size).chain(grid.words());
     words.fold(0x9e37_79b9_7f4a_7c15, |hash, &word| mix(hash, word))
 }
 
-/// Takes a word into a hash: one-to-one in both, so that changing one word changes the hash.
+/// Mixes a word into a hash: one-to-one in both, so that changing one word changes the hash.
 pub(crate) const fn mix(hash: u64, word: u64) -> u64 {
-    // An odd factor, and a shift that can be undone.
+    // An odd factor, and an invertible shift.
     let mixed = (hash ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd);
     mixed ^ mixed >> 32
 }
 
-/// A fingerprint that is computed when it is first asked for. Equality of grids does not depend on
-/// whether it was.
+/// A fingerprint computed on first use. Equality of grids does not depend on this cache.
 #[derive(Clone, Debug, Default)]
 pub(in crate::map) struct LazyFingerprint(OnceLock<u64>);
 
@@ -29,7 +28,7 @@ impl LazyFingerprint {
         *self.0.get_or_init(|| fingerprint(grid))
     }
 
-    /// To be called whenever a bit of the grid changes.
+    /// Discards the fingerprint; to be called whenever a bit of the grid changes.
     pub(in crate::map) fn forget(&mut self) {
         self.0.take();
     }
@@ -72,7 +71,7 @@ mod tests {
         assert_ne!(map.fingerprint(), before);
         map.apply(&[Edit { cell, state: CellState::Free }]);
         assert_eq!(map.fingerprint(), before);
-        // Whether it has been computed makes no difference between maps.
+        // The state of the cache makes no difference between maps.
         assert_eq!(map.clone(), {
             let mut fresh = SearchMap::new(&grid, LayerConfig::default()).unwrap();
             fresh.apply(&[Edit { cell, state: CellState::Occupied }]);

@@ -11,7 +11,7 @@ pub(in crate::map) struct FreeEnds {
 }
 
 impl FreeEnds {
-    /// No ends so far.
+    /// Creates an empty set of ends.
     pub(in crate::map) const fn new(radius_cells: f64) -> Self {
         Self { ends: Vec::new(), radius_cells }
     }
@@ -34,17 +34,17 @@ impl FreeEnds {
         })
     }
 
-    /// Other ends in their place; those before.
+    /// Replaces the ends; returns the previous ones.
     pub(in crate::map) fn replace(&mut self, ends: Vec<Cell>) -> Vec<Cell> {
         std::mem::replace(&mut self.ends, ends)
     }
 
-    /// The cells in the middle of the discs.
+    /// The cells at the centres of the discs.
     pub(in crate::map) fn ends(&self) -> &[Cell] {
         &self.ends
     }
 
-    /// Columns and rows to which a disc reaches.
+    /// Number of columns and rows that a disc covers to each side.
     pub(in crate::map) fn reach(&self) -> i32 {
         self.radius_cells.ceil() as i32
     }
@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(drawing(&map), expanded);
         map.free_ends(&[Cell::new(1, 2), Cell::new(9, 9)]);
         assert_eq!(drawing(&map), [".....", "..##.", "..##.", "..##.", "....."]);
-        // Another end takes its place.
+        // Another end replaces it.
         map.free_ends(&[Cell::new(3, 3)]);
         assert_eq!(drawing(&map), [".....", ".#...", ".##..", ".###.", "....."]);
         assert_eq!(map.revision(), 2);
@@ -138,7 +138,7 @@ mod tests {
             prop_assert_eq!(map.blocked_transposed(), rebuilt.blocked_transposed());
             prop_assert_eq!(map.stops(), rebuilt.stops());
             prop_assert_eq!(map.fingerprint(), rebuilt.fingerprint());
-            // And that is what the rule says, cell by cell.
+            // The result also follows the rule, cell by cell.
             for cell in frame.cells() {
                 let in_disc = config.free_ends_m > 0.0 && ends.iter().any(|end| {
                     f64::from(end.x - cell.x).hypot(f64::from(end.y - cell.y)) * 0.1

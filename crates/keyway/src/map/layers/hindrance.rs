@@ -1,11 +1,11 @@
-//! What a footprint would touch first.
+//! The obstacle or border that is nearest to a position.
 
 use crate::geometry::Point;
 use crate::map::{Clearance, SearchMap, UnknownPolicy};
 use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Formatter, Result};
 
-/// What is nearest to a position, of all that a footprint may not touch.
+/// The nearest obstacle, unknown cell or border that a footprint may not touch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Hindrance {
@@ -28,7 +28,7 @@ pub enum Hindrance {
     },
 }
 
-/// A clause of its own: "an obstacle is 0.125 m away".
+/// A clause of its own, such as "an obstacle is 0.125 m away".
 impl Display for Hindrance {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
@@ -52,14 +52,14 @@ impl Display for Hindrance {
     }
 }
 
-/// To whole millimetres, so that a length that is too short does not read like the one asked for;
-/// less than a nanometre above is taken for rounding.
+/// Rounds down to whole millimetres, so that a length that is too short does not read like the
+/// required one. Less than a nanometre below a whole millimetre counts as rounding.
 pub(in crate::map) fn rounded_down(length_m: f64) -> f64 {
     (length_m * 1e3 + 1e-6).floor() / 1e3
 }
 
 impl SearchMap {
-    /// What keeps a footprint of some size from a position: the nearest of obstacles and border.
+    /// The nearest obstacle or border, which limits the size of a footprint at a position.
     pub fn hindrance(&self, position: Point) -> Hindrance {
         let frame = self.frame();
         if frame.cell_from_world(position).is_none() {

@@ -1,4 +1,5 @@
-//! What a search sees of a map: which cells are blocked, what may be reached, and why not.
+//! The layers that a search reads: blocked cells, connected components, and reasons for
+//! unreachable goals.
 
 mod blocked_by;
 mod components;

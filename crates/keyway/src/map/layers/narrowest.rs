@@ -1,22 +1,22 @@
-//! The narrowest place of the widest way between two cells.
+//! The bottleneck of the widest path between two cells.
 
 use crate::map::{Cell, Connectivity};
 use std::collections::VecDeque;
 
-/// Rooms of all cells, row by row; those with less than `least` are blocked, and those with exactly
-/// so much are narrow.
+/// Rooms of all cells, row by row. Cells with a room below `least` are blocked, and those with
+/// exactly `least` are narrow.
 pub(super) struct Rooms<'a> {
     pub(super) of_cells: &'a [u32],
     pub(super) width: usize,
     pub(super) least: u32,
 }
 
-/// No cell was before this one.
+/// Marks cells without a predecessor.
 const NOBODY: usize = usize::MAX;
 
 impl Rooms<'_> {
-    /// The first and the last cell of the first narrow place, on a way from the start that has as
-    /// few narrow cells as any. The two are joined.
+    /// First and last cell of the first bottleneck on a path from the start with the fewest
+    /// narrow cells. The two ends must be connected.
     pub(super) fn narrowest(&self, ends: [Cell; 2], connectivity: Connectivity) -> [Cell; 2] {
         let [start, goal] = ends.map(|cell| cell.y as usize * self.width + cell.x as usize);
         let before = self.fewest_narrow(start, connectivity);
@@ -34,7 +34,7 @@ impl Rooms<'_> {
             .map(|at| Cell::new((at % self.width) as i32, (at / self.width) as i32))
     }
 
-    /// For each cell the one before it on a way with the fewest narrow cells.
+    /// Predecessor of each cell on a path with the fewest narrow cells.
     fn fewest_narrow(&self, start: usize, connectivity: Connectivity) -> Vec<usize> {
         let mut before = vec![NOBODY; self.of_cells.len()];
         let mut narrow = vec![u32::MAX; self.of_cells.len()];

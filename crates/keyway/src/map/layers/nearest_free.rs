@@ -1,11 +1,12 @@
-//! Free cells near a place.
+//! Free cells near a given cell.
 
 use crate::map::{Cell, Connectivity, SearchMap};
 
 impl SearchMap {
     /// The free cell whose centre is nearest to `cell`'s centre (ties: lower row, then lower
-    /// column), or for a cell outside the map to the nearest cell of the map; `None` when every
-    /// cell is blocked. Costs as many cells as lie within the distance.
+    /// column); a cell outside the map is replaced by the nearest cell of the map. `None` if
+    /// every cell is blocked. The cost is proportional to the number of cells within the
+    /// distance.
     pub fn nearest_free(&self, cell: Cell) -> Option<Cell> {
         let (width, height) = (self.frame().width() as i32, self.frame().height() as i32);
         let cell = self.clamped(cell);
@@ -47,9 +48,9 @@ impl SearchMap {
         self.is_free(cell).then(|| self.components(connectivity).of_free(cell))
     }
 
-    /// The cell that can be reached from `from` whose centre is nearest to `to`'s centre (ties:
-    /// lower row, then lower column), or for a cell `to` outside the map to the nearest cell of the
-    /// map; `None` when `from` is blocked. Costs a few operations for each run of free cells within
+    /// The cell reachable from `from` whose centre is nearest to `to`'s centre (ties: lower row,
+    /// then lower column); a cell `to` outside the map is replaced by the nearest cell of the
+    /// map. `None` if `from` is blocked. Costs a few operations for each run of free cells within
     /// the distance.
     pub fn nearest_connected(
         &self,
@@ -61,7 +62,7 @@ impl SearchMap {
         self.nearest_of_component(component, to, connectivity)
     }
 
-    /// Like [`Self::nearest_connected`], for a component given by its number; `None` when no
+    /// Like [`Self::nearest_connected`], for a component given by its number; `None` if no
     /// component has that number.
     pub fn nearest_of_component(
         &self,
@@ -73,7 +74,7 @@ impl SearchMap {
         self.components(connectivity).nearest(self.blocked(), component, to)
     }
 
-    /// The nearest cell of the map.
+    /// The cell of the map that is nearest to a cell.
     fn clamped(&self, cell: Cell) -> Cell {
         let (width, height) = (self.frame().width() as i32, self.frame().height() as i32);
         Cell::new(cell.x.clamp(0, width - 1), cell.y.clamp(0, height - 1))

@@ -1,4 +1,4 @@
-//! What a search sees.
+//! The map layers that a search reads.
 
 use crate::ConfigError;
 use crate::map::cell_index::Numbering;
@@ -16,22 +16,22 @@ use crate::map::{
 };
 use std::sync::Arc;
 
-/// The layers of a map that a search reads: obstacle cells, unknown cells, blocked cells (row by
+/// The map layers that a search reads: obstacle cells, unknown cells, and blocked cells (row by
 /// row and transposed, each with a blocked border around the map).
 ///
-/// [`Self::apply`] keeps everything up to date; a plan rebuilds nothing but the components and, for
-/// prepared maps, the fingerprint, and these only after a change. Building costs a few operations
-/// per 64 cells and row of the neighbourhood; memory is nine bits per cell, and 8 bytes for each
-/// run of free cells in a row once [`Self::components`] are known.
+/// [`Self::apply`] keeps everything up to date; a plan rebuilds nothing but the components and,
+/// for prepared maps, the fingerprint, and these only after a change. Building costs a few
+/// operations per 64 cells and row of the neighbourhood. Memory is nine bits per cell, and 8
+/// bytes for each run of free cells in a row once [`Self::components`] are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchMap {
     frame: GridFrame,
     config: LayerConfig,
-    /// What an obstacle blocks for each reason of the config, and for all of them.
+    /// Cells that an obstacle blocks, for each reason of the config and for all of them.
     pub(in crate::map) neighbourhoods: Neighbourhoods,
     neighbourhood: BlockedNeighbourhood,
     obstacles: BitGrid,
-    /// Shared with the grid, until one of them changes.
+    /// Shared with the grid until one of them changes.
     unknown: Arc<BitGrid>,
     blocked: BitGrid,
     blocked_transposed: BitGrid,
@@ -47,10 +47,11 @@ pub struct SearchMap {
 }
 
 impl SearchMap {
-    /// Derives all layers.
+    /// Creates a map with all its layers.
     ///
     /// # Errors
-    /// When a number of the config is not usable; the error names its field.
+    /// Returns [`ConfigError`] if a number of the config is not usable; the error names its
+    /// field.
     pub fn new(grid: &OccupancyGrid, config: LayerConfig) -> Result<Self, ConfigError> {
         let frame = *grid.frame();
         let neighbourhoods = config.neighbourhoods(&frame)?;
@@ -60,7 +61,7 @@ impl SearchMap {
         let border_cells = border_cells(config.clearance_m / frame.resolution_m());
         let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
         block_border(&mut blocked, border_cells);
-        // Where the border leaves no cell free there is nothing to add.
+        // If the border leaves no cell free there is nothing to add.
         if 2 * i64::from(border_cells) < i64::from(frame.width().min(frame.height())) {
             neighbourhood.stamp_all(&obstacles, &mut blocked);
         }
@@ -85,17 +86,17 @@ impl SearchMap {
         })
     }
 
-    /// Where the grid lies.
+    /// Geometry of the map: size, resolution and origin.
     pub const fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
-    /// The config that the layers follow.
+    /// The config of the layers.
     pub const fn config(&self) -> &LayerConfig {
         &self.config
     }
 
-    /// Cells that hold an obstacle: occupied ones, and unknown ones where the policy says so.
+    /// Obstacle cells: occupied ones, and unknown ones if the policy says so.
     pub const fn obstacles(&self) -> &BitGrid {
         &self.obstacles
     }
@@ -110,23 +111,24 @@ impl SearchMap {
         &self.blocked_transposed
     }
 
-    /// Where straight scans of a jump point search stop.
+    /// Cells at which the straight scans of a jump point search stop.
     pub(crate) const fn stops(&self) -> &StopBitmaps {
         &self.stops
     }
 
-    /// The cells of diagonals at which a search has something to do. Costs some hundred operations
-    /// per 64 cells.
+    /// The cells on diagonals at which a search has an event. Costs some hundred operations per
+    /// 64 cells.
     pub(crate) fn diagonal_events(&self) -> DiagonalEvents {
         DiagonalEvents::new(&self.blocked, &self.blocked_transposed, &self.stops)
     }
 
-    /// The same, kept, once jump point searches have done so much that it pays.
+    /// Cached [`Self::diagonal_events`], available once jump point searches have walked enough
+    /// for them to pay.
     pub(crate) fn diagonals(&self) -> Option<&DiagonalEvents> {
         self.diagonals.get(&self.blocked, &self.blocked_transposed, &self.stops)
     }
 
-    /// Notes how many cells of diagonals a search has walked.
+    /// Records the number of cells on diagonals that a search has walked.
     pub(crate) fn note_walked(&self, cells: u64) {
         self.diagonals.note(cells);
     }
@@ -136,7 +138,7 @@ impl SearchMap {
         &self.unknown
     }
 
-    /// Cells into which a step costs more, if any.
+    /// Cells that cost extra to enter, if any.
     pub fn penalised(&self) -> Option<&BitGrid> {
         match self.config.unknown {
             UnknownPolicy::Penalised => Some(&self.unknown),
@@ -144,15 +146,15 @@ impl SearchMap {
         }
     }
 
-    /// How many of the cells from `low` to `high` (both included, clipped to the map) are occupied;
-    /// unknown ones do not count, even where they are obstacles. Costs an operation per 64 cells.
+    /// Number of occupied cells from `low` to `high` (both included, clipped to the map). Unknown
+    /// cells do not count, even if they are obstacles. Costs an operation per 64 cells.
     pub(crate) fn occupied_between(&self, low: Cell, high: Cell) -> u64 {
         let count = |bits: &BitGrid| -> u64 {
             let rows = low.y.max(0)..=high.y.min(self.frame.height() as i32 - 1);
             rows.map(|y| u64::from(bits.count_in_span(y, low.x, high.x))).sum()
         };
         match self.config.unknown {
-            // Here every unknown cell is an obstacle.
+            // With this policy every unknown cell is an obstacle.
             UnknownPolicy::Blocked => count(&self.obstacles) - count(&self.unknown),
             UnknownPolicy::Free | UnknownPolicy::Penalised => count(&self.obstacles),
         }
@@ -163,21 +165,21 @@ impl SearchMap {
         self.revision
     }
 
-    /// A number for the size and the blocked cells, which shows whether what was prepared for a map
-    /// still holds. Computed at the first call, and at the first one after [`Self::apply`] has
-    /// changed an obstacle.
+    /// Hash of the size and the blocked cells, which shows if data prepared for a map are still
+    /// valid. Computed at the first call, and at the first one after [`Self::apply`] has changed
+    /// an obstacle.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint.get(&self.blocked)
     }
 
     /// Lifts clearance, expansion and constraint in the discs of
-    /// [`crate::map::LayerConfig::free_ends_m`] around these cells, in place of those given before:
-    /// a cell whose centre lies in a disc (border included) is blocked only when it is an obstacle.
-    /// Later edits keep it so. Does nothing where the radius is 0; cells outside the map are
+    /// [`crate::map::LayerConfig::free_ends_m`] around these cells, replacing those given before.
+    /// A cell whose centre lies in a disc (border included) is blocked only if it is an obstacle,
+    /// also after later edits. Does nothing if the radius is 0; cells outside the map are
     /// ignored.
     ///
-    /// Whatever is prepared for a map takes its discs into account. Costs a test of each cell of
-    /// the discs.
+    /// Data prepared for a map take its discs into account. Costs a test of each cell of the
+    /// discs.
     pub fn free_ends(&mut self, ends: &[Cell]) {
         if self.config().free_ends_m == 0.0 {
             return;
@@ -187,7 +189,7 @@ impl SearchMap {
         let before = self.free_ends.replace(inside);
         let (now, reach) = (self.free_ends.ends().to_vec(), self.free_ends.reach());
         let mut changed = false;
-        // Where one disc may cover the map, all cells are tested for it, and once is enough.
+        // If one disc may cover the map, all cells are tested for it, and once is enough.
         let is_whole = reach >= frame.width().max(frame.height()) as i32;
         let count = if is_whole { 1 } else { usize::MAX };
         for end in before.into_iter().chain(now).take(count) {
@@ -207,15 +209,15 @@ impl SearchMap {
         Clearance::new(&self.frame, &self.obstacles)
     }
 
-    /// Which free cells can be reached from which. Computed at the first call, and at the first one
-    /// after [`Self::apply`] has changed a blocked cell; call it beforehand where no query should
-    /// have to wait for it.
+    /// Connected components of the free cells. Computed at the first call, and at the first one
+    /// after [`Self::apply`] has changed a blocked cell; call it beforehand if no query should
+    /// wait for it.
     pub fn components(&self, connectivity: Connectivity) -> &Components {
         self.components.get(&self.blocked, connectivity)
     }
 
-    /// Memory of all layers, and of the components that are known, on the heap \[bytes\];
-    /// that of unknown cells may be shared with the grid.
+    /// Heap memory of all layers, and of the components computed so far \[bytes\]; that of
+    /// unknown cells may be shared with the grid.
     pub fn memory_bytes(&self) -> usize {
         let StopBitmaps { east, west, north, south, cramped } = &self.stops;
         let layers = [&self.obstacles, &*self.unknown, &self.blocked, &self.blocked_transposed];
@@ -225,7 +227,7 @@ impl SearchMap {
             + self.diagonals.memory_bytes()
     }
 
-    /// What the map says of a cell; outside the map it is free.
+    /// State of a cell in the map; free outside the map.
     pub fn state(&self, cell: Cell) -> CellState {
         if self.unknown.get(cell) {
             CellState::Unknown
@@ -246,20 +248,20 @@ impl SearchMap {
         self.blocked.stride() * (self.frame.height() as usize + 2)
     }
 
-    /// The index of a cell of the map (or of the padding next to it).
+    /// The index of a cell of the map (or of the adjacent padding).
     pub fn index(&self, cell: Cell) -> CellIndex {
         self.numbering.index(cell)
     }
 
-    /// The cell of an index.
+    /// The cell with an index.
     pub fn cell(&self, index: CellIndex) -> Cell {
         self.numbering.cell(index)
     }
 
-    /// Changes cells, and with them every derived layer. Edits outside the map are ignored.
+    /// Changes cells and every derived layer. Edits outside the map are ignored.
     ///
-    /// Cost: a new obstacle stamps its neighbourhood (one row operation per row); around removed
-    /// ones the neighbourhoods are computed again, 64 cells at a time, once for all edits that are
+    /// Cost: a new obstacle stamps its neighbourhood (one row operation per row). Around removed
+    /// ones the neighbourhoods are recomputed, 64 cells at a time, once for all edits that are
     /// near each other. Allocates nothing.
     pub fn apply(&mut self, edits: &[Edit]) {
         let (mut changed, mut edited) = (false, EditedWindows::default());
@@ -290,12 +292,12 @@ impl SearchMap {
         self.revision += u64::from(changed);
     }
 
-    /// Blocks cells though nothing stands there. An edit near them may free them again.
+    /// Blocks cells regardless of obstacles. An edit near them may free them again.
     pub(crate) fn close(&mut self, cells: &[Cell]) {
         self.set_blocked(cells, |_, _| true);
     }
 
-    /// Frees cells that were closed, where nothing else blocks them.
+    /// Frees closed cells unless something else blocks them.
     pub(crate) fn open(&mut self, cells: &[Cell]) {
         self.set_blocked(cells, Self::follows_blocked);
     }
@@ -311,7 +313,7 @@ impl SearchMap {
         }
     }
 
-    /// The cells that changes in a window may have an influence on.
+    /// The cells that changes in a window may influence.
     fn influenced(&self, window: &CellWindow, reach: i32) -> CellWindow {
         let last = [self.frame.width() as i32 - 1, self.frame.height() as i32 - 1];
         let low = |at: i32| (at - reach).max(0);
@@ -332,7 +334,7 @@ impl SearchMap {
         }
     }
 
-    /// Brings the blocked cells of a window up to date.
+    /// Recomputes the blocked cells of a window.
     fn derive(&mut self, window: &CellWindow) {
         let is_narrow = self.neighbourhood.reach() <= BlockedNeighbourhood::MOST_WORD_REACH;
         if is_narrow && self.free_ends.ends().is_empty() {
@@ -342,7 +344,7 @@ impl SearchMap {
         }
     }
 
-    /// The same, cell by cell; true when one changed.
+    /// Like [`Self::derive`], cell by cell; returns true if a cell changed.
     fn test_cells(&mut self, window: &CellWindow) -> bool {
         let mut changed = false;
         for cell in window.cells() {
@@ -353,7 +355,7 @@ impl SearchMap {
         changed
     }
 
-    /// The same, 64 cells at a time. Column x is bit x + 1 of a row.
+    /// Like [`Self::derive`], 64 cells at a time. Column x is bit x + 1 of a row.
     fn derive_words(&mut self, window: &CellWindow) {
         let bit = |column: i32| (column + 1) as usize;
         for y in window.low.y..=window.high.y {
@@ -380,7 +382,7 @@ impl SearchMap {
         if y < b || y >= height - b {
             return u64::MAX;
         }
-        // The bits before the first free column, and from the one after the last free one on.
+        // The bits before the first free column, and from the one after the last free column on.
         let first = 64 * word as i64;
         let below = |bit: i64| match bit - first {
             ..=0 => 0,
@@ -390,14 +392,14 @@ impl SearchMap {
         below(i64::from(b) + 1) | !below(i64::from(width - b) + 1)
     }
 
-    /// True if a cell is blocked, from obstacles and config alone.
+    /// True if a cell is blocked according to obstacles and config alone.
     fn follows_blocked(&self, cell: Cell) -> bool {
         let in_zone =
             || self.near_border(cell) || self.neighbourhood.is_blocked(cell, &self.obstacles);
         self.obstacles.get(cell) || (!self.free_ends.contain(cell) && in_zone())
     }
 
-    /// Updates what follows from blocked cells, after some of a window have changed.
+    /// Updates the layers derived from blocked cells, after some cells of a window have changed.
     pub(in crate::map) fn blocked_cells_changed(&mut self, window: &CellWindow) {
         let CellWindow { low, high } = *window;
         self.stops.update(&self.blocked, &self.blocked_transposed, low, high);
@@ -406,7 +408,7 @@ impl SearchMap {
         self.components.forget();
     }
 
-    /// Counts a revision of the layers.
+    /// Increments the revision of the layers.
     pub(in crate::map) const fn count_revision(&mut self) {
         self.revision += 1;
     }
@@ -418,7 +420,7 @@ impl SearchMap {
     }
 }
 
-/// Blocks the cells at most `cells` columns or rows from the border.
+/// Blocks the cells in the `cells` columns and rows next to the border.
 fn block_border(blocked: &mut BitGrid, cells: i32) {
     let (width, height) = (blocked.width() as i32, blocked.height() as i32);
     if cells == 0 {
@@ -442,7 +444,7 @@ fn obstacles(grid: &OccupancyGrid, unknown: UnknownPolicy) -> BitGrid {
     obstacles
 }
 
-/// Columns next to the border whose cells' centres are nearer to it than the clearance.
+/// Number of columns next to the border whose cells' centres are nearer to it than the clearance.
 fn border_cells(clearance_cells: f64) -> i32 {
     (clearance_cells * (1.0 - CLEARANCE_TOLERANCE) - 0.5).max(0.0).ceil() as i32
 }

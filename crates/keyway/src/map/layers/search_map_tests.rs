@@ -1,4 +1,5 @@
-//! Layers by hand, against the rule cell by cell, and after edits against a rebuild.
+//! Tests of the layers: by hand, cell by cell against the rule, and after edits against a
+//! rebuild.
 
 use super::*;
 use crate::geometry::Pose;
@@ -38,7 +39,7 @@ fn a_disc_may_not_leave_the_map() {
 fn closed_cells_are_blocked_until_they_are_opened() {
     let rows = [".....", "..#..", "....."];
     let (mut map, as_built) = (map(&rows, with_clearance(0.4)), map(&rows, with_clearance(0.4)));
-    // One of them is blocked anyway.
+    // One of them is blocked in any case.
     let cells = [Cell::new(2, 0), Cell::new(2, 1), Cell::new(2, 2)];
     map.close(&cells);
     assert!(cells.iter().all(|&cell| !map.is_free(cell)) && !map.obstacles().get(cells[0]));
@@ -117,7 +118,7 @@ fn any_config() -> impl Strategy<Value = LayerConfig> {
     })
 }
 
-/// Places again and again; the corner where there are none.
+/// Cycles through positions; the corner if there are none.
 fn again(places: &[(i32, i32)]) -> impl Iterator<Item = (i32, i32)> + '_ {
     (0..).map(|index: usize| places.get(index % places.len().max(1)).copied().unwrap_or_default())
 }
@@ -185,12 +186,12 @@ proptest! {
         let mut grid = OccupancyGrid::from_fn(frame, |cell| {
             if occupied.contains(&(cell.x, cell.y)) { CellState::Occupied } else { CellState::Free }
         });
-        // Squared, as small ones leave more cells free.
+        // Squared, because small clearances leave more cells free.
         let mut config = LayerConfig { clearance_m: clearance_m * clearance_m / 8.0, ..LayerConfig::default() };
         config.published.expansion_cells = expansion_cells;
         let mut map = SearchMap::new(&grid, config.clone()).unwrap();
         for edits in edits {
-            // Half of them free what is occupied.
+            // Half of them free occupied cells.
             let edits: Vec<Edit> = edits.iter().zip(again(&occupied)).enumerate()
                 .map(|(index, (&(x, y, state), (ox, oy)))| if index % 2 == 0 {
                     Edit { cell: Cell::new(x, y), state }

@@ -1,13 +1,15 @@
-//! Why no path joins two cells: ways that are too narrow, or none at all.
+//! Diagnosis of a missing path between two cells: passages that are too narrow, or separate parts
+//! of the map.
 //!
-//! A cell is free for a clearance when the room at its centre, the distance to the nearest obstacle
-//! or to the border, is at least that. So two cells are joined up to some clearance, and beyond it
-//! they are not: the room of the narrowest place of the widest way. It is the room of some cell, a
-//! whole number as a squared distance in half cells, and is found exactly, by bisection.
+//! The *room* of a cell is the distance from its centre to the nearest obstacle or to the border;
+//! a cell is free for a clearance if its room is at least that. Two cells are thus connected up
+//! to some clearance, and separated beyond it: the room at the bottleneck of the widest path.
+//! This is the room of some cell, a whole number as a squared distance in half cells, and is
+//! found exactly, by bisection.
 //!
 //! # Cost
-//! A distance field, and for each of about 15 steps the components of the map: for use after a
-//! search has failed, not in every cycle. 4 bytes per cell beside the field.
+//! A distance field, and the components of the map for each of about 15 steps: for use after a
+//! search has failed, not in every cycle. 4 bytes per cell in addition to the field.
 
 use crate::given::Computed;
 use crate::map::layers::components::Components;
@@ -16,19 +18,18 @@ use crate::map::layers::narrowest::Rooms;
 use crate::map::{BitGrid, Cell, Connectivity, DistanceField, FieldConfig, SearchMap};
 use std::fmt::{Display, Formatter, Result};
 
-/// Why no path joins two free cells.
+/// Reason why no path joins two free cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Separation {
-    /// All ways between them are too narrow for the clearance.
+    /// All passages between them are too narrow for the clearance.
     TooNarrow {
         /// [`crate::map::LayerConfig::clearance_m`] \[m\].
         clearance_m: f64,
-        /// The largest clearance with which they are joined \[m\]: that of the centres of cells, so
-        /// it may be up to half a cell less than the way is wide.
+        /// The largest clearance with which they are connected \[m\]. It is that of the centres
+        /// of cells, so it may be up to half a cell less than the passage allows.
         widest_m: f64,
-        /// The narrowest place of the widest way: the first and the last cell of the first such
-        /// place.
+        /// The bottleneck of the widest path: first and last cell of the first one.
         narrowest: [Cell; 2],
     },
     /// They lie in different parts of the map, whatever the clearance.
@@ -37,8 +38,8 @@ pub enum Separation {
         start_cells: u32,
         /// Cells of the goal's part.
         goal_cells: u32,
-        /// True if steps that cut corners ([`crate::search::CornerRule::Allow`]) join the two, with
-        /// the clearance as it is.
+        /// True if steps that cut corners ([`crate::search::CornerRule::Allow`]) connect the two
+        /// with the configured clearance.
         meet_at_corners: bool,
     },
 }
@@ -77,8 +78,8 @@ impl Display for Separation {
 }
 
 impl SearchMap {
-    /// Why two free cells are not joined by the steps of `connectivity`; `None` where they are, or
-    /// where one of them is not free.
+    /// Reason why the steps of `connectivity` do not connect two free cells; `None` if they do,
+    /// or if one of them is not free.
     pub fn separation(
         &self,
         start: Cell,
@@ -115,11 +116,11 @@ impl SearchMap {
         })
     }
 
-    /// The largest clearance with which two cells are joined by the steps of `connectivity` \[m\],
-    /// everything else in the config as it is: the room of the narrowest place of the widest way.
-    /// Infinite where no clearance can separate them (in the same disc of
-    /// [`crate::map::LayerConfig::free_ends_m`]); `None` where they are not even joined without
-    /// any.
+    /// The largest clearance with which the steps of `connectivity` connect two cells \[m\], with
+    /// everything else in the config unchanged: the room at the bottleneck of the widest path.
+    /// Infinite if no clearance can separate them (in the same disc of
+    /// [`crate::map::LayerConfig::free_ends_m`]); `None` if they are separated even without a
+    /// clearance.
     pub fn widest_clearance_m(
         &self,
         start: Cell,
@@ -131,7 +132,7 @@ impl SearchMap {
         Some(self.metres(room))
     }
 
-    /// A room in half cells, squared, as a distance \[m\].
+    /// Converts a room (squared half cells) to a distance \[m\].
     fn metres(&self, room: u32) -> f64 {
         if room == UNBOUNDED {
             return f64::INFINITY;
@@ -139,7 +140,7 @@ impl SearchMap {
         f64::from(room).sqrt() * 0.5 * self.frame().resolution_m()
     }
 
-    /// The largest room that leaves two cells joined; `None` where nothing joins them.
+    /// The largest room that leaves two cells connected; `None` if they never are.
     fn widest_room(
         &self,
         base: &BitGrid,
@@ -162,7 +163,7 @@ impl SearchMap {
         if !joined(0) {
             return None;
         }
-        // Beyond the largest room only the discs are free.
+        // Above the largest room only the discs are free.
         let is_bounded = |room: &u32| *room != UNBOUNDED;
         let mut without = rooms.iter().copied().filter(is_bounded).max().unwrap_or(0) + 1;
         if joined(without) {
@@ -180,8 +181,8 @@ impl SearchMap {
         Some(with)
     }
 
-    /// For each cell, row by row, the squared distance from its centre to the nearest obstacle or
-    /// to the border, in half cells.
+    /// Room of each cell, row by row: the squared distance from its centre to the nearest
+    /// obstacle or to the border, in half cells.
     fn rooms(&self) -> Vec<u32> {
         let frame = self.frame();
         let field = DistanceField::new(frame, self.obstacles(), &FieldConfig::default());
@@ -198,7 +199,7 @@ impl SearchMap {
         frame.cells().map(room).collect()
     }
 
-    /// What is blocked for any reason other than the clearance.
+    /// Cells that are blocked for any reason other than the clearance.
     fn blocked_without_clearance(&self) -> BitGrid {
         let (frame, zones) = (self.frame(), &self.neighbourhoods);
         let mut blocked = BitGrid::new(frame.width(), frame.height(), true);
@@ -211,7 +212,7 @@ impl SearchMap {
     }
 }
 
-/// The room of a cell that is free whatever the clearance.
+/// Room of a cell that is free for any clearance.
 const UNBOUNDED: u32 = u32::MAX;
 
 #[cfg(test)]
@@ -221,7 +222,8 @@ mod tests {
     use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid, PublishedConstraints};
     use proptest::prelude::*;
 
-    /// A door of three cells of 0.3 m: a radius of 0.45 m fits there, and beside the border, too.
+    /// A door of three cells of 0.3 m: a radius of 0.45 m fits through it, and beside the border,
+    /// too.
     #[test]
     fn a_door_by_hand() {
         let frame = GridFrame::new(20, 9, 0.3, Pose::default()).unwrap();
@@ -246,7 +248,7 @@ mod tests {
         );
     }
 
-    /// A door of 0.40 m has eight cells of 5 cm: no centre is in its middle.
+    /// A door of 0.40 m has eight cells of 5 cm: no cell's centre is in its middle.
     #[test]
     fn a_door_with_an_even_number_of_cells() {
         let frame = GridFrame::new(40, 30, 0.05, Pose::default()).unwrap();
@@ -326,7 +328,8 @@ mod tests {
                 let part = |cell| map.component(cell, connectivity);
                 part(start).is_some() && part(start) == part(goal)
             };
-            // Every distance that a cell of such a map can have, and one beyond all of them.
+            // Every distance that a cell of such a map can have, and one greater than all of
+            // them.
             let mut all: Vec<u32> = (0..=24).flat_map(|a| (0..=24).map(move |b| a * a + b * b)).collect();
             all.sort_unstable();
             all.dedup();

@@ -1,16 +1,16 @@
-//! Where the scans of a jump point search stop.
+//! The cells at which the scans of a jump point search stop.
 
 use crate::map::{BitGrid, Cell};
 use std::ops::{Range, RangeInclusive};
 
-/// For each of the four straight directions the cells at which a scan stops (a blocked cell, or a
-/// jump point \[Harabor2011, without corner cutting\]), and the places where no diagonal step leads
-/// through.
+/// Stop bitmaps: for each of the four straight directions the cells at which a scan stops (a
+/// blocked cell, or a jump point \[Harabor2011, without corner cutting\]), and the 2 x 2 blocks
+/// of cells that no diagonal step can cross.
 ///
 /// Moving east from p to x, x is a jump point iff the cell above p is blocked and the one above x
-/// free, or the same below. A bit per cell and direction, so that a scan is a load, a mask and a
-/// count of zeros per 64 cells. North and south are kept on transposed rows (x and y exchanged).
-/// The padding is set: every scan ends at the map's border.
+/// free, or the same below. There is a bit per cell and direction, so a scan is a load, a mask
+/// and a count of zeros per 64 cells. North and south are stored in transposed rows (x and y
+/// exchanged). The padding is set: every scan ends at the map's border.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct StopBitmaps {
     /// Scans towards larger columns, by rows.
@@ -21,8 +21,9 @@ pub(crate) struct StopBitmaps {
     pub(crate) north: BitGrid,
     /// Scans towards smaller rows, by columns.
     pub(crate) south: BitGrid,
-    /// By rows: a set bit says that a cell, its eastern and northern neighbour, or the one between
-    /// them is blocked. Where it is clear, both diagonals of these 2 x 2 cells may be stepped.
+    /// By rows: a bit is set if a cell, its eastern or northern neighbour, or the one between
+    /// them is blocked. If it is clear, both diagonal steps across these 2 x 2 cells are
+    /// possible.
     pub(crate) cramped: BitGrid,
 }
 
@@ -72,7 +73,7 @@ fn update_rows(up: &mut BitGrid, down: &mut BitGrid, blocked: &BitGrid, low: Cel
     }
 }
 
-/// The same for the 2 x 2 cells.
+/// Like [`update_rows`], for the 2 x 2 cells.
 fn update_cramped(cramped: &mut BitGrid, blocked: &BitGrid, low: Cell, high: Cell) {
     let (rows, words) = influenced(blocked, low, high);
     for y in rows {

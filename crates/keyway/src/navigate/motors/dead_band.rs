@@ -1,17 +1,17 @@
-//! Commands that are too small for the motors.
+//! Dead band: commands that are too small for the motors.
 //!
-//! A wheel that stands needs more than friction holds: below some speed nothing moves. A command
-//! that follows from the velocity that was measured, and from what the robot can reach within a
-//! cycle, may stay below that for ever. So commands that have not moved the robot for a while are
-//! known to be too small, and smaller ones are not given any more: one of more than half of the
-//! least that moves it becomes that, others become 0.
+//! A wheel at rest has to overcome static friction: below some speed nothing moves. A command
+//! that follows from the measured velocity, limited to what the robot can reach within a cycle,
+//! may stay below that forever. Commands that have not moved the robot for a while are therefore
+//! taken to be too small, and smaller ones are no longer given: a command above half of the
+//! smallest one that moves the robot is raised to that one, others become 0.
 
 use crate::geometry::Velocity;
 use crate::navigate::time::Time;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// The largest commands that have not moved a robot, along with how it was found.
+/// Estimate of the largest commands that do not move a robot.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct DeadBand {
     v: Axis,
@@ -22,14 +22,14 @@ pub(super) struct DeadBand {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Axis {
     full: f64,
-    /// No more than this is measured of one that stands.
+    /// Largest measurement of an axis at rest.
     standing: f64,
-    /// The largest command that has not moved it; 0 where none is known.
+    /// Largest command that has not moved it; 0 if none is known.
     too_small: f64,
-    /// Something larger has moved it.
+    /// True if a larger command has moved it.
     is_sure: bool,
     stands: bool,
-    /// Since when it stands although it is told to move, and the largest command since.
+    /// Time since which it has been at rest despite commands, and the largest command since.
     asked: Option<(Time, f64)>,
 }
 
@@ -41,35 +41,35 @@ impl DeadBand {
         Self { v, omega: Axis::new(limits.omega_max_radps, standing.omega) }
     }
 
-    /// Notes the velocity that the robot has, and the command that acts. A command is too small
-    /// that has acted for so long without any motion \[s\].
+    /// Takes in the velocity of the robot and the acting command. A command is too small if it
+    /// has acted for `patience_s` \[s\] without any motion.
     pub(super) fn note(&mut self, time: Time, now: Velocity, command: Velocity, patience_s: f64) {
         self.v.note(time, (now.v, command.v), patience_s);
         self.omega.note(time, (now.omega, command.omega), patience_s);
     }
 
-    /// The largest speed and turn rate that have not moved the robot; 0 where none is known.
+    /// The largest speed and turn rate that have not moved the robot; 0 if none is known.
     pub(super) const fn too_small(&self) -> Velocity {
         Velocity { v: self.v.too_small, omega: self.omega.too_small }
     }
 
-    /// The same where something larger has moved the robot; 0 where nothing has.
+    /// Like [`Self::too_small`], if a larger command has moved the robot; otherwise 0.
     pub(super) fn surely_too_small(&self) -> Velocity {
         let sure = |axis: &Axis| if axis.is_sure { axis.too_small } else { 0.0 };
         Velocity { v: sure(&self.v), omega: sure(&self.omega) }
     }
 
-    /// The least speed and turn rate that are given; 0 where all are.
+    /// The smallest speed and turn rate that are given; 0 if there is no limit.
     pub(super) fn least(&self) -> Velocity {
         Velocity::new(self.v.least(), self.omega.least())
     }
 
-    /// The command that moves a robot with a velocity as nearly as its motors can.
+    /// The command that the motors can follow and that is closest to the requested velocity.
     pub(super) fn given(&self, now: Velocity, asked: Velocity) -> Velocity {
         let parts = [self.v.part(asked.v), self.omega.part(asked.omega)];
         let given =
             Velocity::new(self.v.given(now.v, asked.v), self.omega.given(now.omega, asked.omega));
-        // Who is asked to creep does not stand for ever.
+        // A robot that is to creep does not stay at rest forever.
         let stands = self.v.is_standing(now.v) && self.omega.is_standing(now.omega);
         if given != Velocity::ZERO || parts == [0.0; 2] || !stands {
             return given;
@@ -81,7 +81,7 @@ impl DeadBand {
         }
     }
 
-    /// Forgets what is under way, and not what was learned.
+    /// Forgets the current attempt, but not what was learned.
     pub(super) const fn pause(&mut self) {
         (self.v.asked, self.omega.asked) = (None, None);
     }
@@ -95,11 +95,10 @@ impl DeadBand {
 }
 
 impl Axis {
-    /// The next larger one of two commands of which the first has not moved a robot, as a part of
-    /// it.
+    /// Factor from a command that has not moved the robot to the next larger one.
     const LARGER: f64 = 1.25;
 
-    /// A robot that does not move at this part of full speed is held by something else.
+    /// Share of full speed above which a robot at rest is held by something else.
     const MOST: f64 = 0.2;
 
     const fn new(full: f64, standing: f64) -> Self {
@@ -112,14 +111,14 @@ impl Axis {
         let asked = command.abs();
         if !self.stands {
             self.asked = None;
-            // Something smaller has begun to move it.
+            // A smaller command has set it in motion.
             if stood && asked > self.standing && asked <= self.too_small {
                 self.too_small = 0.0;
             }
             self.is_sure = self.too_small > 0.0;
             return;
         }
-        // What is measured may be noise where no more is asked for.
+        // A smaller request cannot be told from measurement noise.
         if asked <= 2.0 * self.standing || asked > Self::MOST * self.full {
             self.asked = None;
             return;
@@ -138,7 +137,7 @@ impl Axis {
         Self::LARGER * self.too_small
     }
 
-    /// A command as a part of the least that moves.
+    /// A command as a share of the smallest one that moves.
     fn part(&self, asked: f64) -> f64 {
         if self.too_small > 0.0 { asked.abs() / self.least() } else { asked.abs() / self.full }
     }
@@ -147,7 +146,7 @@ impl Axis {
         now.abs() <= self.standing
     }
 
-    /// The command that is given; a robot that slows down is not made faster than asked.
+    /// The command to give; a robot that slows down is not made faster than requested.
     fn given(&self, now: f64, asked: f64) -> f64 {
         let least = self.least();
         if asked.abs() >= least {

@@ -1,21 +1,21 @@
-//! The delay from a command to its effect, learned from what a robot does.
+//! Estimation of the actuation delay from the motion of the robot.
 //!
-//! # The method
-//! A bank of models, one for each delay that it may have, in steps of half a cycle. Each is driven
-//! by the same commands, within the robot's limits, and knows which velocity the robot has if its
-//! delay is the true one. How far off each of them is, is summed up; the delay is where that is
-//! least, in between by the parabola through its neighbours. Samples at which all models have the
-//! same velocity say nothing, and are left out.
+//! # Method
+//! A bank of models, one for each possible delay, in steps of half a cycle. All are driven by the
+//! same commands, within the robot's limits, and predict the velocity of the robot if their delay
+//! is the true one. The squared errors of each model are summed up. The estimate is the minimum
+//! of these sums, refined by the parabola through its neighbours. Samples at which all models
+//! have the same velocity carry no information and are skipped.
 //!
-//! Wheels that lag behind their commands are like late ones: a speed that changes steadily is
-//! followed by a lag of first order just as late as its time constant. So one number is enough.
+//! A first-order lag of the wheels acts like a delay: it follows a steadily changing speed with a
+//! delay of its time constant. One number is therefore enough.
 //!
-//! # What counts as known
-//! With the mean square s² of what the best model is off by (never taken to be below that of a
-//! hundredth of the full speed), a delay is refuted where the sum of its squares is larger than the
-//! best one by 2 s² [`DelayFilter::EVIDENCE`]. The best delay is learned when the described one is
-//! refuted, and the longest one, too: so the robot has been seen to do what it was told. Nothing is
-//! learned from a robot that does something else.
+//! # Evidence
+//! Let s² be the mean squared error of the best model, bounded below by that of a hundredth of
+//! full speed. A delay is rejected if its sum of squares exceeds the best one by 2 s²
+//! [`DelayFilter::EVIDENCE`]. The best delay is learned once both the described one and the
+//! longest one are rejected, so that the robot has been seen to follow its commands. Nothing is
+//! learned from a robot that does not.
 
 use super::under_way::UnderWay;
 use crate::geometry::Velocity;
@@ -25,13 +25,13 @@ use serde::{Deserialize, Serialize};
 /// The bank of models.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct DelayFilter {
-    /// Delay of the first model \[s\]; each further one is longer by a step.
+    /// Delay of the first model \[s\]; each further model adds one step.
     first_s: f64,
     step_s: f64,
     /// Index of the model that has the described delay.
     described: usize,
     models: Vec<Model>,
-    /// Samples that counted, fewer the older they are.
+    /// Number of samples that counted, with exponential forgetting.
     samples: f64,
     last: Option<Time>,
     learned_s: Option<f64>,
@@ -41,18 +41,18 @@ pub(super) struct DelayFilter {
 struct Model {
     /// Velocity at the last observation.
     velocity: Velocity,
-    /// That at the one before.
+    /// Velocity at the observation before.
     before: Velocity,
-    /// Sum of what it was off by, as parts of the full speed and the full turn rate, squared.
+    /// Sum of its squared errors, as shares of the full speed and the full turn rate.
     off_sq: f64,
 }
 
-/// The velocity that a robot was seen to have.
+/// A measured velocity.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Measured {
-    /// Its velocity now.
+    /// Present velocity.
     Now(Velocity),
-    /// Its velocity on the mean since the last observation.
+    /// Mean velocity since the last observation.
     OnMean(Velocity),
 }
 
@@ -65,7 +65,7 @@ impl Measured {
 }
 
 impl Model {
-    /// The same of this model.
+    /// The corresponding velocity of this model.
     fn expected(&self, measured: Measured) -> Velocity {
         match measured {
             Measured::Now(_) => self.velocity,
@@ -75,28 +75,28 @@ impl Model {
 }
 
 impl DelayFilter {
-    /// So much longer delays than the described one are reckoned with \[s\].
+    /// Largest delay that is considered, beyond the described one \[s\].
     const LONGER_S: f64 = 1.0;
 
-    /// Models, at most.
+    /// Maximum number of models.
     const MOST: f64 = 80.0;
 
-    /// After a longer time than this nobody knows what happened in between \[s\].
+    /// Longest time between observations that can be bridged \[s\].
     const GAP_S: f64 = 0.5;
 
-    /// Samples after which one counts half.
+    /// Number of samples after which the weight of a sample has halved.
     const HALF_LIFE: f64 = 200.0;
 
-    /// Models that differ by less, as parts of full speed, say nothing.
+    /// Smallest spread of the models that carries information, as a share of full speed.
     const SPREAD: f64 = 0.02;
 
-    /// The best model is off by at least this part of full speed.
+    /// Lower bound on the error of the best model, as a share of full speed.
     const LEAST_OFF: f64 = 0.01;
 
-    /// A robot that is farther off than this does not do what it is told.
+    /// Largest error of a robot that still follows its commands.
     const MOST_OFF: f64 = 0.15;
 
-    /// Logarithm of the likelihood ratio that refutes a delay.
+    /// Logarithm of the likelihood ratio that rejects a delay.
     const EVIDENCE: f64 = 12.0;
 
     pub(super) fn new(described_s: f64, cycle_s: f64) -> Self {
@@ -120,12 +120,12 @@ impl DelayFilter {
         self.delay_s(self.models.len() - 1)
     }
 
-    /// The delay that was learned, where the described one is wrong \[s\].
+    /// The learned delay, if the described one is wrong \[s\].
     pub(super) const fn learned_s(&self) -> Option<f64> {
         self.learned_s
     }
 
-    /// The velocity of a robot with a delay, as its commands make it.
+    /// The velocity that the commands produce in a robot with a delay.
     pub(super) fn velocity(&self, delay_s: f64) -> Velocity {
         let place =
             ((delay_s - self.first_s) / self.step_s).clamp(0.0, self.models.len() as f64 - 1.0);
@@ -134,19 +134,20 @@ impl DelayFilter {
         below_v.lerp(above_v, place - below as f64)
     }
 
-    /// Begins anew: the next observation does not follow from the last one.
+    /// Interrupts the sequence: the next observation does not follow from the last one.
     pub(super) fn pause(&mut self) {
         self.last = None;
     }
 
-    /// True if another bank has the same models, and this one a delay that it may have learned.
+    /// True if another bank has the same models, and the learned delay of this one is within
+    /// their range.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let of = |it: &Self| (it.first_s, it.step_s, it.described, it.models.len());
         let is_possible = |delay_s: f64| (0.0..=self.longest_s()).contains(&delay_s);
         of(self) == of(other) && self.learned_s.is_none_or(is_possible)
     }
 
-    /// Takes in an observation; one that says nothing lets the models go on all the same.
+    /// Takes in an observation; without a measurement, the models advance all the same.
     pub(super) fn observe(&mut self, time: Time, measured: Option<Measured>, under_way: &UnderWay) {
         let elapsed_s = self.last.map(|last| time.since_s(last));
         let Some((last, elapsed_s)) = self.last.zip(elapsed_s).filter(|it| it.1 <= Self::GAP_S)
@@ -219,7 +220,7 @@ impl DelayFilter {
         self.learned_s = Some(self.delay_s(best) + beside * self.step_s);
     }
 
-    /// The lowest place of the parabola through a model and its neighbours, in steps from it.
+    /// The minimum of the parabola through a model and its neighbours, in steps from the model.
     fn beside(&self, best: usize) -> f64 {
         if best == 0 || best + 1 == self.models.len() {
             return 0.0;
@@ -230,14 +231,14 @@ impl DelayFilter {
     }
 }
 
-/// A square, up to where somebody pushes the robot.
+/// A square, bounded so that a push on the robot has limited weight.
 fn bounded_sq(part: f64) -> f64 {
     const MOST_SQ: f64 = 0.09;
     let square = part * part;
     square * MOST_SQ / (square + MOST_SQ)
 }
 
-/// The lowest and the highest of two values.
+/// The lowest and the highest values of both axes.
 #[derive(Clone, Copy, Debug)]
 struct Spread {
     low: [f64; 2],

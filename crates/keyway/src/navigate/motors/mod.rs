@@ -1,10 +1,10 @@
-//! The motors, as far as a navigator knows them: the commands that are on their way to them, and
-//! how they do what they are told, learned while the robot drives.
+//! Model of the motors: the commands in flight, and the response of the motors to them, learned
+//! while the robot drives.
 //!
-//! A robot's description says how late its motors act, and it is often wrong: a driver waits for
-//! its own clock, a bus is slow, wheels follow their controllers, poses are stamped when they
-//! arrive. So commands are compared with velocities ([`DelayFilter`]); where the description does
-//! not fit what is seen, what was learned takes its place in everything that looks ahead.
+//! A robot's description gives its actuation delay, and is often wrong: a driver waits for its
+//! own clock, a bus is slow, wheels lag behind their controllers, poses are stamped on arrival.
+//! Commands are therefore compared with velocities ([`DelayFilter`]). If the description does not
+//! fit the observations, the learned delay replaces it in every prediction.
 
 mod dead_band;
 mod delay_filter;
@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use smoothing::{Drive, Smoothing};
 use under_way::UnderWay;
 
-/// The commands that were given to the motors, and their ways.
+/// The commands that were given to the motors, and the model of their response.
 #[derive(Clone, Debug)]
 pub(super) struct Motors {
     described_s: f64,
@@ -34,7 +34,7 @@ pub(super) struct Motors {
     dead_band: DeadBand,
     odometry: Odometry,
     drive: Drive,
-    /// `None` for a robot without limits of jerk.
+    /// `None` for a robot without jerk limits.
     smoothing: Option<Smoothing>,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct StoredMotors {
 }
 
 impl Motors {
-    /// So long a command acts that moves nothing, before it is known to be too small \[s\].
+    /// Time for which a command acts without effect until it is taken to be too small \[s\].
     const PATIENCE_S: f64 = 0.3;
 
     pub(super) fn new(robot: &Robot) -> Self {
@@ -64,8 +64,8 @@ impl Motors {
         Self { described_s, cycle_s, under_way, filter, dead_band, odometry, drive, smoothing }
     }
 
-    /// Learns from what was observed. The velocity that the robot has: as told, or where odometry
-    /// says nothing, what follows from the commands.
+    /// Learns from an observation and returns the velocity of the robot: as reported, or
+    /// predicted from the commands if the odometry reports none.
     pub(super) fn observe(&mut self, time: Time, pose: Pose, told: Velocity) -> Velocity {
         let acting = self.under_way.acts_at(time, self.delay_s());
         let command = acting.unwrap_or(Velocity::ZERO);
@@ -79,14 +79,14 @@ impl Motors {
             let patience_s = Self::PATIENCE_S.max(3.0 * self.cycle_s);
             self.dead_band.note(time, told, command, patience_s);
         } else {
-            // What did not move the robot may have moved it.
+            // A command that seemed to have no effect may have moved the robot.
             self.dead_band.forget();
         }
         self.under_way.too_small = self.dead_band.too_small();
         if is_told { told } else { self.filter.velocity(self.delay_s()) }
     }
 
-    /// The time from a command to its effect: as described, or learned \[s\].
+    /// The time from a command to its effect, learned or else as described \[s\].
     pub(super) fn delay_s(&self) -> f64 {
         self.filter.learned_s().unwrap_or(self.described_s)
     }
@@ -96,29 +96,29 @@ impl Motors {
         self.described_s
     }
 
-    /// The delay that was learned where it is not what the robot's description says \[s\].
+    /// The learned delay, if it differs from the robot's description \[s\].
     pub(super) const fn learned_s(&self) -> Option<f64> {
         self.filter.learned_s()
     }
 
-    /// The command that moves a robot with a velocity as nearly as its motors can.
+    /// The command that the motors can follow and that is closest to the requested velocity.
     pub(super) fn within_reach(&self, now: Velocity, asked: Velocity) -> Velocity {
         self.dead_band.given(now, asked)
     }
 
-    /// The least speed and turn rate that the motors do; 0 where they do all.
+    /// The smallest speed and turn rate that the motors follow; 0 if there is no limit.
     pub(super) fn least(&self) -> Velocity {
         self.dead_band.least()
     }
 
-    /// The largest speed and turn rate that have not moved the robot, where something larger has;
+    /// The largest speed and turn rate that have not moved the robot, if a larger command has;
     /// otherwise 0.
     pub(super) fn too_small(&self) -> Velocity {
         self.dead_band.surely_too_small()
     }
 
-    /// Pose and velocity at the instant at which a command that is given `now` acts, for a robot
-    /// that was observed at a time.
+    /// Predicts the pose and the velocity at the instant at which a command given `now` takes
+    /// effect, for a robot that was observed earlier.
     pub(super) fn predicted(
         &self,
         observed: Time,
@@ -128,8 +128,8 @@ impl Motors {
         self.under_way.predicted((observed, now), self.delay_s(), state)
     }
 
-    /// Begins a cycle of a robot that has a velocity when its next command acts: the pose and the
-    /// velocity to decide for. They are those of its reference, if its commands are averaged.
+    /// Begins a cycle, given the state in which the next command takes effect: returns the pose
+    /// and the velocity to plan from. They are those of the reference if commands are averaged.
     pub(super) fn begin(
         &mut self,
         now: Time,
@@ -141,7 +141,7 @@ impl Motors {
         (window.reference_pose(pose, velocity, self.cycle_s), window.reference())
     }
 
-    /// The command to give where one was decided on; the same, unless commands are averaged.
+    /// The command for a decided velocity; the same unless commands are averaged.
     pub(super) fn smoothed(&mut self, now: Time, decided: Velocity) -> Velocity {
         match &mut self.smoothing {
             Some(smoothing) => smoothing.smooth(Some(now), decided, &self.drive),
@@ -149,8 +149,8 @@ impl Motors {
         }
     }
 
-    /// The command that stops a robot of which nothing is known: at once, unless commands are
-    /// averaged. Then it goes on with the motion that was found to touch nothing.
+    /// The command that stops a robot in an unknown state: at once, unless commands are averaged.
+    /// In that case it continues the motion that was found to be free of contact.
     pub(super) fn stopping(&mut self) -> Velocity {
         let Some(smoothing) = &mut self.smoothing else { return Velocity::ZERO };
         let Drive { limits, cycle_s } = &self.drive;
@@ -158,22 +158,23 @@ impl Motors {
         smoothing.smooth(None, braked, &self.drive)
     }
 
-    /// The velocities that are still averaged, if commands are.
+    /// The averaging window, if commands are averaged.
     pub(super) fn window(&self) -> Option<&CommandWindow> {
         self.smoothing.as_ref().map(|smoothing| &smoothing.window)
     }
 
-    /// True if something of what was decided is still to be given.
+    /// True if the averaging window still holds motion to be given.
     pub(super) fn moves_on(&self, robot: &Robot) -> bool {
         self.window().is_some_and(|window| !window.is_still(robot))
     }
 
-    /// Notes a command that is given now.
+    /// Records a command that is given now.
     pub(super) fn give(&mut self, observed: Time, now: Time, command: Velocity) {
         self.under_way.give(observed, now, command);
     }
 
-    /// Notes a command of somebody else. Averages begin anew with what the robot then does.
+    /// Records a command from another source. The averages then restart from the resulting
+    /// motion.
     pub(super) fn note_override(&mut self, now: Time, command: Velocity) {
         self.under_way.give(now, now, command);
         if let Some(smoothing) = &mut self.smoothing {
@@ -181,18 +182,18 @@ impl Motors {
         }
     }
 
-    /// The command that acts at a time; `None` before the first.
+    /// The command in effect at a time; `None` before the first.
     pub(super) fn acts_at(&self, time: Time) -> Option<Velocity> {
         self.under_way.acts_at(time, self.delay_s())
     }
 
-    /// True if a robot stands, and no command under way moves it.
+    /// True if a robot is stationary, and no command in flight moves it.
     pub(super) fn is_at_rest(&self, observed: Time, now: Time, stands: (&Robot, Velocity)) -> bool {
         let is_at_rest = self.under_way.is_at_rest((observed, now), self.delay_s(), stands);
         is_at_rest && !self.moves_on(stands.0)
     }
 
-    /// The clock begins anew: what is under way is forgotten, and not what was learned.
+    /// Restarts the clock: the commands in flight are forgotten, but not what was learned.
     pub(super) fn restart_clock(&mut self) {
         self.under_way.clear();
         self.filter.pause();
@@ -210,7 +211,7 @@ impl Motors {
         StoredMotors { commands, filter, dead_band: *dead_band, odometry: *odometry, smoothing }
     }
 
-    /// Takes up what was stored; false where it is not that of this robot.
+    /// Restores a stored state; false if it belongs to another robot.
     pub(super) fn take_up(&mut self, stored: StoredMotors) -> bool {
         let is_like = |stored: &Smoothing| {
             self.smoothing.as_ref().is_some_and(|own| stored.window.is_like(&own.window))

@@ -1,38 +1,39 @@
-//! Velocities that are always told as 0.
+//! Detection of odometry that always reports a velocity of 0.
 
 use super::delay_filter::Measured;
 use crate::geometry::{Pose, Velocity, wrap_angle};
 use crate::navigate::time::Time;
 use serde::{Deserialize, Serialize};
 
-/// Notices that the velocity is told as 0 while the robot drives, as by a localisation without
-/// odometry.
+/// Detects that the velocity is reported as 0 while the robot drives, as by a localisation
+/// without odometry.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Odometry {
     last: Option<(Time, Pose)>,
-    /// Pose of the robot when it was first told to drive, with a velocity of 0 since.
+    /// Pose of the robot at its first drive command since which the velocity has been 0.
     began: Option<Pose>,
-    /// The way that it should have come since \[m\], and its turns \[rad\].
+    /// Commanded distance since then \[m\], and commanded rotation \[rad\].
     asked: [f64; 2],
     says_nothing: bool,
 }
 
 impl Odometry {
-    /// A robot that has come so far, and at least half as far as it was told to, has moved.
+    /// Smallest motion that counts \[m\], \[rad\]; it must also be at least half of the commanded
+    /// motion.
     const MOVED: [f64; 2] = [0.05, 0.1];
 
-    /// Poses that are farther apart than a robot drives at twice its full speed, and this, are no
-    /// motion: the localisation has jumped.
+    /// Largest distance of two poses that counts as motion, beyond that of twice the full speed
+    /// \[m\], \[rad\]. A larger one is a jump of the localisation.
     const ROUGH: [f64; 2] = [0.05, 0.1];
 
-    /// True if the velocity says nothing.
+    /// True if the velocity is not reported.
     pub(super) const fn says_nothing(&self) -> bool {
         self.says_nothing
     }
 
-    /// Notes the pose and the velocity that were told, and the command that acts meanwhile, of a
-    /// robot with this full speed. The velocity that they show: the one that was told, or where
-    /// that says nothing that of the poses; `None` where these have jumped, or are the first.
+    /// Takes in the reported pose and velocity and the acting command of a robot with this full
+    /// speed. Returns the reported velocity, or that of the poses if none is reported; `None` if
+    /// the poses have jumped or there is only one.
     pub(super) fn note(
         &mut self,
         time: Time,
@@ -69,7 +70,7 @@ impl Odometry {
     }
 }
 
-/// The distance of two poses \[m\], and the turn between them \[rad\].
+/// The distance between two poses \[m\], and the rotation between them \[rad\].
 fn apart(from: Pose, to: Pose) -> [f64; 2] {
     [to.point().distance(from.point()), wrap_angle(to.theta - from.theta).abs()]
 }

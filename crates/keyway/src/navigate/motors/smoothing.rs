@@ -1,37 +1,38 @@
-//! Commands of a robot with limits of jerk: averages of what was decided.
+//! Commands of a robot with jerk limits: averages of the decided velocities.
 //!
-//! The average is one of decisions and not of measurements, so noise of odometry does not shake it.
-//! Only where the robot for a while does not at all drive as it was told (somebody has stopped it,
-//! or drives it), or has not been told anything, it begins anew with what was measured.
+//! The average is taken over decisions, not measurements, so it is insensitive to odometry noise.
+//! It restarts from the measured velocity only if the robot has not followed its commands at all
+//! for a while (it has been stopped or driven by something else), or has had no commands.
 
 use crate::geometry::Velocity;
 use crate::navigate::time::Time;
 use crate::robot::{CommandWindow, Limits, Robot};
 use serde::{Deserialize, Serialize};
 
-/// The average, and how far the robot drives by it.
+/// The averaging window, and its validity.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Smoothing {
     pub(super) window: CommandWindow,
-    /// Time of the last command; `None` where the robot may do anything.
+    /// Time of the last command; `None` if the state of the robot is open.
     given: Option<Time>,
-    /// Since when the robot does not drive as it was told.
+    /// Time since which the robot has not followed its commands.
     astray: Option<Time>,
 }
 
 impl Smoothing {
-    /// The patience with a robot that does not drive as it was told \[s\], or three cycles.
+    /// Tolerated time without following commands \[s\], or three cycles.
     const PATIENCE_S: f64 = 0.3;
 
-    /// A robot that was not told anything for so long drives as it does \[s\], or three cycles.
+    /// Longest time without commands after which the window is still valid \[s\], or three
+    /// cycles.
     const LONGEST_S: f64 = 1.0;
 
-    /// That of a robot at rest; `None` where nothing is averaged.
+    /// The window of a robot at rest; `None` if nothing is averaged.
     pub(super) fn of(robot: &Robot) -> Option<Self> {
         Some(Self { window: CommandWindow::of(robot)?, given: None, astray: None })
     }
 
-    /// Compares the velocity that was measured with the command that acts.
+    /// Compares the measured velocity with the acting command.
     pub(super) fn note(&mut self, time: Time, (now, told): (Velocity, Velocity), robot: &Drive) {
         if robot.follows(now, told) {
             self.astray = None;
@@ -40,7 +41,7 @@ impl Smoothing {
         }
     }
 
-    /// Begins a cycle: where what is averaged means nothing, anew with the velocity of the robot.
+    /// Begins a cycle: if the window is invalid, it is refilled with the velocity of the robot.
     pub(super) fn begin(&mut self, now: Time, velocity: Velocity, drive: &Drive) {
         let since = |time: Time, least_s: f64| now.since_s(time) > least_s.max(3.0 * drive.cycle_s);
         let is_astray = self.astray.is_some_and(|since_then| since(since_then, Self::PATIENCE_S));
@@ -50,22 +51,22 @@ impl Smoothing {
         }
     }
 
-    /// The command for a reference that goes on towards a velocity.
+    /// The command for a reference that moves towards a velocity.
     pub(super) fn smooth(&mut self, now: Option<Time>, to: Velocity, drive: &Drive) -> Velocity {
         self.given = self.given.and(now.or(self.given));
         let Drive { limits, cycle_s } = drive;
         let command = self.window.push(limits.reached(self.window.reference(), to, *cycle_s));
-        // A mean of full speeds may be one more by its last bit.
+        // A mean of full speeds may exceed full speed in its last bit.
         limits.clamped(command)
     }
 
-    /// Begins the next cycle with the velocity that the robot then has.
+    /// Restarts the next cycle from the velocity that the robot then has.
     pub(super) const fn begin_anew(&mut self) {
         (self.given, self.astray) = (None, None);
     }
 }
 
-/// A drive, as far as it is to follow commands.
+/// The drive properties that matter for following commands.
 #[derive(Clone, Debug)]
 pub(super) struct Drive {
     pub(super) limits: Limits,
@@ -73,8 +74,8 @@ pub(super) struct Drive {
 }
 
 impl Drive {
-    /// True if a robot drives nearly as it is told: but for what it makes up for within two cycles,
-    /// and half of its speed.
+    /// True if a robot follows its commands approximately: within the change that is possible in
+    /// two cycles, plus half of its speed.
     fn follows(&self, now: Velocity, told: Velocity) -> bool {
         let is_near = |now: f64, told: f64, deceleration: f64| {
             let sheds = 2.0 * deceleration * self.cycle_s;

@@ -2,14 +2,14 @@ use super::*;
 use crate::random::Random;
 use std::ops::Range;
 
-/// Motors of a robot, in steps of a millisecond: late, with a lag, and with what they do not do.
+/// Simulated motors of a robot, in steps of a millisecond: with a delay, a lag and a dead band.
 struct Real {
     delay_ms: usize,
     lag_s: f64,
     dead_band: Velocity,
     noise: f64,
     random: Random,
-    /// A command for each millisecond.
+    /// The command of each millisecond.
     given: Vec<Velocity>,
     wanted: Velocity,
     wheels: Velocity,
@@ -53,7 +53,7 @@ impl Real {
     }
 }
 
-/// A robot that is driven to and fro for a time; what its motors turn out to be.
+/// The motor model learned from a robot that is driven back and forth for a time.
 fn driven(robot: &Robot, real: &mut Real, seconds: f64) -> Motors {
     driven_and_told(robot, real, seconds, |real| real.wheels)
 }
@@ -139,7 +139,7 @@ fn motors_may_be_faster_than_described() {
     assert!((motors.delay_s() - 0.1).abs() < 0.02, "{}", motors.delay_s());
 }
 
-/// What was learned is given up when the robot does as described again.
+/// A learned delay is given up when the robot behaves as described again.
 #[test]
 fn a_delay_may_end() {
     let robot = Robot::jackal();
@@ -152,7 +152,7 @@ fn a_delay_may_end() {
     assert_eq!(motors.learned_s(), None);
 }
 
-/// While the speed changes steadily, a lag of first order is as late as its time constant.
+/// For a steadily changing speed, a first-order lag acts like a delay of its time constant.
 #[test]
 fn a_lag_counts_as_a_delay() {
     for (delay_ms, lag_s) in [(0, 0.1), (0, 0.2), (100, 0.1)] {
@@ -177,7 +177,7 @@ fn it_is_learned_within_the_first_second() {
 #[test]
 fn who_does_something_else_teaches_nothing() {
     let robot = Robot::jackal();
-    // Its motors are off, or somebody else drives it.
+    // Its motors are off, or another source drives it.
     let told: [fn(&Real) -> Velocity; 2] = [
         |_| Velocity::new(0.0, 1e-9),
         |real| Velocity::new(1.0 + libm::sin(0.011 * real.given.len() as f64), 0.3),
@@ -200,7 +200,7 @@ fn a_robot_whose_velocity_is_never_told_drives_all_the_same() {
         assert!((known.v - real.wheels.v).abs() < 0.05, "{known:?}, {:?}", real.wheels);
         assert!((known.omega - real.wheels.omega).abs() < 0.2, "{known:?}, {:?}", real.wheels);
     }
-    // The localisation jumps when the robot has just been told to turn.
+    // The localisation jumps just after the robot has been told to turn.
     let mut motors = Motors::new(&robot);
     for (cycle, theta) in [0.0, 0.0, -1.5, -1.5].into_iter().enumerate() {
         let now = at(0.1 * cycle as f64);
@@ -208,7 +208,7 @@ fn a_robot_whose_velocity_is_never_told_drives_all_the_same() {
         assert_eq!(velocity, Velocity::ZERO, "{cycle}");
         motors.give(now, now, Velocity::new(0.0, -0.3));
     }
-    // A robot that is never told to move, and whose pose creeps.
+    // A robot that is never commanded to move, and whose pose creeps.
     let mut motors = Motors::new(&robot);
     for cycle in 0..100 {
         let pose = Pose::new(0.01 * f64::from(cycle), 0.0, 0.0);
@@ -221,21 +221,22 @@ fn a_robot_whose_velocity_is_never_told_drives_all_the_same() {
 #[test]
 fn commands_that_move_nothing_are_made_larger() {
     let robot = Robot::small();
-    // Kobuki's: its acceleration does not reach it within a cycle.
+    // Values of a Kobuki: its acceleration does not exceed them within a cycle.
     let mut real = Real { dead_band: Velocity::new(0.06, 0.24), ..Real::new(0) };
     let motors = driven(&robot, &mut real, 3.0);
     let too_small = motors.too_small();
     assert!((0.04..0.06).contains(&too_small.v), "{too_small:?}");
     assert!(real.pose.point().norm() > 0.3, "{:?}", real.pose);
     let stands = Velocity::ZERO;
-    // More than half of what moves it moves it; less does not, unless it creeps.
+    // A command of more than half of the smallest effective one is raised to it; a smaller one is
+    // dropped, unless the robot is to creep.
     let least = motors.least();
     assert!((0.06..0.08).contains(&least.v), "{least:?}");
     assert_eq!(motors.within_reach(stands, Velocity::new(-0.05, 0.0)).v, -least.v);
     assert_eq!(motors.within_reach(stands, Velocity::new(0.001, 0.0)).v, least.v);
     assert_eq!(motors.within_reach(stands, Velocity::new(0.3, 0.0)).v, 0.3);
     assert_eq!(motors.within_reach(stands, Velocity::ZERO), Velocity::ZERO);
-    // Who slows down is not sped up.
+    // A robot that slows down is not sped up.
     assert_eq!(motors.within_reach(Velocity::new(0.09, 0.0), Velocity::new(0.05, 0.0)).v, 0.0);
 }
 

@@ -1,32 +1,32 @@
-//! Commands that were given and have no effect yet.
+//! Commands in flight: given, but without effect yet.
 
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::time::Time;
 use crate::robot::{Limits, Robot};
 use std::collections::VecDeque;
 
-/// The last commands, which act after a delay.
+/// The latest commands, which take effect after a delay.
 ///
-/// What a robot does before its next command acts is decided already. So that command is chosen for
-/// the pose and the velocity which the robot then has: those that follow from the last ones that
-/// were observed by the commands under way, each until the next one acts. The velocity changes
-/// linearly as far as the limits allow. Without noise this is exactly what happens, and the robot
-/// drives as it would without a delay, only that much later.
+/// The motion of a robot until its next command takes effect is already determined. That command
+/// is therefore chosen for the pose and the velocity that the robot then has. They are predicted
+/// from the last observed ones by the commands in flight, each until the next one takes effect;
+/// the velocity changes linearly within the limits. Without noise the prediction is exact, and
+/// the robot drives as it would without a delay, only that much later.
 #[derive(Clone, Debug)]
 pub(super) struct UnderWay {
     limits: Limits,
     cycle_s: f64,
-    /// The longest delay that is asked for.
+    /// Longest delay to be predicted \[s\].
     longest_s: f64,
     most: usize,
-    /// Speed and turn rate that do not move it.
+    /// Speed and turn rate that do not move the robot.
     pub(super) too_small: Velocity,
-    /// Each with the time at which it was given, the oldest first.
+    /// Commands with the times at which they were given, the oldest first.
     commands: VecDeque<(Time, Velocity)>,
 }
 
 impl UnderWay {
-    /// Commands that are kept beyond those of the delay.
+    /// Number of commands that are kept beyond those within the delay.
     const MORE: usize = 256;
 
     pub(super) fn new(robot: &Robot, longest_s: f64) -> Self {
@@ -37,9 +37,9 @@ impl UnderWay {
         Self { limits, cycle_s, longest_s, most, too_small, commands }
     }
 
-    /// Pose and velocity at the instant at which a command that is given at the second time acts,
-    /// for a robot that was observed at the first. Before the first command it has been told to go
-    /// on as it does.
+    /// Predicts the pose and the velocity at the instant at which a command given at `now` takes
+    /// effect, for a robot that was observed at `observed`. Before the first command, the robot
+    /// is assumed to keep its velocity.
     pub(super) fn predicted(
         &self,
         (observed, now): (Time, Time),
@@ -59,8 +59,8 @@ impl UnderWay {
         (pose, velocity)
     }
 
-    /// The velocity at the second of two times of a robot that has one at the first. Before the
-    /// first command it stands.
+    /// The velocity of a robot at the second of two times, given that at the first. Before the
+    /// first command, the robot is assumed to be commanded to stop.
     pub(super) fn velocity_after(
         &self,
         (from, to): (Time, Time),
@@ -78,7 +78,7 @@ impl UnderWay {
         Velocity::new(v_max_mps.max(-v_min_mps), omega_max_radps)
     }
 
-    /// Notes a command that is given now, and forgets those that have long acted. Allocates
+    /// Records a command that is given now, and drops those whose effect is long past. Allocates
     /// nothing.
     pub(super) fn give(&mut self, observed: Time, now: Time, command: Velocity) {
         while self.commands.back().is_some_and(|last| last.0 >= now) {
@@ -93,19 +93,19 @@ impl UnderWay {
         self.commands.push_back((now, command));
     }
 
-    /// The command that acts at a time; `None` before the first.
+    /// The command in effect at a time; `None` before the first.
     pub(super) fn acts_at(&self, time: Time, delay_s: f64) -> Option<Velocity> {
         let given = time.after_s(-delay_s);
         let begun = self.commands.partition_point(|command| command.0 <= given);
         Some(self.commands.get(begun.checked_sub(1)?)?.1)
     }
 
-    /// The commands, each with the time at which it was given.
+    /// The commands with the times at which they were given.
     pub(super) fn commands(&self) -> Vec<(Time, Velocity)> {
         self.commands.iter().copied().collect()
     }
 
-    /// Takes up such commands.
+    /// Restores commands.
     pub(super) fn take_up(&mut self, commands: &[(Time, Velocity)]) {
         self.commands.clear();
         self.commands.extend(commands.iter().take(self.most));
@@ -116,7 +116,7 @@ impl UnderWay {
         self.commands.clear();
     }
 
-    /// True if a robot stands, and no command under way moves it.
+    /// True if a robot is stationary, and no command in flight moves it.
     pub(super) fn is_at_rest(
         &self,
         (observed, now): (Time, Time),
@@ -135,8 +135,8 @@ impl UnderWay {
         Velocity::new(beyond(command.v, v), beyond(command.omega, omega))
     }
 
-    /// The commands that act between two times after a delay, and for how long \[s\]; `None`
-    /// before the first.
+    /// The commands in effect between two times after a delay, each with its duration \[s\];
+    /// `None` before the first.
     fn acting(
         &self,
         from: Time,
@@ -159,10 +159,10 @@ impl UnderWay {
 mod tests {
     use super::*;
 
-    /// A robot whose commands act late, each for a cycle; some are beyond its limits.
+    /// A robot whose commands take effect late, each for one cycle; some exceed its limits.
     struct LateRobot {
         robot: Robot,
-        /// The delay in whole cycles, and the rest of it as a part of one.
+        /// The delay in whole cycles, and the remaining fraction of a cycle.
         delay: (usize, f64),
         commands: Vec<Velocity>,
     }
@@ -179,7 +179,7 @@ mod tests {
             Self { robot, delay, commands: (0..60).map(command).collect() }
         }
 
-        /// State `cycles` and a part of one after the first command has begun to act.
+        /// State at `cycles` and a fraction of a cycle after the first command takes effect.
         fn after(&self, cycles: usize, part: f64) -> (Pose, Velocity) {
             let Robot { ref limits, cycle_s, .. } = self.robot;
             let (mut pose, mut velocity) = (Pose::new(20.0, 20.0, 0.3), Velocity::ZERO);
@@ -192,7 +192,7 @@ mod tests {
             (pose, velocity)
         }
 
-        /// State that it is told when it is to give a command.
+        /// State that is observed when it is to give a command.
         fn told(&self, cycle: usize) -> (Pose, Velocity) {
             let (whole, part) = self.delay;
             match cycle.checked_sub(whole + usize::from(part > 0.0)) {

@@ -9,7 +9,7 @@ use crate::navigate::task::GivenPath;
 use crate::navigate::watch::Watch;
 
 impl Deciding<'_> {
-    /// Goes on to the next stop when the robot is at a way-point.
+    /// Advances to the next stop if the robot is at a way-point.
     pub(super) fn pass_way_point(&mut self) {
         let position = self.pose.point();
         let tolerance_m = self.stack.controller.goal_tolerance_m;
@@ -22,7 +22,7 @@ impl Deciding<'_> {
         }
     }
 
-    /// True if the robot stands at its goal and faces as it should.
+    /// True if the robot is stationary at its goal, within the heading tolerance.
     pub(super) fn has_arrived(&self) -> bool {
         self.is_at_goal() && self.faces_as_it_should(self.pose) && self.stands()
     }
@@ -35,14 +35,14 @@ impl Deciding<'_> {
     pub(super) fn is_at_goal(&self) -> bool {
         let tolerance_m = self.stack.controller.goal_tolerance_m;
         let is_there = self.pose.point().distance(self.task.goal.position) <= tolerance_m;
-        // A path may pass its own end before.
+        // A path may pass its own end earlier.
         let is_at_end =
             |given: &GivenPath| given.covered_m >= given.path.length_m() - 2.0 * tolerance_m;
         is_there && self.task.is_last_leg() && self.task.given.as_ref().is_none_or(is_at_end)
     }
 
-    /// At the goal: brakes, turns to its heading, stays. `None` where it is elsewhere, or has no
-    /// room to turn: then it goes on to where it has, or where it faces as it should.
+    /// At the goal: brakes, turns to the goal heading, stays. `None` if the robot is elsewhere or
+    /// has no space to turn; it then drives on, to where it has space or faces the goal heading.
     pub(super) fn arrive(&mut self) -> Option<Step> {
         if !self.is_at_goal() {
             if matches!(self.task.mode, Mode::Arriving(_)) {
@@ -56,7 +56,7 @@ impl Deciding<'_> {
         }
         let (pose, velocity) = (self.pose, self.velocity);
         let mode = std::mem::take(&mut self.task.mode);
-        // The rest of a turn may be too little to move the motors.
+        // The rest of a rotation may be too small for the motors.
         let (pose_then, velocity_then) = self.robot_then;
         let rests = self.robot.stands(velocity_then) && self.faces_as_it_should(pose_then);
         let turn = match mode {
@@ -81,8 +81,8 @@ impl Deciding<'_> {
         Some(Step::Drive(braked))
     }
 
-    /// The turn to the heading at the goal, to the nearer side with room; 0 where it faces as it
-    /// should.
+    /// The rotation to the goal heading, in the shorter direction that has space; 0 if the
+    /// heading is within its tolerance.
     fn turn_at_goal(&self, pose: Pose) -> Option<f64> {
         let tolerance_rad = self.stack.controller.goal_yaw_tolerance_rad;
         let left_rad = self.task.goal.turn_left_rad(pose).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! One decision, from what is known and what is wanted.
+//! One decision, from the world and the task.
 
 use super::Record;
 use super::slowing::{Slow, slowed};
@@ -13,24 +13,24 @@ use crate::navigate::world::World;
 use crate::navigate::{Blocked, RecoveryKind, Stack, Step};
 use crate::robot::Robot;
 
-/// Everything that a decision looks at and remembers.
+/// Inputs and state of a decision.
 pub(super) struct Deciding<'a> {
     pub(super) robot: &'a Robot,
     pub(super) stack: &'a Stack,
     pub(super) local: &'a dyn LocalPlanner,
     pub(super) guide: &'a dyn Guide,
-    /// The parts for a speed limit, while there is one.
+    /// The parts for a speed limit, if there is one.
     pub(super) slow: Option<&'a Slow>,
     pub(super) world: &'a mut World,
     pub(super) task: &'a mut Task,
     pub(super) record: &'a mut Record,
-    /// Pose of the robot when the command acts.
+    /// Pose of the robot when the command takes effect.
     pub(super) pose: Pose,
-    /// Its velocity then.
+    /// Velocity of the robot at that time.
     pub(super) velocity: Velocity,
-    /// The robot itself; the same, unless its commands are averaged.
+    /// State of the robot itself; the same, unless its commands are averaged.
     pub(super) robot_then: (Pose, Velocity),
-    /// Since the last decision \[s\].
+    /// Time since the last decision \[s\].
     pub(super) elapsed_s: f64,
 }
 
@@ -42,23 +42,24 @@ impl<'a> Deciding<'a> {
         Moment { robot, pose, velocity, robot_then, moves_on, elapsed_s, least }
     }
 
-    /// True if the robot stands, and stays there.
+    /// True if the robot is stationary, and no averaged command moves it on.
     pub(super) fn stands(&self) -> bool {
         self.moment().stands()
     }
 
-    /// Notes that the robot has left what it was too near to, once it is told so.
+    /// Records that the robot has left the obstacle that its start was too close to, once an
+    /// observed pose shows it.
     pub(super) fn leave(&mut self, pose: Pose) {
         let known = self.world.router.layers.obstacles().clearance();
         self.task.too_near.take_if(|_| !touches(&self.robot.footprint, pose, &known));
     }
 
-    /// A command at no more than the speed limit, on the same arc.
+    /// A command within the speed limit, on the same arc.
     pub(super) fn slowed(&self, step: Step) -> Step {
         slowed(self.slow, step)
     }
 
-    /// The step before the stop rule is asked.
+    /// The step before the stop rule is applied.
     pub(super) fn decided(&mut self) -> Step {
         self.pass_way_point();
         let step = self.arrive().unwrap_or_else(|| self.go_on());
@@ -66,7 +67,7 @@ impl<'a> Deciding<'a> {
         step
     }
 
-    /// The step of a robot on its way.
+    /// The step of a robot that has not arrived.
     fn go_on(&mut self) -> Step {
         self.look_after_route();
         if let Some(step) = self.stand_aside() {
@@ -91,7 +92,7 @@ impl<'a> Deciding<'a> {
         }
         let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);
         if let Mode::Waiting { why, left_s } = &mut self.task.mode {
-            // On along the old route, as far as is safe: the robot sees better when it is nearer.
+            // Continue on the old route as far as is safe: the robot senses more from nearby.
             *left_s -= self.elapsed_s;
             let why = Blocked::NoRoute(why.clone());
             let command =
@@ -113,7 +114,7 @@ impl<'a> Deciding<'a> {
         }
     }
 
-    /// True if the robot stands because no other velocity was admissible.
+    /// True if the robot is to stay because no other velocity was admissible.
     fn can_only_stand(&self, command: Velocity) -> bool {
         let Evaluation { candidates, driving, .. } = self.record.evaluation;
         self.robot.stands(command) && candidates > 0 && driving == 0

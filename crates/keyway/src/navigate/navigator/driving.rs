@@ -36,7 +36,8 @@ impl Deciding<'_> {
         Ok(decision?.command)
     }
 
-    /// Finds the place to drive to: the guide's point, or the last place before it in sight.
+    /// Finds the guide point: that of the guide, or the last point of the route before it in line
+    /// of sight.
     pub(super) fn find_guide_point(&mut self) {
         let position = self.pose.point();
         let clearance = self.world.obstacles.clearance();
@@ -53,7 +54,8 @@ impl Deciding<'_> {
         if !self.stack.controller.watch_route {
             return;
         }
-        // Where the robot has less room than its radius, the way there need not have more.
+        // If the robot has less clearance than its radius, the line to the guide point need not
+        // have more.
         let radius_m = self.robot.footprint.inscribed_radius_m();
         let own_m = clearance.of_point(position, radius_m).min(clearance.to_border(position));
         let room_m = radius_m.min(own_m * (1.0 - 1e-6)).max(0.0);
@@ -66,8 +68,8 @@ impl Deciding<'_> {
         }
     }
 
-    /// The part of a path from elsewhere that a guide is shown: as far as the robot decides. It
-    /// would cut loops short. `None` for a route of its own.
+    /// The part of an external path that a guide is shown: as far as decisions reach, since a
+    /// guide would cut loops short. `None` for a planned route.
     fn ahead(&self) -> Option<Polyline> {
         self.task.given.as_ref()?;
         let path = &self.task.route.smoothed;
@@ -83,8 +85,8 @@ impl Deciding<'_> {
         Some(Polyline::new(points))
     }
 
-    /// The farthest place of the route up to the guide point to which the straight way keeps a
-    /// clearance \[m\], unless it is nearer than the second length \[m\].
+    /// The farthest point of the route up to the guide point to which the straight line keeps a
+    /// clearance \[m\], unless it is closer than the second length \[m\].
     fn farthest_in_sight(
         &self,
         position: Point,

@@ -1,4 +1,4 @@
-//! The last look at a command before it is issued.
+//! The final safety check of a command.
 
 use super::{Deciding, Record};
 use crate::geometry::{Pose, Velocity};
@@ -10,18 +10,18 @@ use crate::robot::Robot;
 use crate::sense::{MovingPoint, Tracker};
 use serde::{Deserialize, Serialize};
 
-/// The stop rule, and what it did.
+/// The stop rule and its statistics.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     rule: Option<StopRule>,
     counts: RefusalCounts,
-    /// Of the last cycle.
+    /// Result of the last cycle.
     refusal: Option<Refusal>,
-    /// Time for which it has kept the robot standing \[s\].
+    /// Time for which the rule has kept the robot stationary \[s\].
     held_s: f64,
 }
 
-/// A guard without its rule, as it is stored.
+/// A guard without its rule, in serialised form.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct StoredGuard {
     counts: RefusalCounts,
@@ -58,7 +58,7 @@ impl Guard {
         self.held_s
     }
 
-    /// Nothing has been asked in this cycle yet.
+    /// Resets the result of the cycle.
     pub(super) const fn pause(&mut self) {
         self.refusal = None;
     }
@@ -73,7 +73,7 @@ impl Guard {
 }
 
 impl Deciding<'_> {
-    /// The same step with the command that the stop rule lets pass.
+    /// The same step with the command that passes the stop rule.
     pub(super) fn guarded(&mut self, step: Step) -> Step {
         let moment = self.moment();
         self.record.guarded(self.world, &moment, step)
@@ -84,14 +84,14 @@ impl Deciding<'_> {
         beside_movers(self.world, &self.moment(), command)
     }
 
-    /// True if something that moves is what kept the robot from driving on.
+    /// True if a moving obstacle kept the robot from driving on.
     pub(super) fn waits_for_mover(&self) -> bool {
         self.record.evaluation.waits_for_mover()
     }
 }
 
 impl Record {
-    /// The same step with the command that the stop rule lets pass.
+    /// The same step with the command that passes the stop rule.
     pub(super) fn guarded(&mut self, world: &World, moment: &Moment<'_>, step: Step) -> Step {
         let step = beside_surfaces(world, moment, step);
         let &Moment { robot, pose, velocity, robot_then, elapsed_s, .. } = moment;
@@ -109,15 +109,15 @@ impl Record {
         self.guard.note(gated.why, keeps_standing, elapsed_s);
         match (gated.why, step) {
             (None, step) => step,
-            // What was in the way before still is.
+            // The earlier reason still holds.
             (Some(_), Step::Blocked { why, .. }) => Step::Blocked { command: gated.command, why },
             (Some(why), _) => Step::Blocked { command: gated.command, why: Blocked::Unsafe(why) },
         }
     }
 }
 
-/// A command of the navigator's own, or braking where it leads into something that moves: its
-/// motions are certified among what stands only.
+/// A command of the navigator itself, or braking if it leads into a moving obstacle: these
+/// motions are certified among stationary obstacles only.
 pub(super) fn beside_movers(world: &World, moment: &Moment<'_>, command: Velocity) -> Velocity {
     let &Moment { robot, pose, velocity, .. } = moment;
     let Robot { limits, cycle_s, .. } = robot;
@@ -127,16 +127,18 @@ pub(super) fn beside_movers(world: &World, moment: &Moment<'_>, command: Velocit
     if rule.refuses(command) { limits.braked(velocity, *cycle_s) } else { command }
 }
 
-/// Room to what is seen of who hardly moves: the margin of a robot, which may be a millimetre, is
-/// for what does not come towards it \[m\].
+/// Distance to the sensed surface of obstacles that hardly move \[m\]. The margin of a robot,
+/// which may be a millimetre, is for obstacles that do not approach it.
 const BESIDE_MOVERS_M: f64 = 0.05;
 
-/// The same step, or braking, where the robot could not stop any more before it comes nearer than
-/// [`BESIDE_MOVERS_M`] to what is seen of a mover that may as well stand, and nearer than it would
-/// come where it is. The disc for which a mover is taken may leave out a corner of it.
+/// The same step, or braking if the robot could no longer stop before it comes closer than
+/// [`BESIDE_MOVERS_M`] to the sensed surface of a moving obstacle that may as well be stationary,
+/// and closer than it would be at its present position. The disc that represents a moving
+/// obstacle may leave out a corner of it.
 ///
-/// Beside those that walk the robot does not brake for that: they would run into it.
-/// [`MoverRule`] asks where a velocity leads that is kept; this, where the robot comes to stand.
+/// Beside walking pedestrians the robot does not brake for that: they would run into it.
+/// [`MoverRule`] evaluates a velocity that is kept; this check evaluates the position at which
+/// the robot comes to rest.
 fn beside_surfaces(world: &World, moment: &Moment<'_>, step: Step) -> Step {
     let (Step::Drive(command) | Step::Blocked { command, .. }) = step else { return step };
     let &Moment { robot, pose, velocity, .. } = moment;
@@ -146,15 +148,15 @@ fn beside_surfaces(world: &World, moment: &Moment<'_>, step: Step) -> Step {
     step.commanding(robot.limits.braked(velocity, robot.cycle_s))
 }
 
-/// True if a robot that is given a command, and brakes after it, comes too near to a point that
-/// moves, and nearer than it would if it stayed.
+/// True if a robot that executes a command and then brakes comes too close to a moving point, and
+/// closer than it would be if it stayed.
 fn comes_too_near(
     robot: &Robot,
     points: &[MovingPoint],
     (pose, velocity): (Pose, Velocity),
     command: Velocity,
 ) -> bool {
-    /// Parts of a cycle.
+    /// Samples per cycle.
     const PARTS: u32 = 4;
     if points.is_empty() || command == Velocity::ZERO {
         return false;
@@ -201,7 +203,7 @@ mod tests {
         };
         let turn = |radps: f64| Velocity::new(0.0, radps);
         let (left, right) = (turn(0.25), turn(-0.25));
-        // In the first cycle it turns by 0.0125 rad, and until it stands by as much again.
+        // It rotates by 0.0125 rad in the first cycle, and by as much again until it stops.
         let beside = point(0.19, 0.253);
         assert!(comes_too_near(&robot, &beside, rest, left));
         assert!(!comes_too_near(&robot, &beside, rest, right), "away");

@@ -1,4 +1,4 @@
-//! Making way for somebody who comes towards the robot where two cannot pass.
+//! Making way for an oncoming moving obstacle where two cannot pass.
 
 use super::Deciding;
 use crate::geometry::{Disc, Point};
@@ -12,19 +12,19 @@ use crate::navigate::{Blocked, Step};
 use crate::route::Route;
 
 impl Deciding<'_> {
-    /// A robot that has been held up for so long makes way, if that is up to it \[s\].
+    /// Time of being held up after which the robot makes way, if it is the one to do so \[s\].
     const HELD_S: f64 = 2.0;
 
-    /// After so long the other one does not make way, though it would be up to it \[s\].
+    /// Time after which the other party is taken not to make way, even if it should \[s\].
     const ALONE_S: f64 = 8.0;
 
-    /// A robot near the place that comes no nearer for so long is there \[s\].
+    /// Time without progress after which a robot near the position has reached it \[s\].
     const COMES_ON_S: f64 = 1.0;
 
-    /// It stands beside the way of somebody for no longer than this \[s\].
+    /// Longest time that it waits beside the other party's path \[s\].
     const STANDS_S: f64 = 12.0;
 
-    /// Notes who comes towards the robot.
+    /// Records an oncoming moving obstacle.
     pub(super) fn note_met(&mut self) {
         if !self.stack.controller.make_way {
             return;
@@ -36,8 +36,8 @@ impl Deciding<'_> {
         self.task.met = met;
     }
 
-    /// Drives to a place beside the way of whom it met, if there is no way past, and it is up to
-    /// the robot to make way.
+    /// Drives to a position beside the path of the obstacle that it met, if no route leads past
+    /// it and the robot is the one to make way.
     pub(super) fn make_way(&mut self) -> bool {
         let Some(other) = self.task.met.disc() else { return false };
         let held_s = self.task.hold.held_s();
@@ -73,7 +73,7 @@ impl Deciding<'_> {
         Encounter { known, seen, robot, other, apart_m }
     }
 
-    /// A route that does not lead through a disc, on which something stands or moves.
+    /// A route that does not lead through a disc, which may be occupied.
     fn route_past(&mut self, disc: &Disc, to: Point) -> Option<Route> {
         let (from, budget) = (self.pose.point(), self.stack.controller.replan_budget);
         let needed_m = self.robot.footprint.inscribed_radius_m();
@@ -83,13 +83,14 @@ impl Deciding<'_> {
         around.or_else(|| router.again(from, to, budget).ok().filter(is_past))
     }
 
-    /// Goes on as soon as there is a way past, or when that takes too long. False if it does not
-    /// make way.
+    /// Ends making way as soon as a route leads past the other party, or when it takes too long.
+    /// Returns false if the robot does not make way.
     pub(super) fn go_on_making_way(&mut self) -> bool {
         let Mode::MakingWay { place, stood_s, other } = &mut self.task.mode else { return false };
         let config = &self.stack.controller;
         let mut near_m = config.goal_tolerance_m;
-        // A place has hardly more room than is needed: the robot drives on to it, if it can.
+        // The position hardly has more clearance than needed: the robot drives all the way to it,
+        // if it can.
         if self.task.watch.no_progress_s < Self::COMES_ON_S {
             near_m = near_m.min(self.world.known.frame().resolution_m());
         }
@@ -111,9 +112,9 @@ impl Deciding<'_> {
         true
     }
 
-    /// The one it made way for has had the time to pass, though the robot may not have seen it:
-    /// between where that was and where it was seen last nobody stands any more, but for who is in
-    /// view.
+    /// The other party has had the time to pass, though the robot may not have seen it: the space
+    /// between its first and its last sensed position counts as free again, except for obstacles
+    /// in view.
     fn take_as_gone(&mut self, begun: Disc, last: Disc) {
         self.task.mode = Mode::Following;
         let radius_m = begun.radius_m.max(last.radius_m) + self.world.known.frame().resolution_m();
@@ -126,14 +127,14 @@ impl Deciding<'_> {
         self.task.met.forget();
     }
 
-    /// Forgets what was sensed around a robot that has made way and has no route. It may be the
-    /// other one, as that came into view, and out of view now.
+    /// Forgets the sensed obstacles around a robot that has made way and has no route. They may
+    /// be the other party, sensed as it came into view and now out of view.
     fn forget_around(&mut self) {
         let (centre, radius_m) = (self.pose.point(), Encounter::REACH_M);
         self.world.forget_disc(&Disc { centre, radius_m });
     }
 
-    /// Takes the route to the next stop, if nobody is on its beginning.
+    /// Takes the route to the next stop, if no moving obstacle is on its first part.
     fn pass(&mut self, other: Disc) {
         let Some(route) = self.route_past(&other, self.task.next_stop()) else { return };
         let needed_m = self.robot.footprint.inscribed_radius_m();
@@ -150,7 +151,7 @@ impl Deciding<'_> {
         self.take(route);
     }
 
-    /// The step of a robot that stands beside the way of somebody.
+    /// The step of a robot that waits beside the other party's path.
     pub(super) fn stand_aside(&self) -> Option<Step> {
         let Mode::MakingWay { stood_s, .. } = self.task.mode else { return None };
         let braked = self.robot.limits.braked(self.velocity, self.robot.cycle_s);

@@ -1,4 +1,4 @@
-//! The navigation loop, as a value that observes and steps.
+//! The navigation loop, as a value with `observe` and `step`.
 
 mod arriving;
 mod changes;
@@ -34,14 +34,14 @@ use slowing::Slow;
 use std::sync::Arc;
 pub(super) use stored_record::StoredRecord;
 
-/// Drives a robot to goals: it plans on the known map, remembers what scans show, follows the guide
-/// points of its route with the local planner, plans again when the route turns out to be
-/// obstructed, and tries its recoveries when it gets no farther.
+/// Drives a robot to goals: it plans on the known map, keeps the sensed obstacles, follows the
+/// guide points of its route with the local planner, replans when the route is obstructed, and
+/// runs its recoveries when it makes no progress.
 ///
-/// It is given what was measured ([`Self::observe`]) and asked for a command in every cycle
-/// ([`Self::step`]). Goals come and go while it drives: what was sensed stays.
+/// It takes measurements ([`Self::observe`]) and returns a command in every cycle
+/// ([`Self::step`]). Goals may change while it drives: the sensed obstacles are kept.
 ///
-/// It sees the known map, poses, velocities and scans, and nothing else, and it reads no clock: the
+/// Its only inputs are the known map, poses, velocities and scans, and it reads no clock: the
 /// same inputs give the same commands. Frames and units are those of the map: metres, radians,
 /// seconds.
 pub struct Navigator {
@@ -50,53 +50,53 @@ pub struct Navigator {
     /// The present errand, if there is one.
     errand: Option<Errand>,
     record: Record,
-    /// The speed that is not to be exceeded \[m/s\].
+    /// Speed limit \[m/s\].
     speed_limit_mps: Option<f64>,
-    /// The parts for a speed limit, while there is one.
+    /// The parts for a speed limit, if there is one.
     slow: Option<Slow>,
-    /// Pose of the robot, as observed or told.
+    /// Pose of the robot, as observed or set.
     place: Option<Pose>,
     /// Time of the last step.
     stepped: Option<Time>,
-    /// Steps since the last observation that was taken in.
+    /// Number of steps since the last accepted observation.
     unobserved: u32,
-    /// The last step, while nothing has changed since.
+    /// The last step, as long as nothing has changed since.
     last: Option<Step>,
-    /// The last command, from which a robot brakes that is told nothing new.
+    /// The last command, from which the robot brakes if its velocity is outdated.
     issued: Velocity,
 }
 
-/// Work that a robot is asked to do.
+/// A job for the robot.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum Errand {
-    /// To drive to a goal, or along a path.
+    /// Drive to a goal, or along a path.
     Drive(Box<Task>),
-    /// A single motion.
+    /// Execute a single motion.
     Act(Act),
 }
 
-/// Memory of decisions, whatever the goal.
+/// State of decisions that is independent of the goal.
 struct Record {
-    /// Fate of the candidates of the last decision.
+    /// Statistics of the candidates of the last decision.
     evaluation: Evaluation,
-    /// The last question to the local planner; `None` when it was not asked.
+    /// The last query to the local planner; `None` if it was not called.
     asked: Option<Asked>,
     guard: Guard,
     counts: Counts,
-    /// Without meaning between decisions.
+    /// Not meaningful between decisions.
     scratch: Scratch,
 }
 
-/// A question to the local planner, as far as it is not kept elsewhere.
+/// A query to the local planner, as far as it is not stored elsewhere.
 #[derive(Clone, Debug)]
 struct Asked {
     pose: Pose,
     velocity: Velocity,
-    /// The robot itself; the same, unless its commands are averaged.
+    /// State of the robot itself; the same, unless its commands are averaged.
     robot_then: (Pose, Velocity),
-    /// The velocities that were averaged then, if commands are.
+    /// The averaging window at that time, if commands are averaged.
     window: Option<CommandWindow>,
-    /// Its memory before it answered.
+    /// Memory of the local planner before the query.
     memory: DriveMemory,
 }
 
@@ -115,10 +115,11 @@ struct Counts {
 }
 
 impl Navigator {
-    /// A robot without a goal, which knows nothing but a map, of which it takes a copy.
+    /// A navigator without a goal that knows only the map, of which it takes a copy.
     ///
     /// # Errors
-    /// When the layers of the map, or the planner on them, cannot be made as the stack says.
+    /// Returns [`NavigateError`] if the layers of the map, or the planner on them, cannot be
+    /// built as the stack requires.
     pub fn new(known: &OccupancyGrid, stack: &FittedStack) -> Result<Self, NavigateError> {
         Ok(Self {
             world: World::new(&Arc::new(known.clone()), stack)?,
@@ -141,16 +142,16 @@ impl Navigator {
         })
     }
 
-    /// Takes in what was measured. Nothing of it is taken in where its stamp, its pose or its
-    /// velocity cannot be true, or where it is older than the observation before; then the next
-    /// step stops the robot and says so.
+    /// Takes in an observation. It is discarded if its stamp, its pose or its velocity is
+    /// implausible, or if it is older than the observation before; the next step then stops the
+    /// robot and reports the reason.
     ///
-    /// A pose that is elsewhere than the robot could have driven is a correction, as by
-    /// [`Self::relocate`]; that and other contradictions are told by [`Self::doubts`].
+    /// A pose that the robot cannot have reached by driving is a correction, as by
+    /// [`Self::relocate`]. [`Self::doubts`] reports this and other contradictions.
     ///
-    /// May be called any number of times between two steps, as measurements arrive. A scan is put
-    /// where the robot was when it was made; one that is no newer than the last of its sensor says
-    /// nothing.
+    /// May be called any number of times between two steps, as measurements arrive. A scan is
+    /// placed at the pose of the robot at the time of the scan; one that is no newer than the
+    /// last of its sensor is ignored.
     pub fn observe(&mut self, observation: &Observation<'_>) {
         self.forget_last();
         let before = self.world.told().map(|told| told.time).ok();
@@ -158,7 +159,7 @@ impl Navigator {
         if let Ok(told) = self.world.told() {
             let is_first = self.place.is_none();
             self.place = Some(told.pose);
-            // The same pose again says nothing of where the robot is now.
+            // A repeated pose carries no information on the present one.
             if before.is_none_or(|before| told.time > before) {
                 self.unobserved = 0;
             }
@@ -172,12 +173,12 @@ impl Navigator {
         }
     }
 
-    /// Forgets the last answer: something has changed since.
+    /// Discards the last result because an input has changed.
     fn forget_last(&mut self) {
         (self.last, self.record.asked) = (None, None);
     }
 
-    /// Moves what is under way with the robot: a correction is no motion.
+    /// Moves the activity along with a correction of the robot's pose: a correction is no motion.
     fn shift_errand(&mut self, shift: &Shift) {
         match &mut self.errand {
             Some(Errand::Act(act)) => act.shift(shift),
@@ -189,16 +190,16 @@ impl Navigator {
         }
     }
 
-    /// One control cycle: what the robot is to do, from what was observed. It counts for the time
-    /// that has passed by the stamps since the last step; the first one for a cycle of the robot.
-    /// Asked again before anything has changed, it gives the same answer, which counts once.
+    /// Runs one control cycle: returns the step for the present observations. It accounts for the
+    /// time by the stamps since the last step, the first one for one cycle of the robot. Called
+    /// again before any input has changed, it returns the same step, which counts once.
     ///
-    /// For a robot with an [`Robot::actuation_delay_s`] the command is chosen for where the robot
-    /// will be when it acts. It is taken to be given: whoever gives another one says so
-    /// ([`Self::note_override`]), or makes that prediction wrong. The navigator learns
-    /// delays that are not as described, and what is too little to move the robot
-    /// ([`Self::doubts`]). Whatever velocity is told, the command is within the robot's limits of
-    /// speed.
+    /// For a robot with an [`Robot::actuation_delay_s`], the command is chosen for the state in
+    /// which it takes effect. The command is assumed to be executed: a caller that gives another
+    /// one must report it ([`Self::note_override`]), or the prediction is wrong. The navigator
+    /// learns delays that differ from the description, and commands that are too small to move
+    /// the robot ([`Self::doubts`]). For any reported velocity, the command is within the robot's
+    /// speed limits.
     pub fn step(&mut self) -> Step {
         self.unobserved = self.unobserved.saturating_add(1);
         let told = match self.world.told() {
@@ -213,7 +214,8 @@ impl Navigator {
         self.record.asked = None;
         self.record.guard.pause();
         let step = self.stepped(&told, now, staleness);
-        // Whoever decided may brake from a velocity beyond the limits, as odometry may show one.
+        // The decision may be to brake from a velocity beyond the limits, as odometry may report
+        // one.
         let command = self.parts.robot.limits.clamped(step.command());
         let command = self.world.motors.smoothed(now, command);
         self.world.motors.give(told.time, now, command);
@@ -222,9 +224,9 @@ impl Navigator {
         step
     }
 
-    /// The same at a time that may be later than all stamps so far \[s\], by the clock of the
-    /// stamps: what was measured is as old as it then is, and a pose that is too old stops the
-    /// robot. An earlier time, or one that is not finite, is as if none were told.
+    /// Like [`Self::step`], at a time that may be later than all stamps so far \[s\], by the
+    /// clock of the stamps: the measurements age accordingly, and a pose that is too old stops
+    /// the robot. An earlier time, or one that is not finite, is ignored.
     pub fn step_at(&mut self, now_s: f64) -> Step {
         if self.world.pass_time(now_s) {
             self.forget_last();
@@ -232,8 +234,7 @@ impl Navigator {
         self.step()
     }
 
-    /// Stops at once, without knowing where the robot is; within its limits of jerk, if it has
-    /// some.
+    /// Stops at once, without a known pose; within its jerk limits, if it has any.
     fn stop(&mut self, why: Blocked) -> Step {
         self.record.asked = None;
         self.record.guard.pause();
@@ -246,8 +247,8 @@ impl Navigator {
         Step::Blocked { command, why }
     }
 
-    /// A step counts for no more time than this, or three cycles: whoever was away for longer has
-    /// not waited \[s\].
+    /// Longest time that a step accounts for, or three cycles: a caller that has paused for
+    /// longer has not waited \[s\].
     const LONGEST_S: f64 = 1.0;
 
     fn stepped(&mut self, told: &Told, now: Time, staleness: Option<Blocked>) -> Step {
@@ -287,7 +288,7 @@ impl Navigator {
             Some(Errand::Drive(_)) => self.drive(pose_now, &moment, silence, braked),
         };
         if matches!(self.errand, None | Some(Errand::Act(_))) {
-            // No route looks at them.
+            // No route uses them.
             self.world.forget_edits();
         }
         match step {
@@ -306,7 +307,7 @@ impl Navigator {
     ) -> Step {
         let Some(mut deciding) = self.deciding(moment) else { return Step::Idle };
         deciding.leave(told);
-        // A robot that stands at its goal need not see it.
+        // A robot that is stationary at its goal needs no sensors.
         if let Some(why) = silence.filter(|_| !deciding.has_arrived()) {
             return Step::Blocked { command: braked, why };
         }
@@ -315,7 +316,7 @@ impl Navigator {
         deciding.guarded(step)
     }
 
-    /// The step of a robot that does a single act.
+    /// The step of a robot that executes a single act.
     fn act(&mut self, moment: &Moment<'_>, silence: Option<Blocked>, braked: Velocity) -> Step {
         let Some(Errand::Act(act)) = &mut self.errand else { return Step::Idle };
         if let Some(why) = silence {
@@ -331,7 +332,7 @@ impl Navigator {
         self.record.guarded(&self.world, moment, step)
     }
 
-    /// The reason to stop, if the last pose is too old.
+    /// The reason to stop if the last pose is too old.
     fn staleness(&self, told: &Told, now: Time) -> Option<Blocked> {
         const LEAST_S: f64 = 0.5;
         let cycle_s = self.parts.robot.cycle_s;
@@ -341,7 +342,7 @@ impl Navigator {
         is_stale.then_some(Blocked::PoseStale { age_s })
     }
 
-    /// A decision about what is wanted, if that is a goal.
+    /// A decision on the present task, if there is one.
     fn deciding<'a>(&'a mut self, moment: &Moment<'a>) -> Option<Deciding<'a>> {
         let FittedStack { robot, stack, local, guide, .. } = &self.parts;
         let Some(Errand::Drive(task)) = &mut self.errand else { return None };
@@ -366,7 +367,7 @@ impl Navigator {
         })
     }
 
-    /// Plans the route anew from where the robot is.
+    /// Replans the route from the present pose.
     fn plan_again(&mut self) {
         self.forget_last();
         let Some(pose) = self.place.filter(|pose| pose.point().is_finite()) else { return };
@@ -380,7 +381,7 @@ impl Navigator {
         }
     }
 
-    /// The task to drive to a goal, if there is one.
+    /// The task of driving to a goal, if there is one.
     fn task(&self) -> Option<&Task> {
         match &self.errand {
             Some(Errand::Drive(task)) => Some(task),

@@ -1,10 +1,11 @@
 //! The point of no return of a robot that cannot drive backwards.
 //!
-//! Such a robot stays in a place in which it can neither drive on nor turn. So before it leaves the
-//! last place from which it surely gets on, it has to know how: from where it would stand, it can
-//! turn and drive straight to where it can turn around again, to its goal, or as far as it looks,
-//! as it faces or in two directions. If that is not so, it stops, and a manoeuvre leads it in: one
-//! that keeps less room, if there is no other.
+//! A robot that cannot drive backwards gets stuck in a place in which it can neither drive on nor
+//! turn. Before it leaves the last position from which it is sure to get on, it must have a
+//! continuation: from its stopping pose, it can rotate and drive straight to a position at which
+//! it can turn around again, to its goal, or as far as its horizon, as it faces or in two
+//! directions. If it has none, it stops, and a manoeuvre leads it in, with less clearance if
+//! there is no other.
 
 use super::Deciding;
 use crate::geometry::Velocity;
@@ -14,7 +15,7 @@ use crate::navigate::recovery::{RecoveryUnderWay, TightPlace, kept_room_m};
 use crate::navigate::watch::RestOfRoute;
 
 impl Deciding<'_> {
-    /// The command of a manoeuvre that leads on, or braking before it begins, where a command leads
+    /// The command of a manoeuvre that leads on, or braking before it starts, if a command leads
     /// beyond the point of no return.
     pub(super) fn led_in(&mut self, command: Velocity) -> Option<Velocity> {
         if !self.leads_beyond_return(command) {
@@ -38,8 +39,8 @@ impl Deciding<'_> {
         self.go_on_recovering().map(|(_, command)| command)
     }
 
-    /// True if the robot would stand where it does not surely get on, while now it comes to where
-    /// it can turn around.
+    /// True if the robot would stop at a pose from which it is not sure to get on, while at
+    /// present it still reaches a position at which it can turn around.
     fn leads_beyond_return(&self, command: Velocity) -> bool {
         let footprint = &self.robot.footprint;
         let (inscribed_m, size_m) =
@@ -58,20 +59,20 @@ impl Deciding<'_> {
             return false;
         }
         let stands_at = |command| self.robot.stop_pose(self.pose, self.velocity, command);
-        // Inside of a long lane, the first one is answered at once.
+        // Inside a long lane, the first test settles it.
         self.tighter_place().straight_on(stands_at(Velocity::ZERO)).is_some()
             && !self.tight_place().surely_gets_on(stands_at(command))
     }
 
-    /// The place in which it is, with less room to keep: where it does not surely get on any more,
-    /// it may still come out again.
+    /// The present surroundings with less clearance: where the robot is no longer sure to get on,
+    /// it may still get out again.
     fn tighter_place(&self) -> TightPlace<'_> {
         const SHARE: f64 = 0.25;
         let place = self.tight_place();
         TightPlace { room_m: SHARE * place.room_m, ..place }
     }
 
-    /// The place in which it is.
+    /// The present surroundings.
     pub(super) fn tight_place(&self) -> TightPlace<'_> {
         let (robot, obstacles) = (self.robot, &self.world.obstacles);
         let RestOfRoute { path, covered_m } = self.rest();

@@ -1,4 +1,4 @@
-//! Recoveries of a robot that gets no farther.
+//! Recoveries of a robot that makes no progress.
 
 use super::Deciding;
 use super::replanning::Replanned;
@@ -9,8 +9,8 @@ use crate::navigate::recovery::{Motion, OnTheSpot, RecoveryUnderWay, kept_room_m
 use crate::navigate::watch::Watch;
 
 impl Deciding<'_> {
-    /// Begins the first kind of recovery in the order that can do something. Motions begin where
-    /// the robot stands.
+    /// Starts the first recovery of the order that has an effect. Motions start while the robot
+    /// is stationary.
     pub(super) fn recover(&mut self) {
         self.task.watch = Watch::NEW;
         self.task.mode = Mode::Following;
@@ -30,7 +30,7 @@ impl Deciding<'_> {
         }
     }
 
-    /// Begins a recovery; false when it can do nothing here.
+    /// Starts a recovery; returns false if it has no effect here.
     fn begin(&mut self, kind: RecoveryKind) -> bool {
         let config = &self.stack.controller;
         let (robot, pose, obstacles) = (self.robot, self.pose, &self.world.obstacles);
@@ -52,8 +52,7 @@ impl Deciding<'_> {
         true
     }
 
-    /// Goes on with a recovery, if one is under way. After it the route begins where the robot then
-    /// is.
+    /// Continues a recovery, if one is active. After it, the route starts at the present pose.
     pub(super) fn go_on_recovering(&mut self) -> Option<(RecoveryKind, Velocity)> {
         if let Mode::StoppingFor(kind) = self.task.mode {
             if !self.stands() {
@@ -63,7 +62,7 @@ impl Deciding<'_> {
             self.recover();
         }
         if self.record.guard.held_s() >= self.stack.controller.blocked_s {
-            // The stop rule is stricter than what its motions are certified by.
+            // The stop rule is stricter than the check that certifies its motions.
             if self.task.mode.is_recovering() {
                 self.task.mode = Mode::Following;
             }
@@ -77,7 +76,7 @@ impl Deciding<'_> {
             self.replan();
             return None;
         };
-        // What is left of the way is reported in every cycle.
+        // The remaining distance is reported in every cycle.
         self.find_guide_point();
         Some((kind, self.beside_movers(command)))
     }

@@ -1,4 +1,4 @@
-//! New routes while the robot drives: their occasions, and their results.
+//! Replanning while the robot drives: its triggers and its results.
 
 use super::Deciding;
 use crate::geometry::{Disc, Point, Polyline};
@@ -11,20 +11,20 @@ use crate::navigate::world::World;
 use crate::navigate::{IfWayPointBlocked, Misfit};
 use crate::route::Route;
 
-/// Result of planning again.
+/// Result of replanning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Replanned {
-    /// The new route leads another way.
+    /// The new route differs from the last one.
     Elsewhere,
-    /// It leads the same way as the last one.
+    /// The new route is the same as the last one.
     Alike,
-    /// There is none.
+    /// No route exists.
     Failed,
 }
 
 impl Deciding<'_> {
-    /// Plans again when what was sensed in this cycle cuts the route, or no place of it is in
-    /// sight; begins a recovery when the robot gets no farther.
+    /// Replans if obstacles sensed in this cycle cut the route, or if no point of it is in line
+    /// of sight. Starts a recovery if the robot makes no progress.
     pub(super) fn look_after_route(&mut self) {
         let position = self.pose.point();
         self.task.hold.note(position, self.robot, self.elapsed_s);
@@ -63,8 +63,8 @@ impl Deciding<'_> {
         }
     }
 
-    /// Takes another way around ground on which movers walk, once that takes no longer than the
-    /// robot has been held up beside it.
+    /// Takes a detour around an area in which moving obstacles walk, once the detour takes no
+    /// longer than the robot has been held up beside that area.
     fn go_around(&mut self) -> bool {
         if !self.stack.controller.go_around {
             return false;
@@ -88,7 +88,7 @@ impl Deciding<'_> {
         true
     }
 
-    /// Ground beside the robot, or beside its next stop, cannot be gone around.
+    /// An area beside the robot, or beside its next stop, cannot be avoided.
     fn leave_ends_free(&self, ground: &mut Vec<Disc>) {
         let beside_m = 2.0 * self.robot.footprint.inscribed_radius_m();
         let ends: [Point; 2] = [self.pose.point(), self.task.next_stop()];
@@ -97,7 +97,7 @@ impl Deciding<'_> {
         });
     }
 
-    /// A route to the next stop around some ground; `None` where there is none, or no ground.
+    /// A route to the next stop around some areas; `None` if there is none, or no area.
     fn route_around(&mut self, ground: &[Disc]) -> Option<Route> {
         let ends = (self.pose.point(), self.task.next_stop());
         let World { router, known, .. } = &mut *self.world;
@@ -113,14 +113,14 @@ impl Deciding<'_> {
         RestOfRoute { path: &self.task.route.smoothed, covered_m: self.task.covered_m }
     }
 
-    /// Least clearance of the way along the route \[m\]: the robot must be able to turn on the
-    /// spot, as far as the route leaves room for that. With less, a guide would cut corners that
-    /// only the inscribed disc can pass.
+    /// Minimum clearance along the route \[m\]: enough for the robot to rotate on the spot, as
+    /// far as the route allows it. With less, a guide would cut corners that only the inscribed
+    /// disc can pass.
     pub(super) fn needed_m(&self) -> f64 {
         turning_clearance_m(self.stack, self.robot).min(self.task.route.clearance_m)
     }
 
-    /// The rest of a path that was given from elsewhere, if the robot is near it and fits along it.
+    /// The rest of an external path, if the robot is near it and fits along it.
     fn given_again(&self) -> Option<Route> {
         let GivenPath { path, covered_m } = self.task.given.as_ref()?;
         let position = self.pose.point();
@@ -140,9 +140,9 @@ impl Deciding<'_> {
         Some(Route { smoothed: rest, clearance_m, ..Route::default() })
     }
 
-    /// Plans again on what is known and sensed, around the ground that is avoided, if there is a
-    /// way around. When that fails, the old route stays, and the next attempt waits longer each
-    /// time. A path from elsewhere is left where the robot does not fit along it.
+    /// Replans with the known and the sensed obstacles, around the avoided areas if possible. On
+    /// failure the old route stays, and the waiting time until the next attempt grows. An
+    /// external path is abandoned if the robot does not fit along it.
     pub(super) fn replan(&mut self) -> Replanned {
         if let Some(route) = self.given_again() {
             return self.take(route);
@@ -169,7 +169,8 @@ impl Deciding<'_> {
         }
     }
 
-    /// Passes a way-point to which there still is no route near by, or skips it, as the stack says.
+    /// Passes near a way-point that still cannot be reached, or skips it, as configured in the
+    /// stack.
     fn leave_way_point(&mut self) {
         let is_out_of_reach =
             matches!(&self.task.mode, Mode::Waiting { why, .. } if why.is_of_goal());
@@ -193,14 +194,15 @@ impl Deciding<'_> {
         self.replan();
     }
 
-    /// The route to the place beside the next way-point that is nearest to it and can be reached.
+    /// The route to the reachable position that is nearest to the next way-point, if it is beside
+    /// it.
     fn route_beside(&mut self) -> Option<(Point, Route)> {
         const NEAR_M: f64 = 1.0;
         let near_m = NEAR_M.max(4.0 * self.robot.footprint.circumscribed_radius_m());
         let (position, stop) = (self.pose.point(), self.task.next_stop());
         let asked = self.task.asked[self.task.passed];
         let router = &mut self.world.router;
-        // What stands there is seen from outside: within it there seems to be room.
+        // An obstacle there is sensed from outside: its inside seems to be free.
         let place = router.nearest_reachable(position, asked)?;
         if place == stop || place.distance(asked) > near_m {
             return None;

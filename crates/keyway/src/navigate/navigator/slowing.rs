@@ -1,4 +1,4 @@
-//! Speed limits of the moment.
+//! Speed limits in effect.
 
 use super::Navigator;
 use crate::geometry::{Point, Velocity};
@@ -7,17 +7,17 @@ use crate::navigate::Step;
 use crate::robot::Robot;
 use std::sync::Arc;
 
-/// The parts of a navigator that know how fast the robot drives, for a lower speed.
+/// The parts of a navigator that depend on the maximum speed, for a lower speed.
 pub(super) struct Slow {
-    /// The speed \[m/s\].
+    /// Speed limit \[m/s\].
     speed_mps: f64,
     robot: Arc<Robot>,
     pub(super) local: Arc<dyn LocalPlanner + Send + Sync>,
 }
 
 impl Navigator {
-    /// Makes the parts for the speed limit at a place, or for a speed from which the robot comes
-    /// down to it.
+    /// Builds the parts for the speed limit at a position, or for a higher speed from which the
+    /// robot brakes down to it.
     pub(super) fn slow_down(&mut self, place: Point, velocity: Velocity) {
         let Robot { limits, cycle_s, .. } = &*self.parts.robot;
         let limit_mps =

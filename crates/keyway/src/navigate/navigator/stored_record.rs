@@ -1,11 +1,11 @@
-//! The part of a snapshot that remembers decisions.
+//! The part of a snapshot that holds the state of decisions.
 
 use super::Counts;
 use super::guarding::StoredGuard;
 use crate::local::Evaluation;
 use serde::{Deserialize, Serialize};
 
-/// Memory of decisions, as it is stored.
+/// State of decisions in serialised form.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct StoredRecord {
     pub(super) evaluation: Evaluation,

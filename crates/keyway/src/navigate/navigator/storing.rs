@@ -1,4 +1,4 @@
-//! A navigator as a value, and back.
+//! Snapshots of a navigator.
 
 use super::guarding::Guard;
 use super::stored_record::StoredRecord;
@@ -10,8 +10,8 @@ use crate::navigate::world::World;
 use crate::navigate::{FittedStack, RestoreError, Snapshot};
 
 impl Navigator {
-    /// All that it knows, wants and does, as a value. Costs a copy of the map and the layers that
-    /// follow what was sensed.
+    /// The complete state as a value. Costs a copy of the map and of the layers derived from
+    /// sensed obstacles.
     pub fn snapshot(&self) -> Snapshot {
         let Self { parts, world, errand, record, .. } = self;
         let Record { evaluation, guard, counts, .. } = record;
@@ -25,7 +25,7 @@ impl Navigator {
             errand: errand.clone(),
             record,
             speed_limit_mps: self.speed_limit_mps,
-            // A place that is none is not known.
+            // A pose that is not finite is stored as unknown.
             place: self.place.filter(|it| it.point().is_finite() && it.theta.is_finite()),
             stepped: self.stepped,
             unobserved: self.unobserved,
@@ -33,18 +33,18 @@ impl Navigator {
         }
     }
 
-    /// The navigator that was stored. It gives the same commands from here on.
+    /// Restores a stored navigator. It gives the same commands from here on.
     ///
     /// # Errors
-    /// When the snapshot has another form, its robot or stack cannot be used, or its parts
-    /// contradict each other.
+    /// Returns [`RestoreError`] if the snapshot has another format, its robot or stack cannot be
+    /// used, or its parts contradict each other.
     pub fn restore(snapshot: Snapshot) -> Result<Self, RestoreError> {
         let stack = snapshot.stack.fit(&snapshot.robot)?;
         Self::restore_with(snapshot, &stack)
     }
 
-    /// The same for a stack with parts of the caller's own, which are not stored. The robot and the
-    /// parameters of the snapshot do not count then.
+    /// Like [`Self::restore`], for a stack with custom parts, which are not stored. The robot and
+    /// the parameters of the snapshot are then ignored.
     ///
     /// # Errors
     /// As for [`Self::restore`].
@@ -79,7 +79,7 @@ impl Navigator {
     }
 }
 
-/// An errand with the parts that are not stored.
+/// Restores the parts of an errand that are not stored.
 fn revived(
     mut errand: Errand,
     world: &mut World,

@@ -1,4 +1,4 @@
-//! Goals, paths and single acts, and questions about ways.
+//! Goals, paths and single acts, and path queries.
 
 use super::{Errand, Navigator};
 use crate::ConfigError;
@@ -11,7 +11,7 @@ use crate::navigate::{FittedStack, Goal, Misfit, NavigateError};
 use crate::route::{Route, smooth_line};
 
 impl Navigator {
-    /// Drives to a goal from now on, in the place of the last one.
+    /// Sets a new goal in place of the last one.
     ///
     /// # Errors
     /// As for [`Self::set_goals`].
@@ -19,18 +19,17 @@ impl Navigator {
         self.set_goals(&[], goal)
     }
 
-    /// The same by way of some points, in their order. Each is passed within the goal tolerance.
+    /// Sets a new goal with way-points, in their order. Each is passed within the goal tolerance.
     ///
-    /// A goal must be within reach on the known map. Where only what was sensed is in
-    /// the way, the robot sets out, and tries to find a way as it does for every route that turns
-    /// out to be obstructed.
+    /// The goal must be reachable on the known map. If only sensed obstacles block the route, the
+    /// robot sets out and handles them as on every route that turns out to be obstructed.
     ///
     /// # Errors
-    /// When nobody has said where the robot is, it does not fit there or at the goal, or not with
-    /// the goal's heading, or touches something, or when there is no route;
-    /// [`NavigateError::WayPoint`] for a way-point that cannot be reached. Then it goes on as
-    /// before. A place that is too near to something by no more than [`start_error_m`] is none
-    /// ([`Self::too_near`]).
+    /// Returns [`NavigateError`] if the pose of the robot is unknown, if the robot does not fit
+    /// there, at the goal or with the goal heading, if it touches an obstacle, or if no route
+    /// exists; [`NavigateError::WayPoint`] for a way-point that cannot be reached. The robot then
+    /// continues as before. A start that is too close to an obstacle by at most [`start_error_m`]
+    /// is no error ([`Self::too_near`]).
     ///
     /// [`start_error_m`]: crate::navigate::ControllerConfig::start_error_m
     pub fn set_goals(
@@ -48,13 +47,13 @@ impl Navigator {
         self.accept(Planned { start, changes, inserted_m, is_between_cells, task })
     }
 
-    /// The search of [`Self::set_goals`] as a value: the robot drives on while it runs. Its result
-    /// is for [`Self::accept`].
+    /// The search of [`Self::set_goals`] as a value: the robot drives on while it runs. Its
+    /// result is passed to [`Self::accept`].
     ///
     /// Costs a copy of the layers of the map.
     ///
     /// # Errors
-    /// When nobody has said where the robot is.
+    /// Returns [`NavigateError::PlaceUnknown`] if the pose of the robot is unknown.
     pub fn plan_job(
         &self,
         way_points: &[Point],
@@ -64,18 +63,18 @@ impl Navigator {
         Ok(PlanJob::new(&self.world, &self.parts, start, (way_points, goal.into())))
     }
 
-    /// Drives to the goal for which a route was searched, in the place of the last goal. Where the
-    /// robot has driven on meanwhile, it plans again from where it is; where the map was changed,
-    /// it searches again on that.
+    /// Accepts the result of a search: its goal replaces the last one. If the robot has moved
+    /// meanwhile, the route is replanned from its present pose; if the map was changed, the
+    /// search is repeated on the new map.
     ///
     /// # Errors
-    /// The error that the search has found, as for [`Self::set_goals`]. Then it goes on as before.
+    /// The error of the search, as for [`Self::set_goals`]. The robot then continues as before.
     pub fn accept(&mut self, planned: Planned) -> Result<(), NavigateError> {
         let Planned { start, changes, inserted_m, is_between_cells, task } = planned;
         let place = self.place.ok_or(NavigateError::PlaceUnknown)?;
         let task = task?;
         if changes != self.world.changes {
-            // The route is one of another map.
+            // The route belongs to another map.
             let way_points = &task.asked[..task.asked.len() - 1];
             return self.set_goals(way_points, task.goal);
         }
@@ -91,14 +90,13 @@ impl Navigator {
         Ok(())
     }
 
-    /// Drives along a path from elsewhere, which begins near the robot, to its end, as closely as
-    /// along a route of its own. Where something is in the way, such a route to the end takes its
-    /// place.
+    /// Follows an external path, which starts near the robot, to its end, as closely as a planned
+    /// route. If it is obstructed, a planned route to its end replaces it.
     ///
     /// # Errors
-    /// When nobody has said where the robot is; for a path without two points or with one that is
-    /// not finite; and where the map shows that the robot does not fit along it
-    /// ([`NavigateError::Misfit`]). Then it goes on as before.
+    /// Returns [`NavigateError`] if the pose of the robot is unknown, for a path with fewer than
+    /// two points or with one that is not finite, and if the robot does not fit along it on the
+    /// map ([`NavigateError::Misfit`]). The robot then continues as before.
     pub fn follow(&mut self, path: Polyline) -> Result<(), NavigateError> {
         let start = self.place.ok_or(NavigateError::PlaceUnknown)?.point();
         let parts = &self.parts;
@@ -108,17 +106,18 @@ impl Navigator {
         Ok(())
     }
 
-    /// Gives up what it was asked to do: the robot brakes, and stands.
+    /// Cancels the present errand: the robot brakes, and stays stationary.
     pub fn cancel(&mut self) {
         self.ask_for(None);
     }
 
-    /// Turns on the spot by an angle \[rad\], positive to the left, within a time \[s\]. The robot
-    /// brakes first, and has arrived when it stands again. Nothing is touched: where there is no
-    /// room it waits, until its time is over.
+    /// Rotates on the spot by an angle \[rad\], positive to the left, within a time \[s\]. The
+    /// robot brakes first, and has arrived when it is stationary again. It touches nothing: if
+    /// there is no space, it waits until its time is over.
     ///
     /// # Errors
-    /// For an angle that is not finite, and a time that is not positive. Then it goes on as before.
+    /// Returns [`ConfigError`] for an angle that is not finite, and for a time that is not
+    /// positive. The robot then continues as before.
     pub fn spin(&mut self, angle_rad: f64, allowance_s: f64) -> Result<(), ConfigError> {
         if !angle_rad.is_finite() {
             return Err(ConfigError::must_be("angle_rad", "a finite angle", angle_rad));
@@ -126,11 +125,13 @@ impl Navigator {
         self.begin(Motion::Turn(angle_rad), allowance_s)
     }
 
-    /// Drives straight back by a distance \[m\], in the same way.
+    /// Drives straight back by a distance \[m\] within a time \[s\], under the rules of
+    /// [`Self::spin`].
     ///
     /// # Errors
-    /// For a distance that is negative or not finite, a robot that cannot drive backwards, and a
-    /// time that is not positive. Then it goes on as before.
+    /// Returns [`ConfigError`] for a distance that is negative or not finite, for a robot that
+    /// cannot drive backwards, and for a time that is not positive. The robot then continues as
+    /// before.
     pub fn back_up(&mut self, distance_m: f64, allowance_s: f64) -> Result<(), ConfigError> {
         ConfigError::unless_not_negative("distance_m", distance_m)?;
         if self.parts.robot.limits.v_min_mps >= 0.0 {
@@ -140,11 +141,12 @@ impl Navigator {
         self.begin(Motion::Drive(-distance_m), allowance_s)
     }
 
-    /// Drives straight ahead by a distance \[m\], in the same way.
+    /// Drives straight ahead by a distance \[m\] within a time \[s\], under the rules of
+    /// [`Self::spin`].
     ///
     /// # Errors
-    /// For a distance that is negative or not finite, and a time that is not positive. Then it goes
-    /// on as before.
+    /// Returns [`ConfigError`] for a distance that is negative or not finite, and for a time that
+    /// is not positive. The robot then continues as before.
     pub fn drive_on_heading(
         &mut self,
         distance_m: f64,
@@ -165,11 +167,12 @@ impl Navigator {
         self.forget_last();
     }
 
-    /// A route between two positions on what is known and sensed. Nothing changes by it.
+    /// Plans a route between two positions with the known and the sensed obstacles. Does not
+    /// change the errand.
     ///
     /// # Errors
-    /// When there is none, or the robot touches something at the start, by more than
-    /// [`start_error_m`](crate::navigate::ControllerConfig::start_error_m).
+    /// Returns [`NavigateError`] if no route exists, or if the robot touches an obstacle at the
+    /// start by more than [`start_error_m`](crate::navigate::ControllerConfig::start_error_m).
     pub fn plan(&mut self, start: Point, goal: Point) -> Result<Route, NavigateError> {
         let FittedStack { robot, stack, .. } = &self.parts;
         let router = &mut self.world.router;
@@ -177,8 +180,9 @@ impl Navigator {
         router.again(start, goal, u64::MAX)
     }
 
-    /// The place nearest to a goal that can be reached from a start, on what is known and sensed:
-    /// the goal itself, where there is a route to it; `None` where nothing can be reached.
+    /// The position nearest to a goal that can be reached from a start, with the known and the
+    /// sensed obstacles: the goal itself if a route to it exists; `None` if nothing can be
+    /// reached.
     pub fn nearest_reachable(&mut self, start: Point, goal: Point) -> Option<Point> {
         let router = &mut self.world.router;
         if router.again(start, goal, u64::MAX).is_ok() {
@@ -187,8 +191,8 @@ impl Navigator {
         router.nearest_reachable(start, goal)
     }
 
-    /// A line of positions, smoothed as its routes are: where it is clear it stays so, by the same
-    /// clearance, among what is known and sensed.
+    /// Smooths a line of positions as routes are smoothed: where it keeps the clearance among the
+    /// known and the sensed obstacles, it still does so afterwards.
     pub fn smooth(&self, line: &PlannedLine) -> Polyline {
         let map = self.world.router.layers.obstacles();
         let (smoother, clearance_m) = (&*self.parts.smoother, map.config().clearance_m);
@@ -196,8 +200,8 @@ impl Navigator {
         smoothed.path.flattened(crate::route::CHORD_CELLS * map.frame().resolution_m())
     }
 
-    /// The first place of a path at which the robot does not fit among what is known and sensed,
-    /// turning on the spot at its corners; `None` for one that it can drive.
+    /// The first misfit of the robot along a path among the known and the sensed obstacles, with
+    /// rotations on the spot at its corners; `None` for a path that it can drive.
     pub fn misfit_along(&self, path: &Polyline) -> Option<Misfit> {
         Misfit::first_along(path, &self.parts.robot.footprint, &self.world.obstacles)
     }

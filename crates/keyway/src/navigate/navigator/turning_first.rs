@@ -1,4 +1,4 @@
-//! Narrow ground is entered facing along the way.
+//! Alignment with the route before a narrow passage.
 
 use super::Deciding;
 use crate::geometry::{Pose, Velocity};
@@ -10,12 +10,12 @@ use crate::robot::Footprint;
 use std::f64::consts::FRAC_PI_6;
 
 impl Deciding<'_> {
-    /// The robot faces its guide point when that is less far to either side than this \[rad\].
+    /// Bearing of the guide point up to which the robot faces it \[rad\].
     const FACING_RAD: f64 = FRAC_PI_6;
 
-    /// Begins a turn towards the guide point where a command would lead off the ground on which a
-    /// robot that is not round can turn around, and the guide point is aside: beyond, it could do
-    /// neither, and a local planner does not see that coming.
+    /// Starts a rotation towards the guide point if a command would lead a non-circular robot out
+    /// of the space in which it can turn around, while the guide point is to its side. Beyond, it
+    /// could neither turn nor drive on, which a local planner does not foresee.
     pub(super) fn turn_before(&mut self, command: Velocity) {
         let (robot, pose, guide) = (self.robot, self.pose, self.task.guidance.point);
         let is_round = matches!(robot.footprint, Footprint::Circle(_));
@@ -31,7 +31,7 @@ impl Deciding<'_> {
         let obstacles = &self.world.obstacles;
         let clearance = obstacles.clearance();
         let can_turn = |at: Pose| clearance.is_clear_point(at.point(), turning_m);
-        // Where the robot would stand if it braked after this command.
+        // Pose at which the robot would stop if it braked after this command.
         if !can_turn(pose) || can_turn(robot.stop_pose(pose, self.velocity, command)) {
             return;
         }
@@ -41,7 +41,7 @@ impl Deciding<'_> {
         }
     }
 
-    /// Goes on with that turn, if one is under way.
+    /// Continues that rotation, if one is active.
     pub(super) fn turn_first(&mut self) -> Option<Velocity> {
         let moment = self.moment();
         let Mode::TurningFirst(turn) = &mut self.task.mode else { return None };

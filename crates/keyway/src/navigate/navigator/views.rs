@@ -1,4 +1,4 @@
-//! Views of what a navigator knows and does, for pictures and reports.
+//! Read access to the state of a navigator, for plots and reports.
 
 use super::Navigator;
 use crate::geometry::{Disc, Point, Pose};
@@ -13,7 +13,7 @@ use crate::route::Route;
 use crate::sense::Mover;
 
 impl Navigator {
-    /// The latest stamp that was observed \[s\]; `None` before the first one.
+    /// The latest observed stamp \[s\]; `None` before the first one.
     pub fn now_s(&self) -> Option<f64> {
         self.world.now().map(Time::stamp_s)
     }
@@ -28,32 +28,32 @@ impl Navigator {
         self.task().map(|task| &task.route)
     }
 
-    /// The place of the route at which the footprint does not fit, as far as is known and sensed;
-    /// `None` where it fits, and without a goal.
+    /// The first misfit of the footprint along the route, given the known and the sensed
+    /// obstacles; `None` if it fits, and without a goal.
     pub fn misfit(&self) -> Option<Misfit> {
         let footprint = &self.parts.robot.footprint;
         Misfit::first_along(&self.route()?.smoothed, footprint, &self.world.obstacles)
     }
 
-    /// The obstacle to which the robot was too near when it got its goal, as it was told; `None`
-    /// where it was not, and from the cycle on in which it has left.
+    /// The obstacle that the robot was too close to when its goal was set; `None` if there was
+    /// none, and from the cycle on in which the robot has left it.
     pub fn too_near(&self) -> Option<&StartTooNear> {
         self.task()?.too_near.as_ref()
     }
 
-    /// The points that the guide hands out along the route, its end last; none without a goal.
+    /// The guide points along the route, its end last; none without a goal.
     pub fn guide_points(&self) -> Vec<Point> {
         self.route().map_or_else(Vec::new, |route| self.parts.guide.points(&route.smoothed))
     }
 
-    /// The place to which the last step drove, and the rest of the way to the goal; before the
-    /// first step the end of the route, and all of the way. `None` without a goal.
+    /// The guide point of the last step and the remaining path length to the goal; before the
+    /// first step, the end of the route and its whole length. `None` without a goal.
     pub fn guidance(&self) -> Option<Guidance> {
         self.task().map(|task| task.guidance)
     }
 
-    /// Angle by which the robot has to turn, to either side, to face the place to which it drives,
-    /// or at its goal to face as it should \[rad\]; 0 without a goal.
+    /// Absolute angle by which the robot has to rotate to face its guide point, or at its goal to
+    /// reach the goal heading \[rad\]; 0 without a goal.
     pub fn turn_left_rad(&self) -> f64 {
         let (Some(task), Some(pose)) = (self.task(), self.place) else { return 0.0 };
         let left_rad = match task.mode {
@@ -63,7 +63,7 @@ impl Navigator {
         left_rad.abs()
     }
 
-    /// The stack that drives, fitted to its robot.
+    /// The stack that drives the robot, fitted to it.
     pub const fn stack(&self) -> &FittedStack {
         &self.parts
     }
@@ -73,49 +73,49 @@ impl Navigator {
         self.world.map()
     }
 
-    /// Contradictions in what was observed lately, such as a velocity that is always 0 although the
-    /// pose moves, and what was learned of the motors. None is proof of an error.
+    /// Contradictions in recent observations, such as a velocity that is always 0 although the
+    /// pose moves, and properties of the motors that were learned. None of them proves an error.
     pub fn doubts(&self) -> &[Doubt] {
         self.world.doubts()
     }
 
-    /// Cells that hold something which the known map does not show.
+    /// Cells with obstacles that the known map does not show.
     pub const fn sensed(&self) -> &BitGrid {
         self.world.sensed.sensed()
     }
 
-    /// Moving obstacles, as estimated from the scans so far; empty where everything counts as
-    /// standing (`controller.movers` of the stack).
+    /// Moving obstacles, as estimated from the scans so far; empty if everything counts as
+    /// stationary (`controller.movers` of the stack).
     pub fn movers(&self) -> &[Mover] {
         self.world.tracker.as_ref().map_or(&[], |tracker| tracker.movers())
     }
 
-    /// Ground on which movers walk to and fro, and around which the robot goes.
+    /// Areas in which moving obstacles walk back and forth, and which the robot avoids.
     pub fn gone_around(&self) -> &[Disc] {
         self.world.walked.avoided()
     }
 
-    /// Fate of the candidates of the last decision.
+    /// Statistics of the candidates of the last decision.
     pub const fn evaluation(&self) -> &Evaluation {
         &self.record.evaluation
     }
 
-    /// Explanation of the local planner's last decision, candidate by candidate; empty when
-    /// it was not asked, and once something has changed since. Costs many times as much as the
-    /// decision ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
+    /// Explanation of the local planner's last decision, candidate by candidate; empty if the
+    /// planner was not called, and once an input has changed since. Costs many times as much as
+    /// the decision ([`LocalPlanner::explain`](crate::local::LocalPlanner::explain)).
     pub fn explain(&self) -> Explanation {
         let (Some(asked), Some(task)) = (&self.record.asked, self.task()) else {
             return Explanation::default();
         };
-        // Nothing of it has changed since the decision.
+        // None of the inputs has changed since the decision.
         let scene = self.world.scene(task, (asked.pose, asked.velocity), asked.smoothed());
         let local = self.slow.as_ref().map_or(&self.parts.local, |slow| &slow.local);
         local.explain(&scene, &asked.memory)
     }
 
-    /// Poses along the course that the last decision began, the first one where its command acts;
-    /// empty for local planners that plan no farther than their command, and once something has
-    /// changed since.
+    /// Poses along the trajectory of the last decision, the first one at the time at which its
+    /// command takes effect; empty for local planners that plan no farther than their command,
+    /// and once an input has changed since.
     pub fn course(&self) -> Vec<Pose> {
         const PARTS: u32 = 4;
         let (Some(asked), Some(task)) = (&self.record.asked, self.task()) else {
@@ -136,17 +136,17 @@ impl Navigator {
         poses
     }
 
-    /// Searches for a route, those that found none or the same way again included: the first one
-    /// to each goal; one each time a scan shows something on the route, or no place of it is in
-    /// sight; one at each way-point, and one after each wait where there was no route; and those of
-    /// the recoveries. The legs between way-points count as one.
+    /// Number of route searches, including those that failed or found the same route: the first
+    /// one to each goal; one each time a scan shows an obstacle on the route, or no point of it
+    /// is in line of sight; one at each way-point; one after each wait without a route; and those
+    /// of the recoveries. The legs between way-points count as one.
     pub const fn routes_planned(&self) -> u32 {
         self.record.counts.routes_planned
     }
 
-    /// Number of different ways taken, the first one to each goal included: a route that leads
-    /// the same way as the one before does not count. So progress can be measured along a way,
-    /// however often it is planned.
+    /// Number of different routes taken, including the first one to each goal. A route that
+    /// follows the one before does not count, so that progress can be measured along a route
+    /// however often it is replanned.
     pub const fn ways_taken(&self) -> u32 {
         self.record.counts.ways_taken
     }
@@ -157,23 +157,23 @@ impl Navigator {
         self.task().map_or(&[], |task| &task.skipped)
     }
 
-    /// Number of way-points to the goal that were passed, passed near by or skipped.
+    /// Number of way-points to the goal that were passed, passed nearby or skipped.
     pub fn way_points_passed(&self) -> usize {
         self.task().map_or(0, |task| task.passed)
     }
 
-    /// Counts of all that was tried so far because the robot got no farther.
+    /// Counts of all recoveries so far.
     pub const fn recoveries(&self) -> RecoveryCounts {
         self.record.counts.recoveries
     }
 
-    /// The reason why the stop rule changed the last command; `None` when it did not, or there is
-    /// none (`controller.safe` of the stack).
+    /// The reason why the stop rule changed the last command; `None` if it did not, or without a
+    /// stop rule (`controller.safe` of the stack).
     pub const fn refusal(&self) -> Option<&Refusal> {
         self.record.guard.refusal()
     }
 
-    /// Number of commands that the stop rule has changed, by reason; `None` when there is none.
+    /// Number of commands that the stop rule has changed, by reason; `None` without a stop rule.
     pub fn refusals(&self) -> Option<RefusalCounts> {
         self.record.guard.counts()
     }

@@ -1,14 +1,15 @@
-//! Lining up before a narrow place that is hardly wider than the robot, as no search over a grid
-//! of headings does: through the middle of the place, from where the robot can turn.
+//! Alignment with a narrow passage that is hardly wider than the robot, which no search over a
+//! grid of headings finds: along the centreline of the passage, from a pose at which the robot
+//! can turn.
 
 use super::manoeuvre::{TightPlace, after};
 use super::motion::Motion;
 use crate::geometry::{Point, Pose, wrap_angle};
 
 impl TightPlace<'_> {
-    /// A turn, a drive and a turn to before the narrow place ahead, and a drive into it, from where
-    /// it is free straight on to where the robot can turn around again, or as far as it looks;
-    /// `None` where there are no such motions.
+    /// A rotation, a drive and a rotation to a pose in front of the narrow passage ahead, and a
+    /// drive into it. From there, the straight line must be free to a position at which the robot
+    /// can turn around again, or as far as its horizon. `None` if no such motions exist.
     pub(super) fn lined_up(&self, pose: Pose) -> Option<Vec<Motion>> {
         let narrow = self.narrow_place()?;
         let degrees = Self::both_ways(1);
@@ -28,19 +29,19 @@ impl TightPlace<'_> {
         })
     }
 
-    /// Beginnings of a line that are tried.
+    /// Maximum number of start poses of a line that are tried.
     const BEGINNINGS: usize = 6;
 
-    /// Turns that are tried are no larger than this \[deg\].
+    /// Largest rotation that is tried \[deg\].
     const MOST_DEG: i32 = 40;
 
-    /// Turns that are tried \[deg\], small ones first.
+    /// Rotations that are tried \[deg\], small ones first.
     fn both_ways(step_deg: usize) -> impl Iterator<Item = i32> {
         let degrees = (0..=Self::MOST_DEG).step_by(step_deg);
         degrees.flat_map(|degree| [degree, -degree]).skip(1)
     }
 
-    /// The motions to the beginning of a line and along it, to the narrow place and from there on.
+    /// The motions to the start of a line and along it, through the narrow passage and beyond.
     fn through(&self, pose: Pose, begin: Pose, [back_m, ahead_m]: [f64; 2]) -> Option<Vec<Motion>> {
         let away_m = pose.point().distance(begin.point());
         let turn_rad = if away_m > 0.0 { pose.bearing_to(begin.point()) } else { 0.0 };
@@ -53,12 +54,12 @@ impl TightPlace<'_> {
             }
             at = after(at, motion);
         }
-        // In the place, and in line, it drives on as usual.
+        // Inside the passage and aligned, it drives on as usual.
         let in_line = Motion::Drive(back_m + ahead_m.min(self.size_m()));
         Some(line_up.into_iter().chain([in_line]).collect())
     }
 
-    /// The middle of the first narrow place on the route, facing along the route.
+    /// The middle of the first narrow passage on the route, facing along the route.
     fn narrow_place(&self) -> Option<Pose> {
         let step_m = 0.1 * self.size_m();
         let end_m = self.path.length_m().min(self.covered_m + self.reach_m());
@@ -77,11 +78,11 @@ impl TightPlace<'_> {
         narrow.get(narrow.len() / 2).map(|&at| self.in_the_middle(at))
     }
 
-    /// Samples of a narrow place, each a tenth of the robot's size after the last one: in the
-    /// middle of them it is wholly inside.
+    /// Maximum number of samples of a narrow passage, spaced by a tenth of the robot's size: in
+    /// the middle of them, the robot is entirely inside.
     const SAMPLES: usize = 30;
 
-    /// The place beside one that is as far from both sides.
+    /// The pose beside the given one that has the same clearance on both sides.
     fn in_the_middle(&self, at: Pose) -> Pose {
         let reach_m = 0.5 * self.robot.footprint.inscribed_radius_m();
         let room_m = |at: Point| self.obstacles.clearance().of_point(at, 2.0 * self.size_m());
@@ -110,8 +111,8 @@ impl TightPlace<'_> {
         self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
     }
 
-    /// A turn and a straight drive to where the robot can turn around, or to the goal; none where
-    /// it can turn around. `None` where there are no such motions.
+    /// A rotation and a straight drive to a position at which the robot can turn around, or to
+    /// the goal; no motions if it can turn around at once. `None` if no such motions exist.
     pub(in crate::navigate) fn straight_on(&self, pose: Pose) -> Option<Vec<Motion>> {
         if self.can_turn_around(pose) {
             return Some(Vec::new());
@@ -123,9 +124,9 @@ impl TightPlace<'_> {
         })
     }
 
-    /// True if the robot surely gets on from a pose: it can turn around, or it can drive straight on
-    /// to where it can, or as far as it looks, as it faces or in two directions beside each other.
-    /// One direction may be gone a millimetre farther on.
+    /// True if the robot is sure to get on from a pose: it can turn around there, or it can drive
+    /// straight to a position at which it can, or as far as its horizon, either as it faces or in
+    /// two neighbouring directions. A single direction may be blocked a millimetre farther on.
     pub(in crate::navigate) fn surely_gets_on(&self, pose: Pose) -> bool {
         let leads_on = |degree| self.turned_by(pose, degree).is_some();
         let beside = |degree| [Self::BESIDE_DEG, -Self::BESIDE_DEG].map(|off| degree + off);
@@ -135,11 +136,11 @@ impl TightPlace<'_> {
                 .any(|degree| leads_on(degree) && beside(degree).into_iter().any(leads_on))
     }
 
-    /// Between directions that are beside each other \[deg\].
+    /// Angle between neighbouring directions \[deg\].
     const BESIDE_DEG: i32 = 4;
 
-    /// A turn, and a straight drive to where the robot can turn around, or is at the goal, or as far
-    /// as it looks; `None` where it is not free.
+    /// A rotation, and a straight drive to a position at which the robot can turn around, to the
+    /// goal, or as far as its horizon; `None` if they are not free.
     fn turned_by(&self, pose: Pose, degree: i32) -> Option<[Motion; 2]> {
         let turn = Motion::Turn(f64::from(degree).to_radians());
         let facing = after(pose, turn);
@@ -147,8 +148,8 @@ impl TightPlace<'_> {
         (self.is_free(pose, turn) && self.is_free(facing, drive)).then_some([turn, drive])
     }
 
-    /// The way straight on to where the robot can turn around, or is at the goal, or as far as it
-    /// looks \[m\]; `None` where its inscribed disc does not come so far.
+    /// Length of the straight drive to a position at which the robot can turn around, to the
+    /// goal, or as far as the horizon \[m\]; `None` if its inscribed disc does not get that far.
     fn straight_m(&self, pose: Pose) -> Option<f64> {
         let step_m = 0.25 * self.size_m();
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
@@ -175,7 +176,7 @@ mod tests {
     use crate::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
     use crate::robot::{Footprint, Robot};
 
-    /// A hall to the left of x = 2 m, and from there on a lane of 0.4 m with its middle at y = 3 m,
+    /// A hall to the left of x = 2 m, followed by a lane of 0.4 m with its centreline at y = 3 m,
     /// up to x = 9 m; cells of 2 cm.
     fn hall_and_lane() -> DistanceField {
         let frame = GridFrame::new(500, 300, 0.02, Pose::default()).unwrap();
@@ -186,7 +187,8 @@ mod tests {
         DistanceField::new(&frame, map.occupied(), &FieldConfig::default())
     }
 
-    /// No heading of the search leads a robot of 0.6 m x 0.36 m in, with 1 cm of room to each side.
+    /// No heading of the search leads in a robot of 0.6 m x 0.36 m, which has 1 cm of clearance
+    /// on each side.
     #[test]
     fn into_a_lane_that_is_hardly_wider_than_the_robot() {
         let obstacles = hall_and_lane();
@@ -208,14 +210,15 @@ mod tests {
             after(pose, motion)
         });
         assert!(end.x > 2.3 && (end.y - 3.0).abs() < 0.01 && end.theta.abs() < 0.03, "{end:?}");
-        // It could not turn around any more, but goes straight on as far as it looks.
+        // It could not turn around any more, but the straight line is free as far as its horizon.
         assert!(place.surely_gets_on(end) && place.straight_on(end).is_none());
         assert_eq!(place.straight_on(start), Some(Vec::new()));
-        // Aslant in the mouth it does not get on, and not surely where only one direction is free.
+        // At an angle in the mouth it does not get on, and it is not sure to if only one
+        // direction is free.
         assert!(!place.surely_gets_on(Pose::new(1.76, 3.0, -0.35)));
         let aslant = Pose { theta: 0.035, ..end };
         assert!(place.turned_by(aslant, -2).is_some() && !place.surely_gets_on(aslant));
-        // Near the other end it comes to where it can turn around.
+        // Near the other end, it reaches a position at which it can turn around.
         let near_end = Pose::new(8.0, 3.0, 0.0);
         let motions = place.straight_on(near_end).unwrap();
         assert!(matches!(motions[..], [Motion::Turn(_), Motion::Drive(m)] if m > 1.0));

@@ -1,17 +1,18 @@
-//! Manoeuvres: a pose in a tight place -> turns on the spot and straight drives that lead on along
-//! the route.
+//! Manoeuvres: a pose in a tight place -> rotations on the spot and straight drives that lead on
+//! along the route.
 //!
-//! A route is planned for a disc. Where the robot can follow it exactly, turning on the spot at
-//! its corners, it does: that needs little margin. Where only the inscribed disc fits, a longer
-//! robot may have to turn first, drive out, and turn again: in line with a narrow place
-//! (`line_up.rs`), or as a search in the plane and the heading finds. That is best first by time,
-//! over squares of a cell or less and headings that are [`STEP_RAD`] apart, each motion certified
-//! for the whole footprint. It ends where the robot has room to turn around again and sees a place
-//! of the route farther on, or at the end of the route. If there is no such place, as before a
-//! lane too narrow to turn in, a robot that stands aside of its route, where it cannot turn, goes
-//! to where it can, in sight of the place of the route at which it is, and faces that.
+//! A route is planned for a disc. If the robot can follow it exactly, with rotations on the spot
+//! at its corners, it does so: that needs little margin. If only the inscribed disc fits, a
+//! longer robot may have to rotate first, drive out, and rotate again: aligned with a narrow
+//! passage (`line_up.rs`), or as found by a search over positions and headings. That is a
+//! best-first search by time over squares of at most a cell and headings [`STEP_RAD`] apart, in
+//! which each motion is certified for the whole footprint. It ends at a position at which the
+//! robot can turn around again, with a point of the route farther on in line of sight, or at the
+//! end of the route. If there is no such position, as in front of a lane too narrow to turn in,
+//! and if the robot faces away from its route and cannot turn there, the search leads to a
+//! position at which it can turn, in line of sight of the nearby route, which it then faces.
 //!
-//! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot stands.
+//! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot is stationary.
 
 use super::motion::{Motion, SPEED_SHARE};
 use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
@@ -22,24 +23,24 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 use std::f64::consts::{FRAC_PI_6, TAU};
 
-/// Headings of the search.
+/// Number of headings of the search.
 const HEADINGS: i32 = 36;
 
-/// Between two headings \[rad\].
+/// Angle between two headings \[rad\].
 pub(super) const STEP_RAD: f64 = TAU / HEADINGS as f64;
 
-/// Length of one straight drive, in sides of the squares in which positions count as one: it leads
-/// into another square whatever the heading.
+/// Length of one straight drive, in sides of the squares in which positions count as equal: it
+/// ends in another square at any heading.
 const STEP_SQUARES: f64 = 1.5;
 
 /// Expansions after which the search gives up.
 const MOST_NODES: usize = 50_000;
 
-/// A robot that faces its route within this can drive along it \[rad\].
+/// Largest bearing of the route at which the robot can drive along it \[rad\].
 const ASIDE_RAD: f64 = FRAC_PI_6;
 
-/// How far from the robot the search goes \[circumscribed radii, or cells for a robot that is
-/// smaller than one\].
+/// Reach of the search from the robot \[circumscribed radii, or cells for a robot that is smaller
+/// than one\].
 const REACH_SIZES: f64 = 10.0;
 
 /// A robot in a tight place.
@@ -48,39 +49,39 @@ pub(in crate::navigate) struct TightPlace<'a> {
     pub(in crate::navigate) robot: &'a Robot,
     pub(in crate::navigate) obstacles: &'a DistanceField,
     pub(in crate::navigate) path: &'a Polyline,
-    /// How far along the path the robot has come \[m\].
+    /// Progress of the robot along the path \[m\].
     pub(in crate::navigate) covered_m: f64,
-    /// How near to the end of the path is near enough \[m\].
+    /// Tolerance to the end of the path \[m\].
     pub(in crate::navigate) goal_tolerance_m: f64,
-    /// Room that its motions keep \[m\].
+    /// Clearance that its motions keep \[m\].
     pub(in crate::navigate) room_m: f64,
 }
 
-/// A pose that was reached.
+/// A pose reached by the search.
 struct Node {
     pose: Pose,
     heading: i32,
     time_s: f64,
-    /// The motion that led here, and from which node.
+    /// The node before this one, and the motion from there.
     by: Option<(usize, Motion)>,
 }
 
-/// Where a manoeuvre ends.
+/// End of a manoeuvre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Place {
     /// At the goal.
     Goal,
-    /// In sight of this place of the route.
+    /// In line of sight of this point of the route.
     OnTheWay(Point),
 }
 
-/// An entry of the open list: the least estimate first (as bits, which order like numbers of at
-/// least 0), then the oldest.
+/// An entry of the open list: the smallest estimate first (as bits, which order like non-negative
+/// numbers), then the oldest.
 type Entry = Reverse<(u64, usize)>;
 
 impl TightPlace<'_> {
-    /// The motions that lead on, or to where the robot can turn, merged; `None` where there are
-    /// none, or more would have to be looked at.
+    /// The motions that lead on, or to a position at which the robot can turn, merged; `None` if
+    /// there are none, or the search exceeds its limit.
     pub(in crate::navigate) fn manoeuvre(&self, pose: Pose) -> Option<Vec<Motion>> {
         let stations = self.stations();
         self.along_route(pose, &stations)
@@ -89,7 +90,7 @@ impl TightPlace<'_> {
             .or_else(|| self.off_a_wall(pose, &stations))
     }
 
-    /// The route itself, corner by corner, where the footprint fits: no search finds a gap that is
+    /// The route itself, corner by corner, if the footprint fits: no search follows a gap that is
     /// hardly wider than the robot as exactly as the route does.
     fn along_route(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
         let (mut pose, mut motions) = (pose, Vec::new());
@@ -160,8 +161,8 @@ impl TightPlace<'_> {
         self.robot.footprint.circumscribed_radius_m()
     }
 
-    /// The circumscribed radius; of a robot that is smaller than a cell, or a point, the side of a
-    /// cell \[m\].
+    /// The circumscribed radius; for a robot that is smaller than a cell, or a point, the side of
+    /// a cell \[m\].
     pub(super) fn size_m(&self) -> f64 {
         self.radius_m().max(self.obstacles.frame().resolution_m())
     }
@@ -170,17 +171,17 @@ impl TightPlace<'_> {
         REACH_SIZES * self.size_m()
     }
 
-    /// Places of the route within reach, from a circumscribed radius ahead on.
+    /// Points of the route within reach, from one circumscribed radius ahead.
     fn stations(&self) -> Vec<Point> {
         self.stations_between(self.size_m(), self.reach_m())
     }
 
-    /// Places of the route from where the robot is to the first of these.
+    /// Points of the route from the robot's progress to the first station.
     fn stations_here(&self) -> Vec<Point> {
         self.stations_between(0.0, self.size_m())
     }
 
-    /// Places of the route that are so far ahead of the robot.
+    /// Points of the route at these distances ahead of the robot.
     fn stations_between(&self, nearest_m: f64, farthest_m: f64) -> Vec<Point> {
         let step_m = 0.25 * self.size_m();
         let ahead = (0..).map(|i| self.covered_m + nearest_m + step_m * f64::from(i));
@@ -193,7 +194,7 @@ impl TightPlace<'_> {
         stations
     }
 
-    /// The place of the route to which the robot can go on from here as usual.
+    /// The point of the route to which the robot can go on from here as usual.
     fn leads_on(&self, pose: Pose, stations: &[Point]) -> Option<Place> {
         let point = pose.point();
         if self.is_at_goal(point) {
@@ -211,7 +212,7 @@ impl TightPlace<'_> {
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
     }
 
-    /// True if it faces elsewhere than along its route, and has no room to turn there.
+    /// True if the robot does not face along its route, and has no space to turn there.
     fn is_stuck_aside(&self, pose: Pose) -> bool {
         let ahead = self.path.at_length(self.covered_m + self.size_m());
         ahead.is_some_and(|ahead| pose.bearing_to(ahead).abs() > ASIDE_RAD)
@@ -248,21 +249,22 @@ impl TightPlace<'_> {
         }
     }
 
-    /// No manoeuvre from here is shorter: straight to where a place of the route is near enough.
+    /// Lower bound on the time of a manoeuvre: straight until a point of the route is close
+    /// enough.
     fn least_time_s(&self, point: Point, stations: &[Point]) -> f64 {
         let nearest_m = stations.iter().map(|s| s.distance(point)).fold(f64::INFINITY, f64::min);
         let near_m = self.size_m().max(self.goal_tolerance_m);
         self.time_s(Motion::Drive((nearest_m - near_m).max(0.0)))
     }
 
-    /// What two poses that count as one have in common.
+    /// Key under which two poses count as equal.
     fn place(&self, pose: Pose, heading: i32) -> (i64, i64, i32) {
         let square = |coordinate_m: f64| (coordinate_m / self.square_m()).floor() as i64;
         (square(pose.x), square(pose.y), heading)
     }
 
-    /// Side of the squares in which positions count as one \[m\]: small against the footprint and
-    /// the cells.
+    /// Side of the squares in which positions count as equal \[m\]: small compared with the
+    /// footprint and the cells.
     fn square_m(&self) -> f64 {
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
         let small_m = (0.25 * inscribed_m).max(0.1 * self.size_m());
@@ -270,7 +272,8 @@ impl TightPlace<'_> {
     }
 }
 
-/// Motions to a pose, and from there a turn to where they lead: the robot has room to turn there.
+/// Motions to a pose with space to turn, followed by a rotation towards the point that they lead
+/// to.
 fn facing(mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
     let Place::OnTheWay(station) = place else { return motions };
     let bearing_rad = pose.bearing_to(station);
@@ -293,7 +296,7 @@ pub(super) fn after(pose: Pose, motion: Motion) -> Pose {
     }
 }
 
-/// The motions to a node in order; those of one kind and direction that follow each other are one.
+/// The motions to a node, in order; successive ones of the same kind and direction are merged.
 fn merged(nodes: &[Node], last: usize) -> Vec<Motion> {
     let mut motions: Vec<Motion> = Vec::new();
     let mut index = last;
@@ -320,7 +323,7 @@ mod tests {
     use crate::robot::Footprint;
     use std::f64::consts::FRAC_PI_2;
 
-    /// 0.1 m cells.
+    /// A map with cells of 0.1 m.
     fn tight(rows: &[&str]) -> DistanceField {
         let drawn = OccupancyGrid::from_ascii(rows);
         let (width, height) = (drawn.frame().width(), drawn.frame().height());
@@ -333,7 +336,7 @@ mod tests {
         Polyline::new(points.iter().map(|&p| p.into()).collect())
     }
 
-    /// Where free motions lead to.
+    /// The end pose of free motions.
     fn driven(place: &TightPlace<'_>, start: Pose, motions: &[Motion]) -> Pose {
         motions.iter().fold(start, |pose, &motion| {
             assert!(place.is_free(pose, motion), "{motion:?} at {pose:?}");
@@ -388,7 +391,7 @@ mod tests {
     #[test]
     fn out_of_a_slot_and_on() {
         let (obstacles, path) = (tight(&SLOT), path(&[[0.4, 0.4], [0.4, 1.1], [1.7, 1.1]]));
-        // In the slot it fits lengthwise and cannot turn around.
+        // It fits lengthwise in the slot and cannot turn around there.
         let footprint = Footprint::rectangle(0.56, 0.34).unwrap();
         let robot = Robot { footprint, ..Robot::small() };
         let place = TightPlace {
@@ -407,7 +410,7 @@ mod tests {
             panic!("{pose:?} {motions:?}")
         };
         assert!(pose.bearing_to(station).abs() < 1e-9 && pose.y > 0.7, "{pose:?} {motions:?}");
-        // Facing the floor it could only back out.
+        // Facing the end of the slot, it could only back out.
         let inwards = Pose { theta: -FRAC_PI_2, ..start };
         assert_eq!(place.manoeuvre(inwards), None);
         let limits = crate::robot::Limits { v_min_mps: -0.2, ..robot.limits.clone() };
@@ -420,8 +423,8 @@ mod tests {
         assert!(driven.sum::<f64>() < -0.3, "{backs_out:?}");
     }
 
-    /// A lane in which it could not turn, longer than the search reaches, and a robot that stands
-    /// across its mouth.
+    /// A lane in which it could not turn, longer than the reach of the search, and a robot across
+    /// its mouth.
     #[test]
     fn back_to_where_it_can_face_a_lane() {
         let (wall, hall) = ("#".repeat(52), format!("#{}{}", ".".repeat(10), "#".repeat(41)));
@@ -448,12 +451,12 @@ mod tests {
         assert!(place.has_room_to_turn(pose), "{pose:?} {motions:?}");
         let mouth = Point::new(1.1, 0.8);
         assert!(pose.bearing_to(mouth).abs() < 0.5, "{pose:?} {motions:?}");
-        // In the lane, along it, it is not led out again by what it cannot pass.
+        // Inside the lane and along it, it is not led out again by what it cannot pass.
         let inside = Pose::new(1.2, 0.8, 0.1);
         let place = TightPlace { covered_m: 0.22, ..place };
         assert!(!place.is_free(inside, Motion::Turn(TAU)));
         assert_eq!(place.searched(inside, &[]), None);
-        // Nor is a disc, which can turn anywhere.
+        // Nor is a disc, which can rotate anywhere.
         let footprint = Footprint::circle(0.298).unwrap();
         let robot = Robot { footprint, ..robot.clone() };
         let place = TightPlace { robot: &robot, ..place };
@@ -461,7 +464,7 @@ mod tests {
         assert_eq!(place.searched(Pose { theta: FRAC_PI_2, ..inside }, &[]), None);
     }
 
-    /// A gap of 0.4 m for a disc of 0.398 m, which no heading of the search leads through.
+    /// A gap of 0.4 m for a disc of 0.398 m, through which no heading of the search leads.
     #[test]
     fn along_the_route_through_a_gap_hardly_wider_than_the_robot() {
         let rows = [

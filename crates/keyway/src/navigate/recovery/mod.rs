@@ -1,7 +1,7 @@
-//! What a robot tries when it gets no farther: kinds of recoveries, in an order that is data.
+//! Recoveries of a robot that makes no progress, in a configurable order.
 //!
-//! Each is a few [`Motion`]s, certified free of contact before they are begun and again in every
-//! cycle; or a new route; or time.
+//! Each is a few [`Motion`]s, certified free of contact before they start and again in every
+//! cycle; or a new route; or a pause.
 
 mod line_up;
 mod manoeuvre;
@@ -21,32 +21,32 @@ use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::fmt::{self, Display, Formatter};
 
-/// What is tried when a robot gets no farther.
+/// A kind of recovery, run when a robot makes no progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum RecoveryKind {
-    /// A new route. Where it leads the same way, the next kind is tried at once.
+    /// Plan a new route. If it is the same as before, the next kind is tried at once.
     Replan,
-    /// A turn on the spot towards the guide point, to the nearer side with room.
+    /// Rotate on the spot towards the guide point, in the shorter direction that has space.
     Turn,
-    /// Turns and straight drives to where it has room to turn around again, farther along the
-    /// route, or where it can face it. They need little margin, and no curve.
+    /// Rotate and drive straight to a position at which the robot can turn around again, farther
+    /// along the route, or at which it can face the route. Needs little margin, and no curves.
     Manoeuvre,
-    /// Straight back to a place where the robot has been; a robot that cannot drive backwards turns
+    /// Drive straight back to an earlier position; a robot that cannot drive backwards turns
     /// around first.
     BackUp,
-    /// Standing still for a while.
+    /// Stay stationary for a while.
     Wait,
 }
 
-/// How often each kind of recovery was begun, and how often the robot went around movers.
+/// Number of recoveries of each kind, and of detours around moving obstacles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecoveryCounts {
-    /// Routes planned anew because the robot got no farther.
+    /// Routes replanned because the robot made no progress.
     pub replan: u32,
-    /// Turns towards the guide point.
+    /// Rotations towards the guide point.
     pub turn: u32,
     /// Manoeuvres.
     pub manoeuvre: u32,
@@ -54,16 +54,16 @@ pub struct RecoveryCounts {
     pub back_up: u32,
     /// Pauses.
     pub wait: u32,
-    /// Ways around movers that held the robot up.
+    /// Detours around moving obstacles that held the robot up.
     #[serde(default)]
     pub go_around: u32,
-    /// Drives to a place beside the way of somebody who wants past.
+    /// Drives to a position beside the path of a moving obstacle that needs to pass.
     #[serde(default)]
     pub make_way: u32,
 }
 
 impl RecoveryCounts {
-    /// All of them.
+    /// Sum of all counts.
     pub const fn total(&self) -> u32 {
         let of_kinds = self.replan + self.turn + self.manoeuvre + self.back_up + self.wait;
         of_kinds + self.go_around + self.make_way
@@ -96,25 +96,25 @@ impl Display for RecoveryKind {
 /// The kinds that have been tried since the last progress.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct RecoveryOrder {
-    /// Their number.
+    /// Number of kinds tried.
     pub(super) tried: usize,
-    /// The remaining way at the first of them \[m\].
+    /// Remaining path length at the first of them \[m\].
     trouble_m: f64,
 }
 
 impl RecoveryOrder {
-    /// A way that is shorter by this than where the trouble began is progress: the order begins
-    /// anew \[m\].
+    /// Decrease of the remaining length, from that at the first recovery, that counts as progress
+    /// and restarts the order \[m\].
     const PROGRESS_M: f64 = 0.3;
 
-    /// Notes how far the robot has come.
+    /// Updates the progress of the robot.
     pub(super) fn note_progress(&mut self, remaining_m: f64) {
         if self.tried > 0 && remaining_m < self.trouble_m - Self::PROGRESS_M {
             self.tried = 0;
         }
     }
 
-    /// The kind that is next in the order.
+    /// The next kind of the order.
     pub(super) fn next(
         &mut self,
         order: &[RecoveryKind],
@@ -128,7 +128,7 @@ impl RecoveryOrder {
         Some(kind)
     }
 
-    /// The last kind will be tried later.
+    /// Postpones the last kind.
     pub(super) const fn put_off(&mut self) {
         self.tried = self.tried.saturating_sub(1);
     }
@@ -139,27 +139,28 @@ impl RecoveryOrder {
 pub(super) struct RecoveryUnderWay {
     kind: RecoveryKind,
     motion: MotionUnderWay,
-    /// The motions after it.
+    /// Remaining motions.
     later: VecDeque<Motion>,
-    /// Room that all of them keep \[m\].
+    /// Clearance that all of them keep \[m\].
     #[serde(default)]
     room_m: f64,
 }
 
 impl RecoveryUnderWay {
-    /// A recovery that begins, of motions that keep some room \[m\]; `None` where there are none.
+    /// Starts a recovery of motions that keep a clearance \[m\]; `None` without motions.
     pub(super) fn begin(kind: RecoveryKind, motions: Vec<Motion>, room_m: f64) -> Option<Self> {
         let mut later = VecDeque::from(motions);
         let motion = MotionUnderWay::with_room(later.pop_front()?, room_m);
         Some(Self { kind, motion, later, room_m })
     }
 
-    /// Moves it with the robot.
+    /// Moves it along with a correction of the robot's pose.
     pub(super) fn shift(&mut self, shift: &Shift) {
         self.motion.shift(shift);
     }
 
-    /// Goes on: its kind and the next command. `None` when it has just ended or been refused.
+    /// Continues: returns the kind and the next command. `None` if it has just ended or was
+    /// refused.
     pub(super) fn step(
         &mut self,
         moment: &Moment<'_>,
@@ -177,20 +178,20 @@ impl RecoveryUnderWay {
     }
 }
 
-/// A robot that has to turn.
+/// A robot that has to rotate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OnTheSpot<'a> {
     pub(super) robot: &'a Robot,
     pub(super) obstacles: &'a DistanceField,
-    /// Room that its motions keep \[m\].
+    /// Clearance that its motions keep \[m\].
     pub(super) room_m: f64,
 }
 
 impl OnTheSpot<'_> {
-    /// Smaller turns help nobody \[rad\].
+    /// Smallest useful rotation \[rad\].
     const LEAST_TURN_RAD: f64 = 0.1;
 
-    /// The turn by an angle, to the nearer side with room.
+    /// A rotation by an angle, in the shorter direction that has space.
     pub(super) fn turn(&self, pose: Pose, left_rad: f64) -> Option<f64> {
         let left_rad = wrap_angle(left_rad);
         let other_way_rad = left_rad - TAU.copysign(left_rad);
@@ -201,15 +202,15 @@ impl OnTheSpot<'_> {
         })
     }
 
-    /// A turn that is worth it, towards a place.
+    /// A rotation towards a point, if it is large enough to be useful.
     pub(super) fn turn_towards(&self, pose: Pose, place: Point) -> Option<Vec<Motion>> {
         let bearing_rad = pose.bearing_to(place);
         let turn_rad = self.turn(pose, bearing_rad)?;
         (bearing_rad.abs() >= Self::LEAST_TURN_RAD).then(|| vec![Motion::Turn(turn_rad)])
     }
 
-    /// Straight to one of the places of a track, the farthest that can be reached: backwards where
-    /// the robot can, otherwise after a turn.
+    /// A straight drive to one of the points of a track, the farthest that can be reached:
+    /// backwards if the robot can, otherwise after a rotation.
     pub(super) fn back_up(
         &self,
         pose: Pose,
@@ -250,7 +251,7 @@ mod tests {
 
     #[test]
     fn turns_take_the_side_with_room() {
-        // The box reaches ahead of its centre of rotation, and there is a pillar at its left.
+        // The box extends ahead of its centre of rotation, and there is a pillar to its left.
         let obstacles = field(&["#....", ".....", ".....", "....."]);
         let vertices = [[0.0, 0.3], [0.0, -0.3], [1.9, -0.3], [1.9, 0.3]];
         let footprint = Footprint::polygon(vertices.map(Point::from).to_vec()).unwrap();

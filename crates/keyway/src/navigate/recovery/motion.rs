@@ -1,10 +1,10 @@
-//! Motions of recoveries: turns on the spot, straight drives and pauses, each certified before it
-//! is commanded.
+//! Motions of recoveries: rotations on the spot, straight drives and pauses, each certified
+//! before it is commanded.
 //!
-//! In every cycle all that is left of a motion is certified to keep room by
-//! [`Footprint::keeps_room_turning`] or [`Footprint::keeps_room_driving`], and the velocity is one
-//! from which the robot can stop within what is left. So a motion can be broken off in any cycle:
-//! braking needs no more ground than was certified.
+//! In every cycle, the whole rest of a motion is certified to keep its clearance by
+//! [`Footprint::keeps_room_turning`] or [`Footprint::keeps_room_driving`], and the velocity is
+//! one from which the robot can stop within that rest. A motion can therefore be aborted in any
+//! cycle: braking needs no more space than was certified.
 //!
 //! [`Footprint::keeps_room_turning`]: crate::robot::Footprint::keeps_room_turning
 //! [`Footprint::keeps_room_driving`]: crate::robot::Footprint::keeps_room_driving
@@ -14,14 +14,14 @@ use crate::map::DistanceField;
 use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// A motion, or what is left of it.
+/// A motion, or the rest of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::navigate) enum Motion {
-    /// A turn on the spot, positive to the left \[rad\].
+    /// Rotation on the spot, positive to the left \[rad\].
     Turn(f64),
-    /// A straight drive, negative backwards \[m\].
+    /// Straight drive, negative backwards \[m\].
     Drive(f64),
-    /// Standing still \[s\].
+    /// Pause \[s\].
     Wait(f64),
 }
 
@@ -30,43 +30,43 @@ pub(in crate::navigate) enum Motion {
 pub(in crate::navigate) enum MotionStep {
     /// Command this velocity.
     Moving(Velocity),
-    /// The robot stands at the end of the motion.
+    /// The robot is stationary at the end of the motion.
     Done,
-    /// What is left would touch something: the robot must brake.
+    /// The rest would touch an obstacle: the robot must brake.
     Refused,
 }
 
-/// State of a robot when it decides.
+/// State of a robot at the time of a decision.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::navigate) struct Moment<'a> {
     pub(in crate::navigate) robot: &'a Robot,
     pub(in crate::navigate) pose: Pose,
     pub(in crate::navigate) velocity: Velocity,
-    /// The robot itself; the same, unless its commands are averaged.
+    /// State of the robot itself; the same, unless its commands are averaged.
     pub(in crate::navigate) robot_then: (Pose, Velocity),
-    /// It will go on by what is averaged.
+    /// True if averaged commands will move it on.
     pub(in crate::navigate) moves_on: bool,
-    /// Since the last decision \[s\].
+    /// Time since the last decision \[s\].
     pub(in crate::navigate) elapsed_s: f64,
-    /// The least speed and turn rate that its motors do.
+    /// Smallest speed and turn rate that its motors follow.
     pub(in crate::navigate) least: Velocity,
 }
 
 impl Moment<'_> {
-    /// True if it stands, and stays there.
+    /// True if it is stationary, and no averaged command moves it on.
     pub(in crate::navigate) fn stands(&self) -> bool {
         self.robot.stands(self.velocity) && !self.moves_on
     }
 }
 
-/// A motion under way.
+/// An active motion.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct MotionUnderWay {
     left: Motion,
-    /// Room that it was found with \[m\]; `None` for what the robot keeps where it begins.
+    /// Clearance with which the motion was found \[m\]; `None`: that of the robot at the start.
     #[serde(default)]
     room_m: Option<f64>,
-    /// Where the robot was when `left` was left; `None` before it begins, while the robot still
+    /// Pose of the robot when `left` was updated; `None` before the start, while the robot still
     /// brakes.
     from: Option<Pose>,
 }
@@ -74,8 +74,8 @@ pub(in crate::navigate) struct MotionUnderWay {
 /// Speed of recoveries near obstacles, as a share of the robot's limits.
 pub(in crate::navigate) const SPEED_SHARE: f64 = 0.25;
 
-/// Room that motions from a pose keep \[m\]: nearly the margin of courses, or nearly half of what
-/// the robot has, where that is less.
+/// Clearance that motions from a pose keep \[m\]: almost the margin of trajectories, or almost
+/// half of the present clearance if that is less.
 pub(in crate::navigate) fn kept_room_m(
     robot: &Robot,
     pose: Pose,
@@ -87,29 +87,30 @@ pub(in crate::navigate) fn kept_room_m(
     NEARLY * margin_m.min(0.5 * room_m.max(0.0))
 }
 
-/// A robot that just keeps the margin keeps this part of it on the way, too.
+/// Share that leaves a tolerance, so that a robot that just keeps the margin may move.
 const NEARLY: f64 = 0.9;
 
 impl MotionUnderWay {
-    /// The part of the room that is kept on the way: no robot drives exactly as it should.
+    /// Share of the clearance that is required during the motion, because no robot drives
+    /// exactly.
     const KEEPS: f64 = 0.5;
 
-    /// A motion from where the robot then is.
+    /// A motion from the pose of the robot at its start.
     pub(in crate::navigate) const fn new(motion: Motion) -> Self {
         Self { left: motion, room_m: None, from: None }
     }
 
-    /// One of several, which were found with this room around the robot \[m\].
+    /// One of several motions that were found with this clearance \[m\].
     pub(in crate::navigate) const fn with_room(motion: Motion, room_m: f64) -> Self {
         Self { left: motion, room_m: Some(room_m), from: None }
     }
 
-    /// Moves it with the robot: a correction is no motion.
+    /// Moves it along with a correction of the robot's pose: a correction is no motion.
     pub(in crate::navigate) fn shift(&mut self, shift: &Shift) {
         self.from = self.from.map(|from| shift.pose(from));
     }
 
-    /// The next cycle. `obstacles` are all that are known and sensed.
+    /// Runs one cycle. `obstacles` are all known and sensed ones.
     pub(in crate::navigate) fn step(
         &mut self,
         moment: &Moment<'_>,
@@ -125,7 +126,7 @@ impl MotionUnderWay {
         let room_m = *self.room_m.get_or_insert_with(|| kept_room_m(robot, pose, obstacles));
         let room_m = Self::KEEPS * room_m;
         self.left = self.left.after(from, pose, elapsed_s);
-        // An averaged command takes as many cycles to become what the motors do in one.
+        // An averaged command needs as many cycles to reach what the motors follow in one.
         let least_s = limits.smoothing_cycles(cycle_s) as f64 * cycle_s;
         if is_standing && self.left.size() <= self.left.nothing(least, least_s) {
             return MotionStep::Done;
@@ -157,30 +158,30 @@ impl MotionUnderWay {
     }
 }
 
-/// Speed up to which a drive comes to nothing that was not seen before \[m/s\]; a quarter of the
-/// robot's full speed where its sensors do not look there.
+/// Speed up to which a drive meets no obstacle that was not sensed before \[m/s\]; a quarter of
+/// the robot's full speed if its sensors do not cover the direction.
 fn seen_mps(robot: &Robot, left_m: f64) -> f64 {
     let looks_there = left_m >= 0.0 || robot.sees_all_around();
     let sight_mps = if looks_there { robot.sight_mps() } else { 0.0 };
     sight_mps.max(SPEED_SHARE * robot.limits.v_max_mps)
 }
 
-/// Speed of a motion, as a share of the robot's limits: the largest at which it stops where it is
-/// wide, even if it goes on too far.
+/// Speed of a motion, as a share of the robot's limits: the largest one at which the robot keeps
+/// a wide clearance until it stops, even if it overshoots.
 fn share(robot: &Robot, pose: Pose, motion: Motion, obstacles: &DistanceField) -> f64 {
     let is_wide = |share: &f64| is_wide(robot, pose, (motion, *share), obstacles);
     [1.0, 2.0 * SPEED_SHARE].into_iter().find(is_wide).unwrap_or(SPEED_SHARE)
 }
 
-/// True if the robot keeps its margin wherever it comes until it stands, when it brakes in the next
-/// cycle from this share of its limits; a drive keeps more.
+/// True if the robot keeps its margin until it stops, braking in the next cycle from this share
+/// of its limits; a drive keeps more.
 fn is_wide(
     robot: &Robot,
     pose: Pose,
     (motion, share): (Motion, f64),
     obstacles: &DistanceField,
 ) -> bool {
-    /// A drive that is a little aslant leads aside.
+    /// Extra clearance of a drive, which drifts sideways if it is slightly misaligned.
     const BESIDE_DRIVES_M: f64 = 0.05;
     let (limits, footprint, margin_m) = (&robot.limits, &robot.footprint, robot.safety_margin_m());
     let stops_within = |most: f64, brakes: f64| {
@@ -204,7 +205,7 @@ fn is_wide(
 }
 
 impl Motion {
-    /// What is left after the robot has come from one pose to another.
+    /// The rest after the robot has moved from one pose to another.
     fn after(self, from: Pose, to: Pose, elapsed_s: f64) -> Self {
         match self {
             Self::Turn(left_rad) => Self::Turn(left_rad - wrap_angle(to.theta - from.theta)),
@@ -223,8 +224,8 @@ impl Motion {
         }
     }
 
-    /// So little that is left is nothing: 2 mm, or 2 mrad, or about half of what motors do in a
-    /// time that do nothing less than this.
+    /// Negligible rest: 2 mm, or 2 mrad, or 0.6 times the smallest motion that the motors make in
+    /// a time.
     fn nothing(self, least: Velocity, least_s: f64) -> f64 {
         const NOTHING: f64 = 2e-3;
         let least = match self {
@@ -249,7 +250,7 @@ mod tests {
         Moment { robot, pose, velocity, robot_then, moves_on, elapsed_s, least }
     }
 
-    /// Obeys a motion as a robot does; where it ended, and the fastest it was.
+    /// Executes a motion as a robot does; returns the end pose, the result and the highest speed.
     fn obey(motion: Motion, robot: &Robot, start: (Pose, Velocity)) -> (Pose, MotionStep, f64) {
         let map = OccupancyGrid::from_ascii(&["........"; 8]);
         let obstacles = DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default());
@@ -289,7 +290,7 @@ mod tests {
         }
         let (pose, ended, _) = obey(Motion::Wait(2.0), &robot, start);
         assert_eq!((pose, ended), (start.0, MotionStep::Done));
-        // Back as fast as ahead, unless nobody looks there.
+        // Backwards as fast as forward, unless no sensor covers that direction.
         let mut blind_behind = robot.clone();
         blind_behind.limits.v_min_mps = -0.5;
         assert_eq!(obey(Motion::Drive(-1.0), &blind_behind, start).2, 0.5);
@@ -307,8 +308,8 @@ mod tests {
         DistanceField::new(map.frame(), map.occupied(), &FieldConfig::default())
     }
 
-    /// At the limit in the open, at half of it where it then stops before a corner is near the
-    /// wall, and at a quarter of it beside the wall.
+    /// At the limit in open space, at half of it if the robot then stops before a corner comes
+    /// close to the wall, and at a quarter of it beside the wall.
     #[test]
     fn turns_are_as_fast_as_there_is_room() {
         let obstacles = walls(&["........", "........", "........", "########"]);
@@ -319,14 +320,14 @@ mod tests {
         let (inner_m, outer_m) =
             (footprint.inscribed_radius_m(), footprint.circumscribed_radius_m());
         assert_eq!(share(outer_m + margin_m + 2e-3), 1.0);
-        // At half of its rate it turns by 0.26 rad until it stands.
+        // At half of its rate, it rotates by 0.26 rad until it stops.
         let corner_m = 0.254 * 0.2625f64.sin() + 0.215 * 0.2625f64.cos();
         let found = [-2e-3, 2e-3].map(|more_m| share(corner_m + margin_m + more_m));
         assert_eq!(found, [SPEED_SHARE, 0.5]);
         assert_eq!(share(inner_m + margin_m), SPEED_SHARE);
     }
 
-    /// At the limit where nothing is near the way on which it stops, at half of it before a wall,
+    /// At the limit if nothing is close to its stopping path, at half of it in front of a wall,
     /// and at a quarter of it beside one.
     #[test]
     fn drives_are_as_fast_as_there_is_room() {
@@ -351,8 +352,8 @@ mod tests {
         }
     }
 
-    /// Half of the room that a motion was found with is kept on the way; one that begins on its own
-    /// keeps the margin, or half of what the robot has.
+    /// Half of the clearance with which a motion was found is kept during it; a motion on its own
+    /// keeps the margin, or half of the present clearance.
     #[test]
     fn motions_keep_room() {
         let map = OccupancyGrid::from_ascii(&["########", "........", "########"]);
@@ -366,7 +367,7 @@ mod tests {
             matches!(motion.step(&moment, &obstacles), MotionStep::Moving(_))
         };
         let drive = Motion::Drive(1.0);
-        // 0.1 m of room in the middle, 0.02 m beside it.
+        // 0.1 m of clearance in the middle, 0.02 m beside it.
         for (y, found_with_m, is_free) in
             [(1.5, 0.19, true), (1.5, 0.21, false), (1.58, 0.03, true), (1.58, 0.05, false)]
         {
@@ -382,7 +383,7 @@ mod tests {
     }
 
     proptest! {
-        /// However fast the robot was, it first stops, and never goes beyond the end.
+        /// At any initial speed, the robot first stops, and never goes beyond the end.
         #[test]
         fn motions_never_overshoot(length_m in 0.01..2.0f64, v in 0.0..0.5f64, which in 0usize..2) {
             let robot = [Robot::small(), Robot::jackal()][which].clone();

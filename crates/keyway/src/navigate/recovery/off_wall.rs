@@ -1,32 +1,33 @@
-//! Away from a wall beside which the robot stands: small turns and straight drives.
+//! Escape from a wall beside which the robot is stationary: small rotations and straight drives.
 //!
-//! Along a wall and near it, no turn of the search (`manoeuvre.rs`) is free: a corner would touch
-//! the wall. So the robot turns as far as it can and drives on, which takes it away from the wall,
-//! turns farther, and so on, until it can turn by a step of the search. From there on that finds
-//! the way.
+//! Parallel to a wall and close to it, no rotation of the search (`manoeuvre.rs`) is free: a
+//! corner would touch the wall. The robot therefore rotates as far as it can and drives on, which
+//! takes it away from the wall, rotates farther, and so on, until it can rotate by a step of the
+//! search. The search takes over from there.
 
 use super::manoeuvre::{STEP_RAD, TightPlace, after};
 use super::motion::Motion;
 use crate::geometry::{Point, Pose};
 
-/// Turns after which it gives up.
+/// Maximum number of rotations.
 const MOST_TURNS: u32 = 24;
 
-/// A smaller turn leads nowhere \[rad\].
+/// Smallest useful rotation \[rad\].
 const LEAST_RAD: f64 = 0.003;
 
-/// The part of the largest free turn that it makes: what touches nearly cannot drive on.
+/// Share of the largest free rotation that is used: a robot that almost touches the wall cannot
+/// drive on.
 const SHARE: f64 = 0.75;
 
-/// Halvings of the range of turns.
+/// Bisection steps of the range of rotations.
 const HALVINGS: u32 = 10;
 
 /// Length of a drive \[circumscribed radii\].
 const DRIVE_SIZES: f64 = 0.5;
 
 impl TightPlace<'_> {
-    /// The motions that lead away from a wall and on along the route; `None` where the robot can
-    /// turn already, or comes no farther.
+    /// The motions that lead away from a wall and on along the route; `None` if the robot can
+    /// rotate already, or makes no progress.
     pub(super) fn off_a_wall(&self, pose: Pose, stations: &[Point]) -> Option<Vec<Motion>> {
         let can_turn = |side: f64| self.is_free(pose, Motion::Turn(side * STEP_RAD));
         if can_turn(1.0) || can_turn(-1.0) {
@@ -42,7 +43,8 @@ impl TightPlace<'_> {
         })
     }
 
-    /// Turns to one side, and drives ahead (1) or back (-1), until a turn of the search is free.
+    /// Rotates to one side, and drives ahead (1) or back (-1), until a rotation of the search is
+    /// free.
     fn turned_away(&self, pose: Pose, side: f64, ahead: f64) -> Option<(Vec<Motion>, Pose)> {
         let drive = Motion::Drive(ahead * DRIVE_SIZES * self.size_m());
         let (mut pose, mut motions) = (pose, Vec::new());
@@ -61,7 +63,7 @@ impl TightPlace<'_> {
         None
     }
 
-    /// A turn to one side that is nearly as large as it can be, below a step of the search \[rad\].
+    /// A rotation to one side, close to the largest free one, below a step of the search \[rad\].
     fn largest_turn_rad(&self, pose: Pose, side: f64) -> Option<f64> {
         let (mut free_rad, mut far_rad) = (0.0, STEP_RAD);
         for _ in 0..HALVINGS {

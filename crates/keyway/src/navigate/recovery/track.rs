@@ -1,10 +1,10 @@
-//! Where the robot has driven.
+//! The track that the robot has driven.
 
 use crate::geometry::{Point, Shift};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The last places on the way that the robot has driven, newest last.
+/// The last positions on the robot's track, newest last.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct Track {
     places: VecDeque<Point>,
@@ -12,14 +12,15 @@ pub(in crate::navigate) struct Track {
 }
 
 impl Track {
-    /// Places that are kept.
+    /// Maximum number of positions.
     const MOST: usize = 64;
 
     pub(in crate::navigate) fn new(spacing_m: f64) -> Self {
         Self { places: VecDeque::with_capacity(Self::MOST), spacing_m }
     }
 
-    /// Notes where the robot is, once it is far enough from the last place. Allocates nothing.
+    /// Records the position of the robot once it is far enough from the last one. Allocates
+    /// nothing.
     pub(in crate::navigate) fn note(&mut self, position: Point) {
         let is_far = |last: &Point| last.distance(position) >= self.spacing_m;
         if self.places.back().is_none_or(is_far) {
@@ -30,12 +31,12 @@ impl Track {
         }
     }
 
-    /// Moves them with the robot, to where that turns out to be.
+    /// Moves them along with a correction of the robot's pose.
     pub(in crate::navigate) fn shift(&mut self, shift: &Shift) {
         self.places.iter_mut().for_each(|place| *place = shift.point(*place));
     }
 
-    /// The places up to `length_m` back along the track from a position, the farthest first.
+    /// The positions up to `length_m` back along the track from a position, the farthest first.
     pub(in crate::navigate) fn back(
         &self,
         position: Point,

@@ -1,4 +1,4 @@
-//! Corrections of what is known: of the place of the robot, or the map.
+//! Corrections of the robot's pose, and changes of the map.
 
 use super::World;
 use crate::geometry::{Disc, Pose, Shift, Velocity};
@@ -10,8 +10,8 @@ use crate::navigate::{FittedStack, NavigateError};
 use std::sync::Arc;
 
 impl World {
-    /// The robot is not where it was taken to be. What was sensed keeps its place beside it; ground
-    /// that was seen is ground that was seen no more.
+    /// Corrects the pose of the robot. Sensed obstacles keep their position relative to the
+    /// robot; observed free space becomes unobserved.
     pub(in crate::navigate) fn relocate(&mut self, from: Pose, to: Pose) -> Shift {
         let (shift, frame) = (Shift::new(from, to), *self.known.frame());
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
@@ -35,7 +35,7 @@ impl World {
         shift
     }
 
-    /// Nothing was ever sensed.
+    /// Clears everything that was sensed.
     pub(in crate::navigate) fn forget_sensed(&mut self, parts: &FittedStack) {
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
         self.sensed.forget(map, &mut self.changed);
@@ -49,8 +49,8 @@ impl World {
         }
     }
 
-    /// Nothing was ever sensed on a disc, but for what the last scans hit: who stood there and is
-    /// out of view is taken to have gone.
+    /// Clears everything that was sensed on a disc, except the hits of the last scans: an
+    /// obstacle that was there and is out of view is assumed to have left.
     pub(in crate::navigate) fn forget_disc(&mut self, disc: &Disc) {
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
         self.sensed.forget_disc(map, disc, &mut self.changed);
@@ -59,14 +59,14 @@ impl World {
         for sensor in 0..self.scans.len() {
             let map = self.unmasked.as_ref().unwrap_or(&self.known);
             let scan = &self.scans[sensor];
-            // The next scan tells what of it moves.
+            // The next scan separates the moving obstacles.
             self.sensed.update_from(map, sensor, scan, None, &mut self.changed);
             self.keep_out();
             self.spread_changes();
         }
     }
 
-    /// Somebody else has given a command at a time \[s\].
+    /// Records a command from another source at a time \[s\].
     pub(in crate::navigate) fn note_override(&mut self, now_s: f64, command: Velocity) {
         self.pass_time(now_s);
         let Some(now) = self.now else { return };
@@ -76,7 +76,7 @@ impl World {
         }
     }
 
-    /// The clock begins anew.
+    /// Restarts the clock.
     pub(in crate::navigate) fn restart_clock(&mut self) {
         (self.told, self.now, self.scanned, self.refused) = (None, None, None, None);
         self.times.fill(super::SensorTimes::default());
@@ -86,12 +86,12 @@ impl World {
         self.doubts = Doubts::new(self.times.len());
     }
 
-    /// The map as it was given and edited, without ground to keep out of.
+    /// The map as given and edited, without keep-out zones.
     pub(in crate::navigate) fn map(&self) -> &OccupancyGrid {
         self.unmasked.as_ref().unwrap_or(&self.known)
     }
 
-    /// The map is another one. What was sensed keeps its place in the world.
+    /// Replaces the map. Sensed obstacles keep their position in the world.
     pub(in crate::navigate) fn set_map(
         &mut self,
         map: Arc<OccupancyGrid>,
@@ -105,7 +105,7 @@ impl World {
         let frame = *self.known.frame();
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
         self.sensed.shift(map, |place| place, &mut self.changed);
-        // The cells of the last map mean nothing on this one.
+        // The cells of the last map are meaningless on this one.
         self.changed.retain(|edit| edit.state == CellState::Occupied);
         self.edits.clear();
         self.spread_changes();
@@ -118,7 +118,7 @@ impl World {
         Ok(())
     }
 
-    /// Cells of the map are otherwise; those outside it are ignored.
+    /// Changes cells of the map; those outside it are ignored.
     pub(in crate::navigate) fn edit_map(&mut self, edits: &[Edit]) {
         let frame = *self.known.frame();
         let masked = |edit: &Edit| {
@@ -134,7 +134,7 @@ impl World {
         self.learn(&masked);
     }
 
-    /// Other ground is to be kept out of, or to be slow on.
+    /// Replaces the keep-out zones and speed zones.
     pub(in crate::navigate) fn set_masks(&mut self, masks: Masks) {
         self.masks = masks;
         let map = self.unmasked.take().unwrap_or_else(|| Arc::clone(&self.known));
@@ -149,7 +149,7 @@ impl World {
         self.learn(&edits);
     }
 
-    /// Takes in cells of the known map that have changed.
+    /// Takes in changed cells of the known map.
     fn learn(&mut self, edits: &[Edit]) {
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
         self.sensed.learn(map, edits, &mut self.changed);

@@ -1,4 +1,4 @@
-//! Knowledge of a navigator: the map, and what was observed.
+//! World model of a navigator: the map and the observations.
 
 mod changing;
 mod scene;
@@ -25,53 +25,54 @@ use crate::sense::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Everything that is known. It follows the observations, as they come; decisions read it.
+/// The world model. Observations update it, decisions read it.
 pub(super) struct World {
     /// Number of changes of the map.
     pub(super) changes: u64,
-    /// The map, with ground to keep out of as obstacles.
+    /// The map, with keep-out zones as obstacles.
     pub(super) known: Arc<OccupancyGrid>,
-    /// The same without that; `None` where there is none.
+    /// The map without keep-out zones; `None` if there are none.
     unmasked: Option<Arc<OccupancyGrid>>,
     pub(super) masks: Masks,
-    /// Plans on layers that follow what is sensed.
+    /// Plans on layers that include the sensed obstacles.
     pub(super) router: Router,
-    /// Distances to what is known and what was sensed.
+    /// Distances to known and sensed obstacles.
     pub(super) obstacles: DistanceField,
     pub(super) sensed: SensedLayer,
     seen: Option<SeenGround>,
-    /// Moving obstacles are in its list, not in the sensed layer; none where everything counts as
-    /// standing.
+    /// Tracks moving obstacles, which are not in the sensed layer; `None` if everything counts as
+    /// stationary.
     pub(super) tracker: Option<Tracker>,
     pub(super) walked: WalkedGround,
-    /// The last places of the robot.
+    /// Recent positions of the robot.
     pub(super) track: Track,
     pub(super) motors: Motors,
-    /// Moving obstacles as they will be when the next command acts.
+    /// Moving obstacles, predicted to the time at which the next command takes effect.
     pub(super) movers_then: Vec<Mover>,
-    /// Points seen on those that may as well stand, then.
+    /// Surface points of those that may as well be stationary, at that time.
     pub(super) surfaces_then: Vec<MovingPoint>,
     /// Cells that have become occupied since the last decision.
     pub(super) edits: Vec<Edit>,
-    /// They were too many to be listed.
+    /// True if these were too many to be listed.
     pub(super) has_changed_much: bool,
     poses: Poses,
-    /// The last pose that was observed.
+    /// State of the last accepted observation.
     told: Option<Told>,
     /// The latest of all stamps.
     now: Option<Time>,
-    /// The reason why the last observation was not taken in.
+    /// Reason why the last observation was discarded.
     refused: Option<Blocked>,
-    /// The last scan of each sensor; without beams before the first one, and where it is silent.
+    /// The last scan of each sensor; without beams before the first one, and while the sensor is
+    /// silent.
     scans: Vec<ProjectedScan>,
     times: Vec<SensorTimes>,
-    /// Time of the last points of each sensor that gives some.
+    /// Time of the last points of each sensor that gives points.
     points_at: [Option<Time>; SensorPoints::MOST_SENSORS],
-    /// The ranges of each sensor's last scan \[m\].
+    /// Ranges of each sensor's last scan \[m\].
     ranges_m: Vec<Vec<f64>>,
     /// Time of the latest scan of any sensor.
     scanned: Option<Time>,
-    /// A scan that is given again, where the robot is now; without meaning between scans.
+    /// A repeated scan, projected from the present pose; not meaningful between scans.
     again: ProjectedScan,
     doubts: Doubts,
     /// Changes of the map by the last scan.
@@ -89,17 +90,17 @@ pub(super) struct Told {
 /// Times of a sensor's scans.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct SensorTimes {
-    /// The last one.
+    /// Last scan.
     scanned: Option<Time>,
-    /// The last one of which a beam has said something.
+    /// Last scan with a valid beam.
     said: Option<Time>,
 }
 
 impl World {
-    /// Cells that are listed at most; of more, it is only known that there are some.
+    /// Maximum number of listed cells; beyond it, only a flag is set.
     const MOST_EDITS: usize = 4096;
 
-    /// Nothing but the map is known.
+    /// A world model of the map alone.
     pub(super) fn new(
         known: &Arc<OccupancyGrid>,
         parts: &FittedStack,
@@ -139,8 +140,8 @@ impl World {
         })
     }
 
-    /// Takes in what was measured; nothing of it where it cannot be true. The shift of all ground
-    /// if the robot turns out to be elsewhere than it could have driven.
+    /// Takes in an observation, unless it is implausible. Returns the shift of all sensed
+    /// obstacles if the pose is one that the robot cannot have reached by driving.
     pub(super) fn observe(
         &mut self,
         parts: &FittedStack,
@@ -172,7 +173,8 @@ impl World {
         shift
     }
 
-    /// Moves what was sensed with a robot whose pose has jumped: beside it, it is where it was.
+    /// Moves sensed obstacles along with a jump of the robot's pose, so that they keep their
+    /// relative position.
     fn follow_jump(&mut self, robot: &Robot, time: Time, now: (Pose, Velocity)) -> Option<Shift> {
         let Told { time: before, pose, velocity } = self.told?;
         let elapsed_s = time.since_s(before);
@@ -182,12 +184,12 @@ impl World {
         Some(shift)
     }
 
-    /// Contradictions in what was observed lately.
+    /// Contradictions in recent observations.
     pub(super) fn doubts(&self) -> &[Doubt] {
         self.doubts.found()
     }
 
-    /// Time of an observation that can be true.
+    /// The time of an observation, if it is plausible.
     fn believe(&self, robot: &Robot, observation: &Observation<'_>) -> Result<Time, Blocked> {
         let Observation { stamp_s, pose, velocity, .. } = *observation;
         let time = Time::of_stamp(stamp_s).ok_or(Blocked::BadInput("stamp_s"))?;
@@ -200,7 +202,7 @@ impl World {
         }
     }
 
-    /// Clears the last scan of each silent sensor: what it met may have gone.
+    /// Clears the last scan of each silent sensor: its obstacles may have left.
     fn forget_silent(&mut self, robot: &Robot) {
         for sensor in 0..self.scans.len() {
             if self.silent_s(sensor) > robot.sensors[sensor].timeout_in_s(robot.cycle_s) {
@@ -210,16 +212,17 @@ impl World {
         }
     }
 
-    /// Since a beam of a sensor has said something \[s\]; infinite before that.
+    /// Time since the last valid beam of a sensor \[s\]; infinite if there was none.
     fn silent_s(&self, sensor: usize) -> f64 {
         let said = self.times[sensor].said;
         said.zip(self.now).map_or(f64::INFINITY, |(said, now)| now.since_s(said))
     }
 
-    /// Takes in a scan, where the robot was when it was made: one of a sensor that the robot does
-    /// not have is left out, and so is one of which no beam says anything, one that is not newer
-    /// than the last, one that is older than any pose that is still known, and the same ranges as
-    /// before from elsewhere, unless they show nothing new: whatever the stamp, that is no new look.
+    /// Takes in a scan at the robot's pose at the time of the scan. Ignored are scans of a sensor
+    /// that the robot does not have, scans without valid beams, scans that are not newer than the
+    /// last one or older than all remembered poses, and scans that repeat the last ranges from
+    /// another pose, unless they show nothing new: such a scan carries no new information,
+    /// whatever its stamp.
     fn take_in(&mut self, parts: &FittedStack, scan: &SensorScan<'_>) {
         let Some(time) = Time::of_stamp(scan.stamp_s) else { return };
         let Some(times) = self.times.get_mut(scan.sensor) else { return };
@@ -243,7 +246,8 @@ impl World {
                     return;
                 }
             } else {
-                // It is that of where it was first given.
+                // The robot has hardly moved: the scan keeps the pose at which it was first
+                // given.
                 pose = projected.robot();
             }
         }
@@ -257,7 +261,7 @@ impl World {
         self.note(parts, scan.sensor, time);
     }
 
-    /// Takes in points, where the robot was when they were measured, by the rules for scans.
+    /// Takes in points at the robot's pose at their time, by the rules for scans.
     fn take_in_points(&mut self, parts: &FittedStack, points: &SensorPoints<'_>) {
         let Some(time) = Time::of_stamp(points.stamp_s) else { return };
         let Some(last) = self.points_at.get_mut(points.sensor) else { return };
@@ -274,13 +278,13 @@ impl World {
         self.spread_changes();
     }
 
-    /// Adds what the scan of a sensor shows to the movers and to the sensed layer, to every map
-    /// that follows from it, and to the ground that was seen.
+    /// Updates the tracker and the sensed layer with the scan of a sensor, all maps derived from
+    /// them, and the observed free space.
     fn note(&mut self, parts: &FittedStack, sensor: usize, time: Time) {
         let scan = &self.scans[sensor];
-        // Ground to keep out of is no wall: what stands or walks there is seen.
+        // Keep-out zones are not walls: obstacles in them are sensed.
         let map = self.unmasked.as_ref().unwrap_or(&self.known);
-        // Of scans of the same time only the first finds time that has passed.
+        // Of scans of the same time, only the first advances time.
         let elapsed_s = self.scanned.map_or(0.0, |last| time.since_s(last).max(0.0));
         self.scanned = self.scanned.max(Some(time));
         if let Some(tracker) = &mut self.tracker {
@@ -300,7 +304,7 @@ impl World {
         }
     }
 
-    /// Cells that have just become free stay ground to keep out of.
+    /// Keeps cells that have just become free blocked if they are in a keep-out zone.
     fn keep_out(&mut self) {
         if self.unmasked.is_some() {
             for edit in self.changed.iter_mut().filter(|it| it.state != CellState::Occupied) {
@@ -309,7 +313,7 @@ impl World {
         }
     }
 
-    /// Brings all that follows from the map up to date with the cells that have just changed.
+    /// Updates all derived maps with the cells that have just changed.
     fn spread_changes(&mut self) {
         let Self { router, obstacles, changed, edits, .. } = self;
         router.layers.maps.iter_mut().for_each(|map| map.apply(changed));
@@ -325,13 +329,13 @@ impl World {
         }
     }
 
-    /// A decision has looked at them.
+    /// Forgets the edits after a decision has used them.
     pub(super) fn forget_edits(&mut self) {
         self.edits.clear();
         self.has_changed_much = false;
     }
 
-    /// The state that was observed last, if that can be true.
+    /// The last observed state, if it is plausible.
     pub(super) fn told(&self) -> Result<Told, Blocked> {
         match &self.refused {
             Some(why) => Err(why.clone()),
@@ -339,22 +343,22 @@ impl World {
         }
     }
 
-    /// Takes in that it is as late as this \[s\]; true if it was earlier before.
+    /// Advances the time to this one \[s\]; true if it was earlier before.
     pub(super) fn pass_time(&mut self, now_s: f64) -> bool {
         let now = Time::of_stamp(now_s).filter(|&now| self.now.is_some_and(|before| before < now));
         self.now = now.or(self.now);
         now.is_some()
     }
 
-    /// The latest time that was observed or told.
+    /// The latest time that was observed or set.
     pub(super) const fn now(&self) -> Option<Time> {
         self.now
     }
 
-    /// Brings what is known from the latest scan to the present; movers to when a robot is there
-    /// that is behind its reference by a time \[s\].
+    /// Predicts the state of the latest scan to the present, and moving obstacles to the time at
+    /// which a robot that lags its reference by `lag_s` is there \[s\].
     pub(super) fn look_ahead(&mut self, lag_s: f64) {
-        // What one sensor has marked, another may have seen through.
+        // Another sensor may have seen through a cell that one sensor has marked.
         let sensed = self.sensed.sensed();
         let known = self.known.occupied();
         self.edits.retain(|edit| sensed.get(edit.cell) || known.get(edit.cell));
@@ -372,7 +376,7 @@ impl World {
         }
     }
 
-    /// The same step with a command that the motors can do.
+    /// The same step with a command that the motors can follow.
     pub(super) fn within_reach(&self, velocity: Velocity, step: Step) -> Step {
         let command = step.command();
         let given = self.motors.within_reach(velocity, command);
@@ -384,9 +388,9 @@ impl World {
         self.scanned.zip(self.now).map_or(0.0, |(scanned, now)| now.since_s(scanned))
     }
 
-    /// The reason to stop, if the sensors have said nothing for too long: all of them, or one of
-    /// them where the robot need not stay within ground that it has seen. Before its first scan a
-    /// sensor has never seen anything.
+    /// The reason to stop if sensors have had no valid beam for too long: all of them, or any one
+    /// of them if the robot need not stay within observed free space. Before its first scan, a
+    /// sensor counts as silent forever.
     pub(super) fn silence(&self, parts: &FittedStack) -> Option<Blocked> {
         if !parts.stack.controller.stop_when_blind {
             return None;
@@ -408,7 +412,7 @@ impl World {
         Some(Blocked::SensorSilent { sensor, silent_s })
     }
 
-    /// Asks a question of the known map alone, without what was sensed.
+    /// Evaluates a query on the known map alone, without the sensed obstacles.
     pub(super) fn on_known<T>(&mut self, ask: impl FnOnce(&mut Router, &OccupancyGrid) -> T) -> T {
         let (sensed, Self { router, known, .. }) = (self.sensed.cells(), self);
         router.layers.unmark(&sensed, known);
@@ -417,7 +421,7 @@ impl World {
         answer
     }
 
-    /// Adds the layer of a clearance \[m\] that a route was found on, unless it is there.
+    /// Adds the layer of the clearance \[m\] that a route was found on, unless it exists.
     pub(super) fn add_layer(&mut self, clearance_m: Option<f64>) {
         if clearance_m.is_none() || clearance_m == self.router.layers.inserted_m() {
             return;
@@ -435,15 +439,15 @@ impl World {
         router
     }
 
-    /// The ground that has been seen, and the latest scans.
+    /// The observed free space, and the latest scans.
     pub(super) fn seen_cells(&self) -> SeenCells<'_> {
         let cells = self.seen.as_ref().map_or(SeenCells::ANYWHERE, SeenGround::cells);
         SeenCells { scans: &self.scans, ..cells }
     }
 }
 
-/// True if nearly all that a scan has met is known to stand there: along a wall that is all alike,
-/// the next scan may be the same as the one before.
+/// True if nearly all hits of a scan are at occupied cells: along a uniform wall, the next scan
+/// may be identical to the one before.
 fn is_known(scan: &ProjectedScan, obstacles: &DistanceField) -> bool {
     const NEARLY_ALL: f64 = 0.98;
     let is_known = |cell: Cell| obstacles.half_cells_sq(cell) == Some(0);
@@ -451,14 +455,14 @@ fn is_known(scan: &ProjectedScan, obstacles: &DistanceField) -> bool {
     known as f64 >= NEARLY_ALL * scan.hits().count() as f64
 }
 
-/// Walls through which nobody walks.
+/// Walls that pedestrians do not walk through.
 fn walls<'a>(
     unmasked: Option<&'a OccupancyGrid>,
     known: &'a OccupancyGrid,
     router: &'a Router,
 ) -> Walls<'a> {
     let map = unmasked.unwrap_or(known);
-    // Where ground to keep out of is among the obstacles, only what the map has is a wall.
+    // If keep-out zones are among the obstacles, only those of the map are walls.
     let obstacles = match unmasked {
         Some(map) => map.occupied(),
         None => router.layers.obstacles().obstacles(),
@@ -466,7 +470,7 @@ fn walls<'a>(
     Walls { obstacles, unknown: map.unknown() }
 }
 
-/// The field that cannot be true, if any: not finite, or faster than twice the robot's limits.
+/// The field that is implausible, if any: not finite, or faster than twice the robot's limits.
 fn unbelievable(robot: &Robot, pose: Pose, velocity: Velocity) -> Option<&'static str> {
     let limits = &robot.limits;
     let fastest_mps = limits.v_max_mps.max(-limits.v_min_mps);

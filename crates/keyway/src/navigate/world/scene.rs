@@ -1,4 +1,4 @@
-//! The world as a local planner sees it.
+//! The world model as the input of a local planner.
 
 use super::World;
 use crate::geometry::{Pose, Velocity};
@@ -7,7 +7,7 @@ use crate::local::{Scene, Smoothed};
 use crate::navigate::task::Task;
 
 impl World {
-    /// The view of a local planner of a robot with a task.
+    /// The input of a local planner for a robot with a task.
     pub(in crate::navigate) fn scene<'a>(
         &'a self,
         task: &'a Task,
@@ -37,7 +37,8 @@ impl World {
         }
     }
 
-    /// The robot itself when its next command acts, if its commands are averaged.
+    /// State of the robot itself when its next command takes effect, if its commands are
+    /// averaged.
     pub(in crate::navigate) fn smoothed(
         &self,
         robot_then: (Pose, Velocity),

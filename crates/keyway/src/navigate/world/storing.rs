@@ -1,4 +1,4 @@
-//! Knowledge of a navigator, as it is stored and taken up again.
+//! Serialised form of the world model.
 
 use super::{SensorTimes, Told, World, unbelievable};
 use crate::map::{CellState, Edit, OccupancyGrid};
@@ -15,7 +15,7 @@ use crate::sense::{ProjectedScan, SeenStored, SensedPlaces, SensorPoints, Tracke
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// All of a [`World`] that does not follow from the rest.
+/// The part of a [`World`] that cannot be derived from the rest.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(in crate::navigate) struct StoredWorld {
     map: Arc<OccupancyGrid>,
@@ -32,7 +32,7 @@ pub(in crate::navigate) struct StoredWorld {
     edits: Vec<Edit>,
     poses: Poses,
     told: Option<Told>,
-    /// The reason why the last observation was not taken in.
+    /// Reason why the last observation was discarded.
     refused: Option<Refused>,
     has_changed_much: bool,
     now: Option<Time>,
@@ -44,7 +44,7 @@ pub(in crate::navigate) struct StoredWorld {
     doubts: Doubts,
 }
 
-/// The reason why an observation was not taken in.
+/// Reason why an observation was discarded.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum Refused {
     BadInput(String),
@@ -56,7 +56,7 @@ impl Refused {
         match *why {
             Blocked::TimeRunsBack { stamp_s, last_s } => Self::TimeRunsBack { stamp_s, last_s },
             Blocked::BadInput(field) => Self::BadInput(field.to_owned()),
-            // Nothing else is a reason.
+            // No other reason exists.
             _ => Self::BadInput(OBSERVED[0].to_owned()),
         }
     }
@@ -73,12 +73,12 @@ impl From<Refused> for Blocked {
     }
 }
 
-/// Fields of an observation that may be refused.
+/// Fields of an observation that may be rejected.
 const OBSERVED: [&str; 6] =
     ["stamp_s", "pose.x", "pose.y", "pose.theta", "velocity.v", "velocity.omega"];
 
 impl World {
-    /// All of it that is stored.
+    /// The stored part of the world model.
     pub(in crate::navigate) fn stored(&self) -> StoredWorld {
         StoredWorld {
             map: Arc::clone(self.unmasked.as_ref().unwrap_or(&self.known)),
@@ -106,7 +106,7 @@ impl World {
         }
     }
 
-    /// The world that was stored, with all that follows from it.
+    /// Restores a world model, with all derived data.
     pub(in crate::navigate) fn restored(
         stored: StoredWorld,
         parts: &FittedStack,
@@ -114,7 +114,7 @@ impl World {
         let known = stored.masks.over(&stored.map);
         let mut world = Self::new(&known, parts).map_err(NavigateError::into_restore)?;
         world.check(&stored, &parts.robot)?;
-        // Ground to keep out of is no wall: what was sensed there is known.
+        // Keep-out zones are not walls: obstacles sensed in them are restored.
         world.sensed = crate::sense::SensedLayer::restored(&stored.map, &stored.sensed);
         world.unmasked = stored.masks.keep_out.is_some().then_some(stored.map);
         world.masks = stored.masks;
@@ -145,7 +145,7 @@ impl World {
         Ok(world)
     }
 
-    /// Refuses what does not belong to the robot.
+    /// Rejects parts that do not belong to the robot.
     fn check(&self, stored: &StoredWorld, robot: &Robot) -> Result<(), RestoreError> {
         let sensors = self.times.len();
         let counts = [

@@ -1,21 +1,21 @@
 //! Bidirectional jump point A* with fixed targets \[You2021, fig. 3\]: a map and two cells -> an
-//! 8-connected path without corner cutting, searched for from both ends.
+//! 8-connected path without corner cutting, searched for from start and goal.
 //!
-//! The intermediate design from which the paper starts: the same search as
-//! [`BidirectionalJps`](super::BidirectionalJps), but each side aims at the other's root all the
-//! time. The paper says of it that it finds two paths of equal cost and expands more nodes than
-//! necessary.
+//! The intermediate design that precedes the paper's own: the same search as
+//! [`BidirectionalJps`](super::BidirectionalJps), but each side always aims at the other's root.
+//! According to the paper it finds two paths of equal cost and expands more nodes than necessary.
 //!
 //! # Source
 //! See [`BidirectionalJps`](super::BidirectionalJps). In equation (2) the target is a root, so `b
 //! G2` is 0.
 //!
 //! # Where this differs from the paper
-//! As there. Keys need no renewal, as the targets do not move. With [`JumpMeeting::Literal`] only
-//! the other side's root stops a scan; this does not miss, as a side finds the root in the end.
+//! See [`BidirectionalJps`](super::BidirectionalJps). Keys need no renewal, as the targets do not
+//! move. With [`JumpMeeting::Literal`] only the other side's root stops a scan; no path is missed,
+//! as a side eventually reaches the root.
 //!
 //! # Errors / cost
-//! As there.
+//! See [`BidirectionalJps`](super::BidirectionalJps).
 
 use super::search::{Method, Targets};
 use super::{JumpMeeting, with_metric};
@@ -32,9 +32,9 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsFixedConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`; with
-    /// `best` they go on until nothing better can come), when one takes a node that the other has
-    /// expanded (`expanded`), or when the same node is in both lists (`literal`).
+    /// The meeting condition: a scan reaches any node of the other side (`generated`; with `best`
+    /// the search continues until no better meeting is possible), a side takes a node that the
+    /// other has expanded (`expanded`), or the same node is in both lists (`literal`).
     pub meeting: JumpMeeting,
     /// The estimate H of the cost to the other side's root: `octile`, `euclidean`, `manhattan` or
     /// `mean`, eq. (3).
@@ -62,13 +62,13 @@ pub struct BidirectionalJpsFixed {
 }
 
 impl BidirectionalJpsFixed {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "bidirectional-jps-fixed";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     ///
     /// # Errors
-    /// When the weight is not a number of at least 0.
+    /// Returns an error if the weight is not a number of at least 0.
     pub fn new(config: BidirectionalJpsFixedConfig) -> Result<Self, ConfigError> {
         config.check()?;
         Ok(Self { config })

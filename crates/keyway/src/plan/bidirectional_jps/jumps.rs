@@ -1,13 +1,13 @@
-//! Jump points of the textbook \[Harabor2011\], without corner cutting: a node and a direction ->
-//! the next node there.
+//! The classic jump points of \[Harabor2011\], without corner cutting: a node and a direction ->
+//! the next node in that direction.
 //!
 //! A scan walks from a node in one of the 8 directions and ends at the first of these cells:
 //! - one of the *targets*, cells given from outside;
-//! - on a straight scan, a cell beside which something opens: the side neighbour of the cell before
-//!   is blocked and its own is free. As no corner is cut, the robot must come this one step further
-//!   before it can turn;
+//! - on a straight scan, a cell beside which a side opens: the side neighbour of the previous cell
+//!   is blocked and that of the cell itself is free. As no corner is cut, the robot must take this
+//!   one more step before it can turn;
 //! - on a diagonal scan, a cell from which a straight scan in one of the diagonal's two directions
-//!   finds something. A diagonal step needs a free 2 x 2 block, so nothing opens beside it.
+//!   finds a node. A diagonal step needs a free 2 x 2 block, so no side opens beside it.
 //!
 //! A diagonal is walked cell by cell; straight scans read 64 cells at a time.
 
@@ -40,7 +40,8 @@ impl Direction {
         Self { dx, dy }
     }
 
-    /// From one cell to another on the same straight or diagonal line; `None` to itself.
+    /// The direction between two cells on the same straight or diagonal line; `None` if they are
+    /// equal.
     pub(super) fn between(from: Cell, to: Cell) -> Option<Self> {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         (from != to).then_some(Self::new(dx.signum(), dy.signum()))
@@ -50,7 +51,7 @@ impl Direction {
         self.dx != 0 && self.dy != 0
     }
 
-    /// One step from a cell.
+    /// The cell one step away.
     pub(super) const fn step(self, from: Cell) -> Cell {
         Cell::new(from.x + self.dx, from.y + self.dy)
     }
@@ -60,16 +61,16 @@ impl Direction {
     }
 }
 
-/// The find of a scan.
+/// The result of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Scan {
-    /// The last cell that was looked at; the cell of departure where no step is possible.
+    /// The last cell visited; the start cell of the scan if no step is possible.
     pub(super) end: Cell,
-    /// The next node: it is there, or nowhere in this direction.
+    /// The next node, if any: it lies at `end`, or there is none in this direction.
     pub(super) node: Option<Cell>,
 }
 
-/// The scans of a map.
+/// Scans on a map.
 #[derive(Clone, Copy)]
 pub(super) struct Jumps<'m> {
     pub(super) map: &'m SearchMap,
@@ -77,7 +78,7 @@ pub(super) struct Jumps<'m> {
 }
 
 impl Jumps<'_> {
-    /// Scans from a cell in a direction.
+    /// Scans from a cell in one direction.
     pub(super) fn scan(&self, from: Cell, direction: Direction) -> Scan {
         if direction.is_diagonal() {
             self.scan_diagonal(from, direction)
@@ -110,7 +111,7 @@ impl Jumps<'_> {
     fn scan_straight(&self, from: Cell, direction: Direction) -> Scan {
         let stops = self.map.stops();
         let (rows, columns) = (self.targets.rows(), self.targets.columns());
-        // Along a column, columns and rows are exchanged.
+        // For scans along a column, columns and rows are exchanged.
         let turned = Cell::new(from.y, from.x);
         let end = match (direction.dx, direction.dy) {
             (1, _) => first_after(stops.east.row(from.y), rows, from),
@@ -127,11 +128,11 @@ impl Jumps<'_> {
     }
 
     /// The directions in which to expand a node that was reached in direction `arrival`; all of
-    /// them for a root, which was reached in none.
+    /// them for a root, which has no arrival.
     ///
-    /// Natural ones: straight on; after a diagonal its two parts as well. Forced ones, after a
-    /// straight scan: to the side that opens, and diagonally there. Every other neighbour is
-    /// reached as cheaply from the cell before, without the node.
+    /// Natural directions: straight on; after a diagonal its two components as well. Forced
+    /// directions, after a straight scan: to the side that opens, and diagonally to that side.
+    /// Every other neighbour is reached at the same cost from the previous cell, without the node.
     pub(super) fn onward(
         &self,
         at: Cell,
@@ -153,21 +154,21 @@ impl Jumps<'_> {
         is_ahead || (is_beside && self.opens(at, arrival, side))
     }
 
-    /// True if something opens beside a cell: the side neighbour of the cell before is blocked, and
-    /// its own is free.
+    /// True if a side opens beside a cell: the side neighbour of the previous cell is blocked, and
+    /// that of the cell itself is free.
     fn opens(&self, at: Cell, arrival: Direction, side: Direction) -> bool {
         let before = arrival.step_back(at);
         !self.map.is_free(side.step(before)) && self.map.is_free(side.step(at))
     }
 }
 
-/// The first column after the cell's where a scan of its row stops, or a target is.
+/// The first column after the cell's with a stop or a target in its row.
 fn first_after(stops: &[u64], targets: &BitGrid, Cell { x, y }: Cell) -> i32 {
     let stop = next_one(stops, bit(x)) as i32 - 1;
     targets.first_one_in_span(y, x + 1, stop).unwrap_or(stop)
 }
 
-/// The last column before the cell's where a scan of its row stops, or a target is.
+/// The last column before the cell's with a stop or a target in its row.
 fn last_before(stops: &[u64], targets: &BitGrid, Cell { x, y }: Cell) -> i32 {
     let stop = previous_one(stops, bit(x)) as i32 - 1;
     targets.last_one_in_span(y, stop, x - 1).unwrap_or(stop)
@@ -188,7 +189,7 @@ mod tests {
     const NORTH: Direction = Direction::new(0, 1);
     const WEST: Direction = Direction::new(-1, 0);
 
-    /// Row 4 on top, row 0 at the bottom.
+    /// Row 4 is on top, row 0 at the bottom.
     const ROWS: [&str; 5] = [
         "......", //
         "......", //
@@ -210,7 +211,7 @@ mod tests {
         marks
     }
 
-    /// Scans, with these targets: where it ends, and whether a node is there.
+    /// Scans with these targets; returns the end cell, and true if it is a node.
     fn scan(from: (i32, i32), direction: Direction, cells: &[(i32, i32)]) -> (i32, i32, bool) {
         let map = map(&ROWS);
         let jumps = Jumps { map: &map, targets: &targets(&map, cells) };
@@ -221,10 +222,10 @@ mod tests {
 
     #[test]
     fn a_straight_scan_ends_one_step_behind_the_obstacle() {
-        // Below the obstacle in column 2: in column 3 the north opens.
+        // Below the obstacle in column 2: the north side opens in column 3.
         assert_eq!(scan((0, 1), EAST, &[]), (3, 1, true));
         assert_eq!(scan((5, 1), WEST, &[]), (1, 1, true));
-        // Nothing opens along row 0, or behind the last jump point of row 1.
+        // No side opens along row 0, or behind the last jump point of row 1.
         assert_eq!(scan((0, 0), EAST, &[]), (5, 0, false));
         assert_eq!(scan((3, 1), EAST, &[]), (5, 1, false));
         // Before the obstacle, and next to it.
@@ -238,7 +239,7 @@ mod tests {
         assert_eq!(scan((0, 0), NORTH_EAST, &[]), (1, 1, true));
         // From (3, 1) the scan to the north finds (3, 3).
         assert_eq!(scan((2, 0), NORTH_EAST, &[]), (3, 1, true));
-        // Neither (4, 1) nor (5, 2) sees anything.
+        // Neither (4, 1) nor (5, 2) sees a node.
         assert_eq!(scan((3, 0), NORTH_EAST, &[]), (5, 2, false));
         // (3, 2) is free, but the step would cut the obstacle's corner.
         assert_eq!(scan((2, 1), NORTH_EAST, &[]), (2, 1, false));
@@ -253,7 +254,7 @@ mod tests {
         // On the diagonal, and beside it.
         assert_eq!(scan((3, 0), NORTH_EAST, &[(5, 2)]), (5, 2, true));
         assert_eq!(scan((3, 0), NORTH_EAST, &[(4, 4)]), (4, 1, true));
-        // A target behind the cell of departure is not ahead.
+        // A target behind the start cell of the scan is not ahead.
         assert_eq!(scan((2, 0), EAST, &[(1, 0), (2, 0)]), (5, 0, false));
     }
 
@@ -266,11 +267,11 @@ mod tests {
             to.map(|Direction { dx, dy }| (dx, dy)).collect()
         };
         assert_eq!(onward(0, 0, None).len(), 8);
-        // Eastwards below the obstacle: the north has opened, the south was never closed.
+        // Eastwards below the obstacle: the north has opened; the south was never blocked.
         assert_eq!(onward(3, 1, Some(EAST)), [(1, 0), (1, 1), (0, 1)]);
         assert_eq!(onward(2, 1, Some(EAST)), [(1, 0)]);
         assert_eq!(onward(1, 1, Some(NORTH_EAST)), [(1, 0), (1, 1), (0, 1)]);
-        // The map's border is not an obstacle that ends.
+        // The map's border does not count as the end of an obstacle.
         assert_eq!(onward(3, 0, Some(EAST)), [(1, 0)]);
         assert_eq!(onward(1, 3, Some(NORTH)), [(1, 0), (1, 1), (0, 1)]);
     }

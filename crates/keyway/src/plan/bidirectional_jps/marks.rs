@@ -1,16 +1,16 @@
-//! Marked cells, at which scans stop.
+//! Marked cells that stop scans.
 
 use crate::map::{BitGrid, Cell, SearchMap};
 
-/// A set of cells of one map that grows during a query, one bit per cell by rows and by columns, so
-/// that a scan along either reads 64 cells at a time.
+/// A set of cells of one map that grows during a query: one bit per cell, by rows and by columns,
+/// so that scans in either direction read 64 cells at a time.
 ///
-/// The cost of emptying it is proportional to the cells in it. Memory: two bits per cell of the
+/// The cost of clearing it is proportional to the cells in it. Memory: two bits per cell of the
 /// map, of which only the pages of marked cells are touched.
 #[derive(Clone, Debug)]
 pub(super) struct Marks {
     rows: BitGrid,
-    /// Columns and rows exchanged.
+    /// The same with columns and rows exchanged.
     columns: BitGrid,
     marked: Vec<Cell>,
 }
@@ -28,7 +28,7 @@ impl Marks {
         Self { rows, columns, marked: Vec::new() }
     }
 
-    /// Forgets all marks, and fits the set to a map.
+    /// Clears all marks, and resizes the set to a map.
     pub(super) fn start(&mut self, map: &SearchMap) {
         let (width, height) = (map.frame().width(), map.frame().height());
         if (self.rows.width(), self.rows.height()) == (width, height) {
@@ -38,7 +38,7 @@ impl Marks {
         }
     }
 
-    /// Forgets all marks.
+    /// Clears all marks.
     pub(super) fn clear(&mut self) {
         while let Some(cell) = self.marked.pop() {
             self.set(cell, false);
@@ -57,12 +57,12 @@ impl Marks {
         self.rows.get(cell)
     }
 
-    /// By rows; (x, y) is at (x, y).
+    /// Bits by rows; (x, y) is at (x, y).
     pub(super) const fn rows(&self) -> &BitGrid {
         &self.rows
     }
 
-    /// By columns; (x, y) is at (y, x).
+    /// Bits by columns; (x, y) is at (y, x).
     pub(super) const fn columns(&self) -> &BitGrid {
         &self.columns
     }

@@ -1,11 +1,11 @@
 //! Improved bidirectional jump point A* \[You2021\]: a map and two cells -> an 8-connected path
-//! without corner cutting, searched for from both ends.
+//! without corner cutting, searched for from start and goal.
 //!
-//! Jump point search from the start and from the goal, in turn: a side expands nodes until it has
-//! put some into its open list, then the other side goes on, until both have a node in common. Each
-//! side aims at the node that the other one expanded last, so that the two searches draw each other
-//! together. [`BidirectionalJpsFixed`] is the design that the paper improves on: there each side
-//! aims at the other's root.
+//! Jump point searches from the start and from the goal take turns: a side expands nodes until it
+//! has inserted some into its open list, then the other side continues, until both have a node in
+//! common. Each side aims at the node that the other one expanded last, which draws the two
+//! searches together. [`BidirectionalJpsFixed`] is the design that the paper improves on: there
+//! each side aims at the other's root.
 //!
 //! # Source
 //! \[You2021\]: sections 1.2 and 1.3, equations (2) and (3), figs. 3 to 5, table 1. Jump points:
@@ -20,41 +20,41 @@
 //! | openlist 1, openlist 2 | the frontiers of both sides | | |
 //!
 //! # Where this differs from the paper
-//! The paper leaves these open; here they are decided:
-//! - **Target.** "The jump point before" those just found is the node that the other side expanded
-//!   last; at first its root. In eq. (2) `H1` and `G2` belong to that one point.
+//! The paper leaves these points open; they are decided as follows:
+//! - **Target.** "The jump point before" the ones just found is the node that the other side
+//!   expanded last, initially its root. In eq. (2) `H1` and `G2` belong to that one point.
 //! - **Meeting.** The paper ends when the same jump point is in both lists. Taken literally
 //!   ([`JumpMeeting::Literal`]) the searches can pass each other: see `docs/lab/findings.md`. By
 //!   default ([`JumpMeeting::Generated`]) every node of the other side, open or closed, stops a
-//!   scan and becomes a node of this side, too, even where it is not a jump point of this one.
+//!   scan and becomes a node of this side, too, even if it is not a jump point of this side.
 //! - **Several meetings** in one expansion: the one with the cheapest path counts, in a tie the
 //!   first.
-//! - **Keys** are computed when a node is put into the open list, with the target of that moment,
-//!   and kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the same
-//!   number for all open nodes, and b would have no meaning.
-//! - **Duplicates** are compared by g; closed nodes are not opened again. Ties: key, then larger g,
+//! - **Keys** are computed when a node is inserted into the open list, with the target of that
+//!   moment, and kept while targets move ([`OpenKeys`]). If they were renewed, `b G2` would be the
+//!   same value for all open nodes, and b would have no effect.
+//! - **Duplicates** are compared by g; closed nodes are not reopened. Ties: key, then larger g,
 //!   then lower cell index. The forward side begins.
 //! - **An empty open list** of either side ends the search.
 //!
 //! The two halves of a path may share cells before they meet: the path then doubles back (6 of
-//! 92,513 random queries; `docs/lab/findings.md`). It is returned as the method makes it.
+//! 92,513 random queries; `docs/lab/findings.md`). It is returned exactly as the method finds it.
 //!
-//! (3) is larger than the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the
-//! search ends at the first meeting: paths need not be shortest ones.
+//! (3) exceeds the true cost even with a = 1 (a diagonal step: 1.707 for 1.414), and the search
+//! ends at the first meeting: paths need not be shortest ones.
 //!
 //! # Does it miss?
-//! With [`JumpMeeting::Generated`], a side whose list ran empty has looked at every cell that can
-//! be reached from its root, in jumps that end at the first node of the other side: it would have
-//! come upon the other root. That a node needs only one direction of arrival for this, in whatever
-//! order nodes are expanded, is not proved here, but tested: on 20 million small random maps with
-//! nodes in random order no cell was left out, and `tests/bidirectional_jps.rs` checks it with all
-//! kinds of weights.
+//! With [`JumpMeeting::Generated`], a side whose list ran empty has scanned every cell reachable
+//! from its root, in jumps that end at the first node of the other side: it would have found the
+//! other root. This argument needs only one direction of arrival per node, in whatever order nodes
+//! are expanded. That is not proved here, but tested: on 20 million small random maps with nodes
+//! in random order no cell was missed, and `tests/bidirectional_jps.rs` checks it with all kinds
+//! of weights.
 //!
 //! # Errors / cost
 //! See [`PlanError`]; a map with penalised cells is refused, as jump points need one cost for all
 //! cells. [`Miss::SidesPassed`](super::Miss::SidesPassed) with [`JumpMeeting::Literal`] only.
-//! Memory: 32 bytes and half a byte for stops of scans per cell of the padded map, of which only
-//! the pages of nodes are touched.
+//! Memory per cell of the padded map: 32 bytes, and half a byte for stops of scans; only the pages
+//! of nodes are touched.
 
 mod fixed;
 mod jumps;
@@ -75,23 +75,23 @@ use crate::search::{Observer, Query, Workspace};
 use search::{Method, Targets};
 use serde::{Deserialize, Serialize};
 
-/// The rule by which the two sides have met.
+/// The condition under which the two sides have met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum JumpMeeting {
-    /// They meet when a scan comes upon any node of the other side.
+    /// They meet when a scan reaches any node of the other side.
     #[default]
     Generated,
-    /// They meet when one takes from its list a node that the other has expanded.
+    /// They meet when one side takes a node from its list that the other has expanded.
     Expanded,
-    /// They go on after they have met as with [`Self::Generated`], until no open node of one side
-    /// can lead to a cheaper path. As closed nodes stay closed, even that need not be a shortest
-    /// one.
+    /// After a meeting as with [`Self::Generated`] they continue until no open node of one side
+    /// can lead to a cheaper path. As closed nodes stay closed, even this path need not be a
+    /// shortest one.
     Best,
     /// They meet when the same node is in both lists; of the other side's nodes only the target
-    /// stops a scan. Can miss.
+    /// stops a scan. This can miss a path.
     Literal,
 }
 
@@ -100,19 +100,20 @@ pub enum JumpMeeting {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct BidirectionalJpsConfig {
-    /// The sides have met when a scan comes upon any node of the other side (`generated`; with
-    /// `best` they go on until nothing better can come), when one takes a node that the other has
-    /// expanded (`expanded`), or when the same node is in both lists (`literal`, which can miss).
+    /// The meeting condition: a scan reaches any node of the other side (`generated`; with `best`
+    /// the search continues until no better meeting is possible), a side takes a node that the
+    /// other has expanded (`expanded`), or the same node is in both lists (`literal`, which can
+    /// miss a path).
     pub meeting: JumpMeeting,
-    /// The fate of the keys of open nodes when the target moves: `kept` or `renewed`. Renewed, b
-    /// has no effect.
+    /// The treatment of the keys of open nodes when the target moves: `kept` or `renewed`. If they
+    /// are renewed, b has no effect.
     pub keys: OpenKeys,
     /// The estimate H of the cost to the target: `octile`, `euclidean`, `manhattan` or `mean`, eq.
     /// (3).
     pub heuristic: Heuristic,
     /// Weight of the estimate in eq. (2), at least 0.
     pub a: f64,
-    /// Weight of what the target has cost the other side in eq. (2), at least 0.
+    /// Weight of the target's cost from the other side in eq. (2), at least 0.
     pub b: f64,
 }
 
@@ -140,13 +141,13 @@ pub struct BidirectionalJps {
 }
 
 impl BidirectionalJps {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "bidirectional-jps";
 
-    /// A planner with these parameters.
+    /// Creates a planner with these parameters.
     ///
     /// # Errors
-    /// When a weight is not a number of at least 0.
+    /// Returns an error if a weight is not a number of at least 0.
     pub fn new(config: BidirectionalJpsConfig) -> Result<Self, ConfigError> {
         config.check()?;
         Ok(Self { config })

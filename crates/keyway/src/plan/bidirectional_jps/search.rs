@@ -1,4 +1,4 @@
-//! The search under both planners: two sides in turn, until they have a node in common.
+//! The search of both planners: the two sides take turns until they have a node in common.
 
 use super::JumpMeeting;
 use super::jumps::{Direction, Jumps};
@@ -12,10 +12,10 @@ use crate::search::{
     SearchMemory, SearchStatistics, Side, Workspace, cells,
 };
 
-/// The aim of a side.
+/// The target of a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Targets {
-    /// The node that the other side has expanded last; its root at first.
+    /// The node that the other side expanded last; initially its root.
     Moving,
     /// The other side's root.
     Fixed,
@@ -55,7 +55,7 @@ impl SearchMemory for JumpSides {
 struct Half<'w> {
     side: Side,
     frontier: &'w mut Frontier,
-    /// Its cells that stop the other side's scans.
+    /// Cells of this side that stop the other side's scans.
     marks: &'w mut Marks,
     /// The other side's target.
     aim: Expanded,
@@ -63,18 +63,18 @@ struct Half<'w> {
     other_root: Cell,
 }
 
-/// A node over which a path leads from root to root, and the cost of that path.
+/// A node that joins a path from root to root, and the cost of that path.
 #[derive(Clone, Copy, Debug)]
 struct Meeting {
     at: CellIndex,
     cost: u64,
 }
 
-/// Equation (2): a node's key, towards the target of the moment.
+/// Equation (2): a node's key with the current target.
 pub(super) struct TowardsTarget<M> {
     pub(super) to_target: DistanceTo<M>,
     pub(super) a: f64,
-    /// b G2: what the target has cost the other side, weighted.
+    /// b G2: the weighted cost of the target from the other side.
     pub(super) rest: u64,
 }
 
@@ -122,7 +122,7 @@ impl<M: Metric> Method<M> {
         Ok(())
     }
 
-    /// Lets the sides take turns; the node in which they met.
+    /// Lets the sides take turns; returns the node in which they met.
     fn run(
         &self,
         map: &SearchMap,
@@ -145,8 +145,9 @@ impl<M: Metric> Method<M> {
         }
     }
 
-    /// Expands nodes of one side until it has put a node into its list, or the search ends: then it
-    /// gives the node in which the sides have met. `best` is the cheapest meeting so far.
+    /// Expands nodes of one side until it has inserted a node into its list or the search ends. In
+    /// the latter case it returns the node in which the sides met. `best` is the cheapest meeting
+    /// so far.
     fn turn(
         &self,
         map: &SearchMap,
@@ -168,7 +169,7 @@ impl<M: Metric> Method<M> {
             let statistics = statistics(active, waiting);
             check_budget(query, statistics)?;
             let Some(node) = active.frontier.take_best() else {
-                // Nothing is left that could lead to a better meeting.
+                // No open node is left that could lead to a better meeting.
                 let (planner, miss) = (self.planner, Miss::SidesPassed);
                 let missed = PlanError::Missed { planner, miss, statistics };
                 return best.map(|meeting| Some(meeting.at)).ok_or(missed);
@@ -204,9 +205,9 @@ impl<M: Metric> Method<M> {
         }
     }
 
-    /// Puts the next nodes in all directions of a node into the open list. Gives the cheapest
-    /// meeting: the best one so far, or one over those of these nodes that the other side has (in a
-    /// tie the first one).
+    /// Inserts the next nodes in all directions of a node into the open list. Returns the cheapest
+    /// meeting: the best one so far, or one over those of the new nodes that the other side has
+    /// (in a tie the first one).
     fn expand(
         &self,
         map: &SearchMap,
@@ -257,14 +258,14 @@ impl<'w> Half<'w> {
         JumpSide { frontier, marks }: &'w mut JumpSide,
     ) -> Self {
         let aim = Expanded { at: map.index(root), g: 0 };
-        // The only node of its list is the first one, whatever its key.
+        // The root is the only node in the list, so its key does not matter.
         frontier.start(map, aim.at, 0);
         marks.start(map);
         marks.mark(root);
         Self { side, frontier, marks, aim, other_root }
     }
 
-    /// Makes a node that was just expanded the other side's target.
+    /// Makes a node that was just expanded the target of the other side.
     fn aim_at(&mut self, map: &SearchMap, node: Expanded, meeting: JumpMeeting) {
         self.aim = node;
         if meeting == JumpMeeting::Literal {
@@ -283,8 +284,8 @@ fn statistics(active: &Half<'_>, waiting: &Half<'_>) -> SearchStatistics {
     both
 }
 
-/// All cells of the path over the node in which the sides met. Jump points are the nodes of both
-/// sides, and so their roots and the meeting node as well.
+/// Writes all cells of the path over the node in which the sides met. Jump points are the nodes of
+/// both sides, including their roots and the meeting node.
 fn unfold_path(
     map: &SearchMap,
     (forward, backward): (&Frontier, &Frontier),
@@ -298,7 +299,7 @@ fn unfold_path(
     unfold_way_back(map, backward, meeting, plan);
 }
 
-/// Appends the cells after `from` on the way back to a side's root.
+/// Appends the cells after `from` on the path back to a side's root.
 fn unfold_way_back(map: &SearchMap, side: &Frontier, from: CellIndex, plan: &mut Plan) {
     let mut node = from;
     let mut at = map.cell(from);

@@ -1,4 +1,4 @@
-//! Equations and searches worked out by hand.
+//! Equations and searches computed by hand.
 
 use super::search::{TowardsTarget, weighted};
 use super::*;
@@ -9,8 +9,8 @@ use crate::search::{Cost, DistanceTo, Mean, Rule, Side};
 const FORWARD: Side = Side::Forward;
 const BACKWARD: Side = Side::Backward;
 
-/// An event of which an observer is told: a side expands a node; a node was generated from it; the
-/// sides met.
+/// An event reported to an observer: a side expands a node, a node is generated from it, or the
+/// sides meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Event {
     Expanded(Side, i32, i32),
@@ -87,11 +87,11 @@ fn equations_2_and_3_by_hand() {
 
 #[test]
 fn around_a_wall_step_by_step() {
-    // The start sees both ends of the wall from the diagonals' cells (2, 4) and (2, 0): from there
-    // the scan eastwards finds the cell behind the wall's corner. The goal likewise: the scan
-    // westwards from (4, 4) ends at the node (2, 4), which the start has. Towards the goal both
-    // nodes of the start have F = 2.83 + 3 (4.47 + 6) / 2 + 0; the lower cell index goes first. Its
-    // scan to the east comes upon (4, 0), which the goal has.
+    // The start sees both ends of the wall from the diagonals' cells (2, 4) and (2, 0): the scan
+    // eastwards from there finds the cell behind the wall's corner. The goal likewise: the scan
+    // westwards from (4, 4) ends at the node (2, 4), which the start has. With the goal as target,
+    // both nodes of the start have F = 2.83 + 3 (4.47 + 6) / 2 + 0; the lower cell index goes
+    // first. Its scan to the east reaches (4, 0), which the goal has.
     let expected = [
         Expanded(FORWARD, 0, 2),
         Generated(2, 4),
@@ -127,7 +127,7 @@ fn the_literal_rule_passes_by() {
         "...",
     ];
     let (start, goal) = ((0, 0), (1, 3));
-    // The forward side turns at (1, 1), from where (1, 2) is seen, behind the obstacle's corner.
+    // The forward side turns at (1, 1), from which (1, 2) is seen, behind the obstacle's corner.
     // The backward side aims at (0, 0): it sees it from (0, 2), and scans southwards over (1, 1),
     // which is not its target, to (1, 0). Then its target is (1, 1), which it has passed: (1, 0)
     // with F = 3 + 3 * 1 and (0, 2) with F = 1.41 + 3 * 2 no longer lead anywhere.
@@ -150,7 +150,7 @@ fn the_literal_rule_passes_by() {
         }
         other => panic!("{other:?}"),
     }
-    // Any node of the other side stops a scan: the goal comes upon (1, 1).
+    // Any node of the other side stops a scan: the goal's side reaches (1, 1).
     let (result, events) = plan(&BidirectionalJps::default(), &rows, start, goal);
     assert_eq!(
         events[2..],
@@ -170,10 +170,12 @@ fn moving_targets_draw_the_sides_together() {
     ];
     let (start, goal) = ((3, 4), (0, 0));
     // Forward: around (2, 4) down to (2, 3). Backward: around (1, 0) to (2, 1) with G2 = 2.41 and
-    // to (1, 2) with G2 = 3, put in while the target is (2, 4) with G1 = 1, or, if fixed, (3, 4):
-    // target   F2(2, 1)                           F2(1, 2) (2, 4)   2.41 + 3 (3 + 3) / 2 + 1 =
-    // 12.41      3 + 3 (2.24 + 3) / 2 + 1 = 11.85 (3, 4)   2.41 + 3 (3.16 + 4) / 2 = 13.16       3
-    // + 3 (2.83 + 4) / 2 = 13.24
+    // to (1, 2) with G2 = 3, inserted while the target is (2, 4) with G1 = 1, or, if fixed,
+    // (3, 4). The keys for each target:
+    // - (2, 4): F2(2, 1) = 2.41 + 3 (3 + 3) / 2 + 1 = 12.41, F2(1, 2) = 3 + 3 (2.24 + 3) / 2 + 1 =
+    //   11.85.
+    // - (3, 4): F2(2, 1) = 2.41 + 3 (3.16 + 4) / 2 = 13.16, F2(1, 2) = 3 + 3 (2.83 + 4) / 2 =
+    //   13.24.
     let both = [
         Expanded(FORWARD, 3, 4),
         Generated(2, 4),
@@ -206,8 +208,8 @@ fn moving_targets_draw_the_sides_together() {
 
 #[test]
 fn renewed_keys_follow_the_target() {
-    // The two nodes of the backward side above, put in with G2 = 2.41 and 3. With the target (3, 4)
-    // (2, 1) is the better one, with the target (2, 4) the other is, whatever b.
+    // The two nodes of the backward side above, inserted with G2 = 2.41 and 3. With the target
+    // (3, 4), (2, 1) is the better one, with the target (2, 4) the other is, whatever b.
     let map = map(&["...."; 5]);
     let (low, high) = (map.index(Cell::new(2, 1)), map.index(Cell::new(1, 2)));
     let rule = |x, y, rest| TowardsTarget {

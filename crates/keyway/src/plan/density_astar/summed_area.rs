@@ -1,21 +1,21 @@
-//! The number of occupied cells in any box, in four look-ups \[Crow1984\].
+//! A summed-area table of occupied cells: the count in any box, in four look-ups \[Crow1984\].
 
 use crate::map::{Cell, CellState, SearchMap};
 use crate::search::SearchMemory;
 
-/// For every cell the number of occupied cells to the left of it and below, itself included.
+/// For every cell, the number of occupied cells with no larger column and row.
 ///
 /// Memory: 4 bytes for each cell of the map, kept from query to query. Built in one pass over all
 /// cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SummedArea {
-    /// Row by row, with a row and a column of zeros before the first.
+    /// Row by row, preceded by a row and a column of zeros.
     sums: Vec<u32>,
     stride: usize,
 }
 
 impl SummedArea {
-    /// Counts the occupied cells of a map; unknown ones do not count, even where they are
+    /// Counts the occupied cells of a map; unknown ones do not count, even if they are treated as
     /// obstacles.
     pub(super) fn build(&mut self, map: &SearchMap) {
         let (width, height) = (map.frame().width() as usize, map.frame().height() as usize);
@@ -33,7 +33,7 @@ impl SummedArea {
         }
     }
 
-    /// The occupied cells from `low` to `high`, both included and on the map.
+    /// The number of occupied cells from `low` to `high`, both included and on the map.
     pub(super) fn between(&self, low: Cell, high: Cell) -> u64 {
         let (left, right) = (low.x as usize, high.x as usize + 1);
         let (bottom, top) = (low.y as usize, high.y as usize + 1);

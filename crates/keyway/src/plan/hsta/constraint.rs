@@ -1,4 +1,4 @@
-//! Which cells may be visited: equation (2).
+//! The traversability test of equation (2).
 
 use super::{Hsta, HstaConfig};
 use crate::map::{BitGrid, Cell, SearchMap};
@@ -8,26 +8,27 @@ use crate::search::{
     DistanceTo, Frontier, Greedy, Octile, Query, Rule, SearchStatistics, Successors,
 };
 
-/// Distances are compared with L up to this share of it: 2 m must be 40 cells of 0.05 m.
+/// Relative tolerance of comparisons with L: 2 m must be 40 cells of 0.05 m.
 const TOLERANCE: f64 = 1e-9;
 
-/// Eq. (2): no obstacle is nearer than L in the L1 norm, except in the discs around both ends.
+/// Eq. (2): no obstacle is nearer than L in the L1 norm, except in the discs around start and
+/// goal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constraint<'m> {
     obstacles: &'m BitGrid,
     /// The largest whole number of cells below L.
     reach: i32,
-    /// The same for L as the config has it.
+    /// The value of `reach` for the L of the config.
     asked_reach: i32,
     ends: [Cell; 2],
-    /// The radius of the discs, squared \[cells\]; `None` for none.
+    /// The radius of the discs, squared \[cells^2\]; `None` without discs.
     free_sq: Option<f64>,
 }
 
 impl<'m> Constraint<'m> {
     pub(super) fn new(config: &HstaConfig, map: &'m SearchMap, query: &Query) -> Self {
         let limit = config.l1_constraint * config.cells_per_unit(map) * (1.0 - TOLERANCE);
-        // No two cells are farther from each other than this.
+        // No two cells are farther apart than this.
         let farthest = i64::from(map.frame().width()) + i64::from(map.frame().height());
         let farthest = i32::try_from(farthest).unwrap_or(i32::MAX);
         let radius = config.free_ends_m / map.frame().resolution_m() * (1.0 + TOLERANCE);
@@ -45,7 +46,7 @@ impl<'m> Constraint<'m> {
         self.reach < self.asked_reach
     }
 
-    /// The least L1 distance that it allows, where it is relaxed \[m\].
+    /// The smallest L1 distance that a relaxed constraint allows \[m\].
     pub(super) fn least_m(&self, map: &SearchMap) -> f64 {
         f64::from(self.reach + 1) * map.frame().resolution_m()
     }
@@ -62,12 +63,13 @@ impl<'m> Constraint<'m> {
         self.free_sq.is_some_and(|free| self.ends.iter().any(|&end| distance_sq(end) <= free))
     }
 
-    /// The L1 distance of a cell to the nearest obstacle \[cells\]; `None` where it does not count.
+    /// The L1 distance of a cell to the nearest obstacle \[cells\]; `None` if there is none, or in
+    /// the discs.
     pub(super) fn distance(&self, cell: Cell) -> Option<i32> {
         if self.is_exempt(cell) { None } else { nearest(self.obstacles, cell) }
     }
 
-    /// An error when one of the ends is too near to an obstacle.
+    /// Returns an error if start or goal is too near to an obstacle.
     pub(super) fn check_ends(&self, map: &SearchMap, config: &HstaConfig) -> Result<(), PlanError> {
         for (end, cell) in [PathEnd::Start, PathEnd::Goal].into_iter().zip(self.ends) {
             if self.allows(cell) {
@@ -85,8 +87,8 @@ impl<'m> Constraint<'m> {
         Ok(())
     }
 
-    /// This constraint, or the largest one in whole cells that leaves a path; without any
-    /// constraint there is one.
+    /// This constraint, or the largest one in whole cells that leaves a path. Without any
+    /// constraint a path exists.
     pub(super) fn relaxed(
         self,
         map: &SearchMap,
@@ -113,7 +115,7 @@ impl<'m> Constraint<'m> {
         Ok(Self { reach: with_path, ..self })
     }
 
-    /// True if some path keeps the constraint, by the search that is quickest to find any.
+    /// True if some path keeps the constraint; decided by the fastest search for any path.
     fn leaves_path(
         &self,
         map: &SearchMap,
@@ -146,7 +148,7 @@ impl<'m> Constraint<'m> {
 fn is_near(obstacles: &BitGrid, cell: Cell, reach: i32) -> bool {
     let last_row = obstacles.height() as i32 - 1;
     let rows = (cell.y - reach).max(0)..=cell.y.saturating_add(reach).min(last_row);
-    // Within no distance there is only the cell itself, which is free.
+    // Within distance 0 there is only the cell itself, which is free.
     reach > 0 && rows.into_iter().any(|y| has_obstacle(obstacles, cell, y, reach))
 }
 

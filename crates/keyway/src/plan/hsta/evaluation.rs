@@ -1,10 +1,10 @@
-//! The worth of a node: equations (1) and (3) to (5).
+//! The evaluation of a node: equations (1) and (3) to (5).
 
 use super::{Correction, HstaConfig, Weight, WeightAt};
 use crate::map::{Cell, CellIndex, SearchMap};
 use crate::search::{Euclidean, GridStep, Metric, Rule};
 
-/// Which terms f has, and the unit of k.
+/// The terms of f, and the unit of distances in k.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Terms {
     weight: Weight,
@@ -15,19 +15,19 @@ pub(super) struct Terms {
     sides: f64,
 }
 
-/// The rule by which one side expands its current node: where it comes from, where it goes, and
-/// where the other side is.
+/// The rule by which one side expands its current node: its root, its goal, and the current node
+/// of the other side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evaluation<'m> {
     pub(super) map: &'m SearchMap,
     pub(super) terms: Terms,
     /// first1, the root of this side.
     pub(super) first: Cell,
-    /// goal1, the root of the other one.
+    /// goal1, the root of the other side.
     pub(super) goal: Cell,
     /// The current node of this side.
     pub(super) own: Cell,
-    /// x2, the current node of the other one.
+    /// x2, the current node of the other side.
     pub(super) other: Cell,
 }
 
@@ -47,11 +47,11 @@ impl Rule for Evaluation<'_> {
 
     /// Eq. (1): f = g + k h + c.
     ///
-    /// How large it gets: on a map of n x n cells, taken literally, k is at most 1 + (2 n)^2 / (4 *
-    /// 2 n) = 1 + n / 2 and h at most 1.42 n cells of 2^26.5 each. For n = 16384 that is 2^13 *
+    /// Upper bounds: on a map of n x n cells, taken literally, k is at most 1 + (2 n)^2 / (4 * 2
+    /// n) = 1 + n / 2 and h at most 1.42 n cells of 2^26.5 each. For n = 16384 that is 2^13 *
     /// 2^14.5 * 2^26.5 = 2^54; g is below 2^55 without penalties, as no path has more than n^2 =
-    /// 2^28 steps. Long thin maps and tiny reference cells may lead beyond 2^64, where f saturates
-    /// and only the ties order.
+    /// 2^28 steps. Long thin maps and tiny reference cells may exceed 2^64: f then saturates, and
+    /// ties decide the order.
     fn key(&self, at: CellIndex, g: u64) -> u64 {
         let at = self.map.cell(at);
         // Eq. (4).
@@ -149,8 +149,8 @@ mod tests {
         assert_eq!(key(HstaConfig { weight, correction, ..HstaConfig::PAPER }), g + 5 * Q);
     }
 
-    /// Twice as many cells per metre: distances in reference cells are half, those in cells are
-    /// not.
+    /// Twice as many cells per metre: distances in reference cells stay the same, those in cells
+    /// double.
     #[test]
     fn the_weight_does_not_depend_on_the_resolution() {
         let (coarse, fine) = (free_map(12, 12, 1.0), free_map(24, 24, 0.5));

@@ -1,4 +1,4 @@
-//! The whole search on drawn maps, and what is reported about ends and parameters.
+//! The whole search on drawn maps, and the messages about start, goal and parameters.
 
 use super::*;
 use crate::plan::PathEnd;
@@ -12,13 +12,13 @@ fn hsta(config: HstaConfig) -> Hsta {
 /// Constrained to a corridor: (3, 2) is beside the obstacle. l + m = 13, so k = 1 + d^2 / 52.
 /// Forward:
 /// - S = (0, 2), other side at (6, 2): (1, 2) has f = 1 + 1.019 * 5 + 5 = 11.10, the best.
-/// - (1, 2), other still (6, 2): (2, 2) has 2 + 1.077 * 4 + 4 = 10.31, (2, 1) 2.41 + 1.173 * 4.12 +
-///   4.12 = 11.37.
+/// - (1, 2), other still (6, 2): (2, 2) has 2 + 1.077 * 4 + 4 = 10.31,
+///   and (2, 1) has 2.41 + 1.173 * 4.12 + 4.12 = 11.37.
 /// - (2, 2), other now (5, 2): (3, 1) has 3.41 + 1.308 * 2.24 + 3.16 = 9.50.
 ///
-/// The backward side mirrors it: (5, 2), (4, 2); from there with the other at (2, 2) it reaches
-/// (3, 1) with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. Both best nodes are (3, 1), which the backward side
-/// then takes second.
+/// The backward side mirrors it: (5, 2), (4, 2). From there, with the other side at (2, 2), it
+/// reaches (3, 1) with 3.41 + 1.308 * 1.41 + 3.16 = 8.43. The best node of both sides is (3, 1);
+/// the backward side is the second to take it.
 #[test]
 fn an_expansion_sequence_by_hand() {
     let rows = [".......", ".......", "...#...", "S.....G", ".......", "......."];
@@ -26,13 +26,13 @@ fn an_expansion_sequence_by_hand() {
     assert_eq!(forward, [(0, 2), (1, 2), (2, 2), (3, 1)]);
     assert_eq!(backward, [(6, 2), (5, 2), (4, 2), (3, 1)]);
     assert_eq!((plan.meeting, plan.stop), (Some(Cell::new(3, 1)), Some(Stop::SidesMet)));
-    // Two diagonal steps around the corridor's middle; straight on would be 6.
+    // Two diagonal steps around the middle of the corridor; the straight path would cost 6.
     assert!((plan.cost.cells() - 6.828).abs() < 1e-3);
     let map = drawn::map(&[".......", ".......", "...#...", ".......", ".......", "......."]);
     assert_eq!(Hsta::default().distance_kept(&map, &plan.cells), Some(2.0));
 }
 
-/// Far enough from the obstacle there is a way.
+/// A path exists at a sufficient distance from the obstacle.
 const AROUND: [&str; 5] = [".......", "...#...", "S.....G", ".......", "......."];
 
 #[test]
@@ -43,7 +43,7 @@ fn the_constraint_is_to_blame() {
     let miss = Miss::Constraint { constraint: 2.0 };
     assert!(matches!(error, PlanError::Missed { planner: "hsta", miss: m, .. } if m == miss));
     assert!(error.to_string().contains("constraint of 2 "), "{error}");
-    // One cell is the largest that the gap leaves.
+    // One cell is the largest constraint that the gap allows.
     let advice = error.advice().unwrap();
     assert_eq!((advice.planner, advice.parameter), ("hsta", "if_no_path"));
     assert_eq!(advice.value, "relax");
@@ -53,7 +53,7 @@ fn the_constraint_is_to_blame() {
     let open: Vec<String> = rows.iter().map(|row| row.replace(['S', 'G'], ".")).collect();
     let map = drawn::map(&open.iter().map(String::as_str).collect::<Vec<_>>());
     assert_eq!(relaxing.distance_kept(&map, &plan.cells), Some(1.0));
-    // Where the way is free anyway, nothing is relaxed.
+    // If a path keeps the constraint, nothing is relaxed.
     let around = drawn::plan(&relaxing, &AROUND).map(|(plan, _)| plan);
     assert_eq!(around.as_ref().unwrap().note, None);
     assert_eq!(around, drawn::plan(&published, &AROUND).map(|(plan, _)| plan));
@@ -74,11 +74,11 @@ fn ends_beside_obstacles() {
     assert_eq!(error, expected);
     let text = error.to_string();
     assert!(text.starts_with("start (1, 1) is 1 from an obstacle"), "{text}");
-    // A disc of one cell around each end reaches (1, 2), which is 2 from the obstacle.
+    // A disc of one cell around start and goal reaches (1, 2), which is 2 from the obstacle.
     let freed = hsta(HstaConfig { free_ends_m: 1.0, ..HstaConfig::PAPER });
     let (plan, _) = drawn::plan(&freed, &["......", "......", ".S#..G", "......"]).unwrap();
     assert!(plan.cells[1] == Cell::new(1, 2) || plan.cells[1] == Cell::new(0, 1), "{plan:?}");
-    // Relaxed, an end bounds the constraint.
+    // Relaxed, the start bounds the constraint.
     let advice = error.advice().unwrap();
     assert_eq!((advice.planner, advice.parameter), ("hsta", "if_no_path"));
     assert_eq!(advice.value, "relax");
@@ -95,7 +95,7 @@ fn without_weight_and_correction_it_is_plain() {
         ..HstaConfig::PAPER
     };
     let (plan, [forward, backward]) = drawn::plan(&hsta(plain), &["S...G"]).unwrap();
-    // Forward takes the middle, then the backward side takes it as well.
+    // The forward side takes the middle, then the backward side does.
     assert_eq!((forward, backward), (vec![(0, 0), (1, 0), (2, 0)], vec![(4, 0), (3, 0), (2, 0)]));
     assert_eq!(plan.meeting, Some(Cell::new(2, 0)));
 }
@@ -126,9 +126,9 @@ fn a_huge_constraint() {
     assert!(drawn::plan(&hsta(relaxing), &["S..G#"]).is_ok());
 }
 
-/// The definitions of the paper, transcribed without anything that makes them fast: every turn
-/// computes f of all open nodes with k and h of the current nodes, and takes the least (of equal
-/// ones that with the larger g, then the lower index).
+/// The definitions of the paper, transcribed without optimisations: every turn computes f of all
+/// open nodes with k and h of the current nodes, and takes the smallest (among equal ones that
+/// with the larger g, then the lower index).
 struct ByDefinition<'m> {
     map: &'m SearchMap,
     roots: [Cell; 2],
@@ -138,7 +138,7 @@ struct ByDefinition<'m> {
 }
 
 impl ByDefinition<'_> {
-    /// Sides of one cell by 2^26.5, as costs of steps are.
+    /// The length in units of 2^-26.5 cells, as for step costs.
     fn length(a: Cell, b: Cell) -> u64 {
         let (dx, dy) = (f64::from(a.x - b.x), f64::from(a.y - b.y));
         (dx.hypot(dy) * Cost::KEY_STRAIGHT as f64).round() as u64
@@ -153,7 +153,7 @@ impl ByDefinition<'_> {
     }
 
     /// The cells that both sides expand until one takes a node that the other has expanded; `None`
-    /// where two open nodes are so nearly equal that rounding decides.
+    /// if two open nodes are so nearly equal that rounding decides.
     fn run(mut self) -> Option<[Vec<Cell>; 2]> {
         for side in [0, 1].into_iter().cycle() {
             let order = |&(at, g): &(Cell, u64)| (self.f(side, (at, g)), u64::MAX - g, at.y, at.x);

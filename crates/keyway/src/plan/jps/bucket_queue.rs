@@ -1,27 +1,27 @@
-//! An open list of buckets.
+//! An open list made of buckets.
 
-/// A priority queue of cell indices: entries whose keys hardly differ share a
-/// bucket and leave it in the order last in, first out.
+/// A priority queue of cell indices: entries with nearly equal keys share a bucket, and leave it
+/// last in, first out.
 ///
 /// Pushing and popping cost a few operations, whatever the size: in cluttered maps a jump point
-/// search spends a third of its time in a binary or quaternary heap. The price is that entries of
-/// one bucket come in no particular order, so a search that uses it must be able to expand a node
-/// again when a shorter way to it turns up, and must empty the bucket of its best solution before
-/// it stops; its answers are then still exact.
+/// search spends a third of its time in a binary or quaternary heap. In exchange, the entries of
+/// one bucket are unordered. So a search must be able to expand a node again if a shorter path to
+/// it is found, and must empty the bucket of its best solution before it stops; its results are
+/// then still exact.
 ///
-/// Keys must not be smaller than the bucket of the last popped entry, and not larger than it by
-/// more than the span given to [`Self::start`]. The buckets are a ring, which grows to the longest
-/// stretch of keys that wait at a time; their entries are chains in one array, whose places are
-/// used again.
+/// Keys must not be smaller than the bucket of the last popped entry, and must not exceed it by
+/// more than the span given to [`Self::start`]. The buckets form a ring, which grows to the
+/// largest range of keys that wait at a time. Their entries are linked lists in one array, whose
+/// slots are reused.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BucketQueue {
-    /// First entry of each bucket's chain; 0 is its end.
+    /// First entry of each bucket's list; 0 marks the end.
     heads: Vec<u32>,
-    /// Index of the cell, and the next entry of the chain. Entry 0 is not used.
+    /// Index of the cell, and the next entry of the list. Entry 0 is not used.
     entries: Vec<[u32; 2]>,
-    /// First of the chain of entries that hold nothing.
+    /// First entry of the free list.
     unused: u32,
-    /// Number of the bucket that is emptied, and the highest one in use.
+    /// Number of the bucket that is being emptied, and the highest one in use.
     current: u64,
     highest: u64,
     len: usize,
@@ -33,16 +33,16 @@ impl BucketQueue {
     /// Width of a bucket, as a power of two, unless the ring would be too long.
     const SHIFT: u32 = 24;
     const MAX_BUCKETS: u64 = 1 << 22;
-    /// Few queries need more; most of a longer ring would be memory that only has to be cleared.
+    /// Few queries need more; a longer ring would mostly be memory that must be cleared.
     const LEAST_BUCKETS: usize = 1 << 11;
     /// Keys of one bucket: about 0.18 cells in [`Cost::key`](crate::search::Cost::key) units.
     /// Measured: a quarter of that is as good; whole cells expand a seventh more nodes in clutter.
     #[cfg(test)]
     pub(super) const WIDTH: u64 = 1 << Self::SHIFT;
 
-    /// Empties the queue. The first key will be `first`, and no key will exceed the one that was
-    /// last popped by more than `span`; room is made for `capacity` entries, whose pages are not
-    /// touched before they are used.
+    /// Empties the queue. The first key will be `first`, and no key will exceed the last popped
+    /// one by more than `span`. Reserves `capacity` entries, whose pages are not touched before
+    /// use.
     pub(super) fn start(&mut self, first: u64, span: u64, capacity: usize) {
         self.clear();
         self.shift = Self::SHIFT;
@@ -102,8 +102,7 @@ impl BucketQueue {
         Some(index)
     }
 
-    /// True if the entry that was last popped, and with it all others, has a key above this one's
-    /// bucket.
+    /// True if the last popped entry, and with it all others, lies above the bucket of this key.
     pub(super) const fn is_past(&self, key: u64) -> bool {
         self.current > key >> self.shift
     }
@@ -146,8 +145,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Against a list that is searched: what comes out is of the lowest bucket, and everything
-        /// comes out once.
+        /// Compared with a linear search: every popped entry is in the lowest bucket, and every
+        /// entry is popped once.
         #[test]
         fn lowest_buckets_come_first(first in 0u64..1 << 40, rises in prop::collection::vec((0u64..1 << 38, any::<bool>()), 1..200)) {
             let mut queue = BucketQueue::default();
@@ -161,7 +160,7 @@ mod tests {
                         floor = take(&mut queue, &mut left)?;
                     }
                 }
-                // The second round begins with a queue that is not empty.
+                // The second round begins with a queue that may not be empty.
                 if first % 2 == 0 {
                     while !left.is_empty() {
                         take(&mut queue, &mut left)?;

@@ -6,8 +6,8 @@ use super::node_pages::NodePages;
 use crate::map::{CellIndex, SearchMap};
 use crate::search::{Cost, SearchMemory, SideStatistics};
 
-/// Nodes carry, besides path cost and parent, the directions from which they were reached: those
-/// still to be expanded and those already expanded.
+/// Nodes with path cost, parent and the directions from which they were reached: those still to be
+/// expanded and those already expanded.
 ///
 /// 16 bytes: g, and parent << 32 | epoch << 8 | done << 4 | pending. A node that is improved after
 /// its expansion is expanded again.
@@ -15,7 +15,7 @@ use crate::search::{Cost, SearchMemory, SideStatistics};
 pub(super) struct JumpNodes {
     nodes: NodePages,
     open: BucketQueue,
-    /// Path cost of the best way to the goal so far, and the node that it leads over.
+    /// Cost of the best path to the goal so far, and the last node before the goal.
     solution: Option<(u64, CellIndex)>,
     statistics: SideStatistics,
 }
@@ -35,7 +35,7 @@ pub(super) struct JumpNode {
 }
 
 impl JumpNodes {
-    /// Forgets the last query and puts `root` into the open list; `key` is its estimate.
+    /// Clears the last query and inserts `root` into the open list; `key` is its estimate.
     pub(super) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         self.nodes.start(map.index_count());
         // A leg is no longer than the two sides of the map, and with a consistent estimate f rises
@@ -49,12 +49,12 @@ impl JumpNodes {
         self.open.push(key, root.0);
     }
 
-    /// The work since [`Self::start`].
+    /// Counters since [`Self::start`].
     pub(super) const fn statistics(&self) -> SideStatistics {
         self.statistics
     }
 
-    /// Takes a node from the lowest bucket of the open list. `None` when no node can lead to a
+    /// Takes a node from the lowest bucket of the open list. `None` if no node can lead to a
     /// better solution.
     pub(super) fn expand_best(&mut self, estimate: impl Fn(CellIndex) -> u64) -> Option<JumpNode> {
         loop {
@@ -70,7 +70,7 @@ impl JumpNodes {
                     continue;
                 }
             }
-            // Expanded by another entry, and not improved since.
+            // Already expanded through another entry, and not improved since.
             if pending == 0 && !is_root {
                 continue;
             }
@@ -80,8 +80,8 @@ impl JumpNodes {
         }
     }
 
-    /// Records a way to a node. Returns the least known path cost of the node, and whether
-    /// it was put into the open list.
+    /// Records a path to a node. Returns the lowest known path cost of the node, and true if it
+    /// was put into the open list.
     pub(super) fn generate(
         &mut self,
         to: CellIndex,
@@ -98,7 +98,7 @@ impl JumpNodes {
             return (*known, false);
         }
         if is_reached && *known == g {
-            // Another shortest way: go on in its directions as well.
+            // Another shortest path: continue in its directions as well.
             let seen = (*state & PENDING) | (*state & DONE) >> 4;
             let is_root = (*state >> 32) as u32 == to.0;
             let was_open = *state & PENDING != 0;
@@ -113,7 +113,7 @@ impl JumpNodes {
             *known = g;
             *state = u64::from(parent.0) << 32 | stamp | direction;
         }
-        // A node that cannot better the solution is not needed.
+        // A node that cannot improve the solution is not needed.
         let is_useful = self.solution.is_none_or(|(best, _)| g + estimate < best);
         if is_useful {
             self.statistics.generated += 1;
@@ -122,7 +122,7 @@ impl JumpNodes {
         (g, is_useful)
     }
 
-    /// Records a way to the goal; true when it is the best so far.
+    /// Records a path to the goal; true if it is the best so far.
     pub(super) fn reach_goal(&mut self, g: u64, parent: CellIndex) -> bool {
         let is_best = self.solution.is_none_or(|(best, _)| g < best);
         if is_best {
@@ -132,12 +132,12 @@ impl JumpNodes {
         is_best
     }
 
-    /// The last node before the goal on the best way to it.
+    /// The last node before the goal on the best path.
     pub(super) fn last_before_goal(&self) -> Option<CellIndex> {
         self.solution.map(|(_, parent)| parent)
     }
 
-    /// The node from which the way to a node comes; `None` for the root.
+    /// The parent of a node; `None` for the root.
     pub(super) fn parent(&self, at: CellIndex) -> Option<CellIndex> {
         let parent = CellIndex((self.nodes.touched(at.as_usize())[1] >> 32) as u32);
         (parent != at).then_some(parent)

@@ -1,14 +1,13 @@
-//! Jump points without corner cutting: what a jump point search generates from a node.
+//! Jump points without corner cutting: the nodes that a jump point search generates from a node.
 //!
 //! A diagonal step needs the whole 2 x 2 block free, so diagonal moves have no forced neighbours:
 //! only straight scans end at jump points. The diagonal turning points between two straight jump
 //! points never become nodes: a diagonal is walked once, both straight directions are scanned at
-//! each of its cells, and what they find is generated with the expanded node as its parent
+//! each of its cells, and the finds are generated with the expanded node as their parent
 //! (\[Harabor2014\], "JPS (B+P)": block-based scanning and pruning of intermediate nodes).
 //!
 //! The goal need not stop the scans: a shortest path leaves its last jump point for the goal along
-//! one diagonal and then straight, so it is enough to look for it once, in the direction in which
-//! it lies.
+//! one diagonal and then straight, so one test in the direction of the goal is enough.
 
 use crate::map::{Cell, CellIndex, DiagonalEvents, SearchMap};
 use crate::search::bit_scan::{is_set, next_one, previous_one};
@@ -29,16 +28,16 @@ const NORTH: Arrival = 1;
 const WEST: Arrival = 2;
 const SOUTH: Arrival = 3;
 
-/// The receiver of the finds.
+/// Receives the finds of a scan.
 pub(super) trait JumpVisitor {
-    /// A jump point was reached at path cost `g`. Returns its lowest known path cost.
+    /// Called for a jump point reached at path cost `g`. Returns its lowest known path cost.
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64;
 
-    /// The goal was reached at path cost `g`.
+    /// Called for the goal, reached at path cost `g`.
     fn goal(&mut self, g: u64);
 }
 
-/// A cell and where its bit is: in the rows, and in the transposed rows.
+/// A cell and the positions of its bit: in the rows, and in the transposed rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) cell: Cell,
@@ -47,22 +46,22 @@ pub(super) struct Place {
     turned: usize,
 }
 
-/// The cells of a diagonal at which anything happens to a search.
+/// The cells of a diagonal that are events for a search.
 pub(super) trait Diagonals: Copy {
-    /// A place on a diagonal.
+    /// A position on a diagonal.
     type Bit;
 
-    /// Each cell is one.
+    /// True if every cell counts as an event.
     const WALKS: bool;
 
-    /// The place of a cell.
+    /// The position of a cell.
     fn bit<const TO_EAST: bool, const TO_NORTH: bool>(self, cell: Cell) -> Self::Bit;
 
-    /// Goes on to the next one; the steps to it.
+    /// Advances to the next event; returns the steps to it.
     fn pass<const TO_EAST: bool, const TO_NORTH: bool>(self, bit: &mut Self::Bit) -> usize;
 }
 
-/// Of which nothing is known: diagonals are walked cell by cell.
+/// No known events: diagonals are walked cell by cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Walked;
 
@@ -134,7 +133,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
 
     /// The place of a cell.
     pub(super) fn place(&self, index: CellIndex) -> Place {
-        // Divisions of 32 bits are much faster than those of 64.
+        // Divisions of 32 bits are much faster than those of 64 bits.
         let (row, column) = (index.0 / self.stride as u32, index.0 % self.stride as u32);
         Place {
             cell: Cell::new(column as i32 - 1, row as i32 - 1),
@@ -143,17 +142,17 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         }
     }
 
-    /// Directions in which a shortest path may go on from a jump point reached from the given
-    /// directions; all of them from a start, which was reached from none.
+    /// Directions in which a shortest path may continue from a jump point reached from the given
+    /// directions; all of them for a start, which has no arrival.
     ///
-    /// After one arrival: straight on, and where the cell beside the one before it is blocked and
-    /// the one beside it is free, to that side and diagonally there.
+    /// After one arrival: straight on; and to a side and diagonally to that side, if the cell
+    /// beside the previous one is blocked and the cell beside the jump point is free.
     pub(super) fn onward(&self, at: Place, arrivals: Arrivals) -> Directions {
         let pattern = pattern::around(self.blocked, self.stride, at.index);
         Directions(ONWARD[usize::from(arrivals)][pattern])
     }
 
-    /// Visits every jump point of the given directions, and the goal if it is in sight.
+    /// Visits every jump point in the given directions, and the goal if it is in sight.
     pub(super) fn scan(
         &self,
         from: Place,
@@ -185,7 +184,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         }
     }
 
-    /// Passes a diagonal; after `align` steps the goal is straight ahead.
+    /// Traverses a diagonal; after `align` steps the goal is straight ahead.
     #[inline]
     fn scan_diagonal<const TO_EAST: bool, const TO_NORTH: bool>(
         &self,
@@ -229,7 +228,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         !is_set(self.cramped, at.index - block)
     }
 
-    /// A place so many steps along a diagonal.
+    /// The place a number of steps along a diagonal.
     #[inline]
     fn moved<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place, steps: usize) -> Place {
         let Place { cell, index, turned } = at;
@@ -246,9 +245,9 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         Place { cell: Cell::new(x, y), index, turned }
     }
 
-    /// Visits the jump point of a row, if any. True when the jump point is known to be so near to
-    /// the start that the way over it to `from` is shorter than `g`: then no shortest path passes
-    /// `from` in this way.
+    /// Visits the jump point of a row, if any. True if the jump point is known to be so near to
+    /// the start that the path over it to `from` is shorter than `g`: then no shortest path passes
+    /// `from` with this cost.
     #[inline]
     fn scan_row<const TO_EAST: bool>(
         &self,
@@ -276,7 +275,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         found.jump_point(at, arrival, g + cost) + cost < g
     }
 
-    /// The same along a column.
+    /// The same as `scan_row` along a column.
     #[inline]
     fn scan_column<const TO_NORTH: bool>(
         &self,
@@ -304,7 +303,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
         found.jump_point(at, arrival, g + cost) + cost < g
     }
 
-    /// True if the cells to the goal, which lies in the same row or column, are all free.
+    /// True if all cells up to the goal, which lies in the same row or column, are free.
     fn sees_goal(&self, from: Place) -> bool {
         let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
         let span = |at: usize, cells: i32| {
@@ -330,7 +329,7 @@ fn direction_of(dx: i32, dy: i32) -> u32 {
     BY_SIGNS[(dy.signum() + 1) as usize][(dx.signum() + 1) as usize]
 }
 
-/// Onward directions for every set of arrivals and every pattern of blocked cells around.
+/// Onward directions for every set of arrivals and every pattern of blocked neighbours.
 static ONWARD: [[u8; 512]; 16] = onward_directions();
 
 const fn onward_directions() -> [[u8; 512]; 16] {
@@ -390,7 +389,7 @@ mod tests {
 
     #[derive(Default)]
     struct Finds {
-        /// Columns, rows, arrivals.
+        /// Column, row, arrival.
         jumps: Vec<(i32, i32, Arrival)>,
         places: Vec<Place>,
         goal: Option<u64>,
@@ -427,9 +426,9 @@ mod tests {
 
     #[test]
     fn a_straight_scan_stops_where_a_side_opens() {
-        // Eastwards below the obstacle: its far side opens above column 2.
+        // Eastwards below the obstacle: beyond its far side, the north opens at column 2.
         assert_eq!(jumps(Cell::new(0, 1), 0b1), [(2, 1, EAST)]);
-        // Along the border nothing opens, and the border is a dead end.
+        // No side opens along the border, and the border is a dead end.
         assert_eq!(jumps(Cell::new(0, 0), 0b1), []);
         assert_eq!(jumps(Cell::new(3, 1), 0b1_0000), [(0, 1, WEST)]);
         assert_eq!(jumps(Cell::new(2, 0), 0b100), [(2, 3, NORTH)]);
@@ -468,7 +467,7 @@ mod tests {
         assert_eq!(ask((0, 1), (1, 0), 0xff), Some(Cost::new(0, 1).key()));
         assert_eq!(ask((0, 3), (3, 3), 0xff), Some(Cost::new(3, 0).key()));
         assert_eq!(ask((0, 3), (0, 0), 0xff), Some(Cost::new(3, 0).key()));
-        // Not in these directions; behind the obstacle.
+        // Not in these directions, or behind the obstacle.
         assert_eq!(ask((2, 0), (3, 3), 0b1), None);
         assert_eq!(ask((0, 0), (2, 3), 0xff), None);
         assert_eq!(ask((0, 2), (3, 2), 0xff), None);
@@ -480,7 +479,7 @@ mod tests {
         let jumps = JumpPoints::new(&map, Cell::new(0, 0), Walked);
         let onward =
             |x, y, arrivals| jumps.onward(jumps.place(map.index(Cell::new(x, y))), arrivals);
-        // East along row 1 to (2, 1): ahead, and to the left (north) where it opens.
+        // East along row 1 to (2, 1): ahead, and to the left (north), which opens.
         assert_eq!(onward(2, 1, 1 << EAST), Directions(0b111));
         // South along column 0 to (0, 1): ahead, and to its left, the east.
         assert_eq!(onward(0, 1, 1 << SOUTH), Directions(0b1100_0001));

@@ -2,38 +2,38 @@
 
 /// 16 bytes for every cell that a search touches, in pages of 32 cells of a row.
 ///
-/// A page is handed out at the first touch, so the nodes of one query lie close together, whatever
-/// the size of the map: a query after thousands of others finds its nodes in the cache, and the
-/// first queries do not pay for pages of memory that hold one node each. Nodes are not cleared
-/// between queries. Memory: 1/8 byte per cell of the padded map, and 512 bytes per page of the
-/// query that touched most; room for all pages is reserved, but not touched.
+/// A page is allocated on first touch, so the nodes of one query lie close together, whatever the
+/// size of the map: a query after thousands of others finds its nodes in the cache, and the first
+/// queries do not pay for pages of memory that hold one node each. Nodes are not cleared between
+/// queries. Memory: 1/8 byte per cell of the padded map, and 512 bytes per page of the query that
+/// touched most; memory for all pages is reserved, but not touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NodePages {
-    /// For every 32 cells: stamp | number of the page.
+    /// For every 32 cells: stamp | page number.
     directory: Vec<u32>,
     nodes: Vec<[u64; 2]>,
     epoch: u32,
-    /// The number of the query, modulo few, above the bits of a page's number.
+    /// The number of the query, modulo a small number, above the bits of a page number.
     stamp: u32,
-    /// Pages handed out in this query.
+    /// Pages allocated in this query.
     used: u32,
 }
 
 const CELLS_PER_PAGE: usize = 32;
-/// For the pages of all indices.
+/// Enough bits for the pages of all indices.
 const NUMBER_BITS: u32 = 27;
 const _: () = assert!((CELLS_PER_PAGE as u64) << NUMBER_BITS > u32::MAX as u64);
 
 impl NodePages {
-    /// Epochs fit into this many bits.
+    /// Number of bits of an epoch.
     pub(super) const EPOCH_BITS: u32 = 24;
 
-    /// Forgets all nodes.
+    /// Clears all nodes.
     pub(super) fn start(&mut self, index_count: usize) {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
             *self = Self { directory: vec![0; pages], ..Self::default() };
-            // Where a system does not promise that much, the nodes grow as they are needed.
+            // If the system does not grant that much, the nodes grow on demand.
             _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
@@ -45,12 +45,13 @@ impl NodePages {
         self.used = 0;
     }
 
-    /// The number of the query. It is never 0; a node that holds it was set in this query.
+    /// The number of the query, never 0; a node with this epoch was set in this query.
     pub(super) const fn epoch(&self) -> u32 {
         self.epoch
     }
 
-    /// A node that may have been touched before or not; then it holds anything with another epoch.
+    /// A node, touched in this query or not; an untouched one holds arbitrary content with another
+    /// epoch.
     #[inline]
     pub(super) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
         let mut page = self.directory[index / CELLS_PER_PAGE] ^ self.stamp;
@@ -146,7 +147,7 @@ mod tests {
         assert_eq!(pages.memory_bytes() - empty, 3 * 512);
     }
 
-    /// The stamps of the directory come again long before the epochs: of the pages that a query
+    /// The stamps of the directory repeat long before the epochs: of the pages that a query
     /// touches, some had other numbers when its stamp was last in use, and none since.
     #[test]
     fn nothing_of_earlier_queries_is_found() {

@@ -1,9 +1,9 @@
-//! The cells beside corners of obstacles.
+//! Free cells at corners of obstacles.
 
 use crate::map::{BitGrid, Cell, SearchMap};
 
-/// The corner cells of a map \[Uras2013, "subgoals"\]: free cells with a diagonal neighbour that is
-/// blocked while the two cells between are free.
+/// The corner cells of a map \[Uras2013, "subgoals"\]: free cells with a blocked diagonal
+/// neighbour, while the two cells between are free.
 ///
 /// They are numbered row by row.
 #[derive(Clone, Debug)]
@@ -30,17 +30,17 @@ impl Corners {
         &self.cells
     }
 
-    /// Their number.
+    /// The number of corner cells.
     pub(super) fn count(&self) -> usize {
         self.cells.count_ones() as usize
     }
 
-    /// All of them, in the order of their numbers.
+    /// All corner cells, in the order of their numbers.
     pub(super) fn iter(&self) -> impl Iterator<Item = Cell> + '_ {
         self.cells.ones()
     }
 
-    /// True if a cell of the map is one.
+    /// True if a cell of the map is a corner cell.
     pub(super) fn contains(&self, cell: Cell) -> bool {
         let bit = self.bit(cell);
         self.cells.words()[bit / 64] >> (bit % 64) & 1 == 1
@@ -69,8 +69,8 @@ fn corner_cells(blocked: &BitGrid) -> BitGrid {
         let rows = [blocked.row(y - 1), blocked.row(y), blocked.row(y + 1)];
         for word in 0..rows[1].len() {
             let [below, own, above] = rows.map(|row| Beside::of(row, word));
-            // Over an own row that is free here and beside, the next row is free here and blocked
-            // beside.
+            // The own row is free here and at the side; the adjacent row is free here and blocked
+            // at the side.
             let turns =
                 |next: &Beside| !next.here & ((!own.right & next.right) | (!own.left & next.left));
             let found = !own.here & (turns(&above) | turns(&below));
@@ -80,7 +80,8 @@ fn corner_cells(blocked: &BitGrid) -> BitGrid {
     corners
 }
 
-/// For each bit of a word its own value and those of its neighbours; beyond the row all is blocked.
+/// For each bit of a word, its own value and those of its neighbours; beyond the row all cells are
+/// blocked.
 struct Beside {
     left: u64,
     here: u64,
@@ -115,8 +116,8 @@ mod tests {
     #[test]
     fn beside_the_corners_of_obstacles_only() {
         assert_eq!(corners(&["...", ".#.", "..."]), [(0, 0), (2, 0), (0, 2), (2, 2)]);
-        // The cells between obstacle and border lie at no corner, and neither do those in a concave
-        // corner.
+        // The cells between obstacle and border are not at a corner, and neither are those in a
+        // concave corner.
         assert_eq!(corners(&["#..", "..."]), [(1, 0)]);
         assert_eq!(corners(&["##.", "#..", "..."]), [(1, 0), (2, 1)]);
     }

@@ -12,22 +12,23 @@ use serde::Serialize;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
-/// The largest number of corner cells of a patch, and of the edges from them: among dense edges a
-/// corner cell takes long.
+/// The largest number of corner cells of a patch, and of the edges from them: a corner cell with
+/// many edges takes long.
 const PATCH_CORNERS: usize = 4000;
 const PATCH_EDGES: usize = 160_000;
 
-/// A smaller patch inside has one corner cell in this many.
+/// A smaller patch within a patch has one corner cell in this many.
 const SMALLER: usize = 4;
 
-/// The largest number of patches, and of edges after which no other one begins.
+/// The largest number of patches, and the number of edges after which no further patch begins.
 const PATCHES: usize = 3;
 const EDGES: usize = 300_000;
 
-/// Bytes for each entry while labels are made: two parts of 8 bytes that grow by doubling.
+/// Bytes per entry while labels are built: two parts of 8 bytes that grow by doubling.
 const GROWING_ENTRY_BYTES: f64 = 24.0;
 
-/// Paths that jump point search is timed with, and the time after which no other one begins \[s\].
+/// Number of paths in the timing of jump point search, and the time after which no further one
+/// begins \[s\].
 const PATHS: usize = 64;
 const PATHS_TIME_S: f64 = 0.2;
 
@@ -35,24 +36,24 @@ const PATHS_TIME_S: f64 = 0.2;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct PreparationEstimate {
-    /// Cells at which shortest paths may turn: exact.
+    /// Cells at which shortest paths may turn: an exact count.
     pub corner_cells: u64,
     /// Entries of all labels.
     pub label_entries: u64,
-    /// Memory on the heap, when it is done \[bytes\].
+    /// Memory on the heap after the preparation \[bytes\].
     pub memory_bytes: u64,
-    /// Memory on the heap while it is made, at most \[bytes\].
+    /// Peak memory on the heap during the preparation \[bytes\].
     pub peak_bytes: u64,
     /// Time of the preparation \[s\].
     pub time_s: f64,
-    /// Mean time of a path between corner cells by jump point search \[s\]; `None` where no path
-    /// was found.
+    /// Mean time of a path between corner cells by jump point search \[s\]; `None` if no path was
+    /// found.
     pub jps_s: Option<f64>,
 }
 
 impl PreparationEstimate {
     /// The number of paths that jump point search finds in the time of the preparation: for fewer
-    /// paths, no preparation pays. `None` where no path was found.
+    /// paths, preparation does not pay. `None` if no path was found.
     pub fn pays_from_paths(&self) -> Option<f64> {
         self.jps_s.map(|jps_s| self.time_s / jps_s)
     }
@@ -61,12 +62,12 @@ impl PreparationEstimate {
 impl Prepared {
     /// Estimates the cost of [`Self::build`], in about a second at most, whatever the map.
     ///
-    /// Patches of the map are prepared at two sizes. Their cost for each corner cell is carried on
-    /// to the number of all corner cells, as a power of it. `clock` gives the time \[s\] since any
-    /// moment.
+    /// Patches of the map are prepared at two sizes. Their cost per corner cell is extrapolated to
+    /// the number of all corner cells by a power law. `clock` returns the time \[s\] since an
+    /// arbitrary moment.
     ///
     /// # Errors
-    /// If the map cannot be prepared, as far as the patches show.
+    /// Returns an error if the map cannot be prepared, as far as the patches show.
     pub fn estimate(
         map: &SearchMap,
         clock: impl Fn() -> f64,
@@ -93,7 +94,7 @@ impl Prepared {
     }
 }
 
-/// The mean costs for each corner cell of the map, from patches around random ones.
+/// The mean costs per corner cell of the map, from patches around random corner cells.
 fn mean_cost(
     scanner: &Scanner<'_>,
     cells: &[Cell],
@@ -122,13 +123,13 @@ fn mean_cost(
     Ok(sum.times(1.0 / patches.max(1) as f64))
 }
 
-/// The costs of preparing some corner cells, for each of them.
+/// The costs of preparing some corner cells, per corner cell.
 #[derive(Clone, Copy, Default)]
 struct Cost {
     /// The number of corner cells.
     corners: f64,
     entries: f64,
-    /// Edges, each from both of its ends.
+    /// Edges, each counted from both of its ends.
     edges: f64,
     time_s: f64,
 }
@@ -152,7 +153,8 @@ impl Cost {
         }
     }
 
-    /// The costs for each of `corners` corner cells, from those in a patch and in a smaller one.
+    /// Extrapolates the costs per corner cell to `corners` corner cells, from a patch and a
+    /// smaller one.
     fn carried_on(&self, small: &Self, corners: f64) -> Self {
         let carried = |at: f64, before: f64| {
             let power = (at / before).ln() / (self.corners / small.corners).ln();
@@ -168,12 +170,12 @@ impl Cost {
     }
 }
 
-/// The corner cells that are nearest to one of them.
+/// The corner cells nearest to one of them.
 struct Patch {
     corners: Vec<u32>,
     places: HashMap<u32, u32>,
     edges: Vec<Vec<Edge>>,
-    /// There are corner cells beyond.
+    /// True if there are corner cells beyond the patch.
     goes_on: bool,
 }
 
@@ -199,7 +201,7 @@ impl Patch {
         Self { corners, places, edges, goes_on }
     }
 
-    /// The costs of preparing its first corner cells alone.
+    /// The costs of preparing the first corner cells of the patch alone.
     fn cost(
         &self,
         cells: &[Cell],
@@ -222,14 +224,14 @@ impl Patch {
         })
     }
 
-    /// Edges among the first corner cells.
+    /// The edges among the first corner cells.
     fn kept(&self, edges: &[Edge], count: usize) -> Vec<Edge> {
         let place = |edge: &Edge| self.places.get(&edge.to).filter(|&&to| (to as usize) < count);
         edges.iter().filter_map(|edge| place(edge).map(|&to| Edge { to, key: edge.key })).collect()
     }
 }
 
-/// The mean time of a path between random corner cells.
+/// The mean time of a path between random corner cells by jump point search \[s\].
 fn jps_time_s(
     map: &SearchMap,
     cells: &[Cell],
@@ -260,7 +262,7 @@ mod tests {
     use crate::map::{LayerConfig, OccupancyGrid, UnknownPolicy};
     use std::cell::Cell as Counter;
 
-    /// A map with this share of single blocked cells.
+    /// A map on which this share of the cells is blocked, at random.
     fn clutter(size: usize, share: f64) -> SearchMap {
         let mut random = Random::new(3);
         let mut row =
@@ -270,7 +272,7 @@ mod tests {
         SearchMap::new(&OccupancyGrid::from_ascii(&rows), LayerConfig::default()).unwrap()
     }
 
-    /// A clock that is a second further whenever it is asked.
+    /// A clock that advances by a second at each reading.
     fn ticks() -> impl Fn() -> f64 {
         let time = Counter::new(0.0);
         move || time.replace(time.get() + 1.0)
@@ -290,7 +292,7 @@ mod tests {
         expect_about(estimate.label_entries, made.label_entries, 1.1);
         expect_about(estimate.memory_bytes, made.memory_bytes as u64, 1.1);
         assert!(estimate.peak_bytes > estimate.memory_bytes);
-        // One tick to scan the map and one to prepare it; one for each path.
+        // One tick to scan the map and one to prepare it; one per path.
         assert!((estimate.time_s - 2.0).abs() < 1e-9 && estimate.jps_s == Some(1.0));
         assert!((estimate.pays_from_paths().unwrap() - 2.0).abs() < 1e-9);
     }
@@ -313,7 +315,8 @@ mod tests {
         let carried = cost(4000.0, 60.0, 0.3).carried_on(&cost(1000.0, 30.0, 0.3), 64_000.0);
         assert!((carried.entries - 240.0).abs() < 1e-9 && (carried.time_s - 0.3).abs() < 1e-12);
         assert!((carried.edges - 7.0).abs() < 1e-12);
-        // Nothing becomes cheaper on a larger map, and no time of 0 is carried on.
+        // The cost per corner cell does not fall on a larger map, and a time of 0 is not
+        // extrapolated.
         let carried = cost(4000.0, 30.0, 0.0).carried_on(&cost(1000.0, 40.0, 0.0), 64_000.0);
         assert!((carried.entries - 30.0).abs() < 1e-9 && carried.time_s.abs() < 1e-12);
     }

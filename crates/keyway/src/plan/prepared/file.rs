@@ -8,31 +8,31 @@ use crate::map::SearchMap;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The size that numbers of nodes and label entries of 32 bits allow, rounded up.
+/// The largest size that 32-bit numbers of nodes and label entries allow, rounded up.
 const MAX_FILE_BYTES: u64 = 1 << 37;
 
-/// Why a file of a prepared map cannot be read.
+/// The reason why a file of a prepared map cannot be read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PreparedFileError {
     /// Reading failed.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Its content cannot be used.
+    /// The content is invalid.
     #[error("{}: {reason}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// The fault in it.
+        /// The fault in the file.
         reason: PreparedFormatError,
     },
 }
 
 impl Prepared {
-    /// Writes a file.
+    /// Writes a file; returns its size \[bytes\].
     ///
     /// # Errors
-    /// When it cannot be written; what was there before is kept.
+    /// Returns an error if it cannot be written; an existing file is kept.
     pub fn save(&self, path: &Path) -> Result<u64, WriteError> {
         let bytes = self.to_bytes();
         write_atomically(path, &bytes)?;
@@ -42,7 +42,7 @@ impl Prepared {
     /// Reads the file of a preparation of `map`.
     ///
     /// # Errors
-    /// When it cannot be read, is damaged, or belongs to another map.
+    /// Returns an error if the file cannot be read, is damaged, or belongs to another map.
     pub fn load(path: &Path, map: &SearchMap) -> Result<Self, PreparedFileError> {
         let bytes = read_file(path, MAX_FILE_BYTES)?;
         Self::from_bytes(&bytes, map)

@@ -1,4 +1,4 @@
-//! Prepared maps as bytes.
+//! The binary format of prepared maps.
 //!
 //! All numbers are little-endian:
 //!
@@ -32,32 +32,32 @@ const CORNERS_ARE_NOT_CUT: u32 = 0;
 const HEADER_BYTES: usize = 40;
 const CHECKSUM_BYTES: usize = 8;
 
-/// Why a prepared map cannot be read.
+/// The reason why a prepared map cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PreparedFormatError {
-    /// It does not begin like one.
+    /// The magic number is wrong.
     #[error("this is not a prepared map, expected a file that `keyway prepare` has written")]
     Magic,
-    /// Of another version, or for another corner rule.
+    /// Written by another version of the format, or for another corner rule.
     #[error(
         "the prepared map has format {version} and corner rule {corners}, expected 1 and 0; prepare the map again"
     )]
     Version {
-        /// The version.
+        /// The version in the file.
         version: u32,
-        /// The corner rule.
+        /// The corner rule in the file.
         corners: u32,
     },
-    /// Cut off, or followed by something else.
+    /// The bytes are truncated, or have trailing data.
     #[error("the prepared map has {found} bytes, expected {expected}; prepare the map again")]
     Length {
         /// Bytes in the file.
         found: u64,
-        /// Bytes its head promises.
+        /// Bytes according to the header.
         expected: u64,
     },
-    /// The checksum is wrong.
+    /// The checksum does not match.
     #[error("the prepared map is damaged: its checksum is wrong; prepare the map again")]
     Checksum,
     /// The blocked cells differ.
@@ -65,18 +65,18 @@ pub enum PreparedFormatError {
         "the preparation belongs to another map, or to another clearance or treatment of unknown cells; prepare this map in this way"
     )]
     OtherMap,
-    /// The checksum is right, and yet this cannot be.
+    /// The checksum matches, but the content is inconsistent.
     #[error("the prepared map contradicts itself in {part} {index}; prepare the map again")]
     Content {
-        /// Which table.
+        /// The affected table.
         part: &'static str,
-        /// The place in this table.
+        /// The index in this table.
         index: usize,
     },
 }
 
 impl Prepared {
-    /// The content of a file; the same bytes for the same map.
+    /// Serialises the preparation; the same map gives the same bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let Labels { first, entries, hops } = &self.labels;
         let (n, m) = (self.nodes.len(), entries.len());
@@ -96,12 +96,13 @@ impl Prepared {
         bytes
     }
 
-    /// The preparation of `map` that was written as `bytes`.
+    /// Deserialises the preparation of `map` from `bytes`.
     ///
     /// # Errors
-    /// If the bytes are not complete or not those of a preparation of this map's blocked cells.
-    /// No bytes make it panic or take more memory than the file's size allows. Against accidents
-    /// there is a checksum; forged bytes with a correct one may pass, and then give wrong paths.
+    /// Returns an error if the bytes are incomplete, or are not a preparation of this map's
+    /// blocked cells. No input makes it panic or take more memory than the file's size allows. The
+    /// checksum protects against accidents only; forged bytes with a correct one may pass, and
+    /// then give wrong paths.
     pub fn from_bytes(bytes: &[u8], map: &SearchMap) -> Result<Self, PreparedFormatError> {
         let head = Head::read(bytes)?;
         if head.fingerprint != map.fingerprint() {
@@ -128,7 +129,7 @@ impl Prepared {
     }
 }
 
-/// The content of the first bytes of a file, when all of them are there and the checksum is right.
+/// The content of the header, once the length and the checksum are verified.
 struct Head {
     fingerprint: u64,
     edges: u64,
@@ -166,10 +167,10 @@ impl Head {
 }
 
 impl Labels {
-    /// Checks that queries can rely on the tables, whoever made them: each label ends with its own
-    /// node, and every hop leads nearer to its hub, to the cell of the node it names. `first` must
-    /// be ascending and end with the number of entries. Otherwise the error is the place of an
-    /// entry at fault.
+    /// Checks that queries can rely on the tables, whatever their source: each label ends with its
+    /// own node, and every hop leads nearer to its hub, to the cell of the node it names. `first`
+    /// must be ascending and end with the number of entries. Otherwise the error is the index of a
+    /// faulty entry.
     fn check(&self, cells: &[Cell]) -> Result<(), usize> {
         let mut owners = vec![0; self.entries.len()];
         for node in 0..cells.len() {
@@ -201,7 +202,7 @@ impl Labels {
     }
 }
 
-/// True if the numbers are those of all corner cells, each once.
+/// The given numbers, if they are those of all corner cells, each once.
 fn checked_order(order: &[u32], corners: usize) -> Result<Vec<u32>, PreparedFormatError> {
     if order.len() != corners {
         return Err(content("node", corners.min(order.len())));
@@ -216,7 +217,7 @@ fn checked_order(order: &[u32], corners: usize) -> Result<Vec<u32>, PreparedForm
     Ok(order.to_vec())
 }
 
-/// The beginning of each label.
+/// The first entry of each label.
 fn checked_first(lengths: &[u32], entries: usize) -> Result<Vec<u32>, PreparedFormatError> {
     let mut first = Vec::with_capacity(lengths.len() + 1);
     let mut sum = 0_u64;
@@ -235,7 +236,7 @@ const fn content(part: &'static str, index: usize) -> PreparedFormatError {
     PreparedFormatError::Content { part, index }
 }
 
-/// 64 bits over all bytes, 8 at a time; a different byte anywhere gives a different sum.
+/// 64-bit checksum over all bytes, 8 at a time; a single changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {
     let word = |chunk: &[u8]| {
         let mut padded = [0; 8];

@@ -1,4 +1,4 @@
-//! Prepared maps as bytes: what was written is read, and nothing else.
+//! Prepared maps as bytes: a written map is read back, and nothing else is accepted.
 
 use super::super::{GlobalPlanner, Plan, Prepared};
 use super::*;
@@ -11,7 +11,7 @@ fn map(rows: &[&str]) -> SearchMap {
     SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap()
 }
 
-/// Plans between all cells: whatever the tables say, this must end.
+/// Plans between all cells: whatever the tables contain, this must terminate.
 fn plan_everywhere(prepared: &Prepared, map: &SearchMap) -> Vec<Plan> {
     let mut workspace = Workspace::default();
     let mut plans = Vec::new();
@@ -19,7 +19,7 @@ fn plan_everywhere(prepared: &Prepared, map: &SearchMap) -> Vec<Plan> {
         for goal in map.frame().cells().filter(|&cell| map.is_free(cell)) {
             let mut plan = Plan::default();
             let query = Query::new(start, goal);
-            // Wrong tables may hide a path.
+            // Wrong tables may hide a path, so the result is ignored.
             let _ = prepared.plan_into(map, &query, &mut workspace, None, &mut plan);
             plans.push(plan);
         }
@@ -60,7 +60,7 @@ fn every_flipped_bit_and_every_cut_is_seen() {
     assert_eq!(error, PreparedFormatError::Length { found, expected });
 }
 
-/// Hostile numbers under a checksum that is right.
+/// Hostile numbers under a correct checksum.
 #[test]
 fn no_number_is_trusted() {
     let map = map(&ROWS);

@@ -1,4 +1,4 @@
-//! The corner cells that see each other.
+//! The graph of corner cells in sight of each other.
 
 use super::corners::Corners;
 use super::sight::{STEPS, scan};
@@ -13,20 +13,20 @@ pub(super) struct Edge {
     pub(super) key: u64,
 }
 
-/// The graph of corner cells, numbered as [`Corners::number`] says: each with those that are
-/// *directly reachable* from it \[Uras2013\]: no way to it is longer than the octile distance, and
-/// none of that length meets another corner cell. A shortest path between two corner cells is such
-/// a way, or can be put together from such ways.
+/// The graph of corner cells, numbered by [`Corners::number`]. Each is joined with those that are
+/// *directly reachable* from it \[Uras2013\]: no path to it is longer than the octile distance,
+/// and none of that length meets another corner cell. A shortest path between two corner cells is
+/// such a path or a sequence of them.
 pub(super) fn corner_graph(map: &SearchMap, corners: &Corners) -> Vec<Vec<Edge>> {
     let scanner = Scanner::new(map, corners);
     corners.iter().map(|corner| scanner.edges(corner)).collect()
 }
 
-/// Scans that end at any corner cell, from whichever side they come.
+/// Scans that end at any corner cell, from either side.
 pub(super) struct Scanner<'m> {
     corners: &'m Corners,
     cramped: &'m BitGrid,
-    /// Blocked and corner cells; and the same with columns and rows exchanged.
+    /// Blocked and corner cells; then the same with columns and rows exchanged.
     stops: BitGrid,
     stops_transposed: BitGrid,
 }
@@ -55,7 +55,7 @@ impl<'m> Scanner<'m> {
         edges
     }
 
-    /// Calls `found` for every corner cell that is directly reachable, with the way's length.
+    /// Calls `found` for every directly reachable corner cell, with the path's length.
     fn in_sight(&self, from: Cell, mut found: impl FnMut(Cell, Cost)) {
         let straight: [Scan; 4] = std::array::from_fn(|direction| self.scan(from, direction));
         for (quarter, scan) in straight.iter().enumerate() {
@@ -67,8 +67,8 @@ impl<'m> Scanner<'m> {
         }
     }
 
-    /// Walks the diagonal of a quarter; to both sides of it, scans reach no further than the
-    /// shortest one before.
+    /// Walks the diagonal of a quadrant. Scans to either side of it reach no further than the
+    /// shortest previous one on that side.
     fn in_quarter(
         &self,
         from: Cell,
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::map::{LayerConfig, OccupancyGrid};
 
-    /// By the definition: all octile ways between two cells are free, and no corner cell lies on
+    /// The definition: all octile paths between two cells are free, and no corner cell lies on
     /// one.
     fn is_direct(map: &SearchMap, corners: &Corners, from: Cell, to: Cell) -> bool {
         let (dx, dy) = (to.x - from.x, to.y - from.y);

@@ -1,12 +1,12 @@
-//! Hub labels \[Abraham2012\], made by pruned searches \[Akiba2013\].
+//! Hub labels \[Abraham2012\], built by pruned searches \[Akiba2013\].
 //!
-//! A label of a node holds some nodes, its hubs, with their distances, such that any two labels
-//! have a hub in common that lies on a shortest path between their nodes. The distance of two nodes
-//! is then the smallest sum over the hubs that both labels hold: no search, two short lists.
+//! A label of a node lists some nodes, its hubs, with their distances. Any two labels have a hub
+//! in common that lies on a shortest path between their nodes. The distance of two nodes is then
+//! the smallest sum over their common hubs: no search, only two short lists.
 //!
-//! Each node in turn, the most important one first, is entered as a hub at all nodes that it
-//! reaches by a search, which goes no further where labels made so far give that distance or a
-//! smaller one.
+//! Each node in turn, the most important one first, is entered as a hub at all nodes that a search
+//! from it reaches. The search is pruned where the existing labels give the same or a smaller
+//! distance.
 
 use super::PrepareError;
 use super::graph::Edge;
@@ -15,17 +15,17 @@ use crate::search::Cost;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A hub and the exact way to it in 64 bits: hub << 40 | straight steps << 20 | diagonal steps.
+/// A hub and the exact cost to it in 64 bits: hub << 40 | straight steps << 20 | diagonal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Entry(pub(super) u64);
 
-/// Hubs must be below this, and so must both numbers of steps.
+/// The exclusive limits of hub numbers and of both step counts.
 pub(super) const MAX_HUBS: u64 = 1 << 24;
 const MAX_STEPS: u64 = 1 << STEP_BITS;
 const STEP_BITS: u32 = 20;
 
 impl Entry {
-    /// `None` where a number does not fit.
+    /// `None` if a number does not fit.
     pub(super) fn new(hub: u32, cost: Cost) -> Option<Self> {
         let fits = u64::from(hub) < MAX_HUBS && cost.straight.max(cost.diagonal) < MAX_STEPS;
         let packed = u64::from(hub) << (2 * STEP_BITS) | cost.straight << STEP_BITS | cost.diagonal;
@@ -49,16 +49,16 @@ impl Entry {
 /// this order, so that the last one of a label is the node itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Labels {
-    /// The beginning of the label of each node, and last of all the end of the last label.
+    /// The first entry of each node's label, followed by the end of the last label.
     pub(super) first: Vec<u32>,
     pub(super) entries: Vec<Entry>,
-    /// For each entry how the way to the hub begins.
+    /// For each entry the first leg of the path to its hub.
     pub(super) hops: Vec<Hop>,
 }
 
-/// The first leg of the way to a hub, in 32 bits: the place among all entries of the one for the
-/// same hub in the label of the next node << 3 | the octant in which that node lies. The difference
-/// of the two entries gives the length of the leg.
+/// The first leg of the path to a hub, in 32 bits: next << 3 | octant. `next` is the index, among
+/// all entries, of the entry for the same hub in the label of the next node; `octant` is the
+/// octant in which that node lies. The difference of the two entries gives the length of the leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Hop(pub(super) u32);
 
@@ -78,19 +78,19 @@ impl Hop {
     }
 }
 
-/// The octant in which `to` lies from `from`: bit 0 says to the west, bit 1 to the south, bit 2
-/// further in rows than in columns.
+/// The octant in which `to` lies from `from`: bit 0 is set towards west, bit 1 towards south, bit
+/// 2 if the row distance exceeds the column distance.
 pub(super) fn octant(from: Cell, to: Cell) -> u8 {
     let steep = from.y.abs_diff(to.y) > from.x.abs_diff(to.x);
     u8::from(to.x < from.x) | u8::from(to.y < from.y) << 1 | u8::from(steep) << 2
 }
 
 impl Labels {
-    /// The labels of a graph whose nodes are numbered by importance and lie at `cells`.
+    /// Builds the labels of a graph whose nodes are numbered by importance and lie at `cells`.
     ///
     /// # Errors
-    /// When a way is too long for an [`Entry`], or there are too many entries; and those of
-    /// `progress`.
+    /// Returns an error if a path is too long for an [`Entry`], or there are too many entries; and
+    /// those of `progress`.
     pub(super) fn new(
         graph: &[Vec<Edge>],
         cells: &[Cell],
@@ -117,7 +117,7 @@ impl Labels {
             first.push(count as u32);
         }
         let (mut entries, mut hops) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        // Each label is dropped as soon as it was copied.
+        // Each label is dropped as soon as it is copied.
         for (label, &cell) in labels.into_iter().zip(cells) {
             entries.extend(label.entries);
             hops.extend(label.next.iter().map(|next| {
@@ -130,20 +130,20 @@ impl Labels {
         Self { first, entries, hops }
     }
 
-    /// The entries of a node.
+    /// The label of a node.
     pub(super) fn of(&self, node: u32) -> &[Entry] {
         let node = node as usize;
         &self.entries[self.first[node] as usize..self.first[node + 1] as usize]
     }
 
-    /// The place among all entries of a node's entry for a hub.
+    /// The index of a node's entry for a hub, among all entries.
     pub(super) fn place(&self, node: u32, hub: u32) -> Option<usize> {
         let i = self.of(node).binary_search_by_key(&hub, |entry| entry.hub()).ok()?;
         Some(self.first[node as usize] as usize + i)
     }
 
-    /// The length of the shortest way between two nodes, as a [`Cost::key`], and the first hub on
-    /// it; `None` when there is none.
+    /// The length of the shortest path between two nodes, as a [`Cost::key`], and the first hub on
+    /// it; `None` if there is none.
     pub(super) fn distance(&self, a: u32, b: u32) -> Option<(u64, u32)> {
         let (mut a, mut b) = (self.of(a).iter().peekable(), self.of(b).iter().peekable());
         let mut best = None;
@@ -169,14 +169,14 @@ impl Labels {
     }
 }
 
-/// A label that is being made.
+/// A label under construction.
 #[derive(Clone, Debug, Default)]
 struct Label {
     entries: Vec<Entry>,
     next: Vec<Next>,
 }
 
-/// The next node on the way to a hub, and the hub's place in that node's label.
+/// The next node on the path to a hub, and the hub's index in that node's label.
 #[derive(Clone, Copy, Debug, Default)]
 struct Next {
     node: u32,
@@ -185,7 +185,7 @@ struct Next {
 
 /// Memory of the searches.
 struct LabelSearch {
-    /// The distances of the hub at work to its own hubs, `u64::MAX` for all others.
+    /// The distances of the current hub to its own hubs, `u64::MAX` for all others.
     from_hub: Vec<u64>,
     reached: Vec<Reached>,
     open: BinaryHeap<Reverse<(u64, u32)>>,
@@ -193,7 +193,7 @@ struct LabelSearch {
     entered: usize,
 }
 
-/// The way in which a node was reached from a hub.
+/// The path by which a node was reached from a hub.
 #[derive(Clone, Copy)]
 struct Reached {
     key: u64,
@@ -214,7 +214,7 @@ impl LabelSearch {
         }
     }
 
-    /// Enters `hub` into the labels of all nodes for which no earlier hub will do.
+    /// Enters `hub` into the labels of all nodes whose distance to it no earlier hub gives.
     fn enter(
         &mut self,
         hub: u32,
@@ -247,7 +247,7 @@ impl LabelSearch {
         Ok(())
     }
 
-    /// True if a hub that both labels hold gives the distance, or a smaller one.
+    /// True if a hub common to both labels gives the distance, or a smaller one.
     fn is_known(&self, entries: &[Entry], key: u64) -> bool {
         let through =
             |entry: &Entry| self.from_hub[entry.hub() as usize].saturating_add(entry.key());
@@ -257,7 +257,7 @@ impl LabelSearch {
     fn relax(&mut self, hub: u32, next: Next, graph: &[Vec<Edge>], cells: &[Cell]) {
         let at = next.node;
         let from = self.reached[at as usize];
-        // More important nodes are hubs already: what lies beyond them is known.
+        // More important nodes are hubs already: distances beyond them are known.
         for edge in graph[at as usize].iter().filter(|edge| edge.to > hub) {
             let (to, here) = (cells[edge.to as usize], cells[at as usize]);
             let key = from.key + edge.key;
@@ -287,7 +287,8 @@ mod tests {
         assert_eq!(Entry::new(0, Cost::new(0, 1 << 20)), None);
     }
 
-    /// Nodes at random cells, some of them joined: labels against the relaxation of all pairs.
+    /// Nodes at random cells, some of them joined: labels compared with the relaxation of all
+    /// pairs.
     #[test]
     fn labels_give_all_distances() {
         let mut state = 88_172_645_463_325_252_u64;

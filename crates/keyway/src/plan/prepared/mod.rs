@@ -1,16 +1,18 @@
-//! Prepared maps: work done once per map -> shortest paths in a few microseconds, whatever the map.
+//! Prepared maps: preprocessing once per map -> shortest paths in a few microseconds, whatever the
+//! map.
 //!
 //! Without corner cutting a shortest path turns only beside corners of obstacles. The preparation
-//! finds these corner cells, connects those that see each other (a subgoal graph \[Uras2013\]), and
-//! stores for each a hub label \[Abraham2012\]: a short list of nodes with exact distances, so that
-//! the distance of any two corner cells is the smallest sum over the nodes in both lists. A query
-//! looks from start and goal for the cells at which a path may turn first \[Harabor2011\], and
-//! joins their lists. There is no search, and the paths are exactly as short as those of A*.
+//! finds these corner cells, connects those that see each other (a subgoal graph \[Uras2013\]),
+//! and stores for each a hub label \[Abraham2012\]: a short list of nodes with exact distances, so
+//! that the distance of any two corner cells is the smallest sum over the nodes in both lists. A
+//! query scans from start and goal for the cells at which a path may turn first \[Harabor2011\],
+//! and joins their lists. There is no graph search, and the paths are exactly as short as those of
+//! A*.
 //!
 //! # Source
-//! \[Uras2013\]: simple subgoal graphs, and algorithm 1 to find what is directly reachable.
-//! \[Harabor2011\]: where a path may turn. \[Geisberger2008\]: the order of the nodes.
-//! \[Abraham2012\], \[Akiba2013\]: the labels, and how they are made.
+//! \[Uras2013\]: simple subgoal graphs, and algorithm 1 to find the directly reachable cells.
+//! \[Harabor2011\]: the cells at which a path may turn. \[Geisberger2008\]: the order of the
+//! nodes. \[Abraham2012\], \[Akiba2013\]: the labels and their construction.
 //!
 //! | papers | here |
 //! |---|---|
@@ -20,20 +22,20 @@
 //! | label L(v), hub w, dist(v, w) | `Labels::of`, `Entry` |
 //!
 //! # Where this differs from the papers
-//! - The order of the nodes comes from a contraction of a sparse part of the graph that tolerates
-//!   errors. Labels are exact for any order, and hardly longer for this one.
-//! - Start and goal are connected by jump points, not by subgoals: far fewer are of use. That this
+//! - The order of the nodes comes from an approximate contraction of a sparse part of the graph.
+//!   Labels are exact for any order, and hardly longer for this one.
+//! - Start and goal are connected by jump points, not by subgoals: far fewer are useful. That this
 //!   is enough is shown at `query`.
-//! - Scans pass jump points; each is a turn of its own, which bounds the length of a path through
-//!   it from below.
+//! - Scans pass jump points; each is a separate turn, which gives a lower bound of the length of a
+//!   path through it.
 //!
 //! # Errors / cost
-//! A preparation is bound to the blocked cells it was made for: on any other map, and after an
-//! edit, [`PlanError::OtherMap`]. Memory and time of the preparation grow with the number of corner
-//! cells times the length of their labels, which is 10 to 30 on mazes and most game maps, 80 on a
-//! city map with 10,000 corner cells, and near 300 on a field of single obstacle cells with 67,000.
-//! A query costs its scans, the labels that it reads and the cells that it writes; it allocates
-//! nothing once warm. A budget counts labels that are read.
+//! A preparation is valid only for the blocked cells that it was made for: on any other map, and
+//! after an edit, the result is [`PlanError::OtherMap`]. Memory and time of the preparation grow
+//! with the number of corner cells times the length of their labels, which is 10 to 30 on mazes
+//! and most game maps, 80 on a city map with 10,000 corner cells, and near 300 on a field of
+//! single obstacle cells with 67,000. A query costs its scans, the labels that it reads and the
+//! cells that it writes; it allocates nothing once warm. A budget counts the labels read.
 
 mod corners;
 mod estimate;
@@ -79,7 +81,7 @@ pub struct PreparedConfig {}
 /// A prepared map: a planner for this map alone; optimal without corner cutting.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// [`SearchMap::fingerprint`] of the map it was made for.
+    /// [`SearchMap::fingerprint`] of the prepared map.
     fingerprint: u64,
     corners: Corners,
     diagonals: DiagonalEvents,
@@ -91,13 +93,13 @@ pub struct Prepared {
     labels: Labels,
 }
 
-/// The outcome of a preparation.
+/// Statistics of a preparation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Preparation {
     /// Cells at which shortest paths may turn.
     pub corner_cells: u64,
-    /// Pairs of them that see each other.
+    /// Pairs of corner cells in sight of each other.
     pub edges: u64,
     /// Entries of all labels.
     pub label_entries: u64,
@@ -106,21 +108,22 @@ pub struct Preparation {
 }
 
 impl Prepared {
-    /// Its name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub const NAME: &'static str = "prepared";
 
     /// Prepares a map.
     ///
     /// # Errors
-    /// When the map has penalised cells, or more corner cells or longer paths than labels can hold.
+    /// Returns an error if the map has penalised cells, or more corner cells or longer paths than
+    /// labels can hold.
     pub fn build(map: &SearchMap) -> Result<Self, PrepareError> {
         Self::build_with_progress(map, |_| ControlFlow::Continue(()))
     }
 
-    /// Like [`Self::build`], reporting now and then how far it is; `progress` may stop it.
+    /// Like [`Self::build`], and reports progress from time to time; `progress` may stop it.
     ///
     /// # Errors
-    /// See [`Self::build`]; and [`PrepareError::Stopped`] when `progress` has broken it off.
+    /// As for [`Self::build`]; and [`PrepareError::Stopped`] if `progress` stopped it.
     pub fn build_with_progress(
         map: &SearchMap,
         mut progress: impl FnMut(PrepareProgress) -> ControlFlow<()>,
@@ -146,7 +149,7 @@ impl Prepared {
         Ok(Self { fingerprint, corners, diagonals, edges, nodes, cells, labels })
     }
 
-    /// The corner cells of a map that can be prepared, as far as they tell.
+    /// The corner cells of a map, unless they or penalised cells rule out a preparation.
     fn corners_of(map: &SearchMap) -> Result<Corners, PrepareError> {
         if map.penalised().is_some() {
             return Err(PrepareError::NeedsUniformCost);
@@ -159,7 +162,7 @@ impl Prepared {
         Ok(corners)
     }
 
-    /// The outcome of the preparation.
+    /// The statistics of the preparation.
     pub fn preparation(&self) -> Preparation {
         let tables =
             self.nodes.capacity() * size_of::<u32>() + self.cells.capacity() * size_of::<Cell>();
@@ -262,7 +265,7 @@ impl GlobalPlanner for Prepared {
     }
 }
 
-/// The place of each number in an order.
+/// The inverse of an order: the position of each number.
 fn inverse(order: &[u32]) -> Vec<u32> {
     let mut places = vec![0; order.len()];
     for (place, &number) in order.iter().enumerate() {
@@ -271,7 +274,7 @@ fn inverse(order: &[u32]) -> Vec<u32> {
     places
 }
 
-/// The same graph with the nodes in another order.
+/// Renumbers the nodes of a graph by an order.
 fn renamed(graph: &[Vec<Edge>], order: &[u32], places: &[u32]) -> Vec<Vec<Edge>> {
     let rename = |edge: &Edge| Edge { to: places[edge.to as usize], key: edge.key };
     order.iter().map(|&node| graph[node as usize].iter().map(rename).collect()).collect()

@@ -1,28 +1,30 @@
-//! Which corner cells shortest paths meet most: an order of importance for hub labels.
+//! An order of importance of the corner cells for hub labels: the cells on most shortest paths
+//! first.
 //!
 //! Nodes are contracted one by one as for a contraction hierarchy \[Geisberger2008\]: the next one
-//! is the one whose neighbours need the fewest shortcuts, spread evenly over the map; what is left
-//! longest is most important. Only the order is used. Labels are exact whatever the order, so the
-//! contraction may be wrong by some percent, and that makes it fast: a graph of all corner cells in
-//! sight of each other is dense (30 neighbours each in open terrain), and its contraction takes
-//! minutes; without the edges that are nearly a detour over a neighbour, and with shortcuts only
-//! where a detour is long, it takes about a second, for labels of the same length.
+//! is the one whose neighbours need the fewest shortcuts, spread evenly over the map; the nodes
+//! contracted last are the most important. Only the order is used. Labels are exact whatever the
+//! order, so the contraction may be wrong by some percent, and that makes it fast. A graph of all
+//! corner cells in sight of each other is dense (30 neighbours each in open terrain), and its
+//! contraction takes minutes. Without the edges that are nearly a detour over a neighbour, and
+//! with shortcuts only where a detour is long, it takes about a second, for labels of the same
+//! length.
 
 use super::graph::Edge;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// An edge is dropped where a way over a neighbour is at most a 4th longer.
+/// An edge is dropped if a path over a neighbour is at most 1/4 longer.
 const DETOUR_PARTS: u64 = 4;
 
-/// No shortcut is made where another way is found that is at most a 10th longer.
+/// No shortcut is made if a witness path at most 1/10 longer is found.
 const WITNESS_PARTS: u64 = 10;
 
-/// Nodes settled in one search for another way; one that is not found costs a shortcut too many.
+/// Nodes settled in one witness search; a witness that is not found costs an unnecessary shortcut.
 const WITNESS_SETTLED: u32 = 60;
 
-/// The nodes of a graph, the most important one first. Calls `progress` with the number of nodes
-/// that have their place; an error of it ends the work.
+/// The nodes of a graph, the most important one first. Calls `progress` with the number of ordered
+/// nodes; an error of `progress` stops the work.
 pub(super) fn order_of_importance<E>(
     graph: &[Vec<Edge>],
     mut progress: impl FnMut(usize) -> Result<(), E>,
@@ -37,7 +39,7 @@ pub(super) fn order_of_importance<E>(
         (0..graph.len() as u32).map(|node| Reverse((contraction.priority(node), node))).collect();
     let mut order = Vec::with_capacity(graph.len());
     while let Some(Reverse((before, node))) = queue.pop() {
-        // Neighbours were contracted since: the priority may have risen.
+        // The priority may have risen, as neighbours were contracted since.
         let now = contraction.priority(node);
         if now > before && queue.peek().is_some_and(|Reverse(next)| (now, node) > *next) {
             queue.push(Reverse((now, node)));
@@ -51,8 +53,8 @@ pub(super) fn order_of_importance<E>(
     Ok(order)
 }
 
-/// The graph without edges beside which there is a way over one node, each of its edges shorter and
-/// both together hardly longer.
+/// The graph without each edge for which there is a path over one node whose two edges are both
+/// shorter than it and together hardly longer.
 fn without_detours(graph: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
     let mut reached = vec![(u32::MAX, 0); graph.len()];
     let mut sparse = Vec::with_capacity(graph.len());
@@ -73,18 +75,18 @@ fn without_detours(graph: &[Vec<Edge>]) -> Vec<Vec<Edge>> {
 }
 
 struct Contraction {
-    /// Edges among the nodes that are left.
+    /// Edges among the remaining nodes.
     edges: Vec<Vec<Edge>>,
     /// One more than the highest level of the contracted neighbours.
     level: Vec<u32>,
     witness: Witness,
-    /// Those that the node last looked at needs: from, to, length.
+    /// The shortcuts for the node visited last: from, to, length.
     shortcuts: Vec<(u32, u32, u64)>,
 }
 
 impl Contraction {
-    /// Small for nodes to be contracted early: low level, few shortcuts per edge. Leaves the
-    /// shortcuts of the node.
+    /// The contraction priority, small for nodes to be contracted early: low level, few shortcuts
+    /// per edge. Also sets `shortcuts` for the node.
     fn priority(&mut self, node: u32) -> u64 {
         self.find_shortcuts(node);
         let removed = self.edges[node as usize].len().max(1) as u64;
@@ -110,7 +112,7 @@ impl Contraction {
         }
     }
 
-    /// Takes out the node last looked at by [`Self::priority`].
+    /// Contracts the node last visited by [`Self::priority`].
     fn contract(&mut self, node: u32) {
         let above = self.level[node as usize] + 1;
         for edge in std::mem::take(&mut self.edges[node as usize]) {
@@ -138,11 +140,11 @@ const fn tolerated(key: u64) -> u64 {
     key + key / WITNESS_PARTS
 }
 
-/// Searches for ways around a node.
+/// Witness searches: paths around a node.
 struct Witness {
-    /// Distance, and the search it belongs to.
+    /// The distance, and the search it belongs to.
     reached: Vec<(u64, u32)>,
-    /// The search in which the node was asked for.
+    /// The last search that asked for the node.
     wanted: Vec<u32>,
     epoch: u32,
     open: BinaryHeap<Reverse<(u64, u32)>>,
@@ -158,8 +160,8 @@ impl Witness {
         }
     }
 
-    /// Distances from `from` without `avoided`, up to `longest`, until all `wanted` are settled or
-    /// enough was done.
+    /// Computes distances from `from` without `avoided`, up to `longest`, until all `wanted` are
+    /// settled or the limit of settled nodes is reached.
     fn search(
         &mut self,
         edges: &[Vec<Edge>],

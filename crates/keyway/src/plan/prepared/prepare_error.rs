@@ -1,9 +1,9 @@
-//! Why a map cannot be prepared.
+//! Errors of the preparation of a map.
 
 use crate::search::Cost;
 use thiserror::Error;
 
-/// Why a map cannot be prepared.
+/// The reason why a map cannot be prepared.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PrepareError {
@@ -12,32 +12,32 @@ pub enum PrepareError {
         "a prepared map needs one cost for all cells; treat unknown cells as blocked or free, or use astar"
     )]
     NeedsUniformCost,
-    /// Whoever watched it wanted it to stop.
+    /// The progress callback stopped the preparation.
     #[error("the preparation was stopped")]
     Stopped,
-    /// Too many corner cells.
+    /// The map has too many corner cells.
     #[error(
         "the map has {corner_cells} cells at which paths may turn, expected at most {limit}; use jps"
     )]
     TooManyCorners {
-        /// Their number.
+        /// The number of corner cells.
         corner_cells: u64,
-        /// The largest number that there may be.
+        /// The largest number allowed.
         limit: u64,
     },
-    /// Too many label entries.
+    /// The labels have too many entries.
     #[error("the labels would have more than {limit} entries; use jps")]
     TooManyEntries {
-        /// The largest number that there may be.
+        /// The largest number allowed.
         limit: u64,
     },
-    /// Too long a path.
+    /// A shortest path is too long.
     #[error(
         "there is a shortest path of {} straight and {} diagonal steps, expected less than 2^20 of each; use jps",
         cost.straight, cost.diagonal
     )]
     TooLong {
-        /// Its cost.
+        /// The cost of the path.
         cost: Cost,
     },
 }

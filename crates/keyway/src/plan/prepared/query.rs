@@ -1,14 +1,15 @@
 //! A query on a prepared map.
 //!
-//! Start and goal look around for cells at which a path may turn first, or last; at first towards
-//! each other. One pair of these gives a path, and its length bounds all that follows. The labels
-//! of the turns through which a shorter path may lead are joined: those of the start's are entered
-//! into a table by hub, those of the goal's are looked up there.
+//! Start and goal each scan for the cells at which a path may turn first, or last, initially in
+//! the direction of each other. One pair of these turns gives a path, and its length bounds
+//! everything that follows. The labels of the turns through which a shorter path may lead are
+//! joined: those of the start are entered into a table by hub, those of the goal are looked up
+//! there.
 //!
-//! That finds a shortest path: let a be the first turn of one, made to run diagonally first
-//! wherever it can. Then look from the goal for a path of the same length to a, made in the same
-//! way. Its first turn is one that the goal has found, and the distance of both turns is in the
-//! labels; or it has no turn, and the goal sees a.
+//! This finds a shortest path. Let a be the first turn of a shortest path that runs diagonally
+//! first wherever it can. Now take, from the goal, a path of the same length to a, made in the
+//! same way. Its first turn is one that the goal has found, and the distance of both turns is in
+//! the labels; or it has no turn, and the goal sees a.
 
 use super::hubs::{Access, HubMemory};
 use super::labels::Entry;
@@ -22,13 +23,13 @@ use crate::search::{Cost, Observer, Query, SearchStatistics, Side};
 pub(super) enum Route {
     /// Diagonal, then straight.
     Direct,
-    /// Over one cell that both ends see.
+    /// Over one cell that both start and goal see.
     Turn(Cell),
-    /// By a node in the start's sight, a hub, a node in the goal's sight.
+    /// Over a node in the start's sight, a hub, and a node in the goal's sight.
     Hub { from: u32, hub: u32, to: u32 },
 }
 
-/// One query at work.
+/// The state of one query.
 pub(super) struct Search<'a, O> {
     pub(super) prepared: &'a Prepared,
     pub(super) sight: Sight<'a>,
@@ -36,11 +37,11 @@ pub(super) struct Search<'a, O> {
     pub(super) memory: &'a mut HubMemory,
     pub(super) seen: O,
     pub(super) statistics: SearchStatistics,
-    /// The shortest path known: its key, `u64::MAX` without one, and its route.
+    /// The shortest known path: its key, `u64::MAX` without a path, and its route.
     best: (u64, Route),
 }
 
-/// This many turns seen are enough for a first path.
+/// The number of turns that is enough for a first path.
 const FIRST_LOOK: usize = 4;
 
 /// Start and goal, in the order of [`HubMemory::access`].
@@ -59,7 +60,7 @@ impl<'a, O: Observer> Search<'a, O> {
         Self { prepared, sight, query, memory, seen, statistics, best }
     }
 
-    /// The shortest route.
+    /// Returns the shortest route.
     pub(super) fn run(&mut self) -> Result<Route, PlanError> {
         let Query { start, goal, .. } = *self.query;
         if self.sight.sees(start, goal) {
@@ -76,7 +77,7 @@ impl<'a, O: Observer> Search<'a, O> {
         }
     }
 
-    /// Finds the turns in sight of both ends.
+    /// Finds the turns in sight of start and goal.
     fn look_around(&mut self) {
         let Query { start, goal, .. } = *self.query;
         let ends = [(start, goal), (goal, start)];
@@ -97,12 +98,13 @@ impl<'a, O: Observer> Search<'a, O> {
     }
 
     /// Finds the turns straight ahead in direction `quarter`, and on both sides of the diagonal
-    /// after it.
+    /// that follows it counter-clockwise.
     fn look(&mut self, i: usize, quarter: usize, (from, to): (Cell, Cell), most: usize) {
         let sight = self.sight;
         sight.along(from, quarter, 0, |turn| self.enter(i, turn, to));
         sight.diagonal(from, quarter, |at, steps| {
-            // Whatever is seen from here costs at least the way over this cell.
+            // A path over any turn seen from here costs at least as much as the one over this
+            // cell.
             let least = steps * Cost::KEY_DIAGONAL + octile_key(at, to);
             if least >= self.best.0 || self.memory.access[i].len() >= most {
                 return false;
@@ -114,8 +116,8 @@ impl<'a, O: Observer> Search<'a, O> {
         });
     }
 
-    /// Notes a turn, unless no shorter path can lead through it; false when none can lead over the
-    /// cell at all, or over those behind it.
+    /// Records a turn, unless no shorter path can lead through it. False if no shorter path can
+    /// lead over the cell at all, or over those behind it.
     fn enter(&mut self, i: usize, turn: Turn, to: Cell) -> bool {
         let Turn { at, cost, ahead, opens } = turn;
         let key = cost.key();
@@ -135,7 +137,7 @@ impl<'a, O: Observer> Search<'a, O> {
         true
     }
 
-    /// Tries the path over the most promising turn of each end.
+    /// Tries the path over the most promising turns of start and goal.
     fn try_best_pair(&mut self) {
         let best = |list: &[Access]| list.iter().min_by_key(|access| access.estimate).copied();
         let [Some(a), Some(b)] = self.memory.access.each_ref().map(|list| best(list)) else {
@@ -191,7 +193,7 @@ impl<'a, O: Observer> Search<'a, O> {
         Ok(())
     }
 
-    /// The label of an access node; reading it is what a budget counts.
+    /// Reads the label of an access node; a budget counts these reads.
     fn label(&mut self, i: usize, access: Access, node: u32) -> Result<&'a [Entry], PlanError> {
         let statistics = self.statistics;
         if let Some(budget) = self.query.budget.filter(|&budget| statistics.expanded() >= budget) {
@@ -205,8 +207,8 @@ impl<'a, O: Observer> Search<'a, O> {
     }
 }
 
-/// The least length of a path that turns at a cell to one of the sides that open, as a key: its
-/// next step is diagonal to that side, or straight there.
+/// The smallest length of a path that turns at a cell to one of the sides that open, as a key: its
+/// next step is diagonally ahead to that side, or straight to that side.
 fn least_after_turn(at: Cell, ahead: (i32, i32), opens: [bool; 2], to: Cell) -> u64 {
     let left = (-ahead.1, ahead.0);
     let least = |(x, y): (i32, i32)| {

@@ -1,9 +1,9 @@
-//! The places where a shortest path from a cell may turn for the first time.
+//! The cells at which a shortest path from a cell may turn first.
 //!
 //! As in a jump point search \[Harabor2011\] a path runs diagonally, then straight, until it turns
-//! beside the end of an obstacle that it had on one side. Here scans pass such jump points and go
-//! on behind them: each is a find of its own, at which the path turns to that side and does not go
-//! straight on. That determines in which directions it goes on, and so how long it is at least.
+//! at the end of an obstacle beside it. Here scans pass such jump points and continue behind them.
+//! Each is a separate find, at which the path turns to that side and does not go straight on. That
+//! determines the directions in which it continues, and so a lower bound of its length.
 
 use crate::map::{BitGrid, Cell, DiagonalEvents, SearchMap};
 use crate::search::Cost;
@@ -13,11 +13,11 @@ use crate::search::bit_scan::{is_set, next_one, previous_one};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Turn {
     pub(super) at: Cell,
-    /// The length of the way there.
+    /// The cost of the path to it.
     pub(super) cost: Cost,
     /// The straight direction of arrival, as a step.
     pub(super) ahead: (i32, i32),
-    /// True if paths may turn to the left, to the right.
+    /// True if paths may turn to the left, and to the right.
     pub(super) opens: [bool; 2],
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Turn {
 pub(super) struct Sight<'m> {
     blocked: &'m [u64],
     blocked_turned: &'m [u64],
-    /// Stops towards east, north, west, south.
+    /// Scan stops towards east, north, west, south.
     stops: [&'m [u64]; 4],
     cramped: &'m [u64],
     diagonals: &'m DiagonalEvents,
@@ -51,7 +51,7 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// True if the way to `to`, first diagonal, then straight, is free.
+    /// True if the path to `to`, first diagonal, then straight, is free.
     pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
         let (dx, dy) = (to.x - from.x, to.y - from.y);
         let step = (dx.signum(), dy.signum());
@@ -83,8 +83,8 @@ impl<'m> Sight<'m> {
         free >= to.x.abs_diff(at.x) + to.y.abs_diff(at.y)
     }
 
-    /// Calls `found` for the turns on the way straight on from `from`, which was reached by this
-    /// many diagonal steps, until it says that it has seen enough.
+    /// Calls `found` for the turns straight ahead of `from`, which was reached by `diagonal`
+    /// steps, until it returns false.
     pub(super) fn along(
         &self,
         from: Cell,
@@ -112,9 +112,8 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// Calls `visit` for the cells of the diagonal after straight direction `quarter` from which
-    /// there is something to be seen, with the steps to them, until it says that it has seen
-    /// enough.
+    /// Calls `visit` for the cells of the diagonal after straight direction `quarter` at which a
+    /// scan may find something, with the steps to them, until it returns false.
     pub(super) fn diagonal(
         &self,
         from: Cell,
@@ -134,14 +133,14 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// Beside `at` a cell is free, and the one before that is blocked.
+    /// True if the cell beside `at` is free and the one before that is blocked.
     fn opens(&self, at: Cell, ahead: (i32, i32), side: (i32, i32)) -> bool {
         let beside = moved(at, side);
         let before = Cell::new(beside.x - ahead.0, beside.y - ahead.1);
         is_set(self.blocked, self.bit(before, 0)) && !is_set(self.blocked, self.bit(beside, 0))
     }
 
-    /// Free cells straight ahead.
+    /// The number of free cells straight ahead.
     fn free_run(&self, from: Cell, direction: usize) -> u32 {
         let bit = self.bit(from, direction);
         scan(self.blocked_for(direction), bit, direction < 2).abs_diff(bit) as u32 - 1
@@ -163,7 +162,7 @@ impl<'m> Sight<'m> {
     }
 }
 
-/// The quarter in which `to` lies, seen from `from`: 0 between east and north, then
+/// The quadrant in which `to` lies as seen from `from`: 0 between east and north, then
 /// counter-clockwise.
 pub(super) fn quarter_towards(from: Cell, to: Cell) -> usize {
     match (to.x >= from.x, to.y >= from.y) {
@@ -178,13 +177,13 @@ fn moved(cell: Cell, step: (i32, i32)) -> Cell {
     Cell::new(cell.x + step.0, cell.y + step.1)
 }
 
-/// The next set bit after `at`, or before it; the padding always has one.
+/// The next set bit after `at`, or the last one before it; the padding always has one.
 pub(super) fn scan(words: &[u64], at: usize, is_up: bool) -> usize {
     if is_up { next_one(words, at) } else { previous_one(words, at) }
 }
 
-/// The number of steps to the next cell of a diagonal at which there is something to do: towards
-/// north-east, north-west, south-west or south-east. The first step must be free.
+/// The number of steps to the next event cell of a diagonal: towards north-east, north-west,
+/// south-west or south-east. The first step must be free.
 fn steps_to_event(events: &DiagonalEvents, from: Cell, quarter: usize) -> i32 {
     let (words, at) = match quarter {
         0 => (events.words::<true, true>(), events.bit::<true, true>(from)),
@@ -236,7 +235,8 @@ mod tests {
             });
             visited
         });
-        // From (5, 1) a turn is seen to the east; one step further the obstacle is in the way.
+        // From (5, 1) a turn is seen to the east; one step further the obstacle blocks the
+        // diagonal.
         assert_eq!(visited, [(5, 1, 1)]);
     }
 

@@ -1,5 +1,5 @@
-//! From a route to the cells of its path. Its jump points are the cells that a query knows of it:
-//! its turns, and the nodes that it leads over.
+//! Unfolds a route into the cells of its path. The jump points are the cells known to the query:
+//! its turns, and the nodes of the route.
 
 use super::Prepared;
 use super::labels::octant;
@@ -30,7 +30,7 @@ impl Prepared {
                 plan.cells.push(goal);
                 plan.mark_last();
                 let tail = self.unfold_to_hub(goal, to, hub, plan);
-                // Both halves end in the hub.
+                // Both halves end at the hub.
                 plan.cells.pop();
                 plan.jump_points.pop();
                 plan.reverse_from(turned);
@@ -39,7 +39,7 @@ impl Prepared {
         }
     }
 
-    /// Appends the way over a node in sight to one of its hubs, and returns its cost.
+    /// Appends the path over a node in sight to one of its hubs, and returns its cost.
     fn unfold_to_hub(&self, from: Cell, node: u32, hub: u32, plan: &mut Plan) -> Cost {
         let labels = &self.labels;
         let mut at = self.cells[node as usize];
@@ -60,30 +60,30 @@ impl Prepared {
                 (left.straight - after.straight) as i32,
                 (left.diagonal - after.diagonal) as i32,
             );
-            // It was found from the next node, where it begins with the diagonal part.
+            // The leg was found from the next node, from which it is diagonal first.
             at = run(at, leg.straight, leg.rest, plan);
             at = run(at, leg.diagonal, leg.count, plan);
         }
     }
 }
 
-/// Appends the way to `to`, without `from`: first the diagonal part, then the straight one. It is
-/// known to be free in this order where it was found from `from`.
+/// Appends the path to `to`, without `from`: first the diagonal part, then the straight one. The
+/// path is free in this order if it was found from `from`.
 fn diagonal_first(from: Cell, to: Cell, plan: &mut Plan) {
     let leg = Leg::between(from, to);
     let at = run(from, leg.diagonal, leg.count, plan);
     run(at, leg.straight, leg.rest, plan);
 }
 
-/// Appends the way to `to`, without `from`: first the straight part, then the diagonal one. It is
-/// known to be free in this order where it was found from `to`.
+/// Appends the path to `to`, without `from`: first the straight part, then the diagonal one. The
+/// path is free in this order if it was found from `to`.
 fn straight_first(from: Cell, to: Cell, plan: &mut Plan) {
     let leg = Leg::between(from, to);
     let at = run(from, leg.straight, leg.rest, plan);
     run(at, leg.diagonal, leg.count, plan);
 }
 
-/// An octile way: this many diagonal steps, and the rest straight.
+/// An octile path: `count` diagonal steps, and `rest` straight ones.
 struct Leg {
     diagonal: (i32, i32),
     count: i32,

@@ -1,4 +1,4 @@
-//! A tree of cells that grows from one of them.
+//! A tree of cells that grows from a root cell.
 
 use super::nearest_node::NearestNode;
 use crate::map::{Cell, SearchMap};
@@ -7,26 +7,26 @@ use crate::search::SearchMemory;
 /// A node of a [`CellTree`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TreeNode {
-    /// Its place in the order in which the nodes were added.
+    /// Index of the node in insertion order.
     pub(super) number: u32,
     /// Its cell.
     pub(super) cell: Cell,
-    /// The length of the way from the root, as a [`Cost::key`](crate::search::Cost::key).
+    /// Path length from the root, as a [`Cost::key`](crate::search::Cost::key).
     pub(super) g: u64,
 }
 
 /// Cells with their parents, each cell at most once.
 ///
-/// A new query forgets the nodes of the last one, and touches no more than they did.
+/// A new query removes the nodes of the last one, and touches only the memory that these used.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CellTree {
-    /// Each node, and the number of its parent; the root is its own.
+    /// Each node, and the number of its parent; the root is its own parent.
     nodes: Vec<(TreeNode, u32)>,
     by_place: NearestNode,
 }
 
 impl CellTree {
-    /// Forgets the last tree and begins one with room for `most` nodes.
+    /// Clears the last tree and starts a new one, with capacity for `most` nodes.
     pub(super) fn start(&mut self, map: &SearchMap, root: Cell, most: usize) -> TreeNode {
         let is_new = self.by_place.resize(map.frame().width(), map.frame().height());
         if !is_new {
@@ -39,8 +39,7 @@ impl CellTree {
         self.push(root, 0, 0)
     }
 
-    /// Adds a cell that is not in the tree, at the end of a line of length `length` from its
-    /// parent.
+    /// Adds a cell that is not in the tree, joined to its parent by a line of length `length`.
     pub(super) fn add(&mut self, cell: Cell, parent: TreeNode, length: u64) -> TreeNode {
         self.push(cell, parent.number, parent.g + length)
     }
@@ -52,7 +51,7 @@ impl CellTree {
         node
     }
 
-    /// Number of nodes.
+    /// The number of nodes.
     pub(super) const fn len(&self) -> usize {
         self.nodes.len()
     }
@@ -110,7 +109,7 @@ mod tests {
             assert_eq!((far.g, tree.len()), (32, 4));
             tree.path_into(far, &mut path);
             assert_eq!(path, [cell(0, 0), cell(1, 0), cell(3, 1)]);
-            // (0, 1) and (1, 0) are as near to (1, 1): the older one is taken.
+            // (0, 1) and (1, 0) are equally near to (1, 1): the older one is taken.
             assert_eq!(tree.nearest(cell(1, 1)), Some(east));
             assert_eq!(tree.nearest(cell(3, 2)), Some(far));
         }
@@ -119,7 +118,7 @@ mod tests {
         assert!(tree.contains(cell(2, 2)) && !tree.contains(cell(0, 0)));
     }
 
-    /// The size that the documentation of the workspace and of the planner names.
+    /// The size stated in the documentation of the workspace and of the planner.
     #[test]
     fn a_node_takes_32_bytes() {
         assert_eq!(size_of::<(TreeNode, u32)>(), 32);

@@ -1,18 +1,18 @@
-//! Which of some numbered cells is nearest to another cell.
+//! Nearest-neighbour search among numbered cells.
 
 use crate::map::Cell;
 
-/// Numbered cells of a map, in squares of squares: level l has a mark for every square of 2^l x 2^l
-/// cells that holds one.
+/// Numbered cells of a map in a quadtree: level l has a mark for every square of 2^l x 2^l cells
+/// that holds one.
 ///
-/// The nearest one is looked for from the largest square down, the nearer quarters first; squares
-/// that are farther than what is found are left out. Memory: 4 bytes and a third per cell of the
-/// map, of which only what is near a numbered cell is touched.
+/// The search for the nearest cell descends from the largest square, nearer quadrants first, and
+/// skips squares farther away than the best find. Memory: 4 bytes and a third per cell of the map,
+/// of which only the surroundings of numbered cells are touched.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NearestNode {
     width: u32,
     height: u32,
-    /// For each cell, one more than its number; 0 if it has none.
+    /// For each cell, its number plus one; 0 if it has none.
     numbers: Vec<u32>,
     /// Levels 1, 2, ... up to the one whose only square is the map.
     levels: Vec<Level>,
@@ -29,8 +29,8 @@ struct Level {
 type Found = (u64, u32);
 
 impl NearestNode {
-    /// Makes room for a map of another size, without any numbered cells; false when the size is the
-    /// same and nothing has changed.
+    /// Resizes to a map of another size, without any numbered cells. False if the size is the
+    /// same: then nothing changes.
     pub(super) fn resize(&mut self, width: u32, height: u32) -> bool {
         if (self.width, self.height) == (width, height) {
             return false;
@@ -63,7 +63,8 @@ impl NearestNode {
         self.mark(cell, true);
     }
 
-    /// Forgets a cell, and the marks of all squares around it: for all cells or none.
+    /// Removes a cell, and the marks of all squares around it; only valid if all cells are
+    /// removed.
     pub(super) fn forget(&mut self, cell: Cell) {
         let index = self.index(cell);
         self.numbers[index] = 0;
@@ -75,14 +76,15 @@ impl NearestNode {
         self.numbers[self.index(cell)] != 0
     }
 
-    /// The number of the nearest cell, in a tie the smallest one; `None` when there is none.
+    /// The number of the nearest cell, in a tie the smallest number; `None` without numbered
+    /// cells.
     pub(super) fn nearest(&self, to: Cell) -> Option<u32> {
         let mut found = (u64::MAX, u32::MAX);
         self.look(self.levels.len(), (0, 0), to, &mut found);
         (found.1 != u32::MAX).then_some(found.1)
     }
 
-    /// Looks for a nearer cell in a square.
+    /// Searches a square for a nearer cell.
     fn look(&self, level: usize, square: (i64, i64), to: Cell, found: &mut Found) {
         let distance_sq = distance_sq(level, square, to);
         if distance_sq > found.0 {
@@ -98,7 +100,7 @@ impl NearestNode {
         if !self.levels[below].holds_some(square) {
             return;
         }
-        // The quarter on the target's side first.
+        // The quadrant on the target's side first.
         let is_beyond =
             |at: i32, square: i64| i64::from(i64::from(at) >= (2 * square + 1) << below);
         let (near_x, near_y) = (is_beyond(to.x, x), is_beyond(to.y, y));
@@ -141,7 +143,7 @@ impl Level {
     }
 }
 
-/// The square of the distance from a cell to the nearest one of a square of 2^level x 2^level
+/// The square of the distance from a cell to the nearest cell of a square of 2^level x 2^level
 /// cells.
 fn distance_sq(level: usize, (x, y): (i64, i64), to: Cell) -> u64 {
     let along = |at: i32, square: i64| {
@@ -173,7 +175,7 @@ mod tests {
 
     #[test]
     fn distances_to_squares_by_hand() {
-        // Cells 4 to 7 by 0 to 3.
+        // Columns 4 to 7, rows 0 to 3.
         let distance = |x, y| distance_sq(2, (1, 0), Cell::new(x, y));
         assert_eq!([distance(5, 2), distance(1, 1), distance(9, 6)], [0, 9, 4 + 9]);
     }

@@ -1,20 +1,20 @@
-//! The shortest line there is: what any path can be compared with.
+//! The exact shortest line, as a reference for any path.
 //!
 //! A shortest line among obstacles is taut: it goes straight from corner to corner of blocked
-//! cells. So it is found by A* over those corners that see each other, and never over a grid of
-//! directions \[LozanoPerez1979\]. Only corners that the line can turn around are followed, in the
-//! direction in which it bends around the obstacle.
+//! cells. So it is found by A* over the visibility graph of these corners, without restriction to
+//! grid directions \[LozanoPerez1979\]. Only corners that the line can turn around are followed,
+//! in the direction in which it bends around the obstacle.
 //!
 //! # Source
-//! \[LozanoPerez1979\]. Corners in sight are found row by row, as in \[Harabor2013\].
+//! \[LozanoPerez1979\]. Visible corners are found row by row, as in \[Harabor2013\].
 //!
-//! # What counts as free
-//! The line may run along the edges of blocked cells and touch their corners. Between two blocked
-//! cells that share a corner it passes only where corners may be cut ([`CornerRule::Allow`]).
+//! # Free space
+//! The line may run along the edges of blocked cells and touch their corners. It passes between
+//! two blocked cells that share a corner only if corners may be cut ([`CornerRule::Allow`]).
 //!
 //! # Cost
-//! That of an oracle, not of a planner: a query expands the corners nearer than the goal, each of
-//! which looks over all that it sees. 24 bytes for each lattice point of the map.
+//! That of a reference, not of a planner: a query expands all corners nearer than the goal, and
+//! each expansion scans everything in view. 24 bytes for each lattice point of the map.
 
 mod view;
 
@@ -25,12 +25,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use view::{Spot, UNITS_PER_CELL, Viewer, look};
 
-/// Maps with more columns or rows than this are refused.
+/// The largest number of columns or rows of a map.
 const MAX_SIDE: u32 = 1 << 16;
 
-/// The shortest line between two positions that stays out of the blocked cells of a map.
+/// The shortest line between two positions that avoids the blocked cells of a map.
 ///
-/// Positions are rounded to 2^-14 cells. `None` when there is no such line, a position lies in a
+/// Positions are rounded to 2^-14 cells. `None` if no such line exists, a position lies in a
 /// blocked cell or outside the map, or the map has more than 65,536 columns or rows.
 pub fn shortest_line(
     map: &SearchMap,
@@ -61,7 +61,7 @@ pub fn shortest_line(
 #[derive(Clone, Copy)]
 struct Node {
     g: f64,
-    /// Number of the parent.
+    /// Index of the parent.
     parent: u32,
     is_closed: bool,
 }
@@ -73,9 +73,9 @@ struct Search<'m> {
     goal: Spot,
     /// Lattice points row by row, then the start.
     nodes: Vec<Node>,
-    /// f, then larger g (its bits grow with it), then the lower number.
+    /// Ordered by f, then larger g (its bits grow with it), then the lower index.
     open: BinaryHeap<Reverse<(u64, Reverse<u64>, u32)>>,
-    /// The best way to the goal so far, and the node before it.
+    /// The length of the best path to the goal so far, and the node before the goal.
     best: (f64, Option<u32>),
 }
 
@@ -88,7 +88,7 @@ impl<'m> Search<'m> {
         Self { blocked, corners, start, goal, nodes, open, best }
     }
 
-    /// The turns of the line, `None` when there is no line.
+    /// Returns the turns of the line; `None` if no line exists.
     fn run(mut self) -> Option<Vec<Spot>> {
         let root = self.nodes.len() as u32 - 1;
         self.nodes[root as usize].g = 0.0;
@@ -139,7 +139,7 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// True if a taut line that came to a node may go on to `to`: it bends towards the obstacle, or
+    /// True if a taut line through a node may continue to `to`: it bends towards the obstacle, or
     /// not at all.
     fn may_turn(&self, at: u32, to: Spot) -> bool {
         let parent = self.nodes[at as usize].parent;
@@ -153,14 +153,14 @@ impl<'m> Search<'m> {
         bend == 0 || bend.signum() * side.signum() >= 0
     }
 
-    /// True if a line in this direction runs into the obstacle of a corner: it cannot bend around
-    /// it.
+    /// True if a line in this direction runs into the obstacle of a corner, so that it cannot bend
+    /// around it.
     fn is_head_on(&self, corner: Spot, ahead: Spot) -> bool {
         self.obstacle_at(corner)
             .is_some_and(|inner| (ahead.x.signum(), ahead.y.signum()) == (inner.x, inner.y))
     }
 
-    /// The direction of the only blocked cell at a lattice point, `None` elsewhere.
+    /// The direction of the only blocked cell at a lattice point; `None` elsewhere.
     fn obstacle_at(&self, spot: Spot) -> Option<Spot> {
         let is_on_lattice =
             spot.x.rem_euclid(UNITS_PER_CELL) == 0 && spot.y.rem_euclid(UNITS_PER_CELL) == 0;
@@ -185,7 +185,7 @@ impl<'m> Search<'m> {
     }
 }
 
-/// Length of a vector, in cells.
+/// The length of a vector \[cells\].
 fn length(vector: Spot) -> f64 {
     let (x, y) = (vector.x as f64, vector.y as f64);
     (x * x + y * y).sqrt() / UNITS_PER_CELL as f64

@@ -46,7 +46,7 @@ fn no_way() {
 }
 
 /// True if the segment enters no blocked square and does not pass between two that share a corner.
-/// In quarters of a cell.
+/// Coordinates are in quarters of a cell.
 fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64; 2]) -> bool {
     let blocked =
         |x: i64, y: i64| grid.state(Cell::new(x as i32, y as i32)) != Some(CellState::Free);
@@ -66,7 +66,7 @@ fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64;
             return false;
         }
     }
-    // Squeezed through a lattice point, or along a line between two blocked cells.
+    // Squeezed through a lattice point, or along an edge between two blocked cells.
     let inside =
         |x: i64, y: i64| (x - from[0]) * (x - to[0]) <= 0 && (y - from[1]) * (y - to[1]) <= 0;
     let on = |x: i64, y: i64| dx * (y - from[1]) == dy * (x - from[0]) && inside(x, y);
@@ -78,7 +78,7 @@ fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64;
         if corners == CornerRule::Forbid && strictly && diagonal && on(4 * x, 4 * y) {
             return false;
         }
-        // Between this point and the next one to the right, and above.
+        // The midpoint to the next lattice point on the right, then above.
         if dy == 0 && blocked(x, y) && blocked(x, y - 1) && on(4 * x + 2, 4 * y) {
             return false;
         }
@@ -89,8 +89,8 @@ fn is_clear(grid: &OccupancyGrid, corners: CornerRule, from: [i64; 2], to: [i64;
     true
 }
 
-/// Dijkstra's algorithm over all lattice points and both ends. A lattice point between two blocked
-/// cells is not a place to turn unless corners may be cut.
+/// Dijkstra's algorithm over all lattice points, start and goal. The line may turn at a lattice
+/// point between two blocked cells only if corners may be cut.
 fn brute_force(grid: &OccupancyGrid, corners: CornerRule, ends: [Cell; 2]) -> Option<f64> {
     let (width, height) = (i64::from(grid.frame().width()), i64::from(grid.frame().height()));
     let blocked =
@@ -157,7 +157,7 @@ proptest! {
                 (length - expected).abs() < 1e-9, "{} {} {:?}", length, expected, line),
             (length, expected) => prop_assert_eq!(length, expected),
         }
-        // Every leg is clear.
+        // Every leg must be clear.
         let quarters = |p: Point| [(p.x * 4.0).round() as i64, (p.y * 4.0).round() as i64];
         for leg in line.iter().flat_map(|line| line.points().windows(2)) {
             prop_assert!(is_clear(&grid, corners, quarters(leg[0]), quarters(leg[1])), "{:?}", line);

@@ -1,14 +1,14 @@
-//! The view from a point: corners of obstacles, and a target.
+//! The view from a point: visible corners of obstacles, and a target.
 
 use crate::map::BitGrid;
 use crate::search::CornerRule;
 use crate::search::bit_scan::{ConvexCorners, convex_corners};
 
-/// Parts of a cell in which points are told apart.
+/// Subdivisions of a cell: the resolution of points.
 pub(super) const UNITS_PER_CELL: i64 = 1 << 14;
 
-/// A point of the plane, or a vector, in units of 2^-14 cells: every decision is exact. A vector
-/// within a map of 2^16 cells has a cross product of less than 2^62.
+/// A point of the plane, or a vector, in units of 2^-14 cells: every decision is exact. The cross
+/// product of vectors within a map of 2^16 cells is less than 2^62.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Spot {
     pub(super) x: i64,
@@ -29,7 +29,7 @@ impl Spot {
         Self::new(self.x - other.x, self.y - other.y)
     }
 
-    /// Positive when `other` lies to the left of this vector.
+    /// Positive if `other` points to the left of this vector.
     pub(super) const fn cross(self, other: Self) -> i64 {
         self.x * other.y - self.y * other.x
     }
@@ -39,23 +39,23 @@ impl Spot {
     }
 }
 
-/// The receiver of all that is seen.
+/// Receives everything that is visible.
 pub(super) trait Viewer {
-    /// A corner of an obstacle around which a shortest line may turn; (x, y) is the lower left
-    /// corner of that cell. May be reported twice.
+    /// Reports a corner of an obstacle around which a shortest line may turn; (x, y) is the lower
+    /// left corner of that cell. A corner may be reported twice.
     fn corner(&mut self, x: i32, y: i32);
-    /// The target.
+    /// Reports the target.
     fn target(&mut self);
 }
 
-/// Looks from `eye` in all directions. Obstacles are the blocked cells' squares without their
+/// Scans in all directions from `eye`. Obstacles are the blocked cells' squares without their
 /// border: a line of sight may run along an edge and touch a corner, but does not pass between two
 /// squares that share a corner.
 ///
-/// The plane is scanned row by row, upwards and then (mirrored) downwards: what is seen of a row is
-/// a set of windows between two rays, each limited by the run of free cells that it passes. Windows
-/// of no width are left out: whatever lies behind a corner that they touch is seen from that
-/// corner.
+/// The plane is scanned row by row, upwards and then (mirrored) downwards. The visible part of a
+/// row is a set of windows between two rays, each limited by the run of free cells that it passes.
+/// Windows of zero width are skipped: anything behind a corner that they touch is visible from
+/// that corner.
 ///
 /// Cost: a few operations for each run of free cells in view, and for each 64 cells of a row in
 /// view.
@@ -73,7 +73,7 @@ pub(super) fn look(
     }
 }
 
-/// A ray of light that reached a line of the lattice: between two directions, the left one first.
+/// A cone of view that reached a line of the lattice: between two directions, the left one first.
 #[derive(Clone, Copy)]
 struct Window {
     line: i32,
@@ -101,7 +101,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         }
     }
 
-    /// The row in which the eye is, or above which it stands on a line.
+    /// Scans the row that contains the eye, or the row above it if it lies on a line.
     fn enter_first_row(&mut self, windows: &mut Vec<Window>) {
         let row = self.eye.y.div_euclid(UNITS_PER_CELL) as i32;
         let is_on_line = self.eye.y.rem_euclid(UNITS_PER_CELL) == 0;
@@ -121,11 +121,11 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         });
     }
 
-    /// Looks through a row; what is left of a window at its upper end is pushed.
+    /// Scans through a row; the rest of a window at its upper end is pushed.
     fn pass_row(&mut self, window: Window, windows: &mut Vec<Window>) {
         let Window { line, left, right } = window;
         let (low, high) = (self.crossing(left, line), self.crossing(right, line));
-        // (floor, whether it is on the lattice)
+        // Each crossing: column, and true if it is on the lattice.
         self.report_corners(line, low.0 + i32::from(!low.1), high.0);
         let last = high.0 - i32::from(high.1);
         for_each_run(self.row(line), low.0, last, |from, to| {
@@ -142,12 +142,12 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
         });
     }
 
-    /// The direction of a lattice point.
+    /// The direction of a lattice point from the eye.
     fn towards(&self, x: i32, y: i32) -> Spot {
         Spot::lattice(x, y).from(self.eye)
     }
 
-    /// The crossing of a ray and a line: the column, and whether at its left edge.
+    /// The crossing of a ray and a line: the column, and true if it is at its left edge.
     fn crossing(&self, ray: Spot, line: i32) -> (i32, bool) {
         let rise = i128::from(i64::from(line) * UNITS_PER_CELL - self.eye.y);
         let (x, width) = (i128::from(ray.x), i128::from(ray.y));
@@ -197,7 +197,7 @@ impl<'a, V: Viewer> UpwardView<'a, V> {
 }
 
 fn rightmost(a: Spot, b: Spot) -> Spot {
-    // What the eye stands on has no direction.
+    // The position of the eye itself has no direction.
     if b == Spot::new(0, 0) || a.cross(b) >= 0 { a } else { b }
 }
 
@@ -205,8 +205,8 @@ fn leftmost(a: Spot, b: Spot) -> Spot {
     if b == Spot::new(0, 0) || a.cross(b) <= 0 { a } else { b }
 }
 
-/// Calls `visit` with the ends of all runs of free cells that overlap the columns from `first` to
-/// `last`.
+/// Calls `visit` with both ends of each run of free cells that overlaps the columns from `first`
+/// to `last`.
 fn for_each_run(row: &[u64], first: i32, last: i32, mut visit: impl FnMut(i32, i32)) {
     let is_blocked = |x: i32| row[(x + 1) as usize / 64] >> ((x + 1) as usize % 64) & 1 == 1;
     let mut x = first.max(-1);

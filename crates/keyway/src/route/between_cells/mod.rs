@@ -1,14 +1,15 @@
-//! Routes through passages whose middle lies between the centres of cells.
+//! Routes through passages whose centreline lies between the centres of cells.
 //!
-//! A path on a grid leads from centre to centre, so a disc that fits through a passage only along
-//! its middle has a path only where that middle is a row of centres. But whatever way the disc
-//! takes, the cells that it passes have centres no farther than half a diagonal away: on a map that
-//! keeps so much less, there is a path. Its points are moved to where there is room (`room.rs`),
-//! and where there is none, the gap is closed for the next attempt.
+//! A grid path leads from centre to centre, so a disc that fits through a passage only along its
+//! centreline has a grid path only if that centreline is a row of centres. But the cells that any
+//! path of the disc passes have centres at most half a diagonal away from it. On a map whose
+//! clearance is smaller by that much, a path therefore exists. Its points are moved until they
+//! keep the full clearance (`room.rs`). If that is impossible, the gap is closed for the next
+//! attempt.
 //!
 //! # Cost
-//! A search for each attempt, each of which closes all gaps on its path that are too narrow; where
-//! not even the map that keeps less joins the ends, a look at its components.
+//! One search per attempt. Each attempt closes all gaps on its path that are too narrow. If not
+//! even the map of smaller clearance connects start and goal, the cost is a component look-up.
 
 mod pinch;
 mod room;
@@ -23,33 +24,35 @@ use pinch::Pinch;
 use room::{CHORD_CELLS, Room};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Halvings of the range of the room that a way may have.
+/// Bisection steps in the search for the largest clearance that the path can keep.
 const HALVINGS: u32 = 4;
 
-/// A cell's centre is no farther than this from any point of the cell \[cells\].
+/// Largest distance of a point of a cell from the cell's centre \[cells\].
 const HALF_DIAGONAL: f64 = FRAC_1_SQRT_2;
 
-/// The clearance \[m\] of a map on which cells are joined wherever a disc of `clearance_m` can go.
+/// Clearance of a map on which cells are connected wherever a disc of `clearance_m` can pass
+/// \[m\].
 pub fn looser_clearance_m(frame: &GridFrame, clearance_m: f64) -> f64 {
     (clearance_m - HALF_DIAGONAL * frame.resolution_m()).max(0.0)
 }
 
-/// The route that is wanted of [`plan_between_cells`].
+/// The route requested of [`plan_between_cells`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BetweenCells {
-    /// Distance that it keeps from obstacles and from the map's border \[m\].
+    /// Distance to obstacles and to the map's border \[m\].
     pub clearance_m: f64,
-    /// Number of paths that are tried, each of which costs a search.
+    /// Maximum number of attempts, each of which costs a search.
     pub attempts: u32,
 }
 
-/// Plans a route that keeps a clearance, wherever between the cells' centres it has to be for
-/// that; `None` where none was found. Where there is room, it keeps more, up to half the diagonal
-/// of a cell. Near its ends it may come as near to obstacles as [`EndRule`](super::EndRule) allows.
+/// Plans a route that keeps a clearance and need not follow cell centres; `None` if none was
+/// found. In open space the route keeps more, up to half the diagonal of a cell. Near its start
+/// and goal it may be as close to obstacles as [`EndRule`](super::EndRule) allows.
 ///
-/// `looser` has a clearance of [`looser_clearance_m`]; some of its cells are blocked in between,
-/// and free again at the end. A budget is for all attempts together. Meant for what
-/// [`plan_route`](super::plan_route) has found no path for: the route is not the shortest one.
+/// `looser` has a clearance of [`looser_clearance_m`]. Some of its cells are blocked in the
+/// meantime and freed again at the end. A budget covers all attempts together. Intended for
+/// queries for which [`plan_route`](super::plan_route) has found no path: the route is not the
+/// shortest one.
 pub fn plan_between_cells(
     looser: &mut SearchMap,
     wanted: BetweenCells,
@@ -97,18 +100,18 @@ fn cells_to_close(pinches: &[Pinch], map: &SearchMap) -> Vec<Cell> {
     cells
 }
 
-/// A way with room.
+/// A path that keeps a clearance.
 struct Way {
     points: Vec<Point>,
-    /// Room that it keeps \[m\], but for its ends.
+    /// Clearance kept \[m\], except near start and goal.
     kept_m: f64,
-    /// Room that all of it has to keep \[m\], its ends too.
+    /// Clearance that the whole path must keep \[m\], near start and goal too.
     needed_m: f64,
 }
 
 impl Way {
-    /// The way near a path of cells that keeps as much as it can, at least `clearance_m`; the gaps
-    /// that are too narrow, if there is none.
+    /// The path near a path of cells that keeps the largest clearance found, at least
+    /// `clearance_m`; the gaps that are too narrow if none exists.
     fn along(
         clearance: Clearance<'_>,
         query: &RouteQuery,
@@ -133,7 +136,8 @@ impl Way {
         Ok(Self { points, kept_m: low_m, needed_m })
     }
 
-    /// The smoothed route, or the way itself where the smoothed one keeps less than it must.
+    /// The smoothed route, or the unsmoothed path if the smoothed one violates the required
+    /// clearance.
     fn route(
         self,
         map: &SearchMap,

@@ -1,40 +1,40 @@
-//! Points of a way -> points with room around them, on the grid.
+//! Moves the points of a path, in grid coordinates, until they keep a clearance.
 
 use super::pinch::Pinch;
 use crate::geometry::{Point, Segment};
 use crate::map::{Cell, Clearance};
 
-/// Chords may cut off so much of bends \[cells\].
+/// Largest distance of chords from the bends that they cut off \[cells\].
 pub(super) const CHORD_CELLS: f64 = 1.0 / 128.0;
 
-/// Points of a path are no farther apart than this \[cells\].
+/// Largest spacing of the points along a path of cells \[cells\].
 const SPACING_CELLS: f64 = 0.25;
 
-/// A point that has no room after so many moves has none near it.
+/// Largest number of moves of a point, after which it is given up.
 const MOVES: u32 = 64;
 
-/// No point is moved farther than this \[cells\].
+/// Largest distance that a point is moved \[cells\].
 const FAR_CELLS: f64 = 2.0;
 
-/// Halvings of a connection that comes too near to something.
+/// Largest number of halvings of a connection that comes too close to an obstacle.
 const SPLITS: u32 = 3;
 
-/// An end is joined to one of so many first points of the way.
+/// Number of first points of the path that an end may be joined to.
 const FIRST_POINTS: usize = 8;
 
-/// Rounding: what is moved to a distance keeps it.
+/// Margin for rounding: a point that is moved to a distance keeps it.
 const MORE: f64 = 1.0 + 1e-9;
 
-/// Seeks points from which nothing is nearer than a distance.
+/// Finds points that keep a distance to all obstacles.
 pub(super) struct Room<'a> {
     clearance: Clearance<'a>,
-    /// Room that the way keeps between its points \[m\].
+    /// Clearance of the path between its points \[m\].
     kept_m: f64,
-    /// Room that its points keep \[cells\].
+    /// Clearance of the points themselves \[cells\].
     reach: f64,
 }
 
-/// An end of a way, and what the way to it must keep \[m\].
+/// An end of a path, and the clearance that the connection to it must keep \[m\].
 type End = (Point, f64);
 
 impl<'a> Room<'a> {
@@ -43,8 +43,8 @@ impl<'a> Room<'a> {
         Self { clearance, kept_m, reach }
     }
 
-    /// A line with room near a path of cells, from one end to the other; the places without room
-    /// where there is none.
+    /// A line that keeps the clearance near a path of cells, from one end to the other; the
+    /// points of too little clearance if none exists.
     pub(super) fn line(&self, cells: &[Cell], ends: [End; 2]) -> Result<Vec<Point>, Vec<Pinch>> {
         let mut pinches = Vec::new();
         let mut points: Vec<Point> = Vec::new();
@@ -69,7 +69,7 @@ impl<'a> Room<'a> {
         Ok(line)
     }
 
-    /// Joins an end to the last points, in place of those that are on the way.
+    /// Joins an end to one of the last points of the line and drops the points after that one.
     fn join_end(&self, line: &mut Vec<Point>, (end, room_m): End) -> Result<(), Vec<Pinch>> {
         let many = line.len().min(FIRST_POINTS);
         let is_joined = |&at: &Point| self.clearance.is_clear(Segment::new(end, at), room_m);
@@ -83,7 +83,8 @@ impl<'a> Room<'a> {
         Ok(())
     }
 
-    /// Appends a point, with others before it where the straight way comes too near to something.
+    /// Appends a point, preceded by others if the straight connection comes too close to an
+    /// obstacle.
     fn join(&self, points: &mut Vec<Point>, to: Point, splits: u32) -> Result<(), Pinch> {
         let Some(&from) = points.last() else {
             points.push(to);
@@ -104,7 +105,7 @@ impl<'a> Room<'a> {
         self.join(points, to, splits - 1)
     }
 
-    /// Moves a point away from what is nearest to it until it has room.
+    /// Moves a point away from its nearest obstacle until it keeps the clearance.
     fn moved(&self, from: Point) -> Result<Point, Pinch> {
         let mut at = self.inside(from);
         let mut touched: [Option<Point>; 2] = [None; 2];
@@ -127,7 +128,7 @@ impl<'a> Room<'a> {
         Err(Pinch { at: from, gap })
     }
 
-    /// The nearest point that keeps its distance from the map's border.
+    /// The nearest point that keeps the clearance to the map's border.
     fn inside(&self, at: Point) -> Point {
         let frame = self.clearance.frame();
         let within = |x: f64, size: u32| {

@@ -1,4 +1,4 @@
-//! Obstacles that sensors have met and the known map does not have.
+//! Obstacles that sensors have detected and the known map does not have.
 
 mod points;
 pub(super) use points::says_something;
@@ -12,35 +12,35 @@ use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Cells in which scans and points have met something that the known map does not have.
+/// Cells in which scans and points have detected something that the known map does not have.
 ///
-/// The known map itself is never changed: a beam through a known obstacle leaves it standing, and
-/// a sensed cell that is cleared goes back to what the known map says, unknown included.
+/// The known map itself is never changed: a beam through a known obstacle does not clear it, and
+/// a sensed cell that is cleared returns to its state in the known map, unknown included.
 ///
-/// A cell is cleared when the place in it that a beam has met is seen through: when the beams to
-/// both sides of that place go on beyond it. A beam through another part of the cell says nothing:
-/// a cell may be larger than what stands in it, and is seldom filled by it.
+/// A cell is cleared when its last hit point is seen through: the beams to both sides of that
+/// point continue beyond it. A beam through another part of the cell is no evidence: a cell may
+/// be larger than the obstacle in it and is seldom filled by it.
 ///
-/// Memory: one bit per cell, and a place for each sensed cell. An update costs a look-up per hit,
+/// Memory: one bit per cell, and one entry per sensed cell. An update costs one look-up per hit,
 /// and one per sensed cell within the sensor's range.
 #[derive(Clone, Debug)]
 pub struct SensedLayer {
     sensed: BitGrid,
     count: u64,
-    /// For each cell the last place in it that a beam has met, and in which scan.
+    /// Last hit point in each cell, and the scan it is from.
     places: HashMap<Cell, Place>,
-    /// For each cell the last place in it that each of the sensors that give points has met.
+    /// Last point in each cell from each of the sensors that give points.
     met: HashMap<(Cell, usize), Point>,
-    /// Number of scans so far, and of the last one of each sensor.
+    /// Number of scans so far, and the number of each sensor's last scan.
     cycle: u64,
     scanned: [u64; Robot::MOST_SENSORS],
-    /// Scratch of [`Self::update`], without meaning between calls.
+    /// Scratch of [`Self::update`]; not meaningful between calls.
     cleared: Vec<Cell>,
     marked: Vec<Cell>,
     view: ProjectedScan,
 }
 
-/// A layer in few words.
+/// A layer in compact form.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SensedPlaces {
     cycle: u64,
@@ -50,7 +50,7 @@ pub(crate) struct SensedPlaces {
     met: Vec<((Cell, usize), Point)>,
 }
 
-/// A place that a beam has met.
+/// A hit of a beam.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Place {
     /// In the world frame \[m\].
@@ -60,11 +60,11 @@ struct Place {
     sensor: usize,
 }
 
-/// Room for so many cells is made at the beginning, so that no cycle has to wait for it.
+/// Initial capacity in cells, so that no cycle has to wait for an allocation.
 const USUAL_COUNT: usize = 4096;
 
 impl SensedLayer {
-    /// Nothing sensed, on a grid of `frame`'s size.
+    /// An empty layer on a grid of `frame`'s size.
     pub fn new(frame: &GridFrame) -> Self {
         let sensed = BitGrid::new(frame.width(), frame.height(), false);
         let places = HashMap::with_capacity(USUAL_COUNT);
@@ -74,7 +74,7 @@ impl SensedLayer {
         Self { sensed, count: 0, places, met, cycle: 0, scanned, cleared, marked, view }
     }
 
-    /// Cells in which something was met that the known map does not have.
+    /// The cells in which something was sensed that the known map does not have.
     pub const fn sensed(&self) -> &BitGrid {
         &self.sensed
     }
@@ -84,14 +84,14 @@ impl SensedLayer {
         self.count
     }
 
-    /// The layer in few words.
+    /// The layer in compact form.
     pub(crate) fn stored(&self) -> SensedPlaces {
         let (cycle, scanned) = (self.cycle, self.scanned);
         SensedPlaces { cycle, scanned, places: in_order(&self.places), met: in_order(&self.met) }
     }
 
-    /// The layer that was stored, on a map of this size; cells outside it are left out, and places
-    /// that no sensor can have met.
+    /// Restores a layer on a map of this size. Cells outside the map and hits that no sensor can
+    /// have made are dropped.
     pub(crate) fn restored(known: &OccupancyGrid, stored: &SensedPlaces) -> Self {
         let (cycle, scanned) = (stored.cycle, stored.scanned);
         let mut layer = Self { cycle, scanned, ..Self::new(known.frame()) };
@@ -121,19 +121,20 @@ impl SensedLayer {
         cells
     }
 
-    /// Takes in a scan on the `known` map, whose frame is the one given to [`Self::new`].
+    /// Updates the layer with a scan on the `known` map, whose frame is the one given to
+    /// [`Self::new`].
     ///
-    /// First every sensed cell is cleared whose place is seen through (up to the sensor's range by
-    /// a beam without a hit); then every hit marks its cell, unless the known map already has it as
-    /// occupied or it lies outside the map. So within one scan marks win over clears. A beam that
-    /// says nothing ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a
-    /// pose that is not finite.
+    /// First, every sensed cell whose hit point is seen through is cleared (by a beam without a
+    /// hit, up to the sensor's range). Then every hit marks its cell, unless the cell is occupied
+    /// in the known map or lies outside it. So within one scan marks win over clears. An invalid
+    /// beam ([`Scan::reading`](super::Scan::reading)) is ignored, and so is a scan at a pose that
+    /// is not finite.
     ///
-    /// A `tracker`, which has been given the same scan, tells apart what moves: that is not marked,
-    /// so movers leave no trail. A hit on a mover ([`Tracker::hits_mover`]) marks nothing; the
-    /// cells under a mover that is seen are cleared, and so are those that were marked before it
-    /// was known to move. Where one is only expected, nothing is cleared. Without one everything
-    /// counts as standing.
+    /// A `tracker` that has been given the same scan separates moving obstacles, so they leave no
+    /// trail. A hit on a moving obstacle ([`Tracker::hits_mover`]) marks nothing. The cells under
+    /// a moving obstacle that is seen are cleared, and so are those that were marked before it
+    /// was known to move. Under one that is only predicted, nothing is cleared. Without a tracker
+    /// everything counts as stationary.
     ///
     /// `edits` is emptied and receives exactly the cells that changed, each once: first those
     /// cleared, with their known state, in the order of [`Cell`]; then those marked, as occupied,
@@ -149,8 +150,9 @@ impl SensedLayer {
         self.update_from(known, 0, scan, tracker, edits);
     }
 
-    /// The same of the sensor of this index. What one sensor has met stands, whatever another one
-    /// has seen through, until the first one has scanned again without meeting it.
+    /// Like [`Self::update`], for the sensor of this index. A cell that one sensor has marked
+    /// stays marked, even if another one sees through it, until the first one has scanned again
+    /// without a hit there.
     pub fn update_from(
         &mut self,
         known: &OccupancyGrid,
@@ -186,7 +188,8 @@ impl SensedLayer {
         self.marked.clear();
     }
 
-    /// Lists what was cleared, which is in order, and what was marked. Marked again is unchanged.
+    /// Lists the cleared cells, which are sorted, and the marked ones. A cell that is cleared and
+    /// marked again is unchanged.
     fn list_changes(&mut self, known: &OccupancyGrid, edits: &mut Vec<Edit>) {
         self.count = self.count + self.marked.len() as u64 - self.cleared.len() as u64;
         let after_clears = self.cleared.iter().filter(|&&cell| !self.sensed.get(cell));
@@ -198,9 +201,9 @@ impl SensedLayer {
         edits.extend(fresh.map(|&cell| Edit { cell, state: CellState::Occupied }));
     }
 
-    /// Moves what was sensed, such as with the robot that has sensed it, on a map that may be
-    /// another one. `edits` is emptied and receives the cells that changed, as those of the map:
-    /// first the cells of before, with the state that is known of them now.
+    /// Moves everything sensed, for example with a correction of the robot's pose, onto a map
+    /// that may be a different one. `edits` is emptied and receives the changed cells: first the
+    /// previous cells, with their state in the known map.
     pub(crate) fn shift(
         &mut self,
         known: &OccupancyGrid,
@@ -239,7 +242,7 @@ impl SensedLayer {
         }
     }
 
-    /// Forgets everything. `edits` is emptied and receives the cells that changed.
+    /// Clears the layer. `edits` is emptied and receives the cells that changed.
     pub(crate) fn forget(&mut self, known: &OccupancyGrid, edits: &mut Vec<Edit>) {
         edits.clear();
         let free = |cell| Some(Edit { cell, state: known.state(cell)? });
@@ -247,8 +250,8 @@ impl SensedLayer {
         *self = Self { cycle: self.cycle, scanned: self.scanned, ..Self::new(known.frame()) };
     }
 
-    /// Forgets everything that was sensed in the cells that a disc touches. `edits` is emptied and
-    /// receives the cells that changed.
+    /// Clears the cells that a disc touches. `edits` is emptied and receives the cells that
+    /// changed.
     pub(crate) fn forget_disc(
         &mut self,
         known: &OccupancyGrid,
@@ -266,9 +269,9 @@ impl SensedLayer {
         }
     }
 
-    /// Takes in changes of the known map. What stands on it is sensed no longer; a cell that was
-    /// sensed stays so where the map now says that it is free. `changes` is emptied and receives
-    /// those that follow for the map of known and sensed cells.
+    /// Takes in changes of the known map. An obstacle that is now on the map is no longer a
+    /// sensed one; a sensed cell stays sensed even if the map now says that it is free. `changes`
+    /// is emptied and receives the resulting changes of the map of known and sensed cells.
     pub(crate) fn learn(&mut self, known: &OccupancyGrid, edits: &[Edit], changes: &mut Vec<Edit>) {
         changes.clear();
         for edit in edits {
@@ -283,7 +286,7 @@ impl SensedLayer {
         }
     }
 
-    /// Clears what a beam has met in a cell.
+    /// Removes the hit of a beam in a cell.
     fn clear(&mut self, cell: Cell) {
         if self.places.remove(&cell).is_some() && !self.has_met(cell) {
             self.sensed.set(cell, false);
@@ -291,13 +294,13 @@ impl SensedLayer {
         }
     }
 
-    /// True if a sensor that gives points has met something in a cell.
+    /// True if a sensor that gives points has detected something in a cell.
     fn has_met(&self, cell: Cell) -> bool {
         let has = |sensor| self.met.contains_key(&(cell, sensor));
         !self.met.is_empty() && (0..SensorPoints::MOST_SENSORS).any(has)
     }
 
-    /// Clears the cells that a mover touches where it is estimated to be.
+    /// Clears the cells that a moving obstacle touches at its estimated position.
     fn clear_under(&mut self, mover: &Mover, frame: &GridFrame) {
         if self.count == self.cleared.len() as u64 {
             return;
@@ -306,9 +309,9 @@ impl SensedLayer {
         cells_under(&disc, frame).for_each(|cell| self.clear(cell));
     }
 
-    /// Clears the cells whose places are seen through.
+    /// Clears the cells whose hit points are seen through.
     fn clear_seen_through(&mut self, scan: &ProjectedScan) {
-        // The sensor that has met it has looked again since, or does so now.
+        // The sensor that made the hit has scanned again since, or does so now.
         let is_old = |place: &Place| self.scanned[place.sensor] > place.cycle;
         let is_gone = |place: &Place| is_old(place) && scan.sees_through(place.point);
         let gone = self.places.iter().filter(|(_, place)| is_gone(place)).map(|(&cell, _)| cell);
@@ -335,7 +338,8 @@ impl SensedLayer {
     }
 }
 
-/// The entries of a map in the order of their keys: that of a map is not the same in every run.
+/// The entries of a map sorted by key, since the iteration order of a `HashMap` differs between
+/// runs.
 fn in_order<K: Ord + Copy, V: Copy>(map: &HashMap<K, V>) -> Vec<(K, V)> {
     let mut entries: Vec<(K, V)> = map.iter().map(|(&key, &value)| (key, value)).collect();
     entries.sort_unstable_by_key(|(key, _)| *key);

@@ -7,12 +7,12 @@ use crate::robot::Footprint;
 use crate::sense::{FieldOfView, SensorPoints, Tracker};
 
 impl SensedLayer {
-    /// Takes in points that a sensor of a robot of this footprint at `robot` (world frame) has met.
-    /// Each marks its cell as the hit of a beam does; those within the footprint are the robot's
-    /// own, and those on a mover in view are the mover.
+    /// Takes in points from a sensor of a robot of this footprint at `robot` (world frame). Each
+    /// point marks its cell as the hit of a beam does. Points within the footprint are on the
+    /// robot itself and those on a moving obstacle in view belong to it; neither marks anything.
     ///
-    /// Such a sensor clears what it has met itself, and nothing else: where it says that it sees
-    /// everything ([`SensorPoints::clears`]), and meets nothing there or before it any more.
+    /// Such a sensor clears only its own points, and only inside its field of view
+    /// ([`SensorPoints::clears`]) where it no longer detects anything at the point or before it.
     ///
     /// `edits` is emptied and receives the cells that changed, as by [`Self::update`].
     pub fn update_points(
@@ -41,7 +41,7 @@ impl SensedLayer {
         self.list_changes(known, edits);
     }
 
-    /// Clears what the sensor has met where it meets nothing any more.
+    /// Clears the sensor's own points that are in view and no longer detected.
     fn clear_in_view(
         &mut self,
         known: &OccupancyGrid,
@@ -75,7 +75,7 @@ impl SensedLayer {
     }
 }
 
-/// True for a place at which something was met.
+/// True for a valid point, at which something was detected.
 pub(in crate::sense) fn says_something(point: Point) -> bool {
     point.is_finite() && point != Point::new(0.0, 0.0)
 }
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::map::{Cell, CellState};
 
-    /// A row of cells of 1 m, and a sensor that sees 90 degrees to either side of its middle.
+    /// A row of cells of 1 m, and a sensor that sees 0.3 rad to either side of its axis.
     struct Case {
         known: OccupancyGrid,
         layer: SensedLayer,
@@ -101,7 +101,7 @@ mod tests {
             Self { known, layer }
         }
 
-        /// Looks along the row from the middle of its first cell.
+        /// Sensor update along the row, from the centre of its first cell.
         fn look(
             &mut self,
             (sensor, clears): (usize, Option<FieldOfView>),
@@ -124,7 +124,7 @@ mod tests {
     fn points_mark_and_their_own_sensor_clears() {
         let mut case = Case::new();
         let (sees, marks) = ((0, Some(VIEW)), (1, None));
-        // Its own body, beyond the map, what the map has, and nothing.
+        // The robot itself, a point beyond the map, a known obstacle, and no return.
         assert_eq!(case.look(sees, &[0.1, 7.0, 6.0, f64::NAN]), []);
         assert_eq!(case.look(sees, &[3.0, 2.0]), [(3, Occupied), (2, Occupied)]);
         assert_eq!(case.look(marks, &[1.0]), [(1, Occupied)]);
@@ -190,7 +190,7 @@ mod tests {
         for view in views {
             assert_eq!(case.look((0, Some(view)), &[]), [], "{view:?}");
         }
-        // All around, and only as far as it sees.
+        // Full circle, limited by the range only.
         let turn = FieldOfView { from_rad: -4.0, to_rad: -4.0 + std::f64::consts::TAU, ..VIEW };
         assert_eq!(case.look((0, Some(turn)), &[]), [(2, Free)]);
     }

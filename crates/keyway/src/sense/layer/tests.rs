@@ -60,7 +60,7 @@ fn a_hit_marks_and_a_later_beam_clears() {
 fn a_miss_clears_up_to_the_range_only() {
     let mut case = Case::new(&["......"]);
     case.scan(2.5, 0.5, [2.7, NO, NO, NO]);
-    // What was met is 4.7 m from here, the range is 3 m.
+    // The hit point is 4.7 m away; the range is 3 m.
     assert_eq!(case.scan(0.5, 0.5, [MISS, NO, NO, NO]), []);
     assert_eq!(case.scan(2.3, 0.5, [4.9, NO, NO, NO]), [], "beyond the range says nothing");
     assert_eq!(case.scan(2.1, 0.5, [MISS, NO, NO, NO]), [], "into its cell, but not up to it");
@@ -80,7 +80,7 @@ fn known_walls_are_neither_stored_nor_cleared() {
     let mut case = Case::new(&["..#.."]);
     assert_eq!(case.scan(0.5, 0.5, [1.5, NO, NO, NO]), []);
     assert_eq!(case.layer.count(), 0);
-    // Through the wall, as after it was taken away.
+    // Through the wall, as after its removal.
     assert_eq!(case.scan(0.5, 0.5, [MISS, NO, NO, NO]), []);
     assert_eq!(case.known.state(Cell::new(2, 0)), Some(Occupied));
 }
@@ -94,7 +94,7 @@ fn unknown_cells_become_unknown_again() {
 
 #[test]
 fn a_beam_through_another_part_of_a_cell_says_nothing() {
-    // Beams 10 degrees apart; the place is at (3.2, 0.5), between the first two of them.
+    // Beams 10 degrees apart; the hit point is at (3.2, 0.5), between the first two of them.
     let fan = |ranges: [f64; 3]| Scan {
         angle_min_rad: -5f64.to_radians(),
         angle_increment_rad: 10f64.to_radians(),
@@ -114,12 +114,13 @@ fn a_beam_through_another_part_of_a_cell_says_nothing() {
     assert!(cleared([MISS, MISS, NO], 0.0));
     assert!(!cleared([MISS, 2.6, NO], 0.0) && !cleared([2.6, MISS, NO], 0.0), "on one side only");
     assert!(!cleared([MISS, NO, MISS], 0.0), "a beam that says nothing");
-    // Within the cell, which spans 10 degrees to both sides, but beside the place.
+    // Within the cell, which spans 10 degrees to both sides, but not through the hit point.
     assert!(!cleared([MISS; 3], 8.0) && !cleared([MISS; 3], -18.0), "out of the field of view");
     assert!(cleared([NO, MISS, NO], -5.0), "right through it");
 }
 
-/// Discs of half a cell and more on cells of 1 m, seen from many places, and left behind.
+/// Discs of a radius from 0.2 to 0.75 m on cells of 1 m, seen from many poses and then left
+/// behind.
 #[test]
 fn what_stands_is_not_forgotten() {
     let robot = Robot::paper();
@@ -160,7 +161,7 @@ fn what_was_sensed_on_a_disc_is_forgotten() {
 
 #[test]
 fn marks_win_whatever_the_order_of_the_beams() {
-    // Both beams look right; one passes the cell (2, 0), the other hits in it.
+    // Both beams point right; one passes the cell (2, 0), the other ends in it.
     for ranges in [[1.7, 2.7], [2.7, 1.7]] {
         let mut case = Case::new(&["....."]);
         let scan = Scan { angle_increment_rad: 2.0 * PI, ..four([NO; 4]) };
@@ -192,7 +193,7 @@ fn unusable_ranges_and_poses_are_ignored() {
         assert_eq!(case.scan(2.5, 1.5, [bad; 4]), []);
     }
     assert_eq!(case.scan(f64::NAN, 1.5, [1.5; 4]), []);
-    // Up and down leave the map before the hit.
+    // Beams up and down leave the map before the hit.
     assert_eq!(case.scan(2.5, 1.5, [NO, 2.5, NO, 1.6]), []);
     assert_eq!(case.layer.count(), 2);
 }

@@ -8,29 +8,31 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
-    /// Hits this near to an occupied cell of the known map are hits on it \[m\]; whole cells count.
+    /// Hits within this distance of an occupied cell of the known map are hits on it \[m\];
+    /// rounded up to whole cells.
     pub explained_m: f64,
-    /// Successive hits that are farther apart than this belong to different things \[m\]; where
-    /// beams are farther apart, twice their distance counts.
+    /// Successive hits that are farther apart than this belong to different objects \[m\]. If
+    /// neighbouring beams are farther apart, twice their distance is used.
     pub gap_m: f64,
-    /// Anything wider than this is no mover \[m\].
+    /// Largest diameter of a moving obstacle \[m\].
     pub largest_diameter_m: f64,
-    /// A range is no farther than this from the truth \[m\], errors of the pose included.
+    /// Largest error of a range \[m\], errors of the pose included.
     pub range_noise_m: f64,
-    /// No mover is faster than this \[m/s\].
+    /// Maximum speed of a moving obstacle \[m/s\].
     pub speed_mps: f64,
-    /// Movers hardly ever change their velocity faster than this \[m/s²\].
+    /// Acceleration that moving obstacles hardly ever exceed \[m/s²\].
     pub acceleration_mps2: f64,
-    /// A mover that stays where it is for this long counts as standing \[s\].
+    /// A moving obstacle that stays at its position for this long becomes stationary \[s\].
     pub standing_s: f64,
     /// A track is dropped when it has been out of view for this long \[s\].
     pub forget_s: f64,
 }
 
 impl Default for TrackerConfig {
-    /// For people and other robots around a robot: up to 1.2 m wide, 2 m/s fast, accelerating at up
-    /// to 2 m/s². Hits within 0.1 m of known walls are hits on them, ranges are right to 0.02 m,
-    /// hits 0.2 m apart are two things; a mover stands after 2 s, and is remembered for 2 s.
+    /// Values for people and other robots: up to 1.2 m wide, up to 2 m/s, accelerating at up to 2
+    /// m/s². Hits within 0.1 m of known walls are hits on them, ranges are accurate to 0.02 m,
+    /// and hits more than 0.2 m apart are two objects. A moving obstacle becomes stationary after
+    /// 2 s at its position, and is remembered for 2 s out of view.
     fn default() -> Self {
         Self {
             explained_m: 0.1,
@@ -46,10 +48,10 @@ impl Default for TrackerConfig {
 }
 
 impl TrackerConfig {
-    /// Checks every value.
+    /// Checks every field.
     ///
     /// # Errors
-    /// Names the first field that cannot be used.
+    /// Returns [`ConfigError`] for the first field that cannot be used.
     pub fn validate(&self) -> Result<(), ConfigError> {
         ConfigError::unless_not_negative("explained_m", self.explained_m)?;
         let positive = [

@@ -1,35 +1,34 @@
-//! The disc of which hits of a range sensor show the near side.
+//! Fit of a disc to hits of a range sensor, which show only its near side.
 //!
 //! # Source
 //! The circle through hits is the algebraic least-squares fit of \[Kasa1976\]: linear, without a
-//! start value, and exact for hits without noise, however much of the circle they show.
+//! start value, and exact for hits without noise, for any visible arc.
 //!
-//! # How certain it is
-//! A hit in the direction e from the centre, off by d along it, moves the radius and the centre by
-//! r and c with r + e c = d in the sense of least squares. So errors with the variance v give the
+//! # Uncertainty
+//! A hit in the direction e from the centre, off by d along it, moves the radius and the centre
+//! by r and c with r + e c = d in the least-squares sense. Errors of variance v thus give the
 //! centre the covariance v S⁻¹, where S is the sum of (e - mean e) (e - mean e)ᵀ over all hits.
-//! That holds to first order: for errors that are small beside the depth of the arc, which is
-//! r (1 - cos a) for the half angle a. Where they are not, the fit takes the circle for smaller
-//! than it is.
+//! This holds to first order, for errors that are small compared with the depth of the arc, which
+//! is r (1 - cos a) for the half angle a. For larger errors, the fit underestimates the circle.
 
 use crate::geometry::{Disc, Point};
 
-/// A disc, and how well hits tell where it is.
+/// A disc and the uncertainty of its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
     pub(super) disc: Disc,
-    /// Twice the standard deviation of the centre where it is known worst \[m\], to first order in
-    /// the errors of the hits; never less than what one hit may be off.
+    /// Twice the standard deviation of the centre along its least certain axis \[m\], to first
+    /// order in the errors of the hits; never less than the error of a single hit.
     pub(super) off_m: f64,
     /// True if the hits lie on an arc; otherwise the disc is the smallest one around their ends,
-    /// and what is hidden of the thing may be as large.
+    /// and the occluded part of the object may be as large.
     pub(super) is_round: bool,
 }
 
-/// Hits that show less of a circle than this to either side do not tell its radius \[rad\].
+/// Smallest half angle of the visible arc that determines the radius \[rad\].
 const LEAST_HALF_ARC_RAD: f64 = 0.5;
 
-/// The disc of successive hits, seen from `sensor`.
+/// Fits a disc to successive hits, seen from `sensor`.
 pub(super) fn fit(hits: &[Point], sensor: Point, noise_m: f64, largest_m: f64) -> Option<Fit> {
     let blob = around(hits, noise_m)?;
     let round = circle(hits).filter(|disc| (0.0..=0.5 * largest_m).contains(&disc.radius_m));
@@ -47,11 +46,11 @@ pub(super) fn fit(hits: &[Point], sensor: Point, noise_m: f64, largest_m: f64) -
     Some(Fit { disc, off_m: off_m.max(noise_m), is_round: true })
 }
 
-/// The standard deviation of an error that is anywhere up to 1 to either side.
+/// Standard deviation of an error that is uniform between -1 and 1.
 const DEVIATION: f64 = 0.577_350_269_189_625_8;
 
-/// The spread of the directions of hits from a centre along the axis on which they differ least:
-/// the smaller eigenvalue of the sum of the squares of what they are off their mean.
+/// Spread of the directions from a centre to the hits, along the axis on which they differ least:
+/// the smaller eigenvalue of their scatter matrix.
 fn scatter(hits: &[Point], centre: Point) -> f64 {
     let towards =
         |&hit: &Point| (hit - centre) * hit.distance(centre).max(f64::MIN_POSITIVE).recip();
@@ -65,13 +64,13 @@ fn scatter(hits: &[Point], centre: Point) -> f64 {
     }
     let apart = xx - yy;
     let larger = 0.5 * (xx + yy + (apart * apart + 4.0 * xy * xy).sqrt());
-    // Their product is the determinant.
+    // The product of the eigenvalues is the determinant.
     (xx * yy - xy * xy).max(0.0) / larger
 }
 
-/// The disc of a known radius that fits hits best while its centre is expected somewhere:
-/// Gauss-Newton steps on the sum of the squared distances to the circle and, with `weight`, of the
-/// one to where it is expected.
+/// Fits a disc of known radius to hits, given an expected centre: Gauss-Newton steps on the sum
+/// of the squared distances to the circle and, with `weight`, the squared distance to the
+/// expected centre.
 pub(super) fn fit_of_radius(hits: &[Point], expected: Disc, weight: f64) -> Disc {
     const STEPS: u32 = 4;
     let mut centre = expected.centre;
@@ -102,8 +101,7 @@ pub(super) fn fit_of_radius(hits: &[Point], expected: Disc, weight: f64) -> Disc
     Disc { centre, ..expected }
 }
 
-/// The disc with the two hits that are farthest apart on its border, of those that begin at either
-/// end.
+/// The smallest disc around the midpoint of the first and the last hit that contains all hits.
 fn around(hits: &[Point], noise_m: f64) -> Option<Fit> {
     let (&first, &last) = (hits.first()?, hits.last()?);
     let centre = first.lerp(last, 0.5);
@@ -112,7 +110,7 @@ fn around(hits: &[Point], noise_m: f64) -> Option<Fit> {
     Some(Fit { disc, off_m: radius_m + noise_m, is_round: false })
 }
 
-/// The circle nearest to three or more hits.
+/// The least-squares circle through three or more hits.
 fn circle(hits: &[Point]) -> Option<Disc> {
     if hits.len() < 3 {
         return None;
@@ -138,7 +136,7 @@ fn circle(hits: &[Point]) -> Option<Disc> {
     Some(Disc { centre: mean + off, radius_m })
 }
 
-/// Half of the arc that hits show of a circle, around the direction to their middle \[rad\].
+/// Half of the arc that the hits cover, around the direction to their mean \[rad\].
 fn half_arc_rad(hits: &[Point], centre: Point, middle: Point) -> f64 {
     let angle_rad = |hit: &Point| {
         let off = *hit - centre;
@@ -155,7 +153,8 @@ mod tests {
     use crate::random::Random;
     use proptest::prelude::*;
 
-    /// Hits on the side of a disc that a sensor at the origin sees, between shares of it.
+    /// Hits on the side of a disc that faces a sensor at the origin, between two shares of its
+    /// half arc.
     fn seen(disc: Disc, from: f64, to: f64, count: usize) -> Vec<Point> {
         let towards = (-disc.centre).heading();
         let half_rad = libm::acos(disc.radius_m / disc.centre.norm());
@@ -177,13 +176,13 @@ mod tests {
         let one = fit(&wall[..1], Point::default(), 0.02, 1.2).unwrap();
         assert_eq!((one.disc.radius_m, one.off_m), (0.0, 0.02));
         assert_eq!(fit(&[], Point::default(), 0.02, 1.2), None);
-        // A room's corner opens towards the sensor.
+        // The corner of a room opens towards the sensor.
         let inside = seen(Disc { centre: Point::new(2.0, 0.0), radius_m: 0.3 }, -0.9, 0.9, 9);
         assert!(!fit(&inside, Point::new(5.0, 0.0), 0.02, 1.2).unwrap().is_round);
     }
 
-    /// Compared with errors that are drawn again and again; the axis from the middle of the arc is
-    /// that on which the centre is known worst.
+    /// Compared with errors drawn repeatedly; the axis from the centre to the middle of the arc
+    /// is the least certain one.
     #[test]
     fn the_deviation_of_the_centre_is_that_of_many_draws() {
         const DRAWS: u32 = 4000;
@@ -214,8 +213,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever part of a disc is in view, the fit is that disc; with errors that are small
-        /// beside the depth of the arc it is about as near as it says.
+        /// For any visible part of a disc, the fit is that disc. With errors that are small
+        /// compared with the depth of the arc, its error is about what it reports.
         #[test]
         fn the_disc_behind_an_arc(x in 1.0..4.0f64, y in -2.0..2.0f64, radius_m in 0.05..0.5f64,
                                   from in -0.98..0.1f64, part in 0.4..0.85f64, count in 5usize..20,
@@ -233,7 +232,7 @@ mod tests {
             prop_assert!(!fitted.is_round || off_m <= 3.0 * fitted.off_m, "{off_m} {fitted:?}");
         }
 
-        /// With its radius known, a piece of the arc and a rough guess are enough.
+        /// With a known radius, a part of the arc and a rough guess are enough.
         #[test]
         fn a_known_radius(x in 1.0..4.0f64, y in -2.0..2.0f64, radius_m in 0.1..0.5f64, off in (-0.1..0.1f64, -0.1..0.1f64)) {
             let disc = Disc { centre: Point::new(x, y), radius_m };

@@ -1,15 +1,15 @@
-//! The hits of one scan, and what each of them belongs to.
+//! The hits of one scan and their assignment to tracks.
 
 use crate::geometry::Point;
 use crate::map::{Cell, OccupancyGrid};
 use crate::sense::ProjectedScan;
 
-/// What a beam hit.
+/// Assignment of a beam's hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// Nothing, or something that the known map explains.
+    /// No hit, or a hit that the known map explains.
     Explained,
-    /// Something that belongs to no track.
+    /// A hit that belongs to no track.
     Nobody,
     /// The track of this index.
     Track(u32),
@@ -20,9 +20,9 @@ pub(super) enum Owner {
 struct Hit {
     owner: Owner,
     point: Point,
-    /// None outside the map.
+    /// `None` outside the map.
     cell: Option<Cell>,
-    /// How well it fits its track \[m\]; smaller is better.
+    /// Misfit to its track \[m\]; smaller is better.
     score_m: f64,
 }
 
@@ -31,8 +31,8 @@ struct Hit {
 pub(super) struct Hits(Vec<Hit>);
 
 impl Hits {
-    /// The hits of a scan; those within `explained_m` of an occupied cell of the known map are
-    /// explained, and those outside the map as well.
+    /// Takes in the hits of a scan. Hits within `explained_m` of an occupied cell of the known
+    /// map are explained, and so are those outside the map.
     pub(super) fn take_in(
         &mut self,
         known: &OccupancyGrid,
@@ -58,24 +58,24 @@ impl Hits {
         }
     }
 
-    /// What a beam belongs to; none for a beam that is not there.
+    /// The assignment of a beam; `None` if the beam does not exist.
     pub(super) fn owner(&self, beam: usize) -> Option<Owner> {
         self.0.get(beam).map(|hit| hit.owner)
     }
 
-    /// Where a beam hit something that the map does not explain.
+    /// The hit point of a beam, unless the map explains it.
     pub(super) fn point(&self, beam: usize) -> Option<Point> {
         let hit = self.0.get(beam)?;
         (hit.owner != Owner::Explained).then_some(hit.point)
     }
 
-    /// The same, where it belongs to no track.
+    /// The hit point of a beam, if it belongs to no track.
     pub(super) fn unexplained(&self, beam: usize) -> Option<Point> {
         let hit = self.0.get(beam)?;
         (hit.owner == Owner::Nobody).then_some(hit.point)
     }
 
-    /// A track takes a hit that fits no other one as well.
+    /// Offers a hit to a track, which takes it if no other track fits as well.
     pub(super) fn offer(&mut self, beam: usize, track: u32, score_m: f64) {
         let hit = &mut self.0[beam];
         if score_m < hit.score_m {
@@ -83,17 +83,17 @@ impl Hits {
         }
     }
 
-    /// Gives a hit to a track.
+    /// Assigns a hit to a track.
     pub(super) fn give(&mut self, beam: usize, track: u32) {
         self.0[beam].owner = Owner::Track(track);
     }
 
-    /// A track gives a hit back.
+    /// Takes a hit away from its track.
     pub(super) fn release(&mut self, beam: usize) {
         self.0[beam].owner = Owner::Nobody;
     }
 
-    /// The track of index `from` has another one now, or has ended.
+    /// Renumbers the track of index `from`, or ends it.
     pub(super) fn renumber(&mut self, from: u32, to: Option<u32>) {
         if to == Some(from) {
             return;
@@ -103,14 +103,14 @@ impl Hits {
         own.for_each(|hit| hit.owner = new);
     }
 
-    /// The cells of all hits that the map does not explain.
+    /// The cells of all hits that the map does not explain, with their assignment.
     pub(super) fn cells(&self) -> impl Iterator<Item = (Owner, Cell)> + '_ {
         let hits = self.0.iter().filter(|hit| hit.owner != Owner::Explained);
         hits.filter_map(|hit| Some((hit.owner, hit.cell?)))
     }
 }
 
-/// True if the known map has something within so many cells.
+/// True if the known map has an occupied cell within this many cells.
 fn is_near_known(known: &OccupancyGrid, cell: Cell, cells: i32) -> bool {
     let (low, high) = (cell.x.saturating_sub(cells), cell.x.saturating_add(cells));
     let rows = cell.y.saturating_sub(cells).max(0)

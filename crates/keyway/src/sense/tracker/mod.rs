@@ -1,60 +1,62 @@
-//! Movers from scans: hits that no map explains are followed from scan to scan, and what is shown
-//! to move is listed.
+//! Tracking of moving obstacles: hits that the map does not explain are tracked from scan to
+//! scan, and tracks with evidence of motion are listed.
 //!
 //! # Source
-//! Detection: what stands is never seen through, and never stands where a beam has passed; the
-//! contradiction between scans as evidence of motion is that of \[Wang2007\], here between the
-//! beams of scans, without a grid. Filter: constant velocity, \[BarShalom2001, section 6.3\].
-//! Circles through hits: \[Kasa1976\].
+//! Detection: a stationary obstacle is never seen through, and never appears where a beam has
+//! passed. Such contradictions between scans as evidence of motion are from \[Wang2007\], here
+//! between the beams of scans, without a grid. Filter: constant velocity, \[BarShalom2001,
+//! section 6.3\]. Circles through hits: \[Kasa1976\].
 //!
-//! # What happens with a scan
+//! # Processing of a scan
 //! 1. Hits within `explained_m` of a known occupied cell are explained by the map.
-//! 2. Every track is predicted, and takes those of the other hits that lie on its disc, within its
-//!    uncertainty; a hit goes to the track whose border it is nearest to. Where beams see through
-//!    between its hits, a track keeps the larger group: what has split becomes two.
-//! 3. A circle through the hits of a track measures its centre: unlike their mean it does not
-//!    wander along the surface while the robot passes, or while a part is hidden. Where the hits
-//!    show too little of a circle, the radius known from before places it. Things that are not
-//!    round are measured by the middle of what is seen, which is only as certain as the thing is
-//!    large.
-//! 4. A track *moves* when it is farther from where it was first seen than the uncertainties of
-//!    both places, **and** two scans show it by at least two beams each: they pass through the
-//!    surface that was seen there, or a remembered scan (of up to a second ago) has seen through
-//!    the surface that is seen now. A part of a standing thing that comes into view does neither,
-//!    so it is no mover, however its middle wanders. Of a thing that comes out from behind another
-//!    one, the place is long uncertain: two scans that follow each other, by at least five beams
-//!    each, show its motion alone. A surface is what beams hit no farther apart than three times
-//!    `range_noise_m`: from so far away that beams are farther apart, nothing is seen to move.
+//! 2. Every track is predicted, and takes those of the other hits that lie on its disc, within
+//!    its uncertainty. A hit goes to the track with the nearest border. If beams see through
+//!    between the hits of a track, it keeps the larger group: an object that has split becomes
+//!    two tracks.
+//! 3. A circle through the hits of a track measures its centre. Unlike the mean of the hits, this
+//!    centre does not wander along the surface while the robot passes, or while a part is
+//!    occluded. If the hits show too little of a circle, the radius known from before is used. An
+//!    object that is not round is measured by the middle of its visible part, with an uncertainty
+//!    as large as the object.
+//! 4. A track *moves* if its distance from where it was first seen exceeds the uncertainties of
+//!    both positions, **and** two scans show it by at least two beams each: the beams pass
+//!    through the surface that was seen there, or a remembered scan (up to a second old) has seen
+//!    through the surface that is seen now. A part of a stationary object that comes into view
+//!    does neither, so the object is not taken for a moving one, however its centre wanders. The
+//!    position of an object that emerges from behind another one stays uncertain for long; for
+//!    it, two consecutive scans, by at least five beams each, are sufficient evidence. A
+//!    surface consists of hits at most three times `range_noise_m` apart: at distances at which
+//!    beams are farther apart, no motion is detected.
 //!
-//!    Until then it *may move* for half a second whenever at least two beams of a remembered scan,
-//!    and at least one for every eight that hit it now, have seen through the surface that is seen
-//!    now. That is no proof, as errors do the same, but the stop rule waits for none: who comes out
-//!    from behind something may be near.
-//! 5. A mover that is not known to have left its place for `standing_s` stands again. One that was
-//!    out of view may have left it, unless its place is known to within `gap_m`. A track ends when
-//!    it has grown wider than `largest_diameter_m`, when three scans in a row see through it, or
-//!    when it has been out of view for `forget_s`.
-//! 6. What is left of the hits is grouped into new tracks, if it is not too large for a mover.
-//!    Tracks that do not move are kept, too: they count as standing, and the sensed layer marks
-//!    them.
+//!    Until then it *may move* for half a second whenever at least two beams of a remembered
+//!    scan, and at least one for every eight that hit it now, have seen through the surface that
+//!    is seen now. That is no proof, since errors have the same effect, but the stop rule does
+//!    not wait for proof: an obstacle that emerges from behind another one may be near.
+//! 5. A moving obstacle that is not known to have left its position for `standing_s` becomes
+//!    stationary again. One that was out of view may have left it, unless its position is known
+//!    to within `gap_m`. A track ends when it has grown wider than `largest_diameter_m`, when
+//!    three scans in a row see through it, or when it has been out of view for `forget_s`.
+//! 6. The remaining hits are grouped into new tracks, unless a group is too large for a moving
+//!    obstacle. Tracks that do not move are kept, too: they count as stationary, and the sensed
+//!    layer marks them.
 //!
-//! Two tracks that come near each other stay two, because each hit goes to one of them.
+//! Two tracks that approach each other stay separate, because each hit goes to one of them.
 //!
-//! # How certain it is
+//! # Uncertainty
 //! `position_uncertainty_m` and `velocity_uncertainty_mps` are three standard deviations of the
-//! filter; its acceleration noise is half of `acceleration_mps2`. A surprise beyond three standard
-//! deviations makes any velocity possible again.
+//! filter; its acceleration noise is half of `acceleration_mps2`. An innovation beyond three
+//! standard deviations makes any velocity possible again.
 //!
-//! # What it does not see
-//! Whatever is as near to a known wall as `explained_m`; things larger than `largest_diameter_m`;
-//! what only one beam meets, or is narrower than four times the noise of ranges (a table leg that
-//! is carried). What is hidden of a thing counts only when it was seen before. A thing that moves
-//! exactly along a beam, away from the sensor, is seen by what it leaves; one that rotates is not
-//! seen to.
+//! # Limitations
+//! The tracker does not detect obstacles within `explained_m` of a known wall, obstacles larger
+//! than `largest_diameter_m`, or obstacles that a single beam hits or that are narrower than
+//! four times the range noise (a table leg that is carried). An occluded part of an object counts
+//! only if it was seen before. An object that moves exactly along a beam, away from the sensor,
+//! is detected by the space that it leaves; rotation is not detected.
 //!
 //! # Errors / cost
 //! [`ConfigError`]. Linear in the beams and in the hits that the map does not explain. Allocates
-//! nothing once it is warm. Nothing is random.
+//! nothing after warm-up. Deterministic.
 
 mod config;
 mod disc_fit;
@@ -74,7 +76,7 @@ use seen_through::{OldScans, beams_before, beams_now};
 use serde::{Deserialize, Serialize};
 use track::{Sight, Track};
 
-/// Follows what moves.
+/// Tracks moving obstacles.
 ///
 /// ```
 /// use keyway::robot::Footprint;
@@ -109,48 +111,48 @@ pub struct Tracker {
     config: TrackerConfig,
     tracks: Vec<Track>,
     next_id: u64,
-    /// What moves, and after that what may move.
+    /// Tracks that move, followed by those that may move.
     movers: Vec<Mover>,
-    /// How many of them move.
+    /// Number of those that move.
     moving: usize,
-    /// Cells marked by what only now is known to move.
+    /// Cells marked by an obstacle that turned out to move only in the last scan.
     left: Vec<Cell>,
     #[serde(skip)]
     hits: Hits,
-    /// Hits of the track that is looked at.
+    /// Hits of the track that is being updated.
     #[serde(skip)]
     own: Vec<Point>,
     #[serde(skip)]
     own_beams: Vec<usize>,
-    /// Remembered scans, sensor by sensor.
+    /// Remembered scans of each sensor.
     old: Vec<OldScans>,
 }
 
-/// Beams that show in one scan that something moves, and such scans that it takes.
+/// Beams of one scan that show motion, and the number of such scans needed.
 const EVIDENCE_BEAMS: u32 = 2;
 const EVIDENCE_SCANS: u32 = 2;
 
-/// So many beams show it of something whose place is known too roughly to see it leave, as of a
-/// thing that comes out from behind another.
+/// Number of beams needed if the position of a track is too uncertain to show that it has left,
+/// as for an object that emerges from behind another one.
 const CLEAR_EVIDENCE_BEAMS: u32 = 5;
 
-/// What may move does so for this long, unless it is doubted again that it stands \[s\].
+/// Duration for which a track may move after evidence against its being stationary \[s\].
 const MAY_MOVE_S: f64 = 0.5;
 
-/// Room is made for so many tracks at once: then new ones allocate nothing.
+/// Initial capacity for tracks; up to it, new tracks do not allocate.
 const USUAL_TRACKS: usize = 32;
 
 /// Scans in a row that see through a track until it ends.
 const EMPTY_SCANS: u32 = 3;
 
-/// Fewer hits are no thing.
+/// Minimum number of hits of a track.
 const LEAST_HITS: usize = 2;
 
 impl Tracker {
-    /// One that knows of nothing yet.
+    /// Creates a tracker without tracks.
     ///
     /// # Errors
-    /// When a value of the config cannot be used; the error names it.
+    /// Returns [`ConfigError`] if a value of the config cannot be used; the error names it.
     pub fn new(config: TrackerConfig) -> Result<Self, ConfigError> {
         config.validate()?;
         Ok(Self {
@@ -167,27 +169,28 @@ impl Tracker {
         })
     }
 
-    /// What moves, as of the last scan; the longest followed first.
+    /// Moving obstacles as of the last scan, the oldest track first.
     pub fn movers(&self) -> &[Mover] {
         &self.movers[..self.moving]
     }
 
-    /// What moves, and after that what may move: that is not known, but up to half a second ago it
-    /// was where the robot had seen through no more than a second before.
+    /// Moving obstacles, followed by those that may move. The latter are not confirmed, but at
+    /// most half a second ago they were in space that a scan of the second before had seen
+    /// through.
     pub fn possible_movers(&self) -> &[Mover] {
         &self.movers
     }
 
-    /// Points seen on the surfaces of movers that may as well stand, in a while: once as of movers
-    /// that go on, and once as of what stands.
+    /// Predicted points on the surfaces of moving obstacles that may as well have stopped: once
+    /// as if the obstacle continues, and once as if it is stationary.
     pub(crate) fn surfaces_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
         let movers = self.tracks.iter().filter(|track| track.is_mover && track.may_stand());
         movers.flat_map(move |track| track.surface_after(after_s))
     }
 
-    /// True if a beam of the last scan, which ended at `place`, hit a mover: one that is followed,
-    /// or something that is not followed itself on ground that a mover in view may cover. What is
-    /// seen where a mover is only expected is not that mover.
+    /// True if a beam of the last scan, which ended at `place`, hit a moving obstacle: a tracked
+    /// one, or an untracked hit in the area that a moving obstacle in view may cover. A hit in
+    /// the area of an obstacle that is only predicted does not count.
     pub fn hits_mover(&self, beam: usize, place: Point) -> bool {
         if let Some(Owner::Track(track)) = self.hits.owner(beam) {
             return self.tracks.get(track as usize).is_some_and(|track| track.is_mover);
@@ -195,13 +198,14 @@ impl Tracker {
         self.may_be_mover(place)
     }
 
-    /// True if a mover in view may cover a place.
+    /// True if a moving obstacle in view may cover a point.
     pub(super) fn may_be_mover(&self, place: Point) -> bool {
         let may_be = |mover: &Mover| place.distance(mover.centre) <= mover.now().radius_m;
         self.movers().iter().any(|mover| mover.unseen_s == 0.0 && may_be(mover))
     }
 
-    /// Cells that held hits on something standing, until the last scan showed that it moves.
+    /// Cells with hits on an obstacle that counted as stationary until the last scan showed that
+    /// it moves.
     pub fn left(&self) -> &[Cell] {
         &self.left
     }
@@ -213,8 +217,8 @@ impl Tracker {
         self.update_from(known, 0, scan, elapsed_s);
     }
 
-    /// The same of the sensor of this index, `elapsed_s` after the last scan of any sensor: 0 for
-    /// two of the same time.
+    /// Like [`Self::update`], for the sensor of this index, `elapsed_s` after the last scan of
+    /// any sensor: 0 for two scans of the same time.
     pub fn update_from(
         &mut self,
         known: &OccupancyGrid,
@@ -248,8 +252,8 @@ impl Tracker {
         self.list_movers();
     }
 
-    /// Moves all that it knows with the robot, to where that turns out to be: nothing becomes fast
-    /// by that.
+    /// Moves the whole state along with a correction of the robot's pose. The correction adds no
+    /// velocity.
     pub(crate) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
         self.tracks.iter_mut().for_each(|track| track.shift(shift));
         self.old.iter_mut().for_each(|old| old.shift(frame, shift));
@@ -257,7 +261,7 @@ impl Tracker {
         self.list_movers();
     }
 
-    /// True if one that was stored can be used.
+    /// True if a restored tracker is valid.
     pub(crate) fn is_sound(&self) -> bool {
         self.config.validate().is_ok() && self.moving <= self.movers.len()
     }
@@ -271,7 +275,7 @@ impl Tracker {
         movers.extend(tracks.iter().filter(may_move).map(Track::mover));
     }
 
-    /// Each hit goes to the track whose border it is nearest to, of those that it may belong to.
+    /// Assigns each hit to the track with the nearest border, of those that it may belong to.
     fn offer_hits(&mut self, scan: &ProjectedScan) {
         let noise_m = self.config.range_noise_m;
         for (index, track) in self.tracks.iter().enumerate() {
@@ -288,7 +292,7 @@ impl Tracker {
         }
     }
 
-    /// What a scan shows of a track.
+    /// Updates a track with a scan.
     fn see(&mut self, index: usize, sensor: usize, scan: &ProjectedScan) {
         self.collect(index, scan);
         let track = &mut self.tracks[index];
@@ -310,7 +314,7 @@ impl Tracker {
         let before = beams_before(track, &sight, scan, (&self.old[sensor..=sensor], &self.config));
         track.note_seen_through(before, self.own.len());
         let is_shown = before.max(beams_now(track, scan, &self.config)) >= needed;
-        // Who has not been seen to leave has to be contradicted in scans that follow each other.
+        // A track that has not left its first position needs contradictions in consecutive scans.
         let before = if is_shown || has_left { track.evidence } else { 0 };
         track.evidence = before + u32::from(is_shown);
         if track.evidence >= EVIDENCE_SCANS {
@@ -318,7 +322,7 @@ impl Tracker {
         }
     }
 
-    /// Gathers the hits of a track, and gives those back that belong to something else.
+    /// Collects the hits of a track, and releases those that belong to another object.
     fn collect(&mut self, index: usize, scan: &ProjectedScan) {
         self.own.clear();
         self.own_beams.clear();
@@ -381,7 +385,7 @@ impl Tracker {
         });
     }
 
-    /// Groups what is left of the hits into new tracks.
+    /// Groups the remaining hits into new tracks.
     fn begin_tracks(&mut self, index: usize, scan: &ProjectedScan) {
         let sensor = scan.pose().point();
         let gap_m = self.config.gap_m;
@@ -408,7 +412,7 @@ impl Tracker {
         }
     }
 
-    /// A new track of the collected hits.
+    /// Starts a track from the collected hits.
     fn begin_track(&mut self, sensor: usize, scan: &ProjectedScan) {
         let (Some(&first), Some(&last)) = (self.own.first(), self.own.last()) else { return };
         let is_large = first.distance(last) > self.config.largest_diameter_m;
@@ -428,7 +432,7 @@ impl Tracker {
         self.next_id += 1;
     }
 
-    /// Standing tracks note the cells that they mark.
+    /// Records the cells that stationary tracks mark.
     fn note_cells(&mut self) {
         for (owner, cell) in self.hits.cells() {
             let Owner::Track(index) = owner else { continue };
@@ -440,7 +444,7 @@ impl Tracker {
     }
 }
 
-/// Notes whether beams see through a track that none of them hit.
+/// Updates a track that no beam hit: notes if beams see through it.
 fn note_unseen(track: &mut Track, scan: &ProjectedScan) {
     let disc = Track::now(track);
     let far_m = track.centre.distance(scan.pose().point()) + disc.radius_m;

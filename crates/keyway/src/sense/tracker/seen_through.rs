@@ -1,4 +1,5 @@
-//! True if beams pass where a surface is said to be: what stands is never seen through.
+//! Contradictions between scans: beams that pass through an observed surface. A stationary
+//! obstacle is never seen through.
 
 use super::TrackerConfig;
 use super::track::{Sight, Track};
@@ -7,7 +8,7 @@ use crate::map::GridFrame;
 use crate::sense::ProjectedScan;
 use serde::{Deserialize, Serialize};
 
-/// Scans of one sensor that are remembered, and the time from one to the next \[s\].
+/// Number of remembered scans of one sensor, and the time between them \[s\].
 const OLD_SCANS: usize = 4;
 const OLD_SCAN_STEP_S: f64 = 0.25;
 
@@ -18,21 +19,21 @@ pub(super) struct OldScans {
     remembered: usize,
 }
 
-/// A scan that is remembered.
+/// A remembered scan.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct OldScan {
     scan: ProjectedScan,
-    /// How long ago \[s\].
+    /// Age \[s\].
     age_s: f64,
 }
 
 impl OldScans {
-    /// Time has passed.
+    /// Advances the time.
     pub(super) fn age(&mut self, elapsed_s: f64) {
         self.scans.iter_mut().for_each(|old| old.age_s += elapsed_s);
     }
 
-    /// Moves all of them.
+    /// Moves all remembered scans.
     pub(super) fn shift(&mut self, frame: &GridFrame, shift: &Shift) {
         self.scans.iter_mut().for_each(|old| old.scan.shift(frame, shift));
     }
@@ -41,14 +42,14 @@ impl OldScans {
         self.scans.iter().filter(|old| !old.scan.is_empty())
     }
 
-    /// Keeps a scan from time to time, in the place of the oldest one; allocates nothing for one
-    /// that is not longer.
+    /// Remembers a scan from time to time, in place of the oldest one. Does not allocate unless
+    /// the new scan is longer.
     pub(super) fn remember(&mut self, scan: &ProjectedScan) {
         if scan.is_empty() {
             return;
         }
         let youngest_s = self.used().map(|old| old.age_s).fold(f64::INFINITY, f64::min);
-        // Times are sums of cycles.
+        // Ages are sums of cycle times, hence the tolerance.
         if youngest_s >= OLD_SCAN_STEP_S * (1.0 - 1e-9) {
             let oldest = &mut self.scans[self.remembered % OLD_SCANS];
             oldest.age_s = 0.0;
@@ -58,11 +59,12 @@ impl OldScans {
     }
 }
 
-/// Hits of one surface are no farther apart than so many times the noise of ranges: the gaps
-/// between standing things are wider, as a rule.
+/// Largest gap between hits of one surface, in multiples of the range noise: gaps between
+/// stationary objects are usually wider.
 const WIDEST_GAP_NOISES: f64 = 3.0;
 
-/// How many beams of one of the remembered scans have seen through what is seen of a track now.
+/// Largest number of beams of one remembered scan that have seen through the present surface of a
+/// track.
 pub(super) fn beams_before(
     track: &Track,
     sight: &Sight<'_>,
@@ -74,35 +76,35 @@ pub(super) fn beams_before(
     old.map(|old| surface.beams_through(&old.scan)).fold(0, u32::max)
 }
 
-/// How many beams of this scan see through what was seen of a track at its anchor.
+/// Number of beams of this scan that see through the surface of a track at its anchor.
 pub(super) fn beams_now(track: &Track, scan: &ProjectedScan, config: &TrackerConfig) -> u32 {
     Surface::of(track, &track.anchor.surface, scan, config).beams_through(scan)
 }
 
-/// A surface that was seen: the line through hits that were made one after the other.
+/// An observed surface: the line through successive hits.
 struct Surface<'a> {
     hits: &'a [Point],
-    /// Two hits that are farther apart have nothing between them \[m\].
+    /// Largest distance between two hits with a surface between them \[m\].
     gap_m: f64,
-    /// No hit is farther than this from the truth \[m\].
+    /// Largest error of a hit \[m\].
     noise_m: f64,
 }
 
 impl<'a> Surface<'a> {
     fn of(track: &Track, hits: &'a [Point], scan: &ProjectedScan, config: &TrackerConfig) -> Self {
         // Hits of neighbouring beams on one surface, seen at up to about 65 degrees. Between two
-        // that are far apart there may be a gap that no beam met.
+        // that are far apart there may be a gap that no beam hit.
         let far_m = track.centre.distance(scan.pose().point()) + track.radius_m;
         let noise_m = config.range_noise_m;
         let seen_m = noise_m + 2.5 * far_m * scan.step_rad();
         Self { hits, gap_m: seen_m.min(WIDEST_GAP_NOISES * noise_m), noise_m }
     }
 
-    /// A beam this flat on a surface may miss it: the sine of about 25 degrees.
+    /// Sine of the flattest angle of a beam on a surface that it cannot miss: about 25 degrees.
     const FLATTEST: f64 = 0.4;
 
-    /// How many beams of a scan made at `pose` pass through the surface: between its ends as they
-    /// are seen from there, not along it, and by more than errors explain.
+    /// Number of beams of a scan that pass through the surface: between its ends as seen from the
+    /// sensor, not along it, and by more than errors explain.
     fn beams_through(&self, scan: &ProjectedScan) -> u32 {
         let runs = self.hits.chunk_by(|a, b| a.distance(*b) <= self.gap_m);
         runs.map(|run| self.beams_through_run(run, scan)).sum()
@@ -119,7 +121,7 @@ impl<'a> Surface<'a> {
             let Some((low, high)) = ends.and_then(|ends| beams_between(ends, scan)) else {
                 continue;
             };
-            // No part of the line between two points is nearer than this.
+            // Lower bound on the distance of the line between the two points.
             let least_m = pair[0].distance(from).min(pair[1].distance(from))
                 - 0.5 * pair[0].distance(pair[1]);
             for beam in (low..=high).filter(|&beam| last_beam != Some(beam)) {
@@ -135,8 +137,8 @@ impl<'a> Surface<'a> {
         count
     }
 
-    /// True if a line has parts of the surface to both sides of it, farther from it than errors
-    /// explain: of a thing that stands there, it then meets something.
+    /// True if parts of the surface lie to both sides of a ray, farther from it than errors
+    /// explain: a ray through a stationary object of this surface would hit it.
     fn is_inside(&self, run: &[Point], from: Point, direction: Point) -> bool {
         let aside = run.iter().map(|&hit| direction.cross(hit - from));
         let (low, high) =
@@ -144,7 +146,7 @@ impl<'a> Surface<'a> {
         low.abs().min(high) >= 2.0 * self.noise_m
     }
 
-    /// True if a beam that is free for so far passes between two hits and goes on.
+    /// True if a beam that is free for `free_m` passes between two hits and continues.
     fn passes(&self, free_m: f64, direction: Point, (a, b): (Point, Point), from: Point) -> bool {
         let side = b - a;
         let across = direction.cross(side);
@@ -155,11 +157,12 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The beams that look between two points, which are seen at these fractions of beams, if any.
+/// The beams between two points, given by their fractional beam indices; `None` if there are
+/// none.
 fn beams_between((at_a, at_b): (f64, f64), scan: &ProjectedScan) -> Option<(usize, usize)> {
     let (low, high) = (at_a.min(at_b), at_a.max(at_b));
     let count = scan.len() as f64;
-    // Two points to both sides of the seam of a full turn.
+    // The points are on either side of the seam of a full turn.
     if high - low > 0.5 * count {
         return None;
     }
@@ -189,7 +192,7 @@ mod tests {
 
     #[test]
     fn beams_through_a_wall_by_hand() {
-        // A wall 2 m ahead, 0.5 m to both sides: it fills the bearings up to 0.245.
+        // A wall 2 m ahead, 0.5 m to both sides: it covers the bearings up to 0.245.
         let wall: Vec<Point> = (-5..=5).map(|i| Point::new(2.0, f64::from(i) * 0.1)).collect();
         let surface = |hits| Surface { hits, gap_m: 0.2, noise_m: 0.03 };
         let seen_from = |pose, ranges: &[f64]| surface(&wall).beams_through(&scan(pose, ranges));
@@ -203,14 +206,14 @@ mod tests {
         assert_eq!(coarse.beams_through(&scan(Pose::default(), &[inf; 5])), 3);
         let gap = [Point::new(2.0, -0.4), Point::new(2.0, 0.4)];
         assert_eq!(surface(&gap).beams_through(&scan(Pose::default(), &[inf; 5])), 0);
-        // From the other side, with the back to it, and along it.
+        // From the other side, facing away from it, and along it.
         assert_eq!(seen_from(Pose::new(4.0, 0.0, std::f64::consts::PI), &[inf; 5]), 5);
         assert_eq!(seen_from(Pose::new(4.0, 0.0, 0.0), &[inf; 5]), 0);
         assert_eq!(seen_from(Pose::new(2.05, -2.0, std::f64::consts::FRAC_PI_2), &[inf; 5]), 0);
     }
 
-    /// A sensor that scans every half second, in cycles of 0.05 s: nothing is remembered of those
-    /// between.
+    /// A sensor that scans every half second, in cycles of 0.05 s: the cycles between are not
+    /// remembered.
     #[test]
     fn cycles_without_a_scan_leave_what_is_remembered() {
         let mut old = OldScans::default();

@@ -20,7 +20,7 @@ fn map(boxes: &[[f64; 4]]) -> OccupancyGrid {
     })
 }
 
-/// A robot's tracker and sensed layer beside each other.
+/// The tracker and the sensed layer of a robot, updated together.
 struct Drive {
     robot: Robot,
     known: OccupancyGrid,
@@ -65,7 +65,7 @@ impl Drive {
     }
 }
 
-/// To and fro beside the origin, turning all the time.
+/// Back and forth beside the origin, with a constantly changing heading.
 fn slalom(cycle: u32) -> Pose {
     let t_s = 0.1 * f64::from(cycle);
     Pose::new(-1.5 + 0.4 * t_s, 0.3 * libm::sin(0.8 * t_s), 0.5 * libm::cos(0.8 * t_s))
@@ -73,8 +73,8 @@ fn slalom(cycle: u32) -> Pose {
 
 const RADIUS_M: f64 = 0.25;
 
-/// Follows walkers of one size and checks everything that is known of them: cycles until each was
-/// found.
+/// Tracks pedestrians of one size and checks every estimate; returns the number of cycles until
+/// each was found.
 fn follow(
     drive: &mut Drive,
     pose: impl Fn(u32) -> Pose,
@@ -131,7 +131,8 @@ fn walkers_are_found_and_leave_no_trail() {
     assert!(found <= 8, "{found}");
 }
 
-/// Who comes fast hides what it marked before it was known to move: no beam clears that.
+/// A fast approaching obstacle occludes the cells that it marked before it was known to move, so
+/// no beam clears them.
 #[test]
 fn no_trail_stays_in_the_shadow() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -154,7 +155,7 @@ fn walkers_that_hide_behind_each_other_stay_themselves() {
     assert_eq!(drive.layer.count(), 0);
 }
 
-/// A thin wall hides a walker for 2 s. It is expected where it goes, and found there again.
+/// A thin wall occludes a pedestrian for 2 s. Its motion is predicted, and it is found again.
 #[test]
 fn a_walker_behind_a_wall_is_expected_behind_it() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
@@ -175,7 +176,8 @@ fn a_walker_behind_a_wall_is_expected_behind_it() {
     assert_eq!(drive.tracker.movers().len(), 1);
 }
 
-/// A wall between the robot and a walker, who goes past behind it: hidden from about -0.2 to 0.2 m.
+/// A wall between the robot and a pedestrian that walks past behind it: occluded from about -0.2
+/// to 0.2 m.
 const HIDING: [f64; 4] = [0.9, -0.3, 1.0, 0.3];
 
 #[test]
@@ -193,10 +195,11 @@ fn who_was_out_of_view_does_not_count_as_standing() {
     assert!(seen_again > 10, "{seen_again}");
 }
 
-/// Its middle is known too roughly to see it leave, but beams have passed where it is now.
+/// Its centre is too uncertain to show that it has left, but beams have passed through its
+/// present position.
 #[test]
 fn who_comes_out_from_behind_something_is_soon_seen_to_move() {
-    // From the first scan that shows it: until it may move, and until it does.
+    // Cycles from the first scan that shows it until it may move, and until it moves.
     let cycles_until_found = |step_m: f64| {
         let mut drive = Drive::new(map(&[HIDING]), &[]);
         let (mut first_seen, mut may_move) = (None, None);
@@ -227,7 +230,7 @@ fn who_turns_at_once_stays_a_mover() {
         let mut drive = Drive::new(map(&[]), &[]);
         for cycle in 0..20 {
             let way_m = 0.1 * speed_mps * f64::from(cycle);
-            // It turns between two scans.
+            // It turns around between two scans.
             let turn_m = 1.05 * speed_mps;
             let y_m = if way_m < turn_m { way_m } else { 2.0 * turn_m - way_m };
             let at = Point::new(lane_m, y_m - 0.5);
@@ -240,8 +243,8 @@ fn who_turns_at_once_stays_a_mover() {
     }
 }
 
-/// A walker goes behind a wall. A post that is known to stand where it may come out again is
-/// marked, also by a layer that begins.
+/// A pedestrian walks behind a wall. A stationary post at the position where it may emerge is
+/// marked, even by a new layer.
 #[test]
 fn what_stands_where_a_mover_is_expected_is_marked() {
     let mut drive = Drive::new(map(&[[1.0, -0.35, 1.1, 0.35]]), &[]);
@@ -258,7 +261,8 @@ fn what_stands_where_a_mover_is_expected_is_marked() {
     assert!(drive.layer.count() >= 2);
 }
 
-/// A robot that has turned away does not forget what stands where a walker is on its way to.
+/// A robot that has turned away does not forget a stationary obstacle on the predicted path of a
+/// pedestrian.
 #[test]
 fn where_a_mover_is_only_expected_nothing_is_forgotten() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -279,8 +283,8 @@ fn where_a_mover_is_only_expected_nothing_is_forgotten() {
     assert!(count >= 2 && covered);
 }
 
-/// Beside the way stand posts, boxes, a long wall, and a wall with a slot through which a part of
-/// another one comes into view: no map shows them.
+/// Unmapped posts, boxes, a long wall, and a wall with a slot through which parts of another wall
+/// come into view.
 #[test]
 fn what_stands_is_no_mover() {
     let posts: Vec<(Point, f64)> = (0..8)
@@ -290,7 +294,7 @@ fn what_stands_is_no_mover() {
         })
         .collect();
     let boxes = [[0.5, 0.6, 0.9, 1.0], [1.5, -1.2, 1.6, -0.6], [3.0, -2.0, 3.05, 2.0]];
-    // What comes into view behind the slot seems to run to and fro.
+    // The part that is visible behind the slot seems to move back and forth.
     let slot = [[-2.0, -0.8, -0.1, -0.7], [0.05, -0.8, 2.5, -0.7], [-3.0, -2.3, 3.0, -2.2]];
     let all = [(&boxes[..], &[][..]), (&[], &posts), (&boxes, &posts), (&slot, &[])];
     for (boxes, posts) in all {
@@ -304,8 +308,8 @@ fn what_stands_is_no_mover() {
     }
 }
 
-/// From afar the gaps between posts are narrower than those between beams; from nearby they are
-/// seen through.
+/// From afar, the gaps between the posts are narrower than those between beams; from nearby,
+/// beams pass through them.
 #[test]
 fn a_fence_of_posts_is_no_mover() {
     let diagonal = |i: i32| Point::new(0.15 * f64::from(i), 0.8 + 0.15 * f64::from(i % 2));
@@ -329,8 +333,8 @@ fn a_fence_of_posts_is_no_mover() {
     }
 }
 
-/// While a robot drives along them, parts of standing things can seem to be one that grows and
-/// moves.
+/// While a robot drives past, parts of stationary obstacles can look like one obstacle that grows
+/// and moves.
 #[test]
 fn what_has_grown_wider_than_a_mover_is_none() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -366,7 +370,7 @@ fn who_stops_stands_and_who_goes_on_moves_again() {
     assert_eq!(go(&mut drive, 20, up), (1, 0), "and what it marked is gone");
 }
 
-/// Two discs that move as one are measured by their middle, which is never certain.
+/// Two discs that move as one are measured by their middle, which always stays uncertain.
 #[test]
 fn who_is_not_round_stands_again_too() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -386,7 +390,7 @@ fn who_is_not_round_stands_again_too() {
 fn what_splits_becomes_two() {
     let mut drive = Drive::new(map(&[]), &[]);
     for cycle in 0..30 {
-        // Side by side as one, then apart.
+        // Side by side as one obstacle, then apart.
         let apart_m = 0.15 + 0.03 * f64::from(cycle);
         let middle = Point::new(1.5, -0.9 + 0.05 * f64::from(cycle));
         let aside = Point::new(0.0, apart_m);
@@ -413,7 +417,7 @@ fn who_is_gone_is_forgotten() {
     // Seen through.
     let left: Vec<usize> = (0..5).map(|_| drive.step(Pose::default(), &[]).len()).collect();
     assert_eq!((left[0], left[4]), (1, 0));
-    // Out of view: the robot is somewhere else.
+    // Out of view: the robot is elsewhere.
     let mut drive = Drive::new(map(&[]), &[]);
     walk(&mut drive);
     let left: Vec<usize> =

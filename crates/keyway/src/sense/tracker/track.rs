@@ -1,4 +1,4 @@
-//! One thing that is followed from scan to scan.
+//! The track of one object, followed from scan to scan.
 
 use super::disc_fit::{Fit, fit, fit_of_radius};
 use super::{EVIDENCE_BEAMS, TrackerConfig};
@@ -8,14 +8,14 @@ use crate::sense::{Mover, MovingPoint};
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 
-/// A thing that no map shows: its state, and what shows whether it moves.
+/// An unmapped object: its state, and the evidence for its motion.
 ///
 /// Position and velocity are estimated by a Kalman filter of constant velocity \[BarShalom2001,
 /// section 6.3\], with the same covariance along both axes, so that three numbers are enough.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Track {
     pub(super) id: u64,
-    /// The sensor that has met it last: another one may look over it.
+    /// Sensor that last hit it; another one may see over it.
     pub(super) sensor: usize,
     pub(super) centre: Point,
     velocity_mps: Point,
@@ -27,19 +27,18 @@ pub(super) struct Track {
     age_s: f64,
     pub(super) unseen_s: f64,
     pub(super) is_mover: bool,
-    /// Scans in which what stood at the anchor was seen through, or what is here now stands in what
-    /// was seen through.
+    /// Scans in which the surface at the anchor was seen through, or in which its present surface
+    /// had been seen through before.
     pub(super) evidence: u32,
-    /// How long ago something was last seen to speak against its standing still; infinite when
-    /// nothing has \[s\].
+    /// Time since the last evidence against its being stationary \[s\]; infinite without any.
     pub(super) since_doubted_s: f64,
-    /// Its hits of the last scan, taken on with its velocity; none while it is out of view.
+    /// Hits of the last scan, moved along with its velocity; empty while it is out of view.
     pub(super) surface: Surface,
-    /// Where it was first seen, or stands since.
+    /// Position at which it was first seen, or since which it has been at rest.
     pub(super) anchor: Anchor,
-    /// Scans in a row that see through it.
+    /// Number of consecutive scans that see through it.
     pub(super) empty_scans: u32,
-    /// Cells that its hits marked while it counted as standing.
+    /// Cells that its hits marked while it counted as stationary.
     pub(super) marked: ArrayVec<Cell, { Track::MOST_CELLS }>,
 }
 
@@ -50,21 +49,21 @@ struct Spread {
     velocity: f64,
 }
 
-/// Hits on one thing.
+/// Hits on one object.
 type Surface = ArrayVec<Point, { Track::MOST_HITS }>;
 
-/// A place, with the surface that was seen there.
+/// A position, with the surface that was seen there.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Anchor {
     pub(super) surface: Surface,
     centre: Point,
     off_m: f64,
     age_s: f64,
-    /// The longest that it has been out of view since.
+    /// Longest time out of view since then \[s\].
     unseen_s: f64,
 }
 
-/// What a scan shows of a track.
+/// The view of a track in one scan.
 pub(super) struct Sight<'a> {
     /// Hits in the order of the beams; at least one.
     pub(super) hits: &'a [Point],
@@ -74,24 +73,24 @@ pub(super) struct Sight<'a> {
 }
 
 impl Track {
-    /// Hits of a surface that are remembered; of more, every second one, and so on.
+    /// Maximum number of remembered hits of a surface; of more, every n-th one is kept.
     pub(super) const MOST_HITS: usize = 48;
 
-    /// Who has been out of view for longer may be anywhere: it is not looked for where it could
-    /// have turned to, and its rest begins anew \[s\].
+    /// Time out of view up to which the search radius allows for a reversal; after a longer one,
+    /// its rest starts over \[s\].
     const TURNED_S: f64 = 0.3;
 
-    /// Cells of a trail that are remembered, the oldest ones last.
+    /// Maximum number of remembered cells of a trail; the oldest ones are dropped first.
     const MOST_CELLS: usize = 96;
 
-    /// For so many hits one beam has to speak against its standing still: errors larger than
-    /// expected make single beams do so.
+    /// Number of hits per beam of evidence against being stationary: larger errors than expected
+    /// make single beams contradict.
     const HITS_PER_BEAM_AGAINST: usize = 8;
 
-    /// Standard deviations within which an error is taken to be.
+    /// Number of standard deviations that bound an error.
     const SIGMAS: f64 = 3.0;
 
-    /// A new one where hits are seen. It may move at any speed of the config's bounds.
+    /// Starts a track at the given hits. Its speed may be anything within the config's bounds.
     pub(super) fn new(id: u64, sight: &Sight<'_>, config: &TrackerConfig) -> Option<Self> {
         let fit = fit(sight.hits, sight.sensor, config.range_noise_m, config.largest_diameter_m)?;
         let mut track = Self {
@@ -119,12 +118,12 @@ impl Track {
         Some(track)
     }
 
-    /// Goes on for some time without being seen.
+    /// Predicts the state over a time.
     pub(super) fn predict(&mut self, elapsed_s: f64, config: &TrackerConfig) {
         let moved = self.velocity_mps * elapsed_s;
         self.centre = self.centre + moved;
         self.surface.iter_mut().for_each(|place| *place = *place + moved);
-        // White acceleration: its standard deviation is half of what movers can do.
+        // White acceleration: its standard deviation is half of the maximum acceleration.
         let pushed = 0.5 * config.acceleration_mps2 * elapsed_s;
         let noise = pushed * pushed;
         let Spread { position, both, velocity } = self.spread;
@@ -141,7 +140,8 @@ impl Track {
         self.since_doubted_s += elapsed_s;
     }
 
-    /// Moves it with the robot that follows it. The cells that it marked are marked no more.
+    /// Moves the track along with a correction of the robot's pose. Its marked cells are
+    /// forgotten.
     pub(super) fn shift(&mut self, shift: &Shift) {
         self.centre = shift.point(self.centre);
         self.velocity_mps = shift.vector(self.velocity_mps);
@@ -151,31 +151,31 @@ impl Track {
         self.marked.clear();
     }
 
-    /// The ground that it may cover now.
+    /// The area that it may cover now.
     pub(super) fn now(&self) -> Disc {
         Disc { centre: self.centre, radius_m: self.radius_m + self.off_m() }
     }
 
-    /// Its centre is no farther than this from the estimated one \[m\].
+    /// Bound on the error of the estimated centre \[m\].
     pub(super) fn off_m(&self) -> f64 {
         Self::SIGMAS * self.spread.position.sqrt()
     }
 
-    /// Its hits are no farther than this from where it is expected \[m\]. A mover may have turned
-    /// around since it was last seen.
+    /// Bound on the distance of its hits from the predicted centre \[m\]. A moving obstacle may
+    /// have reversed since it was last seen.
     pub(super) fn reach_m(&self, noise_m: f64) -> f64 {
         let seen_s = if self.is_mover { self.unseen_s.min(Self::TURNED_S) } else { 0.0 };
         self.radius_m + self.off_m() + 2.0 * (noise_m + self.velocity_mps.norm() * seen_s)
     }
 
-    /// A scan does not show it, and where `is_empty` sees through it.
+    /// Takes in a scan without hits on it; `is_empty` if the scan sees through it.
     pub(super) fn miss(&mut self, is_empty: bool) {
         self.surface.clear();
         self.anchor.unseen_s = self.anchor.unseen_s.max(self.unseen_s);
         self.empty_scans = if is_empty { self.empty_scans + 1 } else { 0 };
     }
 
-    /// Takes in what a scan shows of it.
+    /// Takes in the hits of a scan.
     pub(super) fn see(&mut self, sight: &Sight<'_>, config: &TrackerConfig) {
         (self.unseen_s, self.empty_scans) = (0.0, 0);
         note_surface(&mut self.surface, sight.hits);
@@ -184,7 +184,7 @@ impl Track {
             return;
         };
         if fit.is_round && !self.is_round {
-            // Seen whole for the first time: what was known of its place was known of a part.
+            // Seen as a whole for the first time: its position so far was that of a part.
             self.is_round = true;
             self.restart(&fit, config);
         } else if fit.is_round {
@@ -201,33 +201,33 @@ impl Track {
         }
     }
 
-    /// True if it is farther from its anchor than the errors of both places explain.
+    /// True if it is farther from its anchor than the errors of both positions explain.
     pub(super) fn has_left_its_anchor(&self) -> bool {
         let shape_m = if self.is_round { 0.0 } else { self.radius_m };
         let off_m = self.off_m() + shape_m + self.anchor.off_m;
         self.centre.distance(self.anchor.centre) > off_m
     }
 
-    /// Of the surface on which there are so many hits now, so many beams of a remembered scan have
-    /// seen through it.
+    /// Takes in that `beams` beams of a remembered scan have seen through its present surface of
+    /// `hits` hits.
     pub(super) const fn note_seen_through(&mut self, beams: u32, hits: usize) {
         if beams >= EVIDENCE_BEAMS && beams as usize * Self::HITS_PER_BEAM_AGAINST >= hits {
             self.since_doubted_s = 0.0;
         }
     }
 
-    /// It moves: what it marked as standing was not.
+    /// Starts to move: the cells that it marked as stationary are to be cleared.
     pub(super) fn start_moving(&mut self, left: &mut Vec<Cell>) {
         self.is_mover = true;
         left.extend(self.marked.drain(..));
     }
 
-    /// Watches whether a mover stays where it is, which makes it standing; `hits` are those of this
-    /// scan.
+    /// Checks if a moving obstacle stays at its position and has become stationary; `hits` are
+    /// those of this scan.
     pub(super) fn watch_rest(&mut self, hits: &[Point], config: &TrackerConfig) {
         let speed_mps = self.velocity_mps.norm();
-        // Who was out of view may have been anywhere, and from a place that was known much worse it
-        // may have come: that shows no rest.
+        // An obstacle that was out of view may have been elsewhere, and one with a much less
+        // certain anchor may have come from elsewhere: neither shows rest.
         let is_in_view =
             self.anchor.unseen_s <= Self::TURNED_S && self.anchor.off_m <= 2.0 * self.off_m();
         let is_known = is_in_view || self.off_m() + self.anchor.off_m <= config.gap_m;
@@ -242,7 +242,7 @@ impl Track {
         }
     }
 
-    /// Notes a cell that one of its hits marks.
+    /// Records a cell that one of its hits marks.
     pub(super) fn note_cell(&mut self, cell: Cell) {
         if self.marked.contains(&cell) {
             return;
@@ -253,14 +253,14 @@ impl Track {
         self.marked.push(cell);
     }
 
-    /// True if it may as well stand: no more than its uncertainty, a standard deviation, tells it
-    /// from what does, or it is not round. Of such a thing the middle of what is seen moves as more
-    /// of it comes into view.
+    /// True if it may as well be stationary: its speed is at most one standard deviation, or it
+    /// is not round. The visible middle of an object that is not round moves as more of it comes
+    /// into view.
     pub(super) fn may_stand(&self) -> bool {
         !self.is_round || self.velocity_mps.norm_sq() <= self.spread.velocity
     }
 
-    /// Its hits in a while: those of one that goes on, and those of one that stands.
+    /// Its predicted hits: once as if it continues, and once as if it is stationary.
     pub(super) fn surface_after(&self, after_s: f64) -> impl Iterator<Item = MovingPoint> + '_ {
         let velocities = [self.velocity_mps, Point::default()].into_iter();
         velocities.flat_map(move |velocity_mps| {
@@ -282,7 +282,7 @@ impl Track {
         }
     }
 
-    /// Remembers where it is now, with the surface that is seen.
+    /// Sets the anchor to its present position and surface.
     fn set_anchor(&mut self, hits: &[Point], off_m: f64) {
         note_surface(&mut self.anchor.surface, hits);
         (self.anchor.centre, self.anchor.off_m) = (self.centre, off_m);
@@ -290,7 +290,7 @@ impl Track {
         self.evidence = 0;
     }
 
-    /// The place of a fit, and any velocity.
+    /// Resets the position to that of a fit, and allows any velocity.
     fn restart(&mut self, fit: &Fit, config: &TrackerConfig) {
         self.centre = fit.disc.centre;
         self.velocity_mps = Point::default();
@@ -308,11 +308,11 @@ impl Track {
         let variance = 0.25 * fit.off_m * fit.off_m;
         let gain = self.radius_variance / (self.radius_variance + variance);
         self.radius_m += gain * (fit.disc.radius_m - self.radius_m);
-        // Things are never quite round: what is seen later counts as well.
+        // Objects are never exactly round: later fits still count.
         self.radius_variance = ((1.0 - gain) * self.radius_variance).max(1e-2 * variance);
     }
 
-    /// The filter's correction by a measured centre.
+    /// Correction of the filter by a measured centre.
     fn correct(&mut self, measured: Point, off_m: f64, config: &TrackerConfig) {
         let variance = 0.25 * off_m * off_m;
         let innovation = measured - self.centre;
@@ -336,7 +336,7 @@ impl Track {
     }
 }
 
-/// Remembers a surface; of too many hits, every second one, and so on.
+/// Stores a surface; of too many hits, every n-th one.
 fn note_surface(surface: &mut Surface, hits: &[Point]) {
     surface.clear();
     let step = hits.len().div_ceil(Track::MOST_HITS).max(1);

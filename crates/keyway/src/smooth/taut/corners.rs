@@ -1,34 +1,34 @@
-//! The corners of obstacles around which a taut path may bend, and how far it stays from each.
+//! The obstacle corners that a taut path may bend around, and the radius it keeps from each.
 
 use super::TOUCH_CELLS;
 use crate::geometry::{Point, Segment};
 use crate::map::{BitGrid, Cell};
 use crate::search::bit_scan::convex_corners;
 
-/// The radius around a corner that the line itself is nearer to is less than its distance by this
-/// share: the line has to stay outside even where it is rounded.
+/// If the line itself is closer to a corner than the radius, the corner's radius is less than the
+/// line's distance by this share, so that the line stays outside even if it is rounded.
 const ROUNDING: f64 = 1e-10;
 
-/// A lattice point, the lower left corner of its cell, around which one cell is blocked, or two
-/// diagonally.
+/// A lattice point, the lower left corner of its cell, surrounded by one blocked cell, or two
+/// diagonal ones.
 pub(super) type Corner = Cell;
 
-/// Where a corner is \[cells\].
+/// Position of a corner \[cells\].
 pub(super) fn position(corner: Corner) -> Point {
     Point::new(f64::from(corner.x), f64::from(corner.y))
 }
 
-/// The corners of a map's obstacles, seen from one line.
+/// The corners of a map's obstacles, for one line.
 pub(super) struct Corners<'m> {
     obstacles: &'m BitGrid,
-    /// The radius that is kept around corners \[cells\].
+    /// The radius to keep around corners \[cells\].
     radius: f64,
-    /// Corners that the line is nearer to, with the radius that it leaves; sorted.
+    /// Corners that the line is closer to, with their smaller radii; sorted.
     tight: Vec<((i32, i32), f64)>,
 }
 
 impl<'m> Corners<'m> {
-    /// For a line \[cells\] that is to keep `radius` \[cells\].
+    /// Corners for a line \[cells\] that has to keep `radius` \[cells\].
     pub(super) fn new(obstacles: &'m BitGrid, radius: f64, line: &[Point]) -> Self {
         let mut corners = Self { obstacles, radius, tight: Vec::new() };
         if radius > TOUCH_CELLS {
@@ -69,8 +69,8 @@ impl<'m> Corners<'m> {
         })
     }
 
-    /// Visits all corners whose discs may meet the convex hull of the segments \[cells\], and some
-    /// more. On the border of the map a path cannot bend around anything.
+    /// Visits all corners whose discs may intersect the convex hull of the segments \[cells\], and
+    /// some more. Corners on the border of the map are left out: a path cannot bend around them.
     pub(super) fn for_each_near<const N: usize>(
         &self,
         hull: [Segment; N],
@@ -86,7 +86,7 @@ impl<'m> Corners<'m> {
         let edges = hull.map(Edge::new);
         for y in lines {
             let (from, to) = extent(&edges, f64::from(y), reach);
-            // Corners are whole numbers: rounded towards 0, and one more on either side.
+            // Corners are integers. Rounding towards 0 adds at most one corner on the left.
             let first = (from as i32).max(1);
             let last = (to as i32).min(width - 1);
             if first <= last {
@@ -110,11 +110,11 @@ impl<'m> Corners<'m> {
     }
 }
 
-/// An edge of a hull, its lower end first.
+/// An edge of a hull, with its lower end first.
 struct Edge {
     low: Point,
     high: Point,
-    /// Columns per line along it.
+    /// Change of column per line along the edge.
     slope: f64,
 }
 
@@ -125,21 +125,22 @@ impl Edge {
         Self { low, high, slope }
     }
 
-    /// The column where it is at a line, or at the end that is nearer to it.
+    /// The column of the edge at line `y`; outside its range, the column of `end`.
     fn column(&self, y: f64, end: Point) -> f64 {
         let is_beside = self.low.y < y && y < self.high.y;
         if is_beside { self.low.x + (y - self.low.y) * self.slope } else { end.x }
     }
 }
 
-/// The columns of a line that lie within `reach` of the hull of the edges, or a little more.
+/// The range of columns of a line that lie within `reach` of the hull of the edges, or slightly
+/// more.
 fn extent(edges: &[Edge], y: f64, reach: f64) -> (f64, f64) {
     let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
     for edge in edges {
         if edge.low.y > y + reach || edge.high.y < y - reach {
             continue;
         }
-        // An edge that lies in the line counts with both ends.
+        // Both ends count for a horizontal edge.
         for x in [edge.column(y - reach, edge.low), edge.column(y + reach, edge.high)] {
             from = if x < from { x } else { from };
             to = if x > to { x } else { to };

@@ -1,36 +1,37 @@
 //! The taut path: a line -> the locally shortest path at a clearance, as if the line were a string
 //! that is pulled tight around the obstacles.
 //!
-//! The end of a string is led along the line, and the string is kept tight: its last leg sweeps
-//! over the plane. Where it meets a corner of an obstacle, the string bends around it from then on;
-//! where it has become straight at a corner, it leaves it. So no obstacle ever changes sides: the
-//! path is the shortest one of all into which the line can be pulled (of its homotopy class). With
-//! a clearance the string winds around discs of that radius: its legs are tangents, its bends are
-//! arcs.
+//! The end of a string is moved along the line, and the string is kept tight: its last leg sweeps
+//! over the plane. If the leg hits a corner of an obstacle, the string bends around it from then
+//! on; if the string becomes straight at a corner, it leaves the corner. So no obstacle ever
+//! changes sides: the path is the shortest one that the line can be pulled into (of its homotopy
+//! class). With a clearance the string wraps around discs of that radius: its legs are tangents,
+//! its bends are arcs.
 //!
 //! # Source
-//! \[Hershberger1994\], whose funnel needs a triangulation; here the corners in the triangle that a
-//! leg sweeps are found in the map's bits, row by row.
+//! \[Hershberger1994\], whose funnel needs a triangulation. Here the corners in the triangle that
+//! a leg sweeps are found in the map's bits, row by row.
 //!
-//! # What the clearance means
-//! - Only convex corners of obstacle squares bend a shortest path, so discs around these are all
-//!   that is kept away from; all else follows.
-//! - Around a corner that the line itself is nearer to than the clearance, the radius is the line's
-//!   own distance, and what is missing is reported. A line may begin or end so.
-//! - A segment of the line that enters an obstacle, leaves the map, or slips between two squares
-//!   stays as it is; what is before and after it is pulled tight.
+//! # Clearance
+//! - Only convex corners of obstacle squares bend a shortest path, so it is enough to keep the
+//!   distance from discs around them.
+//! - If the line itself is closer to a corner than the clearance, the radius around that corner is
+//!   the line's own distance, and the shortfall is reported. A line may begin or end like this.
+//! - A segment of the line that enters an obstacle, leaves the map, or passes between two diagonal
+//!   squares stays as it is. The parts before and after it are pulled tight.
 //!
-//! # Once more
-//! Without clearance the taut path of a taut path is that path. With a clearance it is, too, for a
-//! line that keeps the clearance, such as tangents around the arcs. Points *on* the arcs joined by
-//! straight lines are not such a line: they cut into the discs, so that less than the clearance is
-//! kept, and that is reported.
+//! # Idempotence
+//! Without clearance the taut path of a taut path is that path. With a clearance this also holds
+//! for a line that keeps the clearance, such as tangents around the arcs. Points *on* the arcs
+//! joined by straight lines are not such a line: they cut into the discs, so they keep less than
+//! the clearance, and that is reported.
 //!
 //! # Errors / cost
-//! None. The result is measured exactly; where it is not as good as the line, which only comes from
-//! rounding (a line that only touches its discs and comes back the same way) or overlapping discs
-//! of unequal size, the line stays as it was, and its corners are reported as sharp ones. Each
-//! point of the line and each corner met or left costs one look at the rows of a triangle.
+//! None. The result is measured exactly. If it is worse than the line, the line stays as it was,
+//! and its corners are reported as sharp. This happens only due to rounding (a line that only
+//! touches its discs and comes back by the same path) or with overlapping discs of unequal size.
+//! Each point of the line, and each corner that the string hits or leaves, costs one scan of the
+//! rows of a triangle.
 
 mod corners;
 mod string;
@@ -46,13 +47,14 @@ use corners::Corners;
 use serde::{Deserialize, Serialize};
 use string::{Contact, pull};
 
-/// Nearer than this \[cells\] is touching: less than what [`Clearance::is_clear`] tolerates.
+/// Distances below this \[cells\] count as touching: less than the tolerance of
+/// [`Clearance::is_clear`].
 const TOUCH_CELLS: f64 = 1e-10;
 
-/// Coordinates nearer than this to the edge of a cell are taken to lie on it \[cells\].
+/// Coordinates within this distance of the edge of a cell \[cells\] are moved onto it.
 const SNAP_CELLS: f64 = 1e-9;
 
-/// What may be lost of length and clearance by rounding \[cells\].
+/// Length and clearance that may be lost to rounding \[cells\].
 const ROUNDING_CELLS: f64 = 2e-8;
 
 /// Parameters of [`Taut`]: none.
@@ -106,9 +108,9 @@ impl Smoother for Taut {
 
 /// A part of the line.
 enum Part<'l> {
-    /// It is in collision and stays.
+    /// In collision: it stays.
     Kept(Segment),
-    /// It can be pulled.
+    /// Free: it can be pulled tight.
     Free(&'l [Point]),
 }
 
@@ -131,7 +133,7 @@ fn parts<'l>(line: &'l Polyline, clearance: &Clearance<'_>) -> Vec<Part<'l>> {
     parts
 }
 
-/// The pieces of the taut path of some points that are clear of obstacles.
+/// The pieces of the taut path for points that are clear of obstacles.
 fn pulled(points: &[Point], clearance: &Clearance<'_>, clearance_m: f64) -> Option<Vec<PathPiece>> {
     let frame = clearance.frame();
     let in_cells: Vec<Point> = points.iter().map(|&p| snapped(frame.grid_from_world(p))).collect();
@@ -151,7 +153,7 @@ fn pulled(points: &[Point], clearance: &Clearance<'_>, clearance_m: f64) -> Opti
         let touch = frame.world_from_grid(contact.touch);
         let leg = at.distance(touch) / frame.resolution_m();
         if contact.turned_rad * leg.max(contact.radius) <= TOUCH_CELLS {
-            // As good as straight on.
+            // Straight on, up to rounding.
             continue;
         }
         go_to(&mut at, touch, &mut pieces);
@@ -164,7 +166,7 @@ fn pulled(points: &[Point], clearance: &Clearance<'_>, clearance_m: f64) -> Opti
     Some(pieces)
 }
 
-/// The arc of a path around a contact, in the world; `None` where it has no length.
+/// The arc of a path around a contact, in world coordinates; `None` if its length is 0.
 fn bend(contact: &Contact, clearance: &Clearance<'_>) -> Option<Arc> {
     let frame = clearance.frame();
     if contact.is_point() || contact.turned_rad * contact.radius <= TOUCH_CELLS {
@@ -184,7 +186,7 @@ fn snapped(cells: Point) -> Point {
     Point::new(snap(cells.x), snap(cells.y))
 }
 
-/// The path, with what was done to the line.
+/// The path, with its changes from the line.
 fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
     let is_straight = pieces.iter().all(|piece| matches!(piece, PathPiece::Segment(_)));
     let mut corners: Vec<Point> = line.points().first().copied().into_iter().collect();
@@ -204,7 +206,7 @@ fn described(line: &Polyline, pieces: Vec<PathPiece>) -> Smoothed {
     }
 }
 
-/// True if a path is not longer than the line, and nearer to obstacles only as far as it may be.
+/// True if a path is not longer than the line, and no closer to obstacles than permitted.
 fn is_as_good(
     smoothed: &Smoothed,
     line: &Polyline,
@@ -217,11 +219,11 @@ fn is_as_good(
     let path_ends = pieces.first().zip(pieces.last()).map(|(a, b)| (a.start(), b.end()));
     let points = line.points();
     let has_ends = path_ends == points.first().copied().zip(points.last().copied());
-    // To the border a taut path comes no nearer than the line.
+    // A taut path comes no closer to the border than the line.
     let from_obstacles =
         || required.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
     let is_clear = smoothed.shortfall_m.and_then(|_| from_obstacles()).is_none_or(|kept_m| {
-        // At a distance of 0 a path may touch an obstacle, or be in it.
+        // A path with a clearance of 0 may touch an obstacle, or be in it.
         let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
         let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();
         let before_m = clearance.of_line(line);

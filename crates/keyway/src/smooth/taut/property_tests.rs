@@ -1,4 +1,4 @@
-//! The taut path against properties that define it, on random maps.
+//! Defining properties of the taut path, on random maps.
 
 use super::tests::taut;
 use super::*;
@@ -8,7 +8,7 @@ use crate::plan::shortest_line;
 use crate::search::CornerRule;
 use proptest::prelude::*;
 
-/// For each group of obstacles that touch, also in a corner, one of its cells.
+/// One cell of each group of obstacles that touch, even if only in a corner.
 fn groups(grid: &OccupancyGrid) -> Vec<Cell> {
     let mut left: Vec<Cell> =
         grid.frame().cells().filter(|&c| grid.state(c) == Some(CellState::Occupied)).collect();
@@ -25,9 +25,9 @@ fn groups(grid: &OccupancyGrid) -> Vec<Cell> {
     groups
 }
 
-/// How a line passes the groups: the rays upwards from each that it crosses, with the direction,
-/// and crossings there and back again cancelled. Two lines with the same ends can be pulled into
-/// each other if and only if these are the same.
+/// The sequence in which a line passes the groups: the rays upwards from each group that it
+/// crosses, with the direction; crossings there and back again cancel. Two lines with the same
+/// ends can be pulled into each other if and only if their words are equal.
 fn word(line: &Polyline, groups: &[Cell]) -> Vec<(usize, bool)> {
     let ray = |number: usize| {
         let shift = 1e-3 * (number as f64 + 0.37);
@@ -71,7 +71,7 @@ fn walk(map: &SearchMap, first: usize, steps: &[u8]) -> Option<Polyline> {
     let mut points = vec![map.frame().world_from_cell(at)];
     let mut ahead = 0;
     for step in steps {
-        // Mostly straight on, so that the walk comes around.
+        // Mostly straight on, so that the walk gets around.
         ahead = if *step < 8 { i32::from(*step) } else { ahead };
         let (dx, dy) =
             [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)][ahead as usize];
@@ -103,8 +103,8 @@ fn is_taut(line: &Polyline, map: &SearchMap) -> bool {
     })
 }
 
-/// The line over those of some places, as shares of the map's size, that are clear of obstacles,
-/// one after another.
+/// The line through given points, as shares of the map's size; a point is used only if the segment
+/// to it is clear of obstacles.
 fn clear_line(
     clearance: &Clearance<'_>,
     (width, height): (u64, u64),
@@ -121,7 +121,7 @@ fn clear_line(
     (points.len() > 1).then(|| Polyline::new(points))
 }
 
-/// No piece without a length, and a turn between any two segments.
+/// No piece has a length of 0, and successive segments are not collinear.
 fn check_pieces(path: &Path) -> Result<(), TestCaseError> {
     let has_length = |piece: &PathPiece| piece.length_m() > 0.0;
     prop_assert!(path.pieces().iter().all(has_length) || path.length_m() == 0.0, "{:?}", path);
@@ -132,8 +132,8 @@ fn check_pieces(path: &Path) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// From each corner of an obstacle, except on the border, the path keeps what is asked for, or what
-/// the line keeps of it.
+/// The path keeps the required distance, or the line's own distance if that is smaller, from each
+/// obstacle corner that is not on the border.
 fn check_corners(
     grid: &OccupancyGrid,
     line: &Polyline,
@@ -186,7 +186,7 @@ proptest! {
         let Some(line) = walk(&map, first, &steps) else { return Ok(()) };
         let smoothed = taut(&line, &map.clearance(), 0.0);
         let path = smoothed.path.flattened(0.0);
-        // Where the walk comes back to where it began, nothing may be left of it.
+        // If the walk returns to its start, the whole line may disappear.
         prop_assume!(!path.points().is_empty());
         let groups = groups(&grid);
         prop_assert!(smoothed.sharp_corners.is_empty() && smoothed.shortfall_m.is_none());
@@ -198,7 +198,7 @@ proptest! {
         let back = Polyline::new(line.points().iter().rev().copied().collect());
         let back = taut(&back, &map.clearance(), 0.0);
         prop_assert!((back.path.length_m() - path.length_m()).abs() < 1e-9, "{:?}", back);
-        // Against an independent search, where the class is the best one.
+        // Compares with an independent search if this class is the best one.
         let (a, b) = (line.points()[0], line.points()[line.points().len() - 1]);
         let shortest = shortest_line(&map, CornerRule::Forbid, a, b).unwrap();
         prop_assert!(path.length_m() >= shortest.length_m() - 1e-9);
@@ -223,7 +223,7 @@ proptest! {
             prop_assert!(smoothed.sharp_corners.is_empty(), "{:?}", smoothed);
             check_pieces(&smoothed.path)?;
         } else {
-            // Neither nearer to obstacles than the line nor to the border.
+            // The path is no closer to obstacles or to the border than the line.
             let to_border = |&at: &Point| map.clearance().to_border(at);
             let border_m = line.points().iter().map(to_border).fold(asked, f64::min);
             let before_m = map.clearance().of_line(&line).map_or(border_m, |m| m.min(border_m));
@@ -231,7 +231,7 @@ proptest! {
         }
         check_corners(&grid, &line, &smoothed.path, asked)?;
         if smoothed.sharp_corners.is_empty() {
-            // Between discs of unequal size that overlap there may be a corner.
+            // Overlapping discs of unequal size may leave a corner between them.
             let is_smooth = smoothed.path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-4);
             prop_assert!(is_smooth || asked < 1e-6 || asked > planned);
             let path = smoothed.path.flattened(1e-3);
@@ -242,7 +242,7 @@ proptest! {
         }
     }
 
-    /// Lines of any direction; up to a share of 1 they keep what is asked for.
+    /// Lines of any direction; up to a share of 1 they keep the required distance.
     #[test]
     fn any_clear_line((size, bits) in grids(0.08), corners in prop::collection::vec((0.0..1.0f64, 0.0..1.0f64), 2..20),
                       share in prop_oneof![Just(0.0), Just(0.999), 0.0..0.999f64, 1.0..4.0f64]) {
@@ -269,14 +269,14 @@ proptest! {
         }
     }
 
-    /// What goes out and comes back by the same way is nothing.
+    /// A detour there and back along the same path leaves nothing.
     #[test]
     fn a_detour_there_and_back_changes_nothing((size, bits) in grids(0.06), first: usize,
                                                asked in prop_oneof![Just(0.0), 0.0..1.0f64],
                                                steps in prop::collection::vec(0u8..30, 0..80),
                                                detour in prop::collection::vec(0u8..30, 0..80)) {
         let grid = random_grid(size, &bits);
-        // More than is asked for: no disc is touched on the way.
+        // More than required: the line touches no disc.
         let map = map_of(&grid, asked + 1e-3);
         let Some(line) = walk(&map, first, &steps) else { return Ok(()) };
         let Some(detour) = walk(&map, first, &detour) else { return Ok(()) };
@@ -289,7 +289,7 @@ proptest! {
         prop_assert!(longer.sharp_corners.is_empty() && longer.shortfall_m.is_none());
     }
 
-    /// Over places on edges, corners and centres of cells, which rounding moves on a turned map.
+    /// Points on edges, corners and centres of cells, which rounding moves on a turned map.
     #[test]
     fn what_touches_is_the_same_on_a_turned_map((size, bits) in grids(0.15), yaw in -3.0..3.0f64,
                                                 resolution_m in prop_oneof![Just(0.05), 0.1..2.0f64],

@@ -1,15 +1,15 @@
-//! A string that is pulled tight while its end is led along a line.
+//! A string that is kept tight while its end is moved along a line.
 
 use super::TOUCH_CELLS;
 use super::corners::{Corner, Corners, position};
 use crate::geometry::{Point, Segment};
 
-/// Steps for each point of the line after which a string is given up: no more than this many
-/// corners are met or left on the way to a point of any map that was tried, by far.
+/// Maximum number of steps for each point of the line before the string is given up. Every map
+/// that was tried needed far fewer.
 const STEPS_PER_POINT: usize = 10_000;
 
-/// A circle that a path passes as a tangent. Its radius is positive where the path turns left
-/// around it, negative where it turns right, and 0 for a point.
+/// A circle that the path is tangent to. Its radius is positive if the path turns left around it,
+/// negative if it turns right, and 0 for a point.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     centre: Point,
@@ -20,7 +20,7 @@ struct Disc {
 #[derive(Clone, Copy, Debug)]
 struct Leg {
     from: Point,
-    /// A vector of length 1.
+    /// Unit vector.
     direction: Point,
     length: f64,
 }
@@ -31,22 +31,22 @@ impl Leg {
     }
 }
 
-/// What the string bends around, or where it begins.
+/// A corner that the string bends around, or its start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     /// The corner; `None` at the start.
     corner: Option<Corner>,
-    /// Where it is \[cells\].
+    /// Its position \[cells\].
     pub(super) centre: Point,
     /// The radius around it \[cells\].
     pub(super) radius: f64,
-    /// 1 where the string turns left around it, -1 to the right, 0 at the start.
+    /// 1 if the string turns left around it, -1 to the right, 0 at the start.
     pub(super) side: f64,
-    /// Where the string arrives \[cells\].
+    /// The point at which the string arrives \[cells\].
     pub(super) touch: Point,
-    /// The direction in which it arrives, of length 1.
+    /// The direction in which it arrives, a unit vector.
     arrival: Point,
-    /// The angle by which it turns here, not negative \[rad\].
+    /// The angle by which it turns here, at least 0 \[rad\].
     pub(super) turned_rad: f64,
 }
 
@@ -67,13 +67,13 @@ impl Contact {
         Disc { centre: self.centre, bend: self.side * self.radius }
     }
 
-    /// True if it has no extent.
+    /// True if its radius is 0, up to rounding.
     pub(super) fn is_point(&self) -> bool {
         self.radius <= TOUCH_CELLS
     }
 }
 
-/// The corner that a leg meets first, and where the string's end is then.
+/// The corner that a leg hits first, and the position of the string's end at that moment.
 struct Hit {
     corner: Corner,
     radius: f64,
@@ -85,18 +85,18 @@ struct Hit {
 /// A movement of the string's end, and of the last leg with it.
 struct Sweep {
     leg: Leg,
-    /// 1 when the leg turns to the left, -1 to the right.
+    /// 1 if the leg turns to the left, -1 to the right.
     side: f64,
     from: Point,
     to: Point,
     /// The leg at the end of the movement.
     last: Leg,
-    /// The angle by which the leg turns, not negative \[rad\].
+    /// The angle by which the leg turns, at least 0 \[rad\].
     angle_rad: f64,
 }
 
-/// The contacts of the taut string that can be pulled from a line \[cells\], the first point among
-/// them. `None` when the line has no point or the string did not come to its end.
+/// The contacts of the taut string that a line \[cells\] can be pulled into, including the first
+/// point. `None` if the line has no point, or if the string did not reach its end.
 pub(super) fn pull(corners: &Corners<'_>, line: &[Point]) -> Option<Vec<Contact>> {
     let (&start, rest) = line.split_first()?;
     let mut string = TautString { corners, contacts: vec![Contact::start(start)], end: start };
@@ -114,7 +114,7 @@ struct TautString<'c, 'm> {
 }
 
 impl TautString<'_, '_> {
-    /// Leads the end straight to a point.
+    /// Moves the end straight to a point.
     fn lead_to(&mut self, goal: Point) -> Option<()> {
         for _ in 0..STEPS_PER_POINT {
             if self.end == goal {
@@ -125,7 +125,7 @@ impl TautString<'_, '_> {
         None
     }
 
-    /// Leads the end on until the string meets or leaves a corner.
+    /// Moves the end on until the string hits or leaves a corner.
     fn step(&mut self, goal: Point) -> Option<()> {
         let pivot = *self.contacts.last()?;
         if pivot.is_point() {
@@ -142,7 +142,7 @@ impl TautString<'_, '_> {
         let leg = leg_to(&pivot, self.end)?;
         let side = turning_side(&pivot, &leg, goal);
         let whole = sweep(&pivot, leg, side, self.end, goal)?;
-        // The start, which has no side, is never left.
+        // The start has no side and is never left.
         let unwinds = pivot.corner.is_some() && pivot.side == -side;
         let is_released = unwinds && whole.angle_rad > pivot.turned_rad;
         let sweep = if is_released {
@@ -162,8 +162,8 @@ impl TautString<'_, '_> {
         Some(())
     }
 
-    /// From a pivot without extent, at which the end is, the leg begins in the direction of the
-    /// goal.
+    /// Leaves a pivot without extent whose position the end is at: the leg begins in the direction
+    /// of the goal.
     fn leave(&mut self, goal: Point) {
         if let Some(pivot) = self.contacts.last_mut() {
             let turned = signed_angle(pivot.arrival, goal - pivot.centre);
@@ -172,7 +172,7 @@ impl TautString<'_, '_> {
         self.end = goal;
     }
 
-    /// The end comes to the pivot, which is then no longer a contact.
+    /// Moves the end onto the pivot, which is then no longer a contact.
     fn come_back_to(&mut self, pivot: Contact, goal: Point) {
         let is_there = goal.distance(pivot.centre) <= TOUCH_CELLS;
         self.end = if is_there { goal } else { pivot.centre };
@@ -203,7 +203,7 @@ impl TautString<'_, '_> {
         self.end = hit.end;
     }
 
-    /// The corner that the leg meets first; of several the nearest.
+    /// The corner that the leg hits first; the nearest of several.
     fn first_hit(&self, pivot: &Contact, sweep: &Sweep) -> Option<Hit> {
         if sweep.side == 0.0 {
             return None;
@@ -228,7 +228,7 @@ impl TautString<'_, '_> {
         first
     }
 
-    /// How the leg meets a corner, if it does.
+    /// The hit of the sweeping leg on a corner; `None` if it misses the corner.
     fn hit(&self, pivot: &Contact, sweep: &Sweep, corner: Corner) -> Option<Hit> {
         let Sweep { leg, side, .. } = sweep;
         let (centre, radius) = (position(corner), self.corners.radius(corner));
@@ -256,7 +256,7 @@ impl TautString<'_, '_> {
         (!is_grazed || self.turns_inwards(sweep, &hit, is_at_end)).then_some(hit)
     }
 
-    /// True if a corner that is grazed, by the leg or by its end, has an obstacle where the leg
+    /// True if a corner that the leg or its end grazes has an obstacle on the side that the leg
     /// turns to.
     fn turns_inwards(&self, sweep: &Sweep, hit: &Hit, is_at_end: bool) -> bool {
         let ahead = hit.leg.direction;
@@ -268,7 +268,7 @@ impl TautString<'_, '_> {
 /// The leg that leaves one disc as its tangent and arrives at another as its tangent: with the
 /// vector v between the centres, J v (v turned left by 90 degrees), and r the difference of the
 /// bends,
-/// |v|^2 direction = length v + r J v. `None` where one disc lies in the other.
+/// |v|^2 direction = length v + r J v. `None` if one disc lies in the other.
 fn tangent(from: Disc, to: Disc) -> Option<Leg> {
     let v = to.centre - from.centre;
     let distance = v.norm();
@@ -283,8 +283,8 @@ fn tangent(from: Disc, to: Disc) -> Option<Leg> {
     Some(Leg { from: from.centre + right * from.bend, direction, length })
 }
 
-/// The last leg of a string that ends at a point. Where that is rounded into the disc, it touches
-/// it.
+/// The last leg of a string that ends at a point. If rounding puts the point into the disc, the
+/// disc is shrunk to touch it.
 fn leg_to(pivot: &Contact, end: Point) -> Option<Leg> {
     let bend = pivot.disc().bend;
     let limit = end.distance(pivot.centre);
@@ -292,15 +292,14 @@ fn leg_to(pivot: &Contact, end: Point) -> Option<Leg> {
     tangent(disc, Disc { centre: end, bend: 0.0 })
 }
 
-/// The side to which the last leg turns when its end goes straight to `goal`; 0 when it does not
-/// turn.
+/// The side that the last leg turns to if its end goes straight to `goal`; 0 if it does not turn.
 fn turning_side(pivot: &Contact, leg: &Leg, goal: Point) -> f64 {
     let ahead = goal - leg.from;
     let off = leg.direction.cross(ahead);
     if off.abs() > TOUCH_CELLS {
         return off.signum();
     }
-    // Back over the place where the leg begins: a disc is unwound.
+    // Back over the start of the leg: a disc is unwound.
     let is_behind = leg.direction.dot(ahead) < 0.0 && !pivot.is_point();
     if is_behind { -pivot.side } else { 0.0 }
 }
@@ -311,12 +310,12 @@ fn sweep(pivot: &Contact, leg: Leg, side: f64, from: Point, to: Point) -> Option
     Some(Sweep { leg, side, from, to, last, angle_rad })
 }
 
-/// Where the end is when the string is straight at the pivot.
+/// The end position at which the string is straight at the pivot.
 fn straightening(pivot: &Contact, from: Point, to: Point) -> Point {
     meeting(pivot.touch, pivot.arrival, from, to)
 }
 
-/// Where the ray from a point meets the way from `from` to `to`.
+/// The intersection of the ray from a point with the segment from `from` to `to`.
 fn meeting(origin: Point, direction: Point, from: Point, to: Point) -> Point {
     let way = to - from;
     let across = direction.cross(way);

@@ -27,7 +27,7 @@ fn straight_where_nothing_stands() {
     let zigzag = [[0.5, 0.5], [1.5, 2.5], [2.5, 0.5], [3.5, 1.5]];
     assert_eq!(corners(&rows, &zigzag), [[0.5, 0.5], [3.5, 1.5]]);
     assert_eq!(pulled_on(&rows, &zigzag, 0.3).path.length_m(), 10f64.sqrt());
-    // Out and back again.
+    // There and back again.
     assert_eq!(pulled_on(&rows, &[[0.5, 0.5], [3.5, 0.5], [0.5, 0.5]], 0.0).path.length_m(), 0.0);
     assert!(corners(&rows, &[]).is_empty());
     assert!(pulled_on(&rows, &[[0.5, 0.5]], 0.0).path.length_m() == 0.0);
@@ -41,7 +41,7 @@ fn straight_where_nothing_stands() {
 #[test]
 fn stays_on_its_side_of_an_obstacle() {
     let rows = [".....", "..#..", "....."];
-    // The line goes above the obstacle, (2, 1) - (3, 2), although below is as long.
+    // The line goes above the obstacle, (2, 1) - (3, 2), although the path below is equally long.
     let above = [[0.5, 1.5], [1.5, 2.5], [3.5, 2.5], [4.5, 1.5]];
     assert_eq!(corners(&rows, &above), [[0.5, 1.5], [2.0, 2.0], [3.0, 2.0], [4.5, 1.5]]);
     let below = above.map(|[x, y]| [x, 3.0 - y]);
@@ -50,7 +50,7 @@ fn stays_on_its_side_of_an_obstacle() {
     let around = [[0.5, 0.5], [3.5, 0.5], [3.5, 2.5], [1.5, 2.5], [1.5, 0.5], [4.5, 0.5]];
     let expected = [[0.5, 0.5], [3.0, 1.0], [3.0, 2.0], [2.0, 2.0], [2.0, 1.0], [4.5, 0.5]];
     assert_eq!(corners(&rows, &around), expected);
-    // There and back by another way is a loop around it; by the same way it is nothing.
+    // There and back on different sides is a loop around it; on the same side nothing remains.
     let there = [[0.5, 0.5], [3.5, 0.5], [3.5, 2.5], [3.5, 0.5], [0.5, 0.5], [0.5, 2.5]];
     assert_eq!(corners(&rows, &there), [[0.5, 0.5], [0.5, 2.5]]);
 }
@@ -58,8 +58,8 @@ fn stays_on_its_side_of_an_obstacle() {
 #[test]
 fn a_corner_that_the_line_grazes_on_its_other_side_bends_nothing() {
     // The line x = 3 y - 13 touches the corner (5, 6) of the obstacle below it, and (2, 5) of the
-    // one above it. From (9, 7.5) the string passes 0.07 m above (5, 6), and bends around (2, 5)
-    // only.
+    // one above it. From (9, 7.5) the string passes 0.07 m above (5, 6) and bends only around (2,
+    // 5).
     let free = "...........";
     let rows = [free, free, ".#...#.....", free, free, free, free, free];
     let grazing = [[9.0, 7.5], [8.0, 7.0], [0.5, 4.5]];
@@ -69,8 +69,8 @@ fn a_corner_that_the_line_grazes_on_its_other_side_bends_nothing() {
 #[test]
 fn through_a_maze() {
     let rows = ["......", ".####.", "....#.", ".##.#.", "....#."];
-    // From inside the hook at (2.5, 2.5) around it to its outside (5.5, 2.5): over the top is not
-    // its way in, the line leaves the hook at the left and goes over (1, 4) and (5, 4).
+    // From inside the hook at (2.5, 2.5) around it to its outside (5.5, 2.5). The string cannot go
+    // over the top: the line leaves the hook at the left and goes over (1, 4) and (5, 4).
     let way = [[2.5, 2.5], [0.5, 2.5], [0.5, 4.5], [5.5, 4.5], [5.5, 2.5]];
     let expected = [[2.5, 2.5], [1.0, 3.0], [1.0, 4.0], [5.0, 4.0], [5.5, 2.5]];
     assert_eq!(corners(&rows, &way), expected);
@@ -92,9 +92,9 @@ fn bends_are_arcs_of_the_clearance() {
 
 #[test]
 fn bends_also_where_the_border_is_nearer_than_the_clearance() {
-    // The line is 0.5 m from the map's border, where nothing can be pulled away from it, and 0.7 m
-    // is asked for. Around the corner (3, 2) the clearance is kept; what is reported is the
-    // distance to the border.
+    // The line is 0.5 m from the map's border, which nothing can be pulled away from, and 0.7 m is
+    // required. Around the corner (3, 2) the clearance is kept; the distance to the border is
+    // reported.
     let rows = [".......", ".......", "..#....", ".......", "......."];
     let grid = OccupancyGrid::from_ascii(&rows);
     for resolution_m in [0.05, 1.0, 100.0] {
@@ -114,8 +114,8 @@ fn bends_also_where_the_border_is_nearer_than_the_clearance() {
 
 #[test]
 fn a_line_that_comes_back_unwinds_the_disc() {
-    // Up and left around the corner (1, 2), and back to below it: what is left is straight. The
-    // legs touch the disc on the way back.
+    // Up and left around the corner (1, 2), and back to below it: a straight line remains. The
+    // legs touch the disc on the return.
     let rows = ["....", "....", "#...", "#..."];
     for r in [0.01, 0.1, 0.25, 0.5] {
         let (x, y) = (1.0 + r, 2.0 + r);
@@ -124,15 +124,15 @@ fn a_line_that_comes_back_unwinds_the_disc() {
         assert!((length_m(&line) - (3.5 - x)).abs() < 1e-9, "{r}");
         assert!((length_m(&line[..4]) - (y - 0.5)).abs() < 1e-9, "{r}");
     }
-    // Along the edges of a square, and where nothing stands: there and back is nothing.
+    // Along the edges of a square, and in free space: a line there and back leaves nothing.
     let along = [[1.5, 2.5], [3.5, 2.5], [3.5, 1.5], [3.5, 2.5], [1.5, 2.5]];
     let slanted = [[0.149, 0.761], [2.192, 0.584], [0.149, 0.761]];
     for (line, clearance_m) in [(&along[..], 0.5), (&slanted[..], 0.0)] {
         let done = pulled_on(&["....", "..#.", "...."], line, clearance_m);
         assert!(done.path.length_m() < 1e-9 && done.sharp_corners.is_empty(), "{done:?}");
     }
-    // Through the corner (2, 2), around (2, 1) and back: as far as possible from both that is
-    // nothing.
+    // Through the corner (2, 2), around (2, 1) and back: at the largest possible distance from
+    // both, nothing remains.
     let line = [[1.0, 3.0], [3.0, 1.0], [1.0, 0.0], [3.0, 1.0]];
     let done = pulled_on(&["....", ".#..", "...."], &line, 1.0);
     assert!((done.path.length_m() - 8f64.sqrt()).abs() < 1e-9, "{done:?}");
@@ -140,7 +140,7 @@ fn a_line_that_comes_back_unwinds_the_disc() {
 
 #[test]
 fn where_the_line_is_too_near_its_own_distance_is_kept() {
-    // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m is asked for.
+    // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m is required.
     let rows = ["....", "....", "#...", "#..."];
     let smoothed = pulled_on(&rows, &[[1.5, 0.5], [1.5, 2.5], [0.5, 2.5]], 0.8);
     assert!((smoothed.shortfall_m.unwrap() - 0.5).abs() < 1e-6, "{smoothed:?}");
@@ -158,11 +158,12 @@ fn where_the_line_is_too_near_its_own_distance_is_kept() {
 #[test]
 fn what_is_in_collision_stays() {
     let rows = ["..#..", ".#...", "....."];
-    // Between the two squares at (2, 2), where no line is clear.
+    // Between the two squares at (2, 2), a point that no clear line can pass.
     let slip = [[0.5, 0.5], [0.5, 2.5], [1.5, 2.5], [2.5, 1.5], [4.5, 1.5], [4.5, 0.5]];
     let path = corners(&rows, &slip);
     assert_eq!(path, [[0.5, 0.5], [1.0, 2.0], [1.5, 2.5], [2.5, 1.5], [4.5, 0.5]]);
-    // An arc, a way through the square, and from its end there and back: that leaves no piece.
+    // An arc, a segment through the square, and from its end there and back, which leaves no
+    // piece.
     let rows = ["....", ".#..", "...."];
     let line = [[2.5, 2.5], [2.5, 0.5], [1.5, 0.5], [2.5, 2.5], [2.5, 1.5], [2.5, 2.5]];
     let path = pulled_on(&rows, &line, 1.0).path;
@@ -190,7 +191,7 @@ fn points_are_counted() {
     let rows = [".....", "..#..", "....."];
     let above = [[0.5, 1.5], [1.5, 2.5], [2.5, 2.5], [3.5, 2.5], [4.5, 1.5]];
     assert_eq!(counts(&rows, &above, 0.0), (2, 2));
-    // The three corners below are gone, the two above them are where they were.
+    // The three corners below are gone; the two above them stay in place.
     let both = [[0.5, 1.5], [2.0, 2.0], [2.5, 2.5], [3.0, 2.0], [4.5, 1.5]];
     assert_eq!(counts(&rows, &both, 0.0), (1, 0));
     // Both ends of an arc.
@@ -213,8 +214,8 @@ fn a_slight_bend_is_an_arc_too() {
 
 #[test]
 fn a_disc_that_is_entered_by_a_hair_bends_the_path() {
-    // The straight line between both ends passes the corner (1, 2) at less than 0.5 m, by less than
-    // a micrometre, at right angles to the diagonal.
+    // The straight line between both ends passes the corner (1, 2) at less than 0.5 m, by less
+    // than a micrometre, at right angles to the diagonal.
     let rows = ["......", "......", "......", "#.....", "#....."];
     let diagonal = Point::new(0.5f64.sqrt(), 0.5f64.sqrt());
     let at = |far: f64, along: f64| {
@@ -232,7 +233,7 @@ fn a_disc_that_is_entered_by_a_hair_bends_the_path() {
 #[test]
 fn what_is_only_touched_is_no_corner() {
     // Down the left edges of two squares, which the line touches, and to the left around (3, 1) at
-    // 0.5 m: between them the path goes straight on.
+    // 0.5 m: between them the path is straight.
     let rows = ["....", ".#..", "....", "...."];
     let line = [[1.0, 3.5], [1.0, 0.5], [3.5, 0.5], [3.5, 2.5]];
     let done = pulled_on(&rows, &line, 0.5);
@@ -245,8 +246,8 @@ fn what_is_only_touched_is_no_corner() {
 
 #[test]
 fn the_least_distance_of_the_line_is_kept_around_a_corner() {
-    // The line passes (1, 2) at 0.25 m, and comes as near as 0.35 m once more: the smaller one
-    // counts. Straight up to (1.25, 2), around to where the tangent to (0.5, 3) leaves, and on.
+    // The line passes (1, 2) at 0.25 m, and later at 0.35 m; the smaller distance counts. Straight
+    // up to (1.25, 2), around to the point at which the tangent to (0.5, 3) leaves, and on.
     let rows = ["....", "....", "#...", "#..."];
     let line = [[1.25, 0.5], [1.25, 2.25], [0.5, 3.0]];
     let to_goal = 1.25f64.sqrt();
@@ -283,17 +284,17 @@ fn an_end_that_slides_along_an_obstacle() {
     let rows = ["........", "......#.", "........"];
     let line = [[2.0, 1.0], [7.0, 1.0], [7.0, 0.0]];
     assert_eq!(corners(&rows, &line), [line[0], line[2]]);
-    // The end comes back through the corner (2, 2), where the string was bent until then.
+    // The end comes back through the corner (2, 2), which the string was bent around until then.
     let rows = ["..#.", "....", "...."];
     let line = [[1.5, 2.5], [0.5, 0.5], [3.5, 1.5], [0.5, 2.5]];
     assert_eq!(corners(&rows, &line), [line[0], line[3]]);
-    // Nothing remains of a corner that was left, whatever follows.
+    // Nothing remains of a corner that was left, whatever comes after it.
     let rows = ["....", ".#..", "...."];
     let line = [[0.5, 0.5], [2.5, 0.5], [2.5, 1.5], [1.5, 0.5], [3.5, 0.2]];
     assert_eq!(corners(&rows, &line), [line[0], line[4]]);
     assert!((pulled_on(&rows, &line[..4], 1.0).path.length_m() - 1.0).abs() < 1e-9);
-    // To a place on the edge, and back from it: (0, 2) is left of the line from (1, 4) that it
-    // began with.
+    // To a point on the edge, and back from it: (0, 2) is to the left of the initial line from (1,
+    // 4).
     let rows = ["...", ".#.", "...", "..."];
     assert_eq!(
         corners(&rows, &[[1.0, 4.0], [0.0, 2.0], [3.0, 2.0], [0.0, 2.0]]),
@@ -327,7 +328,7 @@ fn what_touches_and_what_is_in_collision_is_not_reported_as_sharp() {
     assert_eq!((done.path, done.sharp_corners.len()), (Path::from(&line(&through)), 0));
 }
 
-/// What rounding makes of a path cannot be foreseen: here it is made by hand.
+/// The effect of rounding on a path cannot be predicted, so the path is made by hand here.
 #[test]
 fn a_path_that_is_not_as_good_as_the_line_is_refused() {
     // The line is 0.8 m below the square from (2, 1) to (3, 2).
@@ -357,7 +358,7 @@ fn a_path_that_is_not_as_good_as_the_line_is_refused() {
     assert!((0..3).all(|k| untouched(&line(&before[..k]), &required).sharp_corners.is_empty()));
 }
 
-/// Rounding defeats the string where a line comes back just as near to two corners as it went.
+/// Rounding defeats the string if a line passes two corners at the same distance there and back.
 #[test]
 fn where_rounding_defeats_the_string_the_path_is_as_good_as_the_line() {
     let rows = ["......", "......", "......", "..#...", "......", "......", "......", "......"];

@@ -1,15 +1,15 @@
-//! Runs of robots that are not ideal.
+//! Runs of disturbed robots.
 
 mod weak_drive;
 
 use super::*;
 use crate::sim::{ActuationFaults, Arrival, LocalisationFaults, ReachedBy, SensorFaults};
 
-/// Pose, velocity and ranges that the controller was given in a cycle.
+/// Pose, velocity and ranges that were reported to the controller in a cycle.
 type Told = (Pose, Velocity, Vec<f64>);
 
-/// A run with a given command for every cycle, whatever the robot is told, and the controller's
-/// inputs.
+/// Drives a run with a given command for every cycle, independent of the controller's inputs;
+/// returns it with these inputs.
 fn driven(
     world: &World,
     robot: &Robot,
@@ -66,7 +66,7 @@ fn without_disturbances_all_is_exact_to_the_bit() {
         assert_eq!(*ranges_m, world.at(0.0).cast(pose, &robot.sensors[0]).ranges_m);
         let reached = robot.limits.reached(velocity, wavy(cycle as u64), robot.cycle_s);
         pose = pose.after_ramp(velocity, reached, robot.cycle_s);
-        // The reached velocity, by the formula that changes it linearly.
+        // The reached velocity, by the linear interpolation.
         velocity = velocity.lerp(reached, 1.0);
         let sample = run.samples[cycle + 1];
         assert_eq!((sample.pose, sample.velocity), (pose, velocity), "{cycle}");
@@ -78,7 +78,7 @@ fn a_command_has_its_effect_after_the_delay() {
     for cycle_s in [0.1, 0.04] {
         let robot = Robot { cycle_s, ..robot() };
         for delay_s in [0.0, 0.003, 0.04, 0.07, 0.1, 0.25, 0.3, 1.0] {
-            // Told to stand for five cycles, then to drive.
+            // Commanded to stay for five cycles, then to drive.
             let drive_s = 5.0 * cycle_s;
             let command = |cycle| Velocity::new(if cycle < 5 { 0.0 } else { 9.0 }, 0.0);
             let (run, _) = driven(&world(&[]), &robot, late(delay_s), 4.0, command);
@@ -104,7 +104,7 @@ fn the_same_commands_drive_the_same_velocities_later() {
     let (world, robot) = (world(&[]), robot());
     let velocities_after = |delay_s| {
         let (run, told) = driven(&world, &robot, late(delay_s), 6.0, wavy);
-        // The controller is told the driven velocity, not the commanded one.
+        // Odometry reports the driven velocity, not the commanded one.
         let told: Vec<_> = told.iter().map(|told| told.1).collect();
         assert_eq!(told, velocities(&run)[..60]);
         velocities(&run)
@@ -185,8 +185,8 @@ fn a_robot_with_a_command_on_its_way_has_not_arrived() {
     assert_eq!([0.0, 0.1, 0.5, 0.55].map(cycles), [2, 3, 7, 8]);
 }
 
-/// Reverses from backwards to forwards, half a cycle late: at the end of a cycle the robot stands
-/// for an instant.
+/// Changes from reverse to forward, half a cycle late: at the end of a cycle the robot is
+/// stationary for an instant.
 #[test]
 fn a_robot_that_turns_back_has_not_arrived() {
     let rules = RunRules { arrival: Arrival::Standing, goal_tolerance_m: 1.0, ..limit(20.0) };
@@ -254,7 +254,7 @@ fn limits_are_kept_and_who_is_told_to_stand_stands() {
             ActuationFaults { v_relative: 0.3, omega_relative: 0.3, ..ActuationFaults::default() };
         let actuation = ActuationFaults { delay_s, ..noisy };
         let disturbances = Disturbances { seed, actuation, ..Disturbances::default() };
-        // From one limit to another, then to stand.
+        // From one limit to another, then to a stop.
         let command = |cycle: u64| match cycle {
             150.. => Velocity::ZERO,
             cycle if cycle / 7 % 3 == 0 => Velocity::new(9.0, -9.0),
@@ -270,7 +270,7 @@ fn limits_are_kept_and_who_is_told_to_stand_stands() {
             assert!(change[0].abs() <= 0.5 * 0.1 + 1e-12, "{pair:?}");
             assert!(change[1].abs() <= 3.0 * 0.1 + 1e-12, "{pair:?}");
         }
-        // It brakes as hard as ever: within a second, plus a cycle for rounding.
+        // Braking is as hard as without a delay: within a second, plus a cycle for rounding.
         let stands = 150 + 11 + (delay_s / 0.1).ceil() as usize;
         assert!(driven[stands..].iter().all(|velocity| *velocity == Velocity::ZERO), "{delay_s}");
         let (never, _) = driven_never(&robot, disturbances);
@@ -283,7 +283,7 @@ fn driven_never(robot: &Robot, disturbances: Disturbances) -> (Run, Vec<Told>) {
     driven(&world(&[]), robot, disturbances, 3.0, |_| Velocity::ZERO)
 }
 
-/// A robot that knows its pose believes the truth.
+/// Without localisation errors, the reported pose is the true one.
 #[test]
 fn without_disturbances_truth_and_belief_are_the_same_run() {
     let (world, robot) = (world(&[]), robot());
@@ -307,7 +307,8 @@ fn without_disturbances_truth_and_belief_are_the_same_run() {
     assert_eq!(truth, run(ReachedBy::Belief));
 }
 
-/// A pose that is always off by as much: who goes by it is at the goal by what it believes alone.
+/// A pose with a constant error: with `ReachedBy::Belief`, the goal is reached by the reported
+/// pose alone.
 #[test]
 fn a_goal_is_reached_by_truth_or_by_belief() {
     let localisation = LocalisationFaults {
@@ -323,7 +324,7 @@ fn a_goal_is_reached_by_truth_or_by_belief() {
         let mut all_told = Vec::new();
         let mut controller = |&Observation { pose: told, .. }: &Observation<'_>| {
             all_told.push(told);
-            // The goal that is driven to is the true one, or the one that the robot believes.
+            // Drives to the true goal, or to the goal by the reported pose.
             let at = if by_told { told.point() } else { told.point() - all_told[0].point() };
             let to_goal = goal - at;
             let heading = to_goal.heading() - told.theta;
@@ -374,7 +375,8 @@ fn what_is_recorded_is_the_truth() {
     let (run, told) = driven(&world, &robot, disturbances, 6.0, wavy);
     assert_eq!(run, ideal);
     assert_eq!(told.len(), exact.len());
-    // Poses differ from the first cycle on. The robot stands then, and knows that it does.
+    // Poses differ from the first cycle on. The robot is stationary then, and its odometry
+    // reports so.
     assert_ne!(told[0].0, exact[0].0);
     assert_eq!(told[0].1, Velocity::ZERO);
     assert!(told.iter().zip(&exact).skip(1).all(|(told, exact)| told.0 != exact.0));
@@ -394,11 +396,11 @@ fn what_is_recorded_is_the_truth() {
             assert!(exact_m.is_infinite() || (told_m - exact_m).abs() <= 0.3 + 1e-9);
         }
     }
-    // A tenth of 480 beams are dropped, and most of the beams that hit something are off.
+    // A tenth of 480 beams are dropped, and most of the beams that hit something have an error.
     assert!(dropped > 20 && off > 20, "{dropped} {off}");
 }
 
-/// Two robots that get the same commands far apart, and one of them alone.
+/// Two robots with the same commands far apart, and one of them alone.
 #[test]
 fn every_robot_has_its_own_numbers() {
     let robot = robot();

@@ -3,13 +3,13 @@
 use super::*;
 use crate::sim::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints};
 
-/// An obstacle that moves to and fro between two places at 1 m/s.
+/// An obstacle that moves to and fro between two positions at 1 m/s.
 fn between(from: Point, to: Point) -> MovingObstacle {
     let course = WayPoints::to_and_fro(vec![from, to], 1.0).unwrap();
     MovingObstacle::new(0.25, Motion::GivesWay(course)).unwrap()
 }
 
-/// A run among moving obstacles with one commanded velocity.
+/// Runs a robot among moving obstacles with one commanded velocity.
 fn among(movers: Vec<MovingObstacle>, start: Pose, command: Velocity, time_limit_s: f64) -> Run {
     let mut left = 1e6;
     let controller = move |_: &Observation<'_>| {
@@ -20,7 +20,7 @@ fn among(movers: Vec<MovingObstacle>, start: Pose, command: Velocity, time_limit
     alone(&world, &robot(), start, FAR, &limit(time_limit_s), controller).unwrap()
 }
 
-/// Smallest distance between two centres, both moving straight between equal times.
+/// Smallest distance between two centres, which both move straight between equal times.
 fn least_m(one: &MoverWay, other: &MoverWay) -> f64 {
     let apart = |i: usize| other.key_frames[i].position - one.key_frames[i].position;
     let pairs = (1..one.key_frames.len()).map(|i| {
@@ -44,13 +44,13 @@ fn a_standing_robot_is_passed_from_every_side_without_contact() {
         assert_eq!(run.outcome, Outcome::Timeout, "{degrees}");
         let clearance_m = run.min_mover_clearance_m.unwrap();
         assert!(clearance_m > 0.05 && clearance_m < 1.0, "{degrees}: {clearance_m}");
-        // It goes on to the other place and turns back there.
+        // The obstacle continues to the other position and turns back there.
         let places = &run.movers[0].key_frames;
         let nearest_m = |to: Point| {
             places.iter().map(|frame| frame.position.distance(to)).fold(f64::INFINITY, f64::min)
         };
         assert!(nearest_m(place * -1.0) < 0.3, "{degrees}");
-        // To its right: the robot stays to the left.
+        // It passes to its right: the robot stays on its left.
         let beside = places.iter().find(|frame| frame.position.dot(place) < 0.0).unwrap();
         assert!(place.cross(beside.position) > 0.3, "{degrees}: {beside:?}");
     }
@@ -65,7 +65,7 @@ fn two_who_meet_head_on_pass_each_other_on_the_right() {
         let run = among(both(), far_off(), Velocity::ZERO, 10.0);
         let [one, other] = &run.movers[..] else { panic!("{:?}", run.movers) };
         assert!(least_m(one, other) > 0.55, "{degrees}: {}", least_m(one, other));
-        // Both ways are equal after half a turn, except for the force of the distant robot, and
+        // Both paths are equal after half a turn, except for the force of the distant robot, and
         // both arrive.
         for (a, b) in one.key_frames.iter().zip(&other.key_frames) {
             assert!((a.position + b.position).norm() < 1e-2, "{degrees}: {a:?} {b:?}");
@@ -89,7 +89,7 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
         let mut driven = vec![crossing.clone()];
         for way in &run.movers {
             assert_eq!(way.key_frames.len() as u64, run.cycles + 1);
-            // Compares places at the end of every cycle; a contact may cut the last one short.
+            // Compares positions at the end of every cycle; a contact may cut the last one short.
             for (frame, sample) in
                 way.key_frames.iter().zip(&run.samples).take(run.samples.len() - 1)
             {
@@ -105,7 +105,7 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
 
 #[test]
 fn they_give_way_to_robots_that_drive() {
-    // Towards each other, and from behind.
+    // Head-on, and from behind.
     for (from, to) in [(6.0, -6.0), (-6.0, 6.0)] {
         let mover = between(Point::new(from, 0.0), Point::new(to, 0.0));
         let ahead = Velocity::new(0.4, 0.0);

@@ -59,7 +59,7 @@ fn a_disc_that_turns_on_the_spot_is_run_into() {
     };
     let disc = Footprint::circle(0.18).unwrap();
     assert!(matches!(turned(disc.clone(), 0.0), (_, _, Obstacle::Mover(0), true)));
-    // On a small circle, or with corners that sweep, the covered ground changes.
+    // On a small circle, or with sweeping corners, the covered area changes.
     assert!(matches!(turned(disc, 0.01), (_, _, Obstacle::Mover(0), false)));
     let square = Footprint::rectangle(0.36, 0.36).unwrap();
     assert!(matches!(turned(square, 0.0), (_, _, Obstacle::Mover(0), false)));
@@ -130,7 +130,7 @@ fn a_controller_sees_a_mover_where_it_is_at_its_cycle() {
     let mut cycle = 0;
     alone(&world, &robot(), Pose::default(), FAR, &limit(2.0), |observation| {
         let scan = observation.scans[0].scan;
-        // Beam 4 of 8 looks straight ahead.
+        // Beam 4 of 8 points straight ahead.
         let range_m = 2.75 - 0.5 * 0.1 * f64::from(cycle);
         assert!((scan.ranges_m.get(4).unwrap() - range_m).abs() < 1e-9);
         cycle += 1;
@@ -150,9 +150,9 @@ fn the_speed_at_a_contact_is_said() {
         (mover_speed_mps, contact(&run).0)
     };
     assert_eq!(speed_mps(&open(vec![straight(3.0, 0.0, -0.7, 0.0)])).0, Some(0.7));
-    // It stands from the beginning on.
+    // In contact from the beginning.
     assert_eq!(speed_mps(&open(vec![straight(0.3, 0.0, 0.0, 0.0)])).0, Some(0.0));
-    // 8 m in 0.4 s: the cubic of Hermite gives the contact at 0.43 m, and its derivative the speed
+    // 8 m in 0.4 s: the Hermite cubic gives the contact at 0.43 m, and its derivative the speed
     // there.
     let frames = [[1.0, 4.0, 0.0], [1.4, -4.0, 0.0]].map(KeyFrame::from).to_vec();
     let darts =
@@ -178,8 +178,8 @@ fn jumping_to(x: f64) -> MovingObstacle {
 
 #[test]
 fn what_has_just_jumped_is_said() {
-    // After 3 s the robot is at 1.25 m, at 0.5 m/s. The obstacle jumps onto it, or the robot drives
-    // on into the obstacle that has jumped.
+    // After 3 s the robot is at 1.25 m, at 0.5 m/s. The obstacle jumps onto it, or the robot
+    // drives into the obstacle after the jump.
     for (gap_m, t_s, expected) in [(-0.1, 3.0, true), (0.03, 3.06, true), (0.06, 3.12, false)] {
         let world = open(vec![jumping_to(1.25 + 0.43 + gap_m)]);
         let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
@@ -192,14 +192,14 @@ fn what_has_just_jumped_is_said() {
         assert!(late_s < if gap_m < 0.0 { 1e-9 } else { 0.01 }, "{late_s}");
         assert_eq!(run.min_mover_clearance_m, Some(0.0));
     }
-    // Nothing has jumped at the beginning.
+    // The obstacle has not jumped at the beginning.
     let run = drive(&open(vec![jumping_to(0.3)]), &robot(), FAR, &limit(4.0), STAY);
     assert!(matches!(run.outcome, Outcome::Collided { jumped_onto: false, robot_stood: true, .. }));
 }
 
 #[test]
 fn a_jump_at_every_time_of_a_cycle_is_met() {
-    // The obstacle jumps onto the place that the robot has reached, at rounded times.
+    // The obstacle jumps onto the robot's current position, at rounded times.
     for lap in 0..40 {
         let duration_s = 2.0 + f64::from(lap) * 0.0125;
         let frames = [[0.0, 1.0, 0.0], [1.0, 1.0, 5.0]].map(KeyFrame::from).to_vec();

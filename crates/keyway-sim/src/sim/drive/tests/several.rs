@@ -1,4 +1,4 @@
-//! Several robots at the same time.
+//! Several robots in one simulation.
 
 use super::*;
 use keyway::robot::Footprint;
@@ -59,8 +59,8 @@ fn two_robots_that_drive_towards_each_other_meet_at_the_computed_time() {
     {
         let tasks = [(one, start, FAR, ahead(0.5)), (other, opposite, FAR, ahead(0.5))];
         let runs = drive_all(&world(&[]), &limit(20.0), &tasks);
-        // Each is 0.25 + 0.5 (t - 1) ahead after t > 1 s; together they drive 4 m less both
-        // reaches.
+        // Each robot is 0.25 + 0.5 (t - 1) ahead after t > 1 s; together they drive 4 m minus
+        // both radii.
         let expected_s = 1.0 + (0.5 * (4.0 - reach_m) - 0.25) / 0.5;
         for (index, run) in runs.iter().enumerate() {
             assert_eq!(touched(run), Obstacle::Robot(1 - index));
@@ -82,7 +82,7 @@ fn robots_see_each_other_where_they_are() {
     let mut gaps = Vec::new();
     let mut look = |&Observation { pose, scans, .. }: &Observation<'_>| {
         let scan = scans[0].scan;
-        // Beam 4 of 8 looks straight ahead, beam 6 to the left.
+        // Beam 4 of 8 points straight ahead, beam 6 to the left.
         gaps.push((pose.x, scan.ranges_m.get(4).unwrap(), scan.ranges_m.get(6).unwrap()));
         Control {
             action: Action::Drive(ahead(0.5)),
@@ -125,7 +125,7 @@ fn robots_see_each_other_where_they_are() {
             rules: limit(2.0),
             controller: &mut back,
         },
-        // 2 m to the left, long enough to stay there.
+        // 2 m to the left, long enough to stay beside the other one.
         Participant {
             robot: &boxy(4.0, 0.5),
             start: Pose::new(0.0, 2.0, 0.0),
@@ -193,7 +193,7 @@ fn the_order_of_the_participants_does_not_matter() {
 
 #[test]
 fn who_has_ended_stands_in_the_way() {
-    // The first has arrived at once, the second runs into it.
+    // The first robot has arrived immediately, and the second one runs into it.
     let (robot, rules) = (robot(), limit(20.0));
     let there = (&robot, Pose::new(1.0, 0.0, 0.0), Point::new(1.0, 0.1), ahead(0.5));
     let comes = (&robot, Pose::new(-1.0, 0.0, 0.0), FAR, ahead(0.5));
@@ -205,8 +205,8 @@ fn who_has_ended_stands_in_the_way() {
     );
     assert_eq!(touched(&runs[1]), Obstacle::Robot(0));
     assert!((runs[1].length_m - (2.0 - 0.36)).abs() < 1e-4);
-    // One robot is stuck, and another one has its goal beyond it. The run of the latter ends when
-    // it has not moved for 20 s.
+    // One robot is stuck, and another one has its goal beyond it. The run of the latter ends
+    // after 20 s without motion.
     let mut cycles = 0;
     let mut stays = |_: &Observation<'_>| {
         cycles += 1;
@@ -245,7 +245,7 @@ fn who_has_ended_stands_in_the_way() {
 #[test]
 fn contacts_in_one_cycle_happen_in_their_order() {
     // The first cycle lasts a second. Robot 0 touches the post 0.32 m ahead after 0.38 s and
-    // stands. Robot 1 crosses its line at 0.75 s, when robot 0 would be 1 m farther on, and runs
+    // stops. Robot 1 crosses its line at 0.75 s, when robot 0 would be 1 m farther on, and runs
     // into it.
     let mut fast = brisk(1.0);
     fast.sensors[0].beams = 1;
@@ -263,7 +263,7 @@ fn contacts_in_one_cycle_happen_in_their_order() {
     let beside_m = (0.36_f64 * 0.36 - 0.22 * 0.22).sqrt();
     assert!((end(&runs[1]).pose.y + beside_m).abs() < 2e-4, "{:?}", end(&runs[1]));
     assert!(end(&runs[0]).t_s < end(&runs[1]).t_s);
-    // The last one passes 0.14 m beside the first.
+    // The last robot passes the first at 0.14 m.
     assert_eq!(runs[2].outcome, Outcome::Timeout);
     assert!(
         (runs[2].min_clearance_m.unwrap() - 0.14).abs() < 1e-4,
@@ -274,8 +274,8 @@ fn contacts_in_one_cycle_happen_in_their_order() {
 
 #[test]
 fn clearances_are_those_of_one_instant() {
-    // Robot 0 touches the post 0.42 m ahead. Robot 1 is nearer to that place at first than it ever
-    // is to robot 0, because it drives away at the same speed.
+    // Robot 0 touches the post 0.42 m ahead. Robot 1 is initially nearer to that position than it
+    // ever is to robot 0, because it drives away at the same speed.
     let fast = brisk(1.0);
     let tasks = [
         (&fast, Pose::new(0.0, 0.0, 0.0), FAR, ahead(4.0)),
@@ -294,8 +294,8 @@ fn two_that_touched_stand_in_the_way_of_a_third() {
         let (sin, cos) = libm::sincos(angle);
         (&robot, Pose::new(-2.0 * cos, -2.0 * sin, angle), FAR, ahead(0.5))
     };
-    // Robots 1 and 2 touch beside the x axis. Robot 0 comes along the axis and touches both; by the
-    // rule, the first one counts.
+    // Robots 1 and 2 touch beside the x axis. Robot 0 comes along the axis and touches both; by
+    // the tie rule, the first one counts.
     let tasks = [0.0, 2.3, -2.3].map(towards_the_middle);
     let runs = drive_all(&world(&[]), &limit(20.0), &tasks);
     let with: Vec<Obstacle> = runs.iter().map(touched).collect();

@@ -37,9 +37,9 @@ fn stays_in_its_area_for_ever_without_a_leap() {
         assert!(bound_m <= 0.15 + 1e-9 && at.distance(next) <= bound_m + 1e-9, "{t_s}");
         mean = mean + at * 1e-5;
     }
-    // All places are about equally frequent.
+    // All positions are about equally frequent.
     assert!(mean.distance((low + high) * 0.5) < 0.2, "{mean:?}");
-    // The same choices lead elsewhere.
+    // The same choices lead to another position.
     assert!(walk.position(round_s + 9.0).distance(walk.position(9.0)) > 0.1);
     for t_s in [f64::MAX, 1e18] {
         let at = walk.position(t_s);

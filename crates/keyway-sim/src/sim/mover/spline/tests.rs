@@ -48,8 +48,8 @@ fn a_lap_ends_with_a_jump_at_its_instant() {
         assert_eq!((jumping.position(jump_s), jumping.position_before(jump_s)), (first, last));
         before_s = jump_s;
     }
-    // The obstacle stands before and after, and is fast only while it moves; the jump does not
-    // count.
+    // The obstacle is stationary before and after, and is fast only while it moves. The jump does
+    // not count.
     assert_eq!(jumping.speed_bound_mps(0.21, 0.34), 0.0);
     assert!(jumping.speed_bound_mps(0.2, 0.36) > 1.0);
     assert!(jumping.position(1e300).is_finite());
@@ -85,8 +85,8 @@ fn frames() -> impl Strategy<Value = Vec<KeyFrame>> {
 }
 
 proptest! {
-    /// Passes through all key frames at their times with a continuous direction; the speed is
-    /// continuous where both stretches last equally long.
+    /// Checks that it passes through all key frames at their times with a continuous direction.
+    /// The speed is continuous if the adjacent segments have equal durations.
     #[test]
     fn passes_through_its_key_frames(frames in frames(), rest_s in 0.1..1.0f64) {
         let duration_s = frames[frames.len() - 1].t_s + rest_s;
@@ -109,7 +109,8 @@ proptest! {
         }
     }
 
-    /// A bound for a short time is close to the highest of many sampled speeds, and never below.
+    /// A bound for a short interval is close to the highest of many sampled speeds, and never
+    /// below it.
     #[test]
     fn speed_bounds_are_tight(frames in frames(), from in 0.0..3.0f64, long_s in 0.001..0.2f64) {
         let duration_s = frames[frames.len() - 1].t_s.max(Spline::SHORTEST_S);
@@ -118,7 +119,7 @@ proptest! {
         let moves = moves.unwrap();
         let from_s = from * duration_s;
         let bound_mps = moves.speed_bound_mps(from_s, from_s + long_s);
-        // Long enough for the last digits of places.
+        // Long enough for the last digits of positions.
         let step_s = long_s / 100.0;
         let speed_mps = |i: u32| {
             let [a, b] = [i, i + 1].map(|i| from_s + f64::from(i) * step_s);
@@ -128,14 +129,14 @@ proptest! {
         };
         let fastest_mps = (0..100).map(speed_mps).fold(0.0, f64::max);
         prop_assert!(fastest_mps <= bound_mps + 1e-9, "{fastest_mps} {bound_mps}");
-        // Within a stretch; a key frame near an end of the time may bring another speed.
+        // Within a segment; a key frame near an end of the interval may bring another speed.
         let is_near = |frame: &KeyFrame| {
             let [a, b] = [-2.0 * step_s, long_s + 2.0 * step_s].map(|off_s| from_s + off_s);
             (0..5).any(|lap| (a..=b).contains(&(frame.t_s + f64::from(lap) * duration_s)))
         };
         if !moves.frames().iter().any(is_near) {
-            // The hull of the velocity's curve is wider by at most a half of the second
-            // derivative's change.
+            // The hull of the velocity curve is wider by at most half of the change of the second
+            // derivative.
             let jerk = |stretch: &Stretch| {
                 let [a, b, c] = stretch.velocities_mps();
                 (a - b * 2.0 + c).norm() / (stretch.to_s - stretch.from_s).powi(2)

@@ -1,4 +1,4 @@
-//! What decisions say of their candidates.
+//! Counters of the candidates of a decision.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn corridor() -> DistanceField {
     world(200, |_, y| !(90..110).contains(&y))
 }
 
-/// It slows down behind somebody who walks ahead of it, and drives all the time.
+/// It slows down behind a pedestrian who walks ahead of it, and drives all the time.
 #[test]
 fn who_drives_beside_a_mover_is_said_to_drive() {
     let corridor = corridor();
@@ -34,7 +34,7 @@ fn who_drives_beside_a_mover_is_said_to_drive() {
     assert!(near > 5, "{near}");
 }
 
-/// Somebody walks to and fro across the corridor; the robot comes up to them and stands.
+/// A pedestrian walks to and fro across the corridor; the robot approaches and stops.
 #[test]
 fn who_waits_for_a_mover_says_so() {
     let corridor = corridor();
@@ -61,8 +61,8 @@ fn who_waits_for_a_mover_says_so() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// Whatever stands and moves around it: a candidate is refused for one reason, no refused one
-    /// drives, and remedies are given where none drives.
+    /// With any stationary and moving obstacles: a candidate is refused for one reason, no
+    /// refused one drives, and remedies are given if none drives.
     #[test]
     fn every_candidate_is_counted_once(
         world in blocks(), heading in -3.0..3.0_f64, end in (0.1..3.9_f64, 0.1..3.9_f64), v_mps in 0.0..2.0_f64,

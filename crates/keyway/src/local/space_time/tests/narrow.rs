@@ -1,4 +1,4 @@
-//! Ways that are hardly wider than the robot.
+//! Passages that are hardly wider than the robot.
 
 use super::*;
 
@@ -11,8 +11,8 @@ fn disc(radius_m: f64) -> Robot {
     Robot { footprint: Footprint::circle(radius_m).unwrap(), ..Robot::small() }
 }
 
-/// The middle of the tunnel is beside the points at which distances are known, which are too small
-/// there by up to 3 cm.
+/// The middle of the tunnel is beside the points at which distances are known, which are too
+/// small there by up to 3 cm.
 #[test]
 fn a_tunnel_with_room_on_both_sides_is_driven_through() {
     let world = tunnel();
@@ -26,7 +26,8 @@ fn a_tunnel_with_room_on_both_sides_is_driven_through() {
     }
 }
 
-/// A centimetre beside a wall, along it: to stay would cost nothing, and not make the place wider.
+/// A centimetre beside a wall, along it: to stay would cost nothing, and not make the passage
+/// wider.
 #[test]
 fn a_robot_in_a_tight_place_drives_on() {
     let world = world(100, |_, y| y == 0);

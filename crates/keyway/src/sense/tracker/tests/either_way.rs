@@ -1,8 +1,8 @@
-//! Beams go counter-clockwise or clockwise.
+//! Both directions of rotation of a sensor.
 
 use super::*;
 
-/// The same scan of a sensor that turns clockwise.
+/// The same scan of a sensor that rotates clockwise.
 fn clockwise(mut scan: Scan) -> Scan {
     scan.angle_min_rad = scan.bearing_rad(scan.ranges_m.len() - 1);
     scan.angle_increment_rad = -scan.angle_increment_rad;

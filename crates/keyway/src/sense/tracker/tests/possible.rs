@@ -1,4 +1,4 @@
-//! What may move, as it is not known to stand.
+//! Tracks that may move: not confirmed to be stationary.
 
 use super::*;
 
@@ -7,8 +7,8 @@ fn posts(off_m: f64) -> Vec<(Point, f64)> {
     (0..4).map(|i| (Point::new(1.2 - off_m, 0.7 * f64::from(i) - 1.0), 0.15)).collect()
 }
 
-/// Posts seen in the wrong place, 0.1 m off, by one scan, and posts that are pushed as far: both
-/// may be movers for a while.
+/// Posts seen 0.1 m off their position by one scan, and posts that are pushed by as much: both
+/// may be moving obstacles for a while.
 #[test]
 fn what_stands_after_all_is_no_mover_for_long() {
     for is_pushed in [false, true] {
@@ -27,7 +27,7 @@ fn what_stands_after_all_is_no_mover_for_long() {
     }
 }
 
-/// Ranges that are wrong by more than twice what the tracker expects, of many beams.
+/// Range errors on many beams, more than twice as large as the tracker expects.
 #[test]
 fn single_beams_are_errors() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -47,8 +47,8 @@ fn single_beams_are_errors() {
     assert!(cycles <= 10, "{cycles}");
 }
 
-/// Too narrow for its shape to be known, so that nothing shows that it has left its place: beams
-/// see through that for ever.
+/// Too narrow for its shape to be known, so nothing shows that it has left its position. Beams
+/// see through that position forever.
 #[test]
 fn what_was_pushed_away_stands_again() {
     let mut drive = Drive::new(map(&[]), &[]);
@@ -61,8 +61,8 @@ fn what_was_pushed_away_stands_again() {
     assert!(drive.tracker.possible_movers().is_empty());
 }
 
-/// Of what is not round, the middle of what is seen moves as more of it is seen: it may stand,
-/// however fast it seems. A disc that walks does not.
+/// The visible middle of an object that is not round moves as more of it comes into view: it may
+/// be stationary, however fast it seems. A disc that moves may not.
 #[test]
 fn who_is_not_round_may_stand() {
     let seen = |discs: &[(Point, f64)]| {
@@ -77,7 +77,7 @@ fn who_is_not_round_may_stand() {
         points.map(|point| point.velocity_mps.norm()).collect::<Vec<f64>>()
     };
     assert!(seen(&[(Point::new(1.8, 0.0), 0.25)]).is_empty());
-    // Two discs that touch move as one.
+    // Two touching discs move as one.
     let pair = seen(&[(Point::new(1.8, -0.17), 0.17), (Point::new(1.8, 0.17), 0.17)]);
     let standing = pair.iter().filter(|&&speed_mps| speed_mps == 0.0).count();
     assert!(standing > 5 && 2 * standing == pair.len(), "once as it goes on: {pair:?}");

@@ -1,4 +1,4 @@
-//! Drives that lag, do not heed small commands, or slip.
+//! Drives with lag, a dead band or slip.
 
 use super::*;
 
@@ -54,7 +54,7 @@ fn a_command_within_the_dead_band_drives_nothing() {
     assert_eq!(driven, [(0.0, 0.0), (0.1, 0.0), (0.0, 0.2), (-0.1, -0.2), (0.0, 0.0)]);
 }
 
-/// The odometry counts the turns of the wheels.
+/// Odometry counts the turns of the wheels.
 #[test]
 fn slipping_wheels_drive_less_than_they_turn() {
     let slip = ActuationFaults { v_slip: 0.25, omega_slip: 0.5, ..ActuationFaults::default() };
@@ -66,6 +66,6 @@ fn slipping_wheels_drive_less_than_they_turn() {
     assert!(
         told.iter().all(|(_, it, _)| (it.v - 0.8).abs() < 1e-9 && (it.omega - 1.0).abs() < 1e-9)
     );
-    // The pose that is told is the true one: slip does not deceive a localisation by a map.
+    // The reported pose is the true one: slip does not affect map-based localisation.
     assert!(told.iter().zip(&run.samples[1..]).all(|((pose, ..), sample)| *pose == sample.pose));
 }
