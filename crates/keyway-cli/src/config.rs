@@ -1,4 +1,4 @@
-//! Parameters of a command: a stack, a file over it, options over both.
+//! Parameters of a command: a stack, overridden by a file, overridden by options.
 
 use crate::args::{ConfigArgs, Unknown};
 use crate::error::{CliError, Kind};
@@ -9,7 +9,7 @@ use keyway::files::{
 use keyway::navigate::Stack;
 use std::path::Path;
 
-/// The layers that `--config`, options and `--set` stand for. An option has the name of its field.
+/// Parameter layers of `--config`, options and `--set`. An option has the name of its field.
 pub(crate) fn given_parameters(
     args: &ConfigArgs,
     options: impl IntoIterator<Item = Option<FieldValue>>,
@@ -46,7 +46,8 @@ impl From<LayerError> for CliError {
     }
 }
 
-/// Names the option to blame; the parameter where that is `--set`, a file, or all together.
+/// Blames the option, or the parameter if it comes from `--set`, a file, or a combination of
+/// layers.
 pub(crate) fn unusable_parameter(error: &LayerError, path: &str) -> CliError {
     let LayerError { layer, fault, .. } = error;
     let named = |message: String, field: &str| {

@@ -1,5 +1,5 @@
-//! Pictures of a drive from moment to moment: the candidates of one decision, and the whole run as
-//! an animation.
+//! Pictures of single moments of a drive: the candidates of one decision, and the whole run as an
+//! animation.
 
 use crate::commands::Moment;
 use keyway::geometry::{Disc, Point, Polyline, Pose, Velocity};
@@ -18,19 +18,19 @@ use std::borrow::Cow;
 
 const INK: Rgb = Rgb(0x22, 0x22, 0x22);
 const BLUE: Rgb = Rgb(0x00, 0x72, 0xb2);
-/// The robot, where it is.
+/// The robot at its current pose.
 const ROBOT: LineStyle = LineStyle { color: INK, width_px: 1.8, dashes: "" };
-/// The robot where the chosen candidate would take it.
+/// The robot at the end of the chosen candidate.
 const AFTER: LineStyle = LineStyle { color: INK, width_px: 1.0, dashes: "3 2" };
 const TOWARDS: LineStyle = LineStyle { color: BLUE, width_px: 1.0, dashes: "2 3" };
 const GUIDE: LineStyle = LineStyle { color: BLUE, width_px: 2.0, dashes: "" };
 
-/// What all moments of a run share.
+/// Data shared by all moments of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct Stage<'a> {
     pub(crate) map: &'a OccupancyGrid,
     pub(crate) robot: &'a Robot,
-    /// Those that stand.
+    /// Static obstacles.
     pub(crate) obstacles: &'a [Disc],
     pub(crate) polygons: &'a [StandingPolygon],
     pub(crate) hidden_cells: &'a [Cell],
@@ -42,17 +42,17 @@ pub(crate) struct Stage<'a> {
     pub(crate) tolerance_m: f64,
 }
 
-/// A moment, in the form of layers.
+/// One moment, as drawable layers.
 struct Shown<'a> {
     moment: &'a Moment,
     robot: [TrajectoryPoint; 1],
     guide: Vec<Point>,
     towards: Polyline,
     discs: Vec<Disc>,
-    /// What moves, where it is at that time.
+    /// Moving obstacles at that time.
     moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
-    /// What was driven before.
+    /// Trajectory driven before that time.
     driven: &'a [TrajectoryPoint],
 }
 
@@ -72,7 +72,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// What pictures of both kinds show of a moment.
+    /// The layers that both kinds of pictures share.
     fn picture<'b>(&self, shown: &'b Shown<'_>) -> MapPicture<'b>
     where
         'a: 'b,
@@ -100,7 +100,7 @@ impl<'a> Stage<'a> {
         GoalMark { point: self.goal, tolerance_m: Some(self.tolerance_m) }
     }
 
-    /// The candidates of one decision. The legend explains only what is in view.
+    /// Picture of the candidates of one decision. The legend explains only what is in view.
     pub(crate) fn fan_svg(&self, moment: &Moment) -> Svg {
         let (low, high) = self.around(moment);
         let is_seen = |point: Point, radius_m: f64| {
@@ -149,8 +149,8 @@ impl<'a> Stage<'a> {
         (middle - half, middle + half)
     }
 
-    /// The whole run. `progress` is called with the number of pictures drawn so far, and their
-    /// total.
+    /// Animation of the whole run. `progress` is called with the number of pictures drawn so far,
+    /// and their total.
     pub(crate) fn animation(
         &self,
         moments: &[Moment],
@@ -174,7 +174,7 @@ impl<'a> Stage<'a> {
                 .region(region)
                 .side_px(SIDE_PX)
         };
-        // The end of the run, with what was known at the last moment before it.
+        // The end of the run, with the scan and estimates of the last moment before it.
         let last = moments.last().zip(driven.last()).map(|(moment, end)| Moment {
             t_s: end.t_s,
             pose: end.pose,
@@ -190,28 +190,28 @@ impl<'a> Stage<'a> {
         animate_frames(&still, shown.len(), centiseconds, |i| frame(&shown[i]), progress)
     }
 
-    /// All of the map that matters to a run: where it led, and some room around.
+    /// The part of the map that the run covers, with a margin.
     fn whole(&self, moments: &[Moment], driven: &[TrajectoryPoint]) -> Region {
         let routes = moments.iter().flat_map(|moment| moment.route.points()).copied();
         let points = routes.chain(driven.iter().map(|point| point.pose.point()));
         let (low, high) = corners(points.chain([self.start, self.goal]));
         let (middle, size) = (low.lerp(high, 0.5), high - low);
         let room_m = 4.0 * self.robot.footprint.circumscribed_radius_m().max(0.1);
-        // A drive along a corridor gets room beside it.
+        // A drive along a corridor gets a margin beside it.
         let half_m = |side_m: f64| 0.5 * side_m.max(0.5 * size.x.max(size.y)) + room_m;
         let half = Point::new(half_m(size.x), half_m(size.y));
         Region::Window(middle - half, middle + half)
     }
 }
 
-/// Longer side of an animation's plot \[px\]: a robot in a house is seen.
+/// Longer side of an animation's plot \[px\]: large enough to show a robot in a house.
 pub(crate) const SIDE_PX: f64 = 800.0;
-/// Playing time of an animation, at most \[s\]; a shorter run is played as fast as it was driven.
+/// Longest playing time of an animation \[s\]; shorter runs are played in real time.
 const PLAY_S: f64 = 10.0;
-/// Many programs show no picture for a shorter time \[1/100 s\].
+/// Shortest display time of a picture \[1/100 s\]; many viewers do not support shorter ones.
 const SHORTEST_FRAME_CS: f64 = 4.0;
 
-/// How long each of the pictures of a run is shown \[1/100 s\].
+/// Display time of each picture of a run \[1/100 s\].
 pub(crate) fn centiseconds(run_s: f64, pictures: usize) -> u16 {
     let each_s = run_s.min(PLAY_S) / pictures.max(1) as f64;
     (100.0 * each_s).round().max(SHORTEST_FRAME_CS) as u16
@@ -236,7 +236,7 @@ fn fan_title(moment: &Moment) -> String {
     format!("{:.1} s: {all} velocities tried, {admissible} admissible", moment.t_s)
 }
 
-/// A number with so many decimals; one that is 0 then has no sign.
+/// Formats a number with a fixed number of decimals; a value that rounds to 0 has no sign.
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -245,7 +245,7 @@ fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The shares of the best two; where nothing drives, what would free the robot.
+/// Cost shares of the best two candidates; if none is admissible, the remedies.
 fn fan_table(explanation: &Explanation) -> TextTable {
     let best = [("chosen", explanation.chosen()), ("second best", explanation.runner_up())];
     let best: Vec<_> = best.into_iter().filter_map(|(name, it)| Some((name, it?))).collect();

@@ -1,4 +1,4 @@
-//! What goes wrong at the command line: a message for people, and the same for programs.
+//! Errors of the command line: a message for people, and the same as JSON.
 
 use clap::error::{ContextKind, ContextValue};
 use serde::{Deserialize, Serialize};
@@ -7,29 +7,29 @@ use std::fmt::Display;
 use std::io::Write;
 use thiserror::Error;
 
-/// Which part of the input is to blame.
+/// The part of the input that is to blame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Kind {
     /// The arguments.
     Usage,
-    /// A file that cannot be read, or does not hold what it should.
+    /// A file that cannot be read, or has invalid content.
     Input,
     /// A parameter of a planner, a stack or a robot.
     Config,
-    /// A start or goal at which there is no room.
+    /// A start or goal without enough clearance.
     Position,
     /// A file, or the standard output, that cannot be written.
     Output,
 }
 
-/// Why a command was refused. Exit code 2.
+/// Error that refuses a command. Exit code 2.
 #[derive(Debug, Error)]
 #[error("{message}")]
 pub(crate) struct CliError {
     pub(crate) kind: Kind,
     pub(crate) message: String,
-    /// The argument or field that is to blame.
+    /// The argument or field to blame.
     pub(crate) field: Option<String>,
 }
 
@@ -46,7 +46,7 @@ impl CliError {
         Self { kind, message: message.to_string(), field: None }
     }
 
-    /// Names what is to blame.
+    /// Sets the argument or field to blame.
     pub(crate) fn field(self, field: impl Into<String>) -> Self {
         Self { field: Some(field.into()), ..self }
     }
@@ -54,7 +54,7 @@ impl CliError {
     pub(crate) fn from_clap(error: &clap::Error) -> Self {
         let text = error.to_string();
         let message = text.strip_prefix("error: ").unwrap_or(&text);
-        // What follows the first paragraph repeats the usage.
+        // Everything after the first paragraph repeats the usage.
         let message = message.split("\n\n").next().unwrap_or(message).trim();
         let field = match error.get(ContextKind::InvalidArg) {
             Some(ContextValue::String(arg)) => Some(arg.clone()),
@@ -66,13 +66,14 @@ impl CliError {
         Self { kind: Kind::Usage, message: message.to_owned(), field }
     }
 
-    /// The error of another process of this program.
+    /// Parses the error report of another process of this program.
     pub(crate) fn from_report(report: &serde_json::Value) -> Result<Self, serde_json::Error> {
         let ErrorReport { kind, message, field, .. } = ErrorReport::deserialize(report)?;
         Ok(Self { kind, message: message.into_owned(), field: field.map(Cow::into_owned) })
     }
 
-    /// To the standard error as text, or to the standard output as JSON, if that can be written.
+    /// Prints the error: to the standard error as text, or to the standard output as JSON. If the
+    /// JSON cannot be written, the text is printed.
     pub(crate) fn print(&self, json: bool) {
         let is_printed = json && {
             let report = ErrorReport {
@@ -84,7 +85,7 @@ impl CliError {
             crate::json::print(&report).is_ok()
         };
         if !is_printed {
-            // Nobody is left to tell when even this cannot be printed.
+            // If even this fails, there is no channel left to report it.
             let _ = writeln!(std::io::stderr(), "error: {}", self.message);
         }
     }

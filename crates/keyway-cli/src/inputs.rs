@@ -1,4 +1,4 @@
-//! Maps, robots and positions, as the command line names them.
+//! Maps, robots and positions that the command line names.
 
 use crate::args::SizeArgs;
 use crate::error::{CliError, Kind};
@@ -17,10 +17,10 @@ use keyway_sim::scene_files::{SceneFileError, read_disturbances};
 use keyway_sim::sim::Disturbances;
 use std::path::{Path, PathBuf};
 
-/// The robot that is used when none is named.
+/// Default robot.
 pub(crate) const DEFAULT_ROBOT: &str = "small";
 
-/// The robot that stacks were published with.
+/// Robot that the stacks were published with.
 pub(crate) const PAPER_ROBOT: &str = "paper";
 
 pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, CliError> {
@@ -37,8 +37,8 @@ pub(crate) fn load_map(path: &Path, reader: &MapReader) -> Result<LoadedMap, Cli
     Ok(loaded)
 }
 
-/// The same, with the option that allows more cells, where that is what keeps a map from being
-/// read.
+/// Converts the error of a map file. If the map has too many cells, the message names the option
+/// that allows more.
 pub(crate) fn map_error(error: &MapFileError) -> CliError {
     let error = match error.too_many_cells() {
         Some(found) => format!("{error} with --max-cells {}", found.needed()),
@@ -47,7 +47,7 @@ pub(crate) fn map_error(error: &MapFileError) -> CliError {
     CliError::new(Kind::Input, error).field("MAP")
 }
 
-/// What identifies a map in reports.
+/// Identification of a map in reports.
 pub(crate) fn source_of(loaded: &LoadedMap, placement: Option<ImagePlacement>) -> MapSource {
     MapSource { placement: placement.map(Into::into), ..MapSource::from(loaded) }
 }
@@ -67,13 +67,13 @@ pub(crate) fn robot(name: &str, folder: &Path) -> Result<Robot, CliError> {
     find_robot(name, folder).map_err(|error| bad_file(error, "--robot"))
 }
 
-/// What keeps a robot from being ideal, from a file.
+/// Reads the disturbances of a robot from a file.
 pub(crate) fn disturbances(path: &Path) -> Result<Disturbances, CliError> {
     read_disturbances(path).map_err(|error| bad_file(error, "--disturbances"))
 }
 
-/// A stack by its name, with the parameters for a robot, or one from a file, relative to `folder`;
-/// `option` names it.
+/// A stack by name, with the parameters for a robot, or one from a file, relative to `folder`.
+/// `option` is blamed in errors.
 pub(crate) fn stack(
     name: &str,
     folder: &Path,
@@ -83,7 +83,7 @@ pub(crate) fn stack(
     find_stack(name, folder, robot).map_err(|error| bad_file(error, option))
 }
 
-/// A stack with the values of its paper.
+/// A stack with the parameters of its paper.
 pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
     Stack::published_by_name(name).ok_or_else(|| {
         let is_published = |name: &&str| Stack::published_by_name(name).is_some();
@@ -97,7 +97,7 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
     })
 }
 
-/// What is wrong with a robot or a stack: the field of the file that is to blame, otherwise the
+/// Error of a robot or stack. It blames the field of the file if there is one, otherwise the
 /// option.
 pub(crate) fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliError {
     let error = error.into();
@@ -107,7 +107,7 @@ pub(crate) fn bad_file(error: impl Into<SceneFileError>, option: &str) -> CliErr
     CliError::new(kind, &error).field(if field.is_empty() { option } else { field })
 }
 
-/// Refuses an output file that would replace one of the files that the result is made from.
+/// Refuses an output file that would replace one of the input files.
 pub(crate) fn refuse_to_replace_a_source(
     sources: &[PathBuf],
     out: &Path,
@@ -139,13 +139,13 @@ pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError>
     check_writable(out).map_err(|error| blame(error.to_string()))
 }
 
-/// The size of the robot that is named, with the radius that is asked for.
+/// Size of the named robot, with the requested radius.
 pub(crate) fn robot_size(size: &SizeArgs) -> Result<RobotSize, CliError> {
     let robot = size.robot.as_deref().map(|name| robot(name, Path::new(""))).transpose()?;
     RobotSize::new(robot, size.radius).map_err(|error| bad_radius(&error))
 }
 
-/// The layers of a map. An error names the option whose value is wrong.
+/// The layers of a map. An error names the option with the wrong value.
 pub(crate) fn layers(
     grid: &OccupancyGrid,
     config: LayerConfig,
@@ -154,7 +154,7 @@ pub(crate) fn layers(
     size.layers(grid, config).map_err(|error| bad_layers(&error))
 }
 
-/// Names the option whose value keeps a map from having layers.
+/// Names the option whose value is invalid for the layers of a map.
 pub(crate) fn bad_layers(error: &RobotLayersError) -> CliError {
     let field = match error {
         RobotLayersError::Radius(_) => "--radius",
@@ -164,7 +164,7 @@ pub(crate) fn bad_layers(error: &RobotLayersError) -> CliError {
     CliError::new(Kind::Config, error).field(field)
 }
 
-/// The same robot with the values that `--set` gives it.
+/// The same robot with the values of `--set`.
 pub(crate) fn with_values(robot: Robot, changes: &[Assignment]) -> Result<Robot, CliError> {
     if changes.is_empty() {
         return Ok(robot);
@@ -182,13 +182,13 @@ pub(crate) fn with_radius(robot: Robot, radius_m: Option<f64>) -> Result<Robot, 
     Ok(Robot { footprint, ..robot })
 }
 
-/// Says why no robot can have the radius that is asked for.
+/// Error of a radius that no robot can have.
 pub(crate) fn bad_radius(error: &FootprintError) -> CliError {
     let message = format!("{error}; lengths are in metres, not in millimetres");
     CliError::new(Kind::Config, message).field("--radius")
 }
 
-/// A position in metres: as given, or the centre of the cell that was given.
+/// A position in metres: as given, or the centre of the given cell.
 pub(crate) fn position(
     frame: &GridFrame,
     given: Point,

@@ -4,7 +4,7 @@ use crate::error::CliError;
 pub(crate) use keyway_lab::results::json_text as to_string;
 use serde::Serialize;
 
-/// Prints a report.
+/// Prints a report as JSON.
 pub(crate) fn print(report: &impl Serialize) -> Result<(), CliError> {
     crate::stdout::print(&to_string(report))
 }

@@ -1,7 +1,7 @@
 //! The `keyway` program: arguments -> library -> files. It holds no algorithms of its own.
 //!
-//! A library as well, for bindings to other languages: [`run`] is the program, and [`BatchPlots`]
-//! draws the results of a batch.
+//! It is a library as well, for bindings to other languages: [`run`] is the program, and
+//! [`BatchPlots`] draws the results of a batch.
 
 mod args;
 mod commands;
@@ -27,11 +27,11 @@ use error::CliError;
 
 use std::ffi::OsString;
 
-/// Bad arguments or input.
+/// Exit code for bad arguments or input.
 const BAD_INPUT: u8 = 2;
 
-/// The program: does what a command line says, whose first word is the name of the program; gives
-/// the exit code.
+/// Runs the program with the words of a command line and returns the exit code. The first word is
+/// the name of the program.
 pub fn run(argv: &[OsString]) -> u8 {
     let cli = match Cli::try_parse_from(argv) {
         Ok(cli) => cli,
@@ -64,7 +64,8 @@ pub fn run(argv: &[OsString]) -> u8 {
     }
 }
 
-/// Help and version are answers, not errors; everything else is a usage error.
+/// Handles errors of the argument parser: help and version are answers, everything else is a
+/// usage error.
 fn refuse(error: &clap::Error, json: bool) -> u8 {
     let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
     if is_answer {
@@ -79,13 +80,13 @@ fn refuse(error: &clap::Error, json: bool) -> u8 {
     if json {
         CliError::from_clap(error).print(true);
     } else {
-        // Nobody is left to tell when even this cannot be printed.
+        // If even this fails, there is no channel left to report it.
         let _ = error.print();
     }
     BAD_INPUT
 }
 
-/// True if JSON was asked for, even where the arguments as a whole cannot be understood.
+/// True if JSON was requested, even if the arguments as a whole are invalid.
 fn wants_json(argv: &[OsString]) -> bool {
     let is_pair = |pair: &[OsString]| pair[0] == "--format" && pair[1] == "json";
     argv.windows(2).any(is_pair) || argv.iter().any(|arg| arg == "--format=json")

@@ -1,10 +1,10 @@
-//! Folders of results, in the words of the command line.
+//! Result folders, with errors in the terms of the command line.
 
 use crate::error::{CliError, Kind};
 use keyway_lab::results::{OutDir, ResultsError};
 use std::path::Path;
 
-/// A folder in which all the planned files may be written ([`OutDir::prepare`]).
+/// A folder that is ready for all planned files ([`OutDir::prepare`]).
 pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<OutDir, CliError> {
     let out = OutDir::prepare(folder, planned)?;
     if out.is_unguarded() {
@@ -13,7 +13,7 @@ pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<OutD
     Ok(out)
 }
 
-/// Nothing keeps another program from writing the same files.
+/// Warns that the folder cannot be locked against other programs.
 pub(crate) fn warn_of_others(path: &Path) {
     crate::stdout::warn(format!(
         "{}: files cannot be locked here; see to it that nobody else writes there",

@@ -1,4 +1,4 @@
-//! Files that are named on the command line: each is written as a whole, or not at all.
+//! Output files named on the command line: each is written completely or not at all.
 
 use crate::args::{AnimationFile, AnimationFormat};
 use crate::error::{CliError, Kind};
@@ -7,13 +7,13 @@ use keyway::file_system::write_atomically;
 use keyway_draw::{Animation, DrawError};
 use std::path::Path;
 
-/// Writes a file; an error names the option that asked for it.
+/// Writes a file. An error blames the option that requested it.
 pub(crate) fn write_file(path: &Path, bytes: &[u8], field: &str) -> Result<(), CliError> {
     write_atomically(path, bytes).map_err(|error| CliError::new(Kind::Output, error).field(field))
 }
 
-/// Writes an animation. `make` is given a function to be called with the number of pictures drawn
-/// so far, and their total: a bar shows it on a terminal.
+/// Writes an animation. `make` receives a callback for the number of pictures drawn so far and
+/// their total, which drives a progress bar.
 pub(crate) fn write_animation(
     file: &AnimationFile,
     field: &str,

@@ -1,4 +1,4 @@
-//! Pictures of what was planned and driven.
+//! Pictures of plans and runs.
 
 use crate::drive_pictures::Stage;
 use crate::error::{CliError, Kind};
@@ -15,7 +15,7 @@ use keyway_draw::{
 };
 use keyway_sim::sim::{StandingPolygon, TrajectoryPoint};
 
-/// Pixels of a PNG per unit of its picture.
+/// PNG pixels per unit of the picture.
 pub(crate) const PNG_SCALE: f64 = 2.0;
 
 /// A map, the search for a path on it, and the path.
@@ -32,30 +32,30 @@ pub(crate) struct PlanPicture<'a> {
 
 /// The goals of a plan that are on the map.
 pub(crate) struct PlanGoals {
-    /// The one that the path leads to, or that was searched for alone.
+    /// The goal that the path leads to, or the only goal.
     main: Option<Point>,
     others: Vec<Point>,
 }
 
 impl PlanGoals {
-    /// `nearest` is the one that the path leads to, if one was found.
+    /// Splits the goals. `nearest` is the goal that the path leads to, if one was found.
     pub(crate) fn new(all: &[Point], nearest: usize, is_found: bool, frame: &GridFrame) -> Self {
         let main = Some(all[nearest]).filter(|_| is_found || all.len() == 1);
-        // The others may be far outside the map.
+        // The other goals may be far outside the map.
         let is_shown = |i: &usize| frame.cell_from_world(all[*i]).is_some();
         let others = (0..all.len()).filter(|&i| main.is_none() || i != nearest).filter(is_shown);
         Self { main, others: others.map(|i| all[i]).collect() }
     }
 }
 
-/// Lines that stand out from the colours of a search.
+/// Line styles that stand out from the colours of a search.
 const PLANNED: LineStyle = LineStyle { color: Rgb(0x22, 0x22, 0x22), width_px: 1.4, dashes: "" };
 const SMOOTHED: LineStyle = LineStyle { color: SERIES[2], width_px: 1.8, dashes: "" };
-/// Free cells too close for the robot: a grey that no search uses.
+/// Colour of free cells with too little clearance for the robot: a grey that no search uses.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
 impl<'a> PlanPicture<'a> {
-    /// The search and its result.
+    /// Picture of the search and its result.
     pub(crate) fn still(&self) -> MapPicture<'a> {
         let mut picture = self.frame(SearchTrace::new(self.search));
         if let Some(line) = self.line {
@@ -67,7 +67,7 @@ impl<'a> PlanPicture<'a> {
         picture
     }
 
-    /// The search, or the beginning of it.
+    /// Picture of the search up to some step.
     pub(crate) fn frame(&self, trace: SearchTrace<'a>) -> MapPicture<'a> {
         let picture = MapPicture::new(self.map)
             .with(CellTint::blocked(self.blocked).color(TOO_CLOSE))
@@ -85,19 +85,19 @@ impl<'a> PlanPicture<'a> {
     }
 }
 
-/// A map, a route and what was driven along it; without a run, the start and the goal.
+/// A map, a route and the trajectory driven along it; without a run, start and goal only.
 pub(crate) struct RunPicture<'a> {
     pub(crate) stage: Stage<'a>,
     pub(crate) driven: Option<DrivenPicture<'a>>,
 }
 
-/// The part of a picture that only a run has.
+/// The layers that only a completed run has.
 pub(crate) struct DrivenPicture<'a> {
     pub(crate) line: &'a Polyline,
     pub(crate) smoothed: &'a Polyline,
     pub(crate) key_points: &'a [Point],
     pub(crate) sensed: &'a BitGrid,
-    /// What the robot went around.
+    /// Obstacles that the robot detoured around.
     pub(crate) walked: &'a [Disc],
     pub(crate) points: &'a [TrajectoryPoint],
 }
@@ -132,7 +132,7 @@ impl RunPicture<'_> {
     }
 }
 
-/// Speed and turn rate of a run over time.
+/// Chart of speed and turn rate of a run over time.
 pub(crate) fn speed_svg(name: &str, points: &[TrajectoryPoint], robot: &Robot) -> Svg {
     let options = SpeedCurveOptions {
         v_max_mps: Some(robot.limits.v_max_mps),
@@ -142,7 +142,7 @@ pub(crate) fn speed_svg(name: &str, points: &[TrajectoryPoint], robot: &Robot) -
     speed_curve(&[SpeedSeries { name, points }], &options)
 }
 
-/// A point of a trajectory as it is reported.
+/// Converts a row of the report into a trajectory point.
 pub(crate) fn trajectory_point(&[t_s, x, y, yaw_rad, v, omega]: &[f64; 6]) -> TrajectoryPoint {
     TrajectoryPoint { t_s, pose: Pose::new(x, y, yaw_rad), velocity: Velocity::new(v, omega) }
 }

@@ -1,4 +1,4 @@
-//! How far a measurement has come: a bar on a terminal, nothing elsewhere.
+//! Progress of a measurement: a bar on a terminal, nothing elsewhere.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use keyway_lab::progress::Progress as LabProgress;
@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// Answers that were given, of those of all files read so far; and files.
+/// Progress bar: answered queries of all files read so far, and finished files.
 pub(crate) struct Progress {
     bar: ProgressBar,
     files: usize,
@@ -17,30 +17,30 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// On the standard error, and not in the way of the report.
+    /// A bar over files, on the standard error.
     ///
-    /// The bar is not seen until somebody expects answers.
+    /// It stays hidden until answers are expected.
     pub(crate) fn over_files(files: usize) -> Self {
         Self::over_files_on(target(), files)
     }
 
     fn over_files_on(target: ProgressDrawTarget, files: usize) -> Self {
         let bar = bar(target, "{bar:30} {pos}/{len} answers, {msg}, {elapsed}");
-        // Not shown yet: a bar without answers to wait for would look full.
+        // Hidden at first: a bar of length 0 would look full.
         let bar = bar.with_message(format!("0/{files} files"));
         Self { bar, files, finished_files: AtomicUsize::new(0) }
     }
 
-    /// The same where every answer is a run of its own.
+    /// A bar over runs: every answer is a run.
     pub(crate) fn over_runs(runs: usize) -> Self {
         let bar = bar(target(), "{bar:30} {pos}/{len} runs, {elapsed}, {eta} left");
         bar.inc_length(runs as u64);
-        // Runs may take minutes: the clock goes on meanwhile.
+        // Runs may take minutes: the elapsed time keeps counting in between.
         bar.enable_steady_tick(Duration::from_secs(1));
         Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
     }
 
-    /// The same where every answer is what many methods do on one map.
+    /// A bar over maps: every answer is the result of all methods on one map.
     pub(crate) fn over_maps() -> Self {
         let bar = bar(target(), "{bar:30} {pos}/{len} maps, {elapsed}, {eta} left");
         Self { bar, files: 0, finished_files: AtomicUsize::new(0) }
@@ -63,7 +63,7 @@ impl LabProgress for Progress {
     }
 }
 
-/// The runs of a batch: a bar from the moment at which it is known how many are to be made.
+/// Progress bar of a batch. It appears as soon as the number of runs is known.
 #[derive(Default)]
 pub(crate) struct RunBar(OnceLock<Progress>);
 
@@ -89,7 +89,7 @@ fn target() -> ProgressDrawTarget {
     }
 }
 
-/// Pictures that were drawn, of all of them; its caller clears it.
+/// Progress bar over drawn pictures. The caller clears it.
 pub(crate) fn picture_bar() -> ProgressBar {
     bar(target(), "{bar:30} {pos}/{len} pictures, {elapsed}")
 }
@@ -103,7 +103,7 @@ fn bar(target: ProgressDrawTarget, template: &str) -> ProgressBar {
 }
 
 impl Drop for Progress {
-    /// Even after an error the terminal is left clean.
+    /// Clears the bar, also after an error.
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
@@ -116,7 +116,7 @@ mod tests {
     use std::io::Result;
     use std::sync::{Arc, Mutex};
 
-    /// Keeps all that is written.
+    /// A terminal that keeps everything written to it.
     #[derive(Clone, Debug, Default)]
     struct Paper(Arc<Mutex<String>>);
 

@@ -1,12 +1,12 @@
-//! Reports with their files.
+//! Reports with the list of their files.
 
 use serde::Serialize;
 
-/// A report, and the files that were written beside it.
+/// A report, and the files written beside it.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct WithFiles<'a, R> {
     #[serde(flatten)]
     pub(crate) report: &'a R,
-    /// Their paths, in the order in which they were written.
+    /// Paths of the files, in the order of writing.
     pub(crate) files: &'a [String],
 }

@@ -4,19 +4,18 @@ use crate::error::{CliError, Kind};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-/// Prints all of a text, or says why it could not. A reader that went away is not an error of this
-/// program.
+/// Prints a text. A reader that closes the pipe is not an error; any other failure is.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     check_written(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// Says below an answer which files were written, the same way for all commands.
+/// Lists the written files below an answer, in the same form for all commands.
 pub(crate) fn print_files(files: &[String]) -> Result<(), CliError> {
     if files.is_empty() { Ok(()) } else { print(&format!("\nwrote {}\n", files.join("\nwrote "))) }
 }
 
-/// True if writing to the standard output succeeded.
+/// Checks that writing to the standard output succeeded; a broken pipe counts as success.
 pub(crate) fn check_written(written: std::io::Result<()>) -> Result<(), CliError> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -27,8 +26,8 @@ pub(crate) fn check_written(written: std::io::Result<()>) -> Result<(), CliError
     }
 }
 
-/// Says on the standard error what is usually a mistake, or was lost.
+/// Prints a warning to the standard error: a likely mistake, or lost information.
 pub(crate) fn warn(warning: impl Display) {
-    // Nobody is left to read it when this fails.
+    // If this fails, there is no channel left to report it.
     let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }

@@ -13,28 +13,28 @@ use keyway_draw::{
 use keyway_sim::episode::{Episode, EpisodeRobot};
 use keyway_sim::sim::{MovingObstacle, StandingPolygon, TrajectoryPoint};
 
-/// A team and what each of its robots drove; nothing without a route.
+/// A team and the trajectory of each of its robots; empty for a robot without a route.
 #[derive(Clone, Copy)]
 pub(crate) struct TeamPicture<'a> {
     pub(crate) team: &'a Episode,
     pub(crate) driven: &'a [Vec<TrajectoryPoint>],
-    /// What moves, as it did.
+    /// Moving obstacles, as they moved in the run.
     pub(crate) movers: &'a [MovingObstacle],
 }
 
-/// The robots at one moment, and their ways until then.
+/// The robots at one moment, and their paths so far.
 struct Shown<'a> {
     t_s: f64,
     ways: Vec<Polyline>,
     robots: Vec<[TrajectoryPoint; 1]>,
-    /// What moves, where it is at that time.
+    /// Moving obstacles at that time.
     moving: Vec<Disc>,
     polygons: Vec<&'a [Point]>,
     ends: Vec<(Point, Point)>,
 }
 
 impl<'a> TeamPicture<'a> {
-    /// Frames of an animation, at most.
+    /// Maximum number of animation frames.
     const MOST_FRAMES: usize = 120;
 
     fn shown(&self, t_s: f64, movers: &[MovingObstacle]) -> Shown<'a> {
@@ -56,7 +56,7 @@ impl<'a> TeamPicture<'a> {
         }
     }
 
-    /// The map with each robot's way until then, and the robot at the end of it.
+    /// The map with each robot's path so far, and the robot at the end of it.
     fn picture<'b>(&self, shown: &'b Shown<'b>) -> MapPicture<'b>
     where
         'a: 'b,
@@ -75,7 +75,7 @@ impl<'a> TeamPicture<'a> {
             picture = picture.with(PathLine::new(way, label, style(index)).rimmed());
         }
         let at_end = self.driven.iter().enumerate().filter(|(_, driven)| !driven.is_empty());
-        // The legend explains the first: they differ in their colours alone.
+        // The legend explains only the first robot: they differ in colour alone.
         let mut label = "robot";
         for ((index, _), robot) in at_end.zip(&shown.robots) {
             let outline = LineStyle { dashes: "", ..style(index) };
@@ -90,16 +90,16 @@ impl<'a> TeamPicture<'a> {
         ends_s.fold(0.0, f64::max)
     }
 
-    /// What all robots drove, with the time along each way.
+    /// Picture of the paths of all robots, with times along each path.
     pub(crate) fn svg(&self) -> Svg {
-        // Its movers have a layer of their own, with their ways.
+        // The moving obstacles have a layer of their own, with their paths.
         let shown = self.shown(self.end_s(), &[]);
         let runs = self.driven.iter().enumerate();
         let runs = runs.map(|(index, driven)| (driven.as_slice(), style(index).color)).collect();
         self.picture(&shown).with(Movers::among(self.movers, runs)).svg()
     }
 
-    /// Speeds and turn rates of all robots. A limit is shown where it is the same for all.
+    /// Speeds and turn rates of all robots. A limit is shown if it is the same for all.
     pub(crate) fn speed_svg(&self) -> Svg {
         let robots = &self.team.robots;
         let names: Vec<String> = (0..robots.len()).map(|index| format!("robot {index}")).collect();
@@ -120,7 +120,8 @@ impl<'a> TeamPicture<'a> {
         speed_curve(&series, &options)
     }
 
-    /// All runs. `progress` is called with the number of pictures drawn so far, and their total.
+    /// Animation of all runs. `progress` is called with the number of pictures drawn so far, and
+    /// their total.
     pub(crate) fn animation(
         &self,
         progress: impl FnMut(usize, usize),
@@ -142,7 +143,7 @@ impl<'a> TeamPicture<'a> {
     }
 }
 
-/// The line of a robot.
+/// Line style of a robot.
 fn style(index: usize) -> LineStyle {
     LineStyle { width_px: 2.0, ..series_style(index) }
 }

@@ -1,5 +1,5 @@
-//! Imports: a module of the library or the simulator knows earlier modules only, and in no crate do
-//! two files import each other. Cargo sees to it that no crate knows a later one.
+//! Tests of imports. A module of the library or the simulator imports earlier modules only, and
+//! in no crate do two files import each other. Cargo ensures the order of the crates.
 //!
 //! Reads the `use` lines of the sources, and every path that begins with `crate::`, outside tests
 //! and comments.
@@ -9,10 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules of a crate, earlier ones first. Those of one line do not know each other.
+/// The modules of a crate, earlier ones first. Modules of one layer do not import each other.
 type Layers = &'static [&'static [&'static str]];
 
-/// Modules that a robot carries.
+/// Modules of `keyway`, which run on a robot.
 const KEYWAY: Layers = &[
     &["file_error", "given", "random", "registry", "geometry"],
     &["file_system", "config_error"],
@@ -29,7 +29,7 @@ const KEYWAY: Layers = &[
     &["files"],
 ];
 
-/// A world in time.
+/// Modules of `keyway-sim`, the simulated world.
 const SIM: Layers =
     &[&["parallel", "worlds"], &["sim"], &["metrics"], &["report"], &["episode"], &["scene_files"]];
 
@@ -122,7 +122,7 @@ fn imports(code: &str) -> Vec<String> {
     found
 }
 
-/// The modules that are named after `crate::`, wherever.
+/// The modules named after `crate::`, anywhere in the code.
 fn named(code: &str) -> BTreeSet<String> {
     let mut names: BTreeSet<String> = imports(code)
         .iter()
@@ -158,7 +158,7 @@ fn no_layer_knows_a_later_one() {
     }
 }
 
-/// The module in which something imported is defined, following `pub use` of modules.
+/// The module that defines an import, following `pub use` of modules.
 fn origin(from: &Module, path: &str, modules: &BTreeMap<Module, String>) -> Option<Module> {
     let mut names = path.split("::").peekable();
     let mut base = match *names.peek()? {
@@ -184,7 +184,7 @@ fn origin(from: &Module, path: &str, modules: &BTreeMap<Module, String>) -> Opti
     Some(base)
 }
 
-/// The module below `module` from which it takes a name that it hands on.
+/// The module below `module` from which it re-exports a name.
 fn reexported(module: &Module, name: &str, modules: &BTreeMap<Module, String>) -> Option<Module> {
     imports(&modules[module]).iter().find_map(|path| {
         let (stem, last) = path.rsplit_once("::")?;
@@ -213,7 +213,7 @@ fn circles(name: &str) -> Vec<String> {
         }
     }
     assert!(edges.len() > 20, "{name}: {} edges", edges.len());
-    // A module and the files in its folder are one thing.
+    // A module and the files in its folder count as one.
     let is_below = |a: &Module, b: &Module| a.starts_with(b) || b.starts_with(a);
     edges
         .iter()

@@ -1,4 +1,4 @@
-//! Arrays that go out. Memory moves to numpy as it is; nothing is copied.
+//! Output arrays. Their memory is moved to numpy without a copy.
 
 use keyway::geometry::Point;
 use numpy::ndarray::Array2;
@@ -8,7 +8,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList};
 use std::convert::Infallible;
 
-/// Makes a type of arrays that has a type in stubs, too.
+/// Defines a type of arrays that also has a type in the stubs.
 macro_rules! array_type {
     ($(#[$doc:meta])* $name:ident, $array:ty, $item:literal) => {
         $(#[$doc])*
@@ -33,15 +33,15 @@ macro_rules! array_type {
 }
 
 array_type!(
-    /// Numbers in rows and columns.
+    /// A 2-D array of numbers.
     Floats2, PyArray2<f64>, "float64"
 );
 array_type!(
-    /// Numbers in a row.
+    /// A 1-D array of numbers.
     Floats1, PyArray1<f64>, "float64"
 );
 array_type!(
-    /// Cells, a row for each.
+    /// An array of cells, one per row.
     Cells, PyArray2<i32>, "int32"
 );
 array_type!(
@@ -49,11 +49,11 @@ array_type!(
     Mask, PyArray2<bool>, "bool_"
 );
 array_type!(
-    /// Values of cells, as in `nav_msgs`.
+    /// Occupancy of cells, as in `nav_msgs`.
     Occupancy, PyArray2<i8>, "int8"
 );
 
-/// An array with named columns.
+/// A structured array, with named columns.
 pub(crate) struct Records(pub(crate) Py<PyAny>);
 
 impl<'py> IntoPyObject<'py> for Records {
@@ -77,7 +77,7 @@ pub(crate) fn of_points(py: Python<'_>, points: &[Point]) -> Py<PyArray2<f64>> {
     of_rows(py, points.iter().map(|point| [point.x, point.y]), points.len())
 }
 
-/// Rows of equal length as (n, N), read-only: what they describe does not change.
+/// Rows of equal length as (n, N). The array is read-only, as a result must not change.
 pub(crate) fn of_rows<const N: usize, T: numpy::Element>(
     py: Python<'_>,
     rows: impl Iterator<Item = [T; N]>,
@@ -91,7 +91,7 @@ pub(crate) fn of_rows<const N: usize, T: numpy::Element>(
     read_only(PyArray2::from_owned_array(py, array))
 }
 
-/// Whoever wrote into an array of a result would change the result.
+/// Makes an array read-only: a write into it would change the result.
 fn read_only<T: numpy::Element>(array: Bound<'_, PyArray2<T>>) -> Py<PyArray2<T>> {
     match array.try_readwrite() {
         Ok(writable) => (*writable.make_nonwriteable()).clone().unbind(),
@@ -99,7 +99,7 @@ fn read_only<T: numpy::Element>(array: Bound<'_, PyArray2<T>>) -> Py<PyArray2<T>
     }
 }
 
-/// The same memory with named columns: a structured array of (n,).
+/// A view of the same memory with named columns: a structured array of (n,).
 pub(crate) fn records<const N: usize>(
     py: Python<'_>,
     names: [&str; N],
@@ -113,15 +113,15 @@ pub(crate) fn records<const N: usize>(
     Ok(Records(view.call_method1("reshape", (-1,))?.unbind()))
 }
 
-/// Numbers in a row, copied: they change with the next cycle.
+/// A 1-D array, copied, as the numbers change with the next cycle.
 pub(crate) fn copied(py: Python<'_>, numbers: &[f64]) -> Floats1 {
     Floats1(numbers.to_pyarray(py).unbind())
 }
 
-/// An array that is made when somebody asks for it.
+/// An array that is created on first access.
 pub(crate) type Lazy<T> = PyOnceLock<Py<PyArray2<T>>>;
 
-/// JSON values as Python objects; a type of their own for the stubs.
+/// A JSON object as a Python dictionary; a separate type for the stubs.
 pub(crate) struct Json(pub(crate) Py<PyDict>);
 
 impl<'py> IntoPyObject<'py> for Json {

@@ -15,17 +15,16 @@ use std::path::PathBuf;
 /// Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
 /// for byte, into the folder `out`.
 ///
-/// `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`.
-/// `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
-/// i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
-/// chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
-/// `disturbances` are names or files. `reached_by` is the pose by which a goal is reached,
-/// `"truth"` or `"belief"`. With `safe` the stop rule stands behind every stack. `parameters` are
-/// laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are
-/// not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
-/// called meanwhile.
+/// `scenes` are scene files, or folders of them. `stacks` are names or files, or `["all"]`.
+/// `seeds` is the number of seeds for each scene. `shard=(i, n)` runs only the i-th of n parts;
+/// `keyway.merge` merges the parts. `jobs` is the number of threads. `keep` selects the runs that
+/// get a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
+/// files. `reached_by` is the pose that counts as reaching a goal, `"truth"` or `"belief"`.
+/// `safe` enables the stop rule for every stack. `parameters` override those of every stack, and
+/// their `robot` table those of every robot. Finished runs in the folder are not repeated, so an
+/// interrupted batch is resumed. `progress(done, expected)` is called meanwhile.
 ///
-/// Gives the report `keyway.batch/1` of `docs/reference/json.md`.
+/// Returns the report `keyway.batch/1` of `docs/reference/json.md`.
 ///
 /// >>> import keyway
 /// >>> keyway.batch(["nowhere.toml"], out="unused")
@@ -84,8 +83,8 @@ fn choice(keep: &str) -> PyResult<Keep> {
     })
 }
 
-/// Puts together what `keyway.batch` has made in other folders, such as the parts of one batch.
-/// Nothing is driven.
+/// Merges results of `keyway.batch` from several folders, such as the parts of one batch. Nothing
+/// is driven.
 ///
 /// >>> import keyway
 /// >>> keyway.merge([], out="unused")

@@ -1,4 +1,4 @@
-//! Comparing planners and smoothers.
+//! Comparison of planners and smoothers.
 
 use crate::arrays::{Json, JsonRows, json};
 use crate::errors::{bad_value, why_without_path};
@@ -13,7 +13,7 @@ use keyway_lab::compare::{CompareError, CompareRequest, Comparison as Checked, Q
 use pyo3::prelude::*;
 use serde_json::Value;
 
-/// What a comparison gave: a row for each planner with each smoother.
+/// Result of a comparison: a row for each combination of planner and smoother.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.eye(30, dtype=bool)[::-1] & (np.arange(30) % 3 > 0), resolution=0.1)
@@ -26,7 +26,7 @@ use serde_json::Value;
 pub(crate) struct Comparison {
     report: Value,
     latex: String,
-    /// Names of the columns of the same table, and its cells row by row.
+    /// Column names of the table, and its cells row by row.
     header: Vec<&'static str>,
     cells: Vec<Vec<String>>,
 }
@@ -39,13 +39,14 @@ impl Comparison {
         Ok(JsonRows(pythonize::pythonize(py, &self.report["rows"])?.unbind()))
     }
 
-    /// The whole report, `keyway.compare/1` of `docs/reference/json.md`: also every query, and the tests of each row against the first.
+    /// The whole report, `keyway.compare/1` of `docs/reference/json.md`. It also has every query, and the
+    /// tests of each row against the first.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<Json> {
         json(py, &self.report)
     }
 
-    /// The table as LaTeX, as a paper would print it.
+    /// The table as LaTeX, for use in a paper.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -55,7 +56,7 @@ impl Comparison {
         &self.latex
     }
 
-    /// The rows as a `pandas.DataFrame`; pandas has to be installed.
+    /// The rows as a `pandas.DataFrame`; requires pandas.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("pandas")?.call_method1("DataFrame", (self.rows(py)?,))
     }
@@ -80,15 +81,16 @@ impl Comparison {
     }
 }
 
-/// Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
-/// does.
+/// Compares the paths of planners and smoothers on a map, with each other and with the shortest
+/// line, as `keyway compare` does.
 ///
-/// `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
-/// paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-/// dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`.
-/// With `as_published` they begin with the values of their papers, for maps with cells of 1 m,
-/// whatever the robot. Without `times`, the same arguments give the same report.
-/// `progress(done, expected)` is called meanwhile.
+/// `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are
+/// drawn from `seed`. `radius` is the clearance of paths to every obstacle [m]; `robot` is a
+/// robot whose radius is used as clearance. `parameters` are those of the TOML files, as a
+/// dictionary; those of one planner or smoother are set by its name:
+/// `{"hsta": {"if_no_path": "fail"}}`. With `as_published`, planners and smoothers use the
+/// parameters of their papers, for maps with cells of 1 m, whatever the robot. Without `times`,
+/// the report is deterministic. `progress(done, expected)` is called meanwhile.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -137,7 +139,7 @@ pub(crate) fn compare(
     watched(py, progress.as_ref(), move |watch| compared(grid, request, watch))?
 }
 
-/// Names of a list; without a list those that are usual.
+/// Names of a list; without a list, the default names.
 fn names(argument: &str, list: Option<Listed<String>>) -> PyResult<Vec<String>> {
     match list {
         Some(Listed(names)) if names.is_empty() => {
@@ -163,7 +165,7 @@ fn compared(grid: OccupancyGrid, request: CompareRequest, watch: &Watch) -> PyRe
     Ok(Comparison { report, latex, header, cells })
 }
 
-/// A text in which no character means anything to HTML.
+/// Escapes a text for HTML.
 fn html_text(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,4 +1,4 @@
-//! Which Python exception an error of the library is.
+//! Converts errors of the library into Python exceptions.
 
 use keyway::file_error::ReadError;
 use keyway::files::{ConfigFileError, ParameterError, TextFileError};
@@ -21,14 +21,14 @@ pyo3::import_exception!(keyway.errors, NoRoom);
 pyo3::import_exception!(keyway.errors, Missed);
 pyo3::import_exception!(keyway.errors, BudgetExhausted);
 
-/// A `UserWarning`: something is usually a mistake.
+/// Issues a `UserWarning` about a likely mistake.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = CString::new(text).map_err(bad_value)?;
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)
 }
 
-/// A `MemoryError` where there is no room for so many bytes: memory that is missing later ends the
-/// process.
+/// Raises `MemoryError` if the allocation of so many bytes would fail: a failed allocation later
+/// would abort the process.
 pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
     let missing = || {
         let gib = bytes as f64 / (1_u64 << 30) as f64;
@@ -38,12 +38,12 @@ pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| missing())
 }
 
-/// A value that cannot be used.
+/// Error of an invalid value.
 pub(crate) fn bad_value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Why there is no path in a comparison, and the parameter that helps.
+/// Message of a query without a path in a comparison, with the parameter that helps.
 pub(crate) fn why_without_path(error: &PlanError) -> String {
     let advice = match error {
         PlanError::Blocked {
@@ -64,7 +64,7 @@ pub(crate) fn why_without_path(error: &PlanError) -> String {
     format!("{error}{advice}")
 }
 
-/// Why there is no plan, in the words of the library, and the setting that helps.
+/// Exception of a failed plan, with the message of the library and the setting that helps.
 pub(crate) fn plan_error(error: &PlanError) -> PyErr {
     let advice = error.advice().map_or_else(String::new, |advice| {
         let Advice { purpose, parameter, value, .. } = advice;
@@ -85,11 +85,11 @@ fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
     }
 }
 
-/// The exception of a robot that cannot be sent to a goal; its attribute `kind` is a number that
+/// Exception of a navigator that cannot accept a goal. Its attribute `kind` is a number that
 /// never changes.
 pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
     let raised = navigate_error_of(error);
-    // Without the attribute it is the same error.
+    // The error is valid without the attribute, too.
     let _ = Python::attach(|py| raised.value(py).setattr("kind", error.kind()));
     raised
 }
@@ -111,7 +111,7 @@ fn navigate_error_of(error: &NavigateError) -> PyErr {
     }
 }
 
-/// A map file that cannot be used.
+/// Exception of an invalid map file.
 pub(crate) fn map_error(error: &MapFileError) -> PyErr {
     match error {
         MapFileError::Read(read) => read_error(read, error),
@@ -120,7 +120,7 @@ pub(crate) fn map_error(error: &MapFileError) -> PyErr {
     }
 }
 
-/// A scene that cannot be used.
+/// Exception of an invalid scene.
 pub(crate) fn scene_file_error(error: &SceneFileError) -> PyErr {
     match error {
         SceneFileError::Config(error) => config_file_error(error),
@@ -128,7 +128,7 @@ pub(crate) fn scene_file_error(error: &SceneFileError) -> PyErr {
     }
 }
 
-/// A robot or a stack that cannot be used.
+/// Exception of an invalid robot or stack.
 pub(crate) fn config_file_error(error: &ConfigFileError) -> PyErr {
     match error {
         ConfigFileError::File(TextFileError::Read(read)) => read_error(read, error),
@@ -144,7 +144,7 @@ pub(crate) fn parameter_error(error: &ParameterError) -> PyErr {
     bad_value(error)
 }
 
-/// A file that is not there, or cannot be read.
+/// Exception of a missing or unreadable file.
 fn read_error(error: &ReadError, whole: impl Display) -> PyErr {
     match error {
         ReadError::System { reason, .. } if reason.kind() == ErrorKind::NotFound => {

@@ -1,7 +1,9 @@
-//! Keyway for Python: it parses, calls and converts. Every rule is one of the library's.
+//! Keyway for Python: parses arguments, calls the library and converts results. All rules are
+//! those of the library.
 //!
-//! One file per Python class; [`ready`] has what plans need of a map, [`values`] what comes in and [`arrays`] what goes out,
-//! [`errors`] which exception an error is, and [`watched`] how long calls are watched and stopped.
+//! There is one file per Python class. [`ready`] has the layers of a map and the planners on it,
+//! [`values`] the conversion of arguments, [`arrays`] that of results, [`errors`] that of errors,
+//! and [`watched`] the progress and interruption of long calls.
 
 #![expect(clippy::needless_pass_by_value, reason = "arguments come from Python by value")]
 #![expect(clippy::doc_link_with_quotes, reason = "the docstrings are those of Python")]

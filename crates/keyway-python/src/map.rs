@@ -19,9 +19,10 @@ use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// An occupancy grid: for every cell occupied, unknown or free.
+/// An occupancy grid: every cell is occupied, unknown or free.
 ///
-/// Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are in metres.
+/// Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are
+/// in metres.
 ///
 /// >>> import keyway, numpy as np
 /// >>> occupied = np.zeros((40, 60), dtype=bool)
@@ -62,10 +63,10 @@ impl Map {
     }
 }
 
-/// What a map is made of again.
+/// The arguments that restore a map.
 type Parts = (Occupancy, (u8, u8), f64, (f64, f64, f64), String, Option<(f64, [f64; 3])>);
 
-/// The map of an array whose values a function reads.
+/// Creates the map of an array, with a function that reads its values.
 fn read_grid(
     cells: &Grid<'_>,
     resolution: f64,
@@ -89,7 +90,7 @@ fn read_grid(
             }))
         },
         |values| {
-            // As in `nav_msgs`: what is negative is unknown.
+            // As in `nav_msgs`, negative values are unknown.
             let value = |&value: &i8| u8::try_from(value).unwrap_or(OccupancyGrid::UNKNOWN_VALUE);
             of_values(frame, values.iter().map(value).collect())
         },
@@ -103,7 +104,7 @@ pub(crate) fn map_of_array(grid: OccupancyGrid) -> Map {
 }
 
 impl Map {
-    /// Occupancy as in its file, where that is known.
+    /// Occupancy as in the file, if it is known.
     fn values(&self, py: Python<'_>) -> PyResult<Occupancy> {
         let Some(values) = self.grid.values() else { return self.occupancy(py) };
         check_memory(values.len() as u64)?;
@@ -124,14 +125,16 @@ fn pose(origin: Option<&Numbers>) -> PyResult<Pose> {
 
 #[pymethods]
 impl Map {
-    /// A map from an array of shape (rows, columns), row 0 at the bottom.
+    /// Creates a map from an array of shape (rows, columns), row 0 at the bottom.
     ///
-    /// `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as in `nav_msgs`: from
-    /// `occupied_threshold` on a cell is occupied, up to `free_threshold` it is free, and between the two, as below 0, it is
-    /// unknown. That is the rule by which Nav2 saves maps. Values that are not all 0 and all below `free_threshold` are a
-    /// `ValueError`: a mask is of bool. The array is read where it is, whatever its strides.
+    /// `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as
+    /// in `nav_msgs`. A cell is occupied from `occupied_threshold` on and free up to
+    /// `free_threshold`; it is unknown between the two and below 0. Nav2 saves maps by the same
+    /// rule. Raises `ValueError` if the values are not all 0 but all below `free_threshold`: a
+    /// mask must be of type bool. The array is read in place, whatever its strides.
     ///
-    /// `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or with a yaw [m, m, rad].
+    /// `resolution` is the cell size [m]; `origin` is the position [m] of the lower left corner,
+    /// or its pose [m, m, rad].
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.array([[0, 65, 50, -1]], dtype=np.int8), resolution=0.5)
@@ -157,11 +160,12 @@ impl Map {
         Ok(map_of_array(grid))
     }
 
-    /// Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
+    /// Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`,
+    /// `.pgm`).
     ///
-    /// A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
-    /// mistake in such a file is a `UserWarning`. A map of more than `max_cells` [2^29] is a `ValueError`,
-    /// before memory is taken for it.
+    /// A YAML file contains the placement of its map. For other files it is given by `resolution`
+    /// [m] and `origin`. A likely mistake in such a file is a `UserWarning`. Raises `ValueError`
+    /// for a map of more than `max_cells` [2^29], before memory is allocated.
     ///
     /// >>> import keyway
     /// >>> keyway.Map.read("nowhere.yaml")
@@ -202,7 +206,7 @@ impl Map {
         Ok(Self::new(loaded.grid, source))
     }
 
-    /// Writes the map; the extension of the file names its format, as for `read`.
+    /// Writes the map; the extension of the file selects the format, as for `read`.
     ///
     /// >>> import keyway, numpy as np, pathlib, tempfile
     /// >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool), resolution=1.0)
@@ -214,13 +218,13 @@ impl Map {
         py.detach(|| write_map(&path, &self.grid)).map_err(|error| map_error(&error))
     }
 
-    /// Rows and columns.
+    /// Number of rows and columns.
     #[getter]
     fn shape(&self) -> (u32, u32) {
         (self.grid.frame().height(), self.grid.frame().width())
     }
 
-    /// Side of a cell [m].
+    /// Cell size [m].
     #[getter]
     fn resolution(&self) -> f64 {
         self.grid.frame().resolution_m()
@@ -233,19 +237,19 @@ impl Map {
         (x, y, theta)
     }
 
-    /// A number that identifies the map: equal maps have equal ones.
+    /// Identifier of the map's content: equal maps have equal digests.
     #[getter]
     fn digest(&self) -> &str {
         &self.source.digest
     }
 
-    /// Which cells are occupied: a new array of bool of shape (rows, columns).
+    /// Mask of the occupied cells: a new array of bool of shape (rows, columns).
     #[getter]
     fn occupied(&self, py: Python<'_>) -> PyResult<Mask> {
         self.mask(py, self.grid.occupied())
     }
 
-    /// Which cells are unknown: a new array of bool of shape (rows, columns).
+    /// Mask of the unknown cells: a new array of bool of shape (rows, columns).
     #[getter]
     fn unknown(&self, py: Python<'_>) -> PyResult<Mask> {
         self.mask(py, self.grid.unknown())
@@ -266,8 +270,8 @@ impl Map {
         Ok(Occupancy(PyArray2::from_owned_array(py, occupancy).unbind()))
     }
 
-    /// The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
-    /// position that is outside the map.
+    /// Returns the cells (column, row) of positions [m]: an array of int32 of shape (n, 2).
+    /// Raises a `ValueError` that names the first position outside the map.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((4, 4), dtype=bool), resolution=0.5)
@@ -291,7 +295,8 @@ impl Map {
         Ok(Cells(of_rows(py, cells.into_iter(), count)))
     }
 
-    /// The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
+    /// Returns the centres of all free cells [m]: an array of float64 of shape (n, 2), row by row
+    /// from the bottom.
     fn free_positions(&self, py: Python<'_>) -> PyResult<Floats2> {
         let frame = self.grid.frame();
         let is_free = |cell: &Cell| self.grid.state(*cell) == Some(CellState::Free);
@@ -306,7 +311,7 @@ impl Map {
         Ok(Floats2(of_rows(py, frame.cells().filter(is_free).map(centre), count as usize)))
     }
 
-    /// Maps can be copied, pickled, and sent to other processes.
+    /// Supports copying, pickling and sending maps to other processes.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let placement = self.source.placement.map(|at| (at.resolution_m, at.origin));
         let thresholds = self.grid.thresholds().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Measurements on their way to a navigator.
+//! Measurements that are passed to a navigator.
 
 use crate::points::Points;
 use crate::scan::LaserScan;
@@ -8,7 +8,7 @@ use keyway::robot::RangeSensor;
 use keyway::sense::{Observation, Scan, SensorPoints, SensorScan};
 use pyo3::Py;
 
-/// A pose and a velocity at a time \[s\].
+/// A pose and a velocity, measured at a time \[s\].
 pub(crate) struct Measured {
     pub(crate) stamp_s: f64,
     pub(crate) pose: Pose,
@@ -16,8 +16,8 @@ pub(crate) struct Measured {
 }
 
 impl Measured {
-    /// Tells them to a navigator, with the scans of its robot's sensors, of which `own` has the last
-    /// ones, and points.
+    /// Passes the measurement to a navigator, with points and the scans of its sensors. `own`
+    /// holds the last scan of each sensor.
     pub(crate) fn observe(
         &self,
         navigator: &mut Navigator,

@@ -13,7 +13,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A dictionary, which may have dictionaries in it.
+/// A dictionary, which may be nested.
 #[derive(Clone, Default)]
 pub(crate) struct Parameters(pub(crate) Table);
 
@@ -35,7 +35,7 @@ impl<'py> FromPyObject<'_, 'py> for Parameters {
     }
 }
 
-/// Tables and lists in each other: more than a file may have. A dictionary may even have itself in it.
+/// Maximum nesting depth of tables and lists. A dictionary may contain itself.
 const MOST_NESTED: usize = 100;
 
 fn table(dict: &Bound<'_, PyDict>, depth: usize) -> PyResult<Table> {
@@ -46,11 +46,11 @@ fn table(dict: &Bound<'_, PyDict>, depth: usize) -> PyResult<Table> {
         let value = value_of(&value, depth + 1, &key)?;
         Ok((key, value))
     };
-    // A copy: whoever changes the dictionary meanwhile does not change what is read.
+    // The copy guards against changes of the dictionary during the conversion.
     dict.copy()?.iter().map(entry).collect()
 }
 
-/// A value as in a TOML file; numbers and arrays of numpy are those that they look like.
+/// Converts a value to TOML; numpy numbers and arrays become plain ones.
 fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Value> {
     if depth > MOST_NESTED {
         return Err(bad_value("lists and dictionaries of parameters are nested too deeply"));
@@ -82,7 +82,7 @@ fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Val
         || object.is_instance(&numpy.getattr("ndarray")?)?
     {
         let plain = object.call_method0("tolist")?;
-        // What Python has no number for stays as it is.
+        // Numpy values without a Python equivalent are unchanged by the conversion.
         if !plain.is(object) && !plain.get_type().is(object.get_type()) {
             return value_of(&plain, depth + 1, name);
         }
@@ -94,14 +94,14 @@ fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Val
 }
 
 impl Parameters {
-    /// Laid over a stack.
+    /// Lays the parameters over a stack.
     pub(crate) fn over(&self, base: StackBase<'_>) -> PyResult<Stack> {
         base.with(&self.0).map_err(|error| parameter_error(&error))
     }
 }
 
-/// A robot: its name, its file, or a dictionary with the fields of one, as the text by which it is
-/// found.
+/// A robot: its name, its file, or a dictionary with the fields of a robot file. It is stored as
+/// the text that `find_robot` accepts.
 pub(crate) struct RobotName(pub(crate) String);
 
 impl<'py> FromPyObject<'_, 'py> for RobotName {
@@ -135,7 +135,8 @@ impl<'py> FromPyObject<'_, 'py> for RobotName {
     }
 }
 
-/// A robot by its name, or from a file; as a disc of another radius where one is given.
+/// Finds a robot by its name, or reads it from a file. With `radius_m`, its footprint is a disc
+/// of that radius.
 pub(crate) fn robot(name: &str, radius_m: Option<f64>) -> PyResult<Robot> {
     let robot = find_robot(name, Path::new("")).map_err(|error| config_file_error(&error))?;
     let Some(radius_m) = radius_m else { return Ok(robot) };

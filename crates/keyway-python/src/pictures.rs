@@ -12,14 +12,14 @@ use keyway_sim::episode::RobotReport;
 use keyway_sim::sim::{StandingPolygon, TrajectoryPoint};
 use pyo3::PyResult;
 
-/// Pixels per unit of a picture.
+/// Pixels per unit of the picture.
 const SCALE: f64 = 1.5;
 
 pub(crate) fn of_map(grid: &OccupancyGrid) -> Svg {
     MapPicture::new(grid).svg()
 }
 
-/// A path on a map, and what became of it where it was smoothed.
+/// Draws a path on a map, and its smoothed path, if there is one.
 pub(crate) fn of_path(grid: &OccupancyGrid, path: &Polyline, smoothed: Option<&Polyline>) -> Svg {
     let mut picture = MapPicture::new(grid).with(PathLine::planned(path));
     if let Some(smoothed) = smoothed {
@@ -31,7 +31,7 @@ pub(crate) fn of_path(grid: &OccupancyGrid, path: &Polyline, smoothed: Option<&P
     picture.svg()
 }
 
-/// Where a robot drove on a map, and among what.
+/// Draws the trajectory of a run on its map, with the obstacles.
 pub(crate) fn of_run(grid: &OccupancyGrid, report: &RobotReport) -> Svg {
     let inputs = &report.inputs;
     let at = |numbers: &[f64]| Point::new(numbers[0], numbers[1]);

@@ -41,14 +41,16 @@ impl Plan {
 
 #[pymethods]
 impl Plan {
-    /// The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. Of a curve, chords along it.
+    /// The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. A curve is
+    /// approximated by chords.
     #[getter]
     fn xy(&self, py: Python<'_>) -> Floats2 {
         let points = || of_points(py, self.route.smoothed.points());
         Floats2(self.xy.get_or_init(py, points).clone_ref(py))
     }
 
-    /// The planner's path, before smoothing: a read-only array of int32 of shape (n, 2), column and row of each cell.
+    /// The planner's path before smoothing: a read-only array of int32 of shape (n, 2), column
+    /// and row of each cell.
     #[getter]
     fn cells(&self, py: Python<'_>) -> Cells {
         let cells = &self.route.plan.cells;
@@ -56,13 +58,14 @@ impl Plan {
         Cells(self.cells.get_or_init(py, rows).clone_ref(py))
     }
 
-    /// Which of the cells are jump points, as ascending indices.
+    /// Indices of the cells that are jump points, ascending.
     #[getter]
     fn jump_points(&self) -> Vec<usize> {
         self.route.plan.jump_points.clone()
     }
 
-    /// Cost of the planner's path [cells]: for the planners of the grid an exact number of straight and diagonal steps.
+    /// Cost of the planner's path [cells]. For grid planners it is an exact number of straight
+    /// and diagonal steps.
     #[getter]
     fn cost(&self) -> f64 {
         self.route.plan.cost.cells()
@@ -74,13 +77,13 @@ impl Plan {
         self.route.smoothing.path.length_m()
     }
 
-    /// Nodes taken from the open list.
+    /// Number of expanded nodes: nodes taken from the open list.
     #[getter]
     fn expanded(&self) -> u64 {
         self.route.plan.statistics.expanded()
     }
 
-    /// Nodes put into the open list, or improved there.
+    /// Number of generated nodes: nodes inserted or improved in the open list.
     #[getter]
     fn generated(&self) -> u64 {
         self.route.plan.statistics.generated()
@@ -98,14 +101,15 @@ impl Plan {
         self.ready.stack.smoother.name()
     }
 
-    /// The distance that the path certainly keeps [m], where that is less than was asked for; otherwise `None`.
+    /// Clearance that the path guarantees [m], if it is less than requested; otherwise `None`.
     #[getter]
     fn shortfall(&self) -> Option<f64> {
         self.route.smoothing.shortfall_m
     }
 
-    /// Measures of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`, `turning_angle_deg`, `non_smooth_turns`
-    /// and `min_clearance_m`. They are worked out at every call.
+    /// Returns metrics of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`,
+    /// `turning_angle_deg`, `non_smooth_turns` and `min_clearance_m`. They are computed at every
+    /// call.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
@@ -117,11 +121,12 @@ impl Plan {
         json(py, &metrics)
     }
 
-    /// The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
-    /// a file, or a dictionary of its values).
+    /// Samples the smoothed path by arc length, with the fastest speeds within the limits of a
+    /// robot (a name of `keyway.names`, a file, or a dictionary of its values).
     ///
-    /// A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
-    /// and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
+    /// Returns a structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`,
+    /// `heading_rad`, `curvature_per_m`, `t_s`, `v_mps` and `omega_radps`, all float64. At a
+    /// corner the robot stops and turns on the spot.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)

@@ -16,10 +16,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use std::sync::Arc;
 
-/// Plans many paths on one map: its layers, its planner and its smoother are made once.
+/// Plans many paths on one map. Its layers, planner and smoother are built once.
 ///
-/// The arguments are those of `keyway.plan`. `progress(done, expected)` is called meanwhile: the planner `prepared` counts twice
-/// the cells at which paths may turn; `expected` is `None` for the others, which make a map's layers only.
+/// The arguments are those of `keyway.plan`. `progress(done, expected)` is called during the
+/// construction. The planner `prepared` counts twice the number of cells at which paths may turn;
+/// for the other planners, which build only the layers, `expected` is `None`.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=0.1)
@@ -91,8 +92,9 @@ impl Planner {
         planned_many(py, &self.ready, (&starts, &goals), jobs, progress.as_ref())
     }
 
-    /// Plans a path to the nearest of several goals, by the cost of its path: `goals` are an array of shape (n, 2) [m]. Gives
-    /// the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
+    /// Plans a path to the nearest of several goals, by path cost. `goals` are an array of shape
+    /// (n, 2) [m]. Returns the index of that goal, and the plan. Raises the exceptions of
+    /// `keyway.plan` if no goal has a path.
     ///
     /// >>> import keyway, numpy as np
     /// >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
@@ -196,7 +198,7 @@ fn planned_many(
     Ok(Plans(PyList::new(py, plans)?.unbind()))
 }
 
-/// A plan for each query, or why there is none.
+/// A plan for each query, or the exception of a failed one.
 pub(crate) struct Plans(Py<PyList>);
 
 impl<'py> IntoPyObject<'py> for Plans {
@@ -215,7 +217,7 @@ impl<'py> IntoPyObject<'py> for Plans {
 
 type PlannedRoute = PyResult<(Arc<Ready>, Route)>;
 
-/// In the order of the queries; not all of them where somebody stops it.
+/// Plans all queries, in their order. If it is stopped, the remaining ones are missing.
 fn all_routes(
     ready: &Arc<Ready>,
     queries: &[RouteQuery],
@@ -238,23 +240,24 @@ fn all_routes(
     in_parallel(queries, jobs, plan).into_iter().flatten().collect()
 }
 
-/// Plans a path on a map, from one position to another [m], and smooths it.
+/// Plans a path on a map from one position to another [m], and smooths it.
 ///
-/// `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
-/// robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
+/// `planner` and `smoother` are names of `keyway.names`. `radius` is the clearance of the path to
+/// every obstacle [m]; with `robot` it is the robot's inscribed radius instead. `parameters` are
+/// those of the TOML files, as a dictionary:
 /// `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner
-/// and smoother begin with the values of their papers, for maps with cells of 1 m, whatever the
-/// robot. `budget` limits the expanded nodes; with `nearest_reachable` the path ends in the cell
-/// nearest to the goal that can be reached.
+/// and smoother use the parameters of their papers, for maps with cells of 1 m, whatever the
+/// robot. `budget` limits the expanded nodes. With `nearest_reachable` the path ends in the
+/// reachable cell nearest to the goal.
 ///
-/// What a map needs for a choice of parameters is kept with the map, so a second call is fast.
+/// The layers for a choice of parameters are cached with the map, so a second call is fast.
 ///
-/// `progress(done, expected)` is called meanwhile. What a `keyway.Planner` prepares is counted; a search is not, as nobody knows
-/// how far it has to go: (0, None).
+/// `progress(done, expected)` is called meanwhile. The preparation of a `keyway.Planner` is
+/// counted. A search is not, as its length is unknown: (0, None).
 ///
-/// Raises `NoPath` where no path joins the two and says what parts them, `NoRoom` where one of them is blocked or outside the
-/// map, `Missed` where the planner finds none although there is one, `BudgetExhausted`, and `ValueError` for a parameter that
-/// cannot be used.
+/// Raises `NoPath` if no path connects the two, with the reason; `NoRoom` if one of them is
+/// blocked or outside the map; `Missed` if the planner finds no path although there is one;
+/// `BudgetExhausted`; and `ValueError` for an invalid parameter.
 ///
 /// >>> import keyway, numpy as np
 /// >>> occupied = np.zeros((60, 100), dtype=bool)
@@ -293,8 +296,9 @@ pub(crate) fn plan(
 
 /// Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 ///
-/// The other arguments are those of `keyway.plan`; `jobs` is the number of threads. Gives a list with a plan for each query, in
-/// their order; where there is none, the exception that says why is in its place. `progress(done, expected)` is called meanwhile.
+/// The other arguments are those of `keyway.plan`; `jobs` is the number of threads. Returns a
+/// list with a plan for each query, in their order; for a query without one, the list contains
+/// the exception. `progress(done, expected)` is called meanwhile.
 ///
 /// >>> import keyway, numpy as np
 /// >>> occupied = np.zeros((5, 5), dtype=bool)

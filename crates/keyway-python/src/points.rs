@@ -1,4 +1,4 @@
-//! Points of other sensors than lidars.
+//! Points of sensors other than lidars.
 
 use crate::errors::bad_value;
 use crate::values::{Numbers, Positions, described};
@@ -10,17 +10,17 @@ use pyo3::prelude::*;
 use pyo3::type_hint_union;
 use pyo3::types::{PyList, PyTuple};
 
-/// Places at which a depth camera, a sonar or a bumper has met something, as points on the ground.
+/// Hits of a depth camera, a sonar or a bumper, as points on the ground.
 ///
-/// `positions` is an array of shape (n, 2), in the frame of the sensor [m]; points that are not
-/// finite say nothing. `mount` is the pose of the sensor on the robot (x, y, theta) [m, m, rad].
-/// Robots with several such sensors number them by `sensor`, from 0 to 7. `stamp` is the time at
-/// which they were measured [s]; without one it is that of the pose with which they are given.
+/// `positions` is an array of shape (n, 2), in the frame of the sensor [m]; non-finite points are
+/// ignored. `mount` is the pose of the sensor on the robot (x, y, theta) [m, m, rad]. Robots with
+/// several such sensors number them by `sensor`, from 0 to 7. `stamp` is the time of the
+/// measurement [s]; by default it is that of the pose given with it.
 ///
-/// They mark obstacles, which stay until the same sensor says that it sees nothing there. It does
-/// where it has `bearings`, those of its right and left edge [rad] (0 where it looks, positive to
-/// the left), and `ranges`, the nearest and the farthest at which it sees [m]: within these
-/// everything that stands, unless something hides it.
+/// The points mark obstacles, which stay until the same sensor clears them. A sensor clears if it
+/// has `bearings`, those of its right and left edge [rad] (0 straight ahead, positive to the
+/// left), and `ranges`, its minimum and maximum range [m]. Within these it detects every static
+/// obstacle that is not occluded.
 ///
 /// >>> import keyway
 /// >>> keyway.Points([(1.0, 0.2), (1.0, 0.3)], bearings=(-0.7, 0.7), ranges=(0.3, 3.0))
@@ -92,7 +92,7 @@ impl Points {
 }
 
 impl Points {
-    /// The same, measured at a time \[s\] unless they say when.
+    /// The same points, with the time \[s\] as stamp if they have none.
     pub(crate) fn at(&self, stamp_s: f64) -> SensorPoints<'_> {
         let Self { positions: points, mount, sensor, clears, .. } = self;
         let stamp_s = self.stamp_s.unwrap_or(stamp_s);

@@ -1,4 +1,4 @@
-//! The program `keyway`, and the names of what there is.
+//! The program `keyway`, and the names of the available choices.
 
 use crate::errors::bad_value;
 use keyway::guide::GuideConfig;
@@ -10,8 +10,8 @@ use keyway::smooth::SmootherConfig;
 use pyo3::prelude::*;
 use std::ffi::OsString;
 
-/// Names of what there is: of `planners`, `smoothers`, `guides`, `local-planners`, `stacks` or `robots`. `keyway list NAME`, a
-/// command of the program, says what each of them is and what parameters it has.
+/// Returns the available names of `planners`, `smoothers`, `guides`, `local-planners`, `stacks`
+/// or `robots`. The command `keyway list NAME` describes each of them and its parameters.
 ///
 /// >>> import keyway
 /// >>> keyway.names("robots")[:3]
@@ -32,7 +32,7 @@ pub(crate) fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     })
 }
 
-/// The program `keyway` with these words of a command line; gives its exit code.
+/// Runs the program `keyway` with the words of a command line and returns its exit code.
 ///
 /// >>> import keyway
 /// >>> keyway.program(["map", "info", "nowhere.map", "--format", "xml"])

@@ -1,4 +1,4 @@
-//! What a map needs for queries, and the queries.
+//! The layers and planners of a map, and queries on them.
 
 use crate::errors::{NoPath, NoRoom, bad_value, check_memory, plan_error};
 use crate::parameters::{Parameters, robot};
@@ -17,12 +17,13 @@ use pyo3::prelude::*;
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What planners are made of, beside their parameters.
+/// Everything a planner is built from, besides its parameters.
 pub(crate) struct PlannerParts {
     pub(crate) grid: Arc<OccupancyGrid>,
 }
 
-/// The layers of a map, a planner and a smoother, ready for queries; and the memory of searches, one for each thread.
+/// The layers of a map, a planner and a smoother, ready for queries; and the search memory, one
+/// for each thread.
 pub(crate) struct Ready {
     pub(crate) grid: Arc<OccupancyGrid>,
     pub(crate) map: SearchMap,
@@ -33,7 +34,7 @@ pub(crate) struct Ready {
     workspaces: Mutex<Vec<Workspace>>,
 }
 
-/// What a planner follows from, besides its map.
+/// Arguments that determine a planner, besides its map.
 #[derive(Clone, PartialEq)]
 struct Choice {
     planner: String,
@@ -44,7 +45,8 @@ struct Choice {
     as_published: bool,
 }
 
-/// Planners that were used on a map last: whoever calls `plan` again does not wait for the layers again.
+/// Cache of the last planners of a map, so that repeated calls of `plan` do not rebuild the
+/// layers.
 #[derive(Default)]
 pub(crate) struct PlannerCache(Mutex<Vec<(Choice, Arc<Ready>)>>);
 
@@ -79,7 +81,7 @@ impl PlannerCache {
     }
 }
 
-/// The same without copies.
+/// The same as `Choice`, borrowed.
 pub(crate) struct ChoiceRef<'a> {
     pub(crate) planner: &'a str,
     pub(crate) smoother: &'a str,
@@ -110,10 +112,10 @@ impl ChoiceRef<'_> {
 }
 
 impl Ready {
-    /// A search of so many cells takes a few tenths of a second at most.
+    /// Number of cells up to which a search takes a few tenths of a second at most.
     const QUICK_CELLS: u64 = 1 << 20;
 
-    /// A search of so many nodes takes about as long as a thread that starts.
+    /// Number of nodes of a search that takes about as long as starting a thread.
     const QUICK_NODES: u64 = 1 << 11;
 
     fn new(PlannerParts { grid }: PlannerParts, choice: &Choice, watch: &Watch) -> PyResult<Self> {
@@ -132,7 +134,7 @@ impl Ready {
         robot: Robot,
         prepares: &mut dyn FnMut(PrepareProgress) -> ControlFlow<()>,
     ) -> PyResult<Self> {
-        // What layers without a search take.
+        // Memory of the layers without a search.
         check_memory(grid.frame().cell_count() * 3 / 2)?;
         let map = SearchMap::new(&grid, stack.map.clone());
         let map = map.map_err(|error| bad_value(error.within("map")))?;
@@ -146,27 +148,27 @@ impl Ready {
         Ok(Self { grid, map, stack, robot, planner, smoother, workspaces: Mutex::default() })
     }
 
-    /// True if a query is over before somebody could want to stop it: then it needs no thread,
-    /// which takes longer than most queries do.
+    /// True if a query is too short to be interrupted. It then runs without a thread, as starting
+    /// one takes longer than most queries.
     pub(crate) fn is_quick(&self) -> bool {
         self.map.frame().cell_count() <= Self::QUICK_CELLS && self.is_bounded_by_nodes()
     }
 
-    /// The route, if its search ends after a few nodes, however large the map is.
+    /// Returns the route if its search ends after a few nodes, whatever the size of the map.
     pub(crate) fn quick_route(&self, query: &RouteQuery) -> Option<Route> {
         let budget = query.budget.unwrap_or(Self::QUICK_NODES).min(Self::QUICK_NODES);
         let query = RouteQuery { budget: Some(budget), ..*query };
         self.is_bounded_by_nodes().then(|| self.route(&query).ok()).flatten()
     }
 
-    /// True if the nodes of a search say how long a query takes.
+    /// True if the number of nodes determines the duration of a query.
     fn is_bounded_by_nodes(&self) -> bool {
         let is_random_tree = matches!(self.stack.planner, PlannerConfig::Rrt(_));
         let makes_layers = self.stack.map.free_ends_m > 0.0;
         !is_random_tree && !makes_layers
     }
 
-    /// The same with the clearance lifted around the ends of a query, where that is asked for.
+    /// The same with the clearance lifted around start and goal, if that is requested.
     pub(crate) fn around(self: &Arc<Self>, ends: &[Point], watch: &Watch) -> PyResult<Arc<Self>> {
         if self.stack.map.free_ends_m == 0.0 {
             return Ok(Arc::clone(self));
@@ -190,7 +192,7 @@ impl Ready {
         route
     }
 
-    /// Where the nearest of several goals is in their list, and the route to it.
+    /// Returns the index of the nearest of several goals, and the route to it.
     pub(crate) fn nearest_route(
         &self,
         start: Point,
@@ -223,7 +225,8 @@ impl Ready {
         })
     }
 
-    /// Why there is no route; what parts start and goal where no path joins them, which takes as long as several searches.
+    /// Exception of a query without a route. If no path exists, it says what separates start and
+    /// goal, which takes as long as several searches.
     pub(crate) fn why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
         if !matches!(error, PlanError::NoPath { .. }) {
             return self.plain_why(error, query);
@@ -233,15 +236,15 @@ impl Ready {
         why.map_or_else(|| plan_error(error), |why| NoPath::new_err(why.to_string()))
     }
 
-    /// The same without a search.
+    /// The same without additional searches.
     pub(crate) fn plain_why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
         why_no_room(&self.map, [query.start, query.goal], error)
             .map_or_else(|| plan_error(error), NoRoom::new_err)
     }
 }
 
-/// Parts that are chosen by their names begin with distances for the robot where one is given,
-/// otherwise for the radius; as published with those of their papers.
+/// Base of the parameters. Parts selected by name use distances derived from the robot if there
+/// is one, otherwise from the radius; with `as_published`, the parameters of their papers.
 fn plan_base<'a>(stack: &'a Stack, robot: &'a Robot, choice: &Choice) -> StackBase<'a> {
     match choice.robot {
         _ if choice.as_published => StackBase::as_published(stack, robot),

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A simulated run, and what was measured of it.
+/// A simulated run, and its measurements.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -35,20 +35,21 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    /// How it ended: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
+    /// Outcome of the run: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
     #[getter]
     fn outcome(&self) -> &'static str {
         self.report.outcome.name()
     }
 
-    /// Why the goal was not reached, for people; otherwise `None`.
+    /// Message with the reason for not reaching the goal; otherwise `None`.
     #[getter]
     fn reason(&self) -> Option<&str> {
         self.report.reason.as_deref()
     }
 
-    /// The start, the end of every cycle, and the contact if there was one: a structured array of shape (n,) with the fields
-    /// `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all float64. Without a route it is empty.
+    /// The start, the end of every cycle, and the contact if there was one: a structured array of
+    /// shape (n,) with the fields `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all
+    /// float64. It is empty if there was no route.
     #[getter]
     fn trajectory(&self, py: Python<'_>) -> PyResult<Records> {
         let rows = self.report.trajectory.as_deref().unwrap_or_default();
@@ -56,16 +57,16 @@ impl Run {
         records(py, names, rows.iter().copied(), rows.len())
     }
 
-    /// The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]; of a curve, chords along it. Without a
-    /// route it is empty.
+    /// The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]. A curve
+    /// is approximated by chords. It is empty if there was no route.
     #[getter]
     fn route(&self, py: Python<'_>) -> Floats2 {
         let smoothed = self.report.smoothed.as_ref().map(|smoothed| &smoothed.waypoints_m);
         Floats2(of_points(py, smoothed.map_or(&[], Polyline::points)))
     }
 
-    /// What was measured, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
-    /// route it is empty.
+    /// Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`,
+    /// `min_clearance_m` and more. It is empty if there was no route.
     #[getter]
     fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
         match &self.report.run {
@@ -103,10 +104,11 @@ pub(crate) fn run_error(error: &RunError) -> PyErr {
     }
 }
 
-/// Makes the run that a scene describes. The same scene gives the same run, to the last digit.
+/// Simulates the run of a scene. The same scene gives the same run, to the last digit.
 ///
-/// Start without a route, collision and timeout are outcomes and no exceptions. `progress(cycles, None)` is called meanwhile.
-/// With `times` the times of decisions are measured; then two reports differ in them.
+/// A start without a route, a collision and a timeout are outcomes, not exceptions.
+/// `progress(cycles, None)` is called meanwhile. With `times`, the times of decisions are
+/// measured; two reports then differ in them.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -135,7 +137,8 @@ pub(crate) fn simulate(
     })?
 }
 
-/// Makes the runs of all robots of a scene, which drive in one world at the same time: a run for each, in their order.
+/// Simulates the runs of all robots of a scene, which drive in one world at the same time.
+/// Returns one run per robot, in their order.
 ///
 /// >>> import keyway, numpy as np
 /// >>> text = '''

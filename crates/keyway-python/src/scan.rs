@@ -1,4 +1,4 @@
-//! Scans.
+//! Laser scans.
 
 use crate::arrays::{Floats1, copied};
 use crate::errors::bad_value;
@@ -8,13 +8,13 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-/// One turn of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
+/// One scan of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
 ///
-/// `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the
-/// beam says nothing. Beam i looks at the bearing `angle_min + i * angle_increment` [rad], 0
-/// straight ahead and positive to the left: where the beams go clockwise, `angle_increment` is
-/// negative. Sensors begin at the back, ahead or at a side; so neither angle has a default. `stamp`
-/// is the time at which it was made [s]; without one it belongs to the pose with which it is given.
+/// `ranges` are those of all beams [m]: infinity means no hit, and NaN or 0 an invalid beam. Beam
+/// i has the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to
+/// the left; if the beams go clockwise, `angle_increment` is negative. Sensors start at the back,
+/// at the front or at a side, so neither angle has a default. `stamp` is the time of the scan
+/// [s]; by default it is that of the pose given with it.
 ///
 /// >>> import keyway, numpy as np
 /// >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
@@ -57,7 +57,7 @@ impl Scan {
         self.beams.angle_min_rad
     }
 
-    /// Bearing from one beam to the next [rad], negative where they go clockwise.
+    /// Bearing from one beam to the next [rad], negative if they go clockwise.
     #[getter]
     const fn angle_increment(&self) -> f64 {
         self.beams.angle_increment_rad
@@ -70,7 +70,7 @@ impl Scan {
         copied(py, &bearings.collect::<Vec<_>>())
     }
 
-    /// Time at which it was made [s]; `None` where it was not said.
+    /// Time of the scan [s]; `None` if it was not given.
     #[getter]
     const fn stamp(&self) -> Option<f64> {
         self.stamp_s
@@ -87,7 +87,7 @@ impl Scan {
     }
 }
 
-/// The beams of a scan that can be true. How far they see is the robot's to say.
+/// Checks the beams of a scan. The maximum range is checked by the robot's sensor.
 fn beams(ranges: &Ranges<'_>, angle_min_rad: f64, angle_increment_rad: f64) -> PyResult<Beams> {
     let ranges_m = ranges.numbers("ranges")?;
     let beams = Beams { angle_min_rad, angle_increment_rad, ranges_m, ..Beams::default() };
@@ -95,15 +95,15 @@ fn beams(ranges: &Ranges<'_>, angle_min_rad: f64, angle_increment_rad: f64) -> P
     Ok(beams)
 }
 
-/// A scan that comes in: one of this package, or anything else with the same three attributes, such
-/// as a message of ROS, whose header has its stamp.
+/// A scan argument: one of this package, or any object with the same three attributes, such as a
+/// ROS message with a stamp in its header.
 pub(crate) struct LaserScan {
     beams: Beams,
     stamp_s: Option<f64>,
 }
 
 impl LaserScan {
-    /// Overwrites the beams of a scan; the time at which this one was made \[s\], if it says so.
+    /// Overwrites the beams of a scan. Returns the stamp of this one \[s\], if it has one.
     pub(crate) fn move_to(self, scan: &mut Beams) -> Option<f64> {
         let Beams { angle_min_rad, angle_increment_rad, ranges_m, .. } = self.beams;
         (scan.angle_min_rad, scan.angle_increment_rad) = (angle_min_rad, angle_increment_rad);
@@ -112,8 +112,8 @@ impl LaserScan {
     }
 }
 
-/// The scans of a cycle: that of the robot's only sensor, or a list with one of each, `None` where
-/// a sensor has made none.
+/// The scans of a cycle: that of the robot's only sensor, or a list with one per sensor, `None`
+/// for a sensor without a scan.
 pub(crate) struct LaserScans(pub(crate) Vec<Option<LaserScan>>);
 
 impl<'py> FromPyObject<'_, 'py> for LaserScans {
@@ -155,7 +155,7 @@ impl<'py> FromPyObject<'_, 'py> for LaserScan {
     }
 }
 
-/// Stamp of a message of ROS \[s\]; one that nobody has set is none.
+/// Stamp of a ROS message \[s\]; `None` if it is not set.
 fn header_stamp_s(message: &Bound<'_, PyAny>) -> Option<f64> {
     let stamp = message.getattr("header").and_then(|header| header.getattr("stamp")).ok()?;
     let part = |name| stamp.getattr(name).and_then(|part| part.extract::<f64>()).ok();

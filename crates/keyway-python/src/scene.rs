@@ -17,11 +17,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+/// Description of a run: map, robot, start, goal, and the static and moving obstacles that are
+/// not on the map.
 ///
-/// On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `safe`, `via`, `seed`, `unknown`,
-/// `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
-/// file the heading is in degrees. `Scene.read` reads a scene file.
+/// For a map in memory, the arguments are those of a scene file, with the same names: `robot`,
+/// `stack`, `safe`, `via`, `seed`, `unknown`, `moving`, `random`, `rules`, `disturbances`.
+/// `start` and `goal` are positions [m], or poses [m, m, rad]; in a scene file the heading is in
+/// degrees. `Scene.read` reads a scene file.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -32,11 +34,11 @@ use toml::{Table, Value};
 pub(crate) struct Scene {
     pub(crate) file: SceneFile,
     folder: PathBuf,
-    /// The map where it is no file.
+    /// The map, if it is in memory and not a file.
     map: Option<(Arc<OccupancyGrid>, MapSource)>,
 }
 
-/// An error of Python among those of a scene.
+/// A Python exception inside a scene error.
 struct Raised(PyErr);
 
 impl From<SceneError> for Raised {
@@ -46,7 +48,7 @@ impl From<SceneError> for Raised {
 }
 
 impl Scene {
-    /// The map that it is driven on.
+    /// Returns the map of the scene.
     fn scene_map(&self) -> PyResult<SceneMap> {
         if let Some((grid, source)) = &self.map {
             return Ok(SceneMap { grid: OccupancyGrid::clone(grid), source: source.clone() });
@@ -66,23 +68,24 @@ impl Scene {
         Ok((robot, stack))
     }
 
-    /// The run of its robot.
+    /// Returns the episode of the scene's only robot.
     pub(crate) fn episode_of_one(&self) -> PyResult<Episode> {
         let has_robots = !self.file.robots.is_empty();
         if has_robots { Err(scene_error(&SceneError::SeveralRobots)) } else { self.episode() }
     }
 
-    /// The run of all its robots.
+    /// Returns the episode of all robots of the scene.
     pub(crate) fn episode(&self) -> PyResult<Episode> {
         let find = |robot: &str, stack: &str| self.found(robot, stack).map_err(Raised);
         self.file.episode(self.scene_map()?, find).map_err(|Raised(error)| error)
     }
 }
 
-/// What a scene is made of again: the text of its file, its folder, and its map where that is in memory.
+/// The arguments that restore a scene: the text of its file, its folder, and its map if that is
+/// in memory.
 type Parts = (String, PathBuf, Option<Map>);
 
-/// A text that nobody has seen has no lines.
+/// Removes the line number, as the user has not seen the text.
 fn without_line(error: SceneError) -> SceneError {
     match error {
         SceneError::Toml(error) => {
@@ -125,7 +128,7 @@ impl Scene {
         Ok(Self { file, folder: PathBuf::new(), map })
     }
 
-    /// Reads a scene file. The files that it names are found from its folder.
+    /// Reads a scene file. Paths in it are relative to its folder.
     ///
     /// >>> import keyway
     /// >>> keyway.Scene.read("nowhere.toml")
@@ -138,7 +141,7 @@ impl Scene {
         Ok(Self { file, folder, map: None })
     }
 
-    /// A scene from the text of a file; the files that it names are found from `folder`.
+    /// Parses the text of a scene file; paths in it are relative to `folder`.
     ///
     /// >>> import keyway
     /// >>> keyway.Scene.from_toml("version = 2")
@@ -151,7 +154,7 @@ impl Scene {
         Ok(Self { file, folder: folder.unwrap_or_default(), map: None })
     }
 
-    /// The same scene with another seed, robot or stack, with the stop rule or without it.
+    /// Returns the same scene with another seed, robot or stack, with or without the stop rule.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -176,7 +179,7 @@ impl Scene {
         Self { file, folder: self.folder.clone(), map: self.map.clone() }
     }
 
-    /// The text of its file. A map in memory is called `array` there.
+    /// Returns the text of the scene file. A map in memory is called `array` there.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -186,7 +189,7 @@ impl Scene {
         toml::to_string(&self.file).map_err(bad_value)
     }
 
-    /// Scenes can be copied, pickled, and sent to other processes.
+    /// Supports copying, pickling and sending scenes to other processes.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let map = self.map.clone().map(|(grid, source)| Map::shared(grid, source));
         let parts = (self.to_toml()?, self.folder.clone(), map);
@@ -200,7 +203,7 @@ impl Scene {
         Ok(Self { map, ..scene })
     }
 
-    /// Of all that is random.
+    /// Seed of all random values.
     #[getter]
     fn seed(&self) -> u64 {
         self.file.seed
@@ -218,7 +221,7 @@ impl Scene {
         &self.file.stack
     }
 
-    /// True if another seed gives another run.
+    /// True if the run depends on the seed.
     #[getter]
     fn is_random(&self) -> bool {
         self.file.is_random()

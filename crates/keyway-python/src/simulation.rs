@@ -1,4 +1,4 @@
-//! A run that Python drives.
+//! A simulated run that Python code drives.
 
 use crate::errors::bad_value;
 use crate::run::run_error;
@@ -12,12 +12,12 @@ use keyway_sim::sim::{Action, Arrival, Control, Outcome, Stepper};
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
-/// The world of a scene, in which somebody else drives: one control cycle per call, as learning
-/// agents want it.
+/// The world of a scene, driven by the caller: one control cycle per call, as in reinforcement
+/// learning.
 ///
-/// The goal is reached when the robot comes within its tolerance; it need not stand. The stack of
-/// the scene plans the first route, by which the robot's heading at the start and the time limit
-/// are chosen, and drives nothing. `progress(done, expected)` is called meanwhile, which is not
+/// The goal is reached as soon as the robot is within its tolerance, even while moving. The stack
+/// of the scene plans only the first route, which determines the initial heading and the time
+/// limit; it does not drive. `progress(done, expected)` is called meanwhile; the work is not
 /// counted: (0, None).
 ///
 /// >>> import keyway, numpy as np
@@ -48,7 +48,7 @@ fn name(outcome: Outcome) -> &'static str {
         Outcome::Reached => "reached",
         Outcome::Timeout => "timeout",
         Outcome::Stuck => "stuck",
-        // A way to end that this file does not know cannot be a success.
+        // An outcome unknown to this file cannot be a success.
         _ => "collided",
     }
 }
@@ -76,12 +76,12 @@ impl Simulation {
         })
     }
 
-    /// One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as
-    /// its limits allow. Gives the outcome once the run has ended, and `None` before; a run that
-    /// has ended stays as it is.
+    /// Runs one control cycle: the robot accelerates towards the velocity (v, omega) [m/s,
+    /// rad/s], within its limits. Returns the outcome once the run has ended, and `None` before
+    /// that. A run that has ended does not change.
     ///
-    /// `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the
-    /// straight line to the goal.
+    /// `remaining` is the remaining distance to the goal [m], which decides whether the robot is
+    /// stuck; by default it is the straight-line distance.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -106,20 +106,21 @@ impl Simulation {
         Ok(ended.map_err(bad_value)?.map(name))
     }
 
-    /// How the run has ended, `reached`, `collided`, `timeout` or `stuck`; `None` while it goes on.
+    /// Outcome of the run, `reached`, `collided`, `timeout` or `stuck`; `None` while it is
+    /// running.
     #[getter]
     fn outcome(&self) -> Option<&'static str> {
         self.lock().outcome().map(name)
     }
 
-    /// Where the robot takes itself to be (x, y, theta) [m, m, rad].
+    /// Estimated pose of the robot (x, y, theta) [m, m, rad].
     #[getter]
     fn pose(&self) -> (f64, f64, f64) {
         let Pose { x, y, theta } = self.lock().told().pose;
         (x, y, theta)
     }
 
-    /// How the robot takes itself to move (v, omega) [m/s, rad/s].
+    /// Estimated velocity of the robot (v, omega) [m/s, rad/s].
     #[getter]
     fn velocity(&self) -> (f64, f64) {
         let Velocity { v, omega, .. } = self.lock().told().velocity;
@@ -132,8 +133,8 @@ impl Simulation {
         self.lock().told().stamp_s
     }
 
-    /// The present scan of the first sensor: ranges, and where their beams look.
-    /// `Navigator.observe` takes it as it is for a robot with a single sensor.
+    /// The current scan of the first sensor: ranges and bearings of its beams.
+    /// `Navigator.observe` accepts it for a robot with a single sensor.
     #[getter]
     fn scan(&self) -> Scan {
         let stepper = self.lock();
@@ -141,8 +142,8 @@ impl Simulation {
         Scan::new(stepper.scan().clone(), first)
     }
 
-    /// The present scans of all sensors, in their order; `None` where a sensor has made none in
-    /// this cycle. `Navigator.observe` takes them as they are.
+    /// The current scans of all sensors, in their order; `None` for a sensor without a scan in
+    /// this cycle. `Navigator.observe` accepts them.
     #[getter]
     fn scans(&self) -> Vec<Option<Scan>> {
         let stepper = self.lock();
@@ -153,27 +154,26 @@ impl Simulation {
         scans
     }
 
-    /// Where the robot is to go (x, y) [m].
+    /// Position of the goal (x, y) [m].
     #[getter]
     fn goal(&self) -> (f64, f64) {
         (self.goal.x, self.goal.y)
     }
 
-    /// Time of a step [s].
+    /// Duration of a step [s].
     #[getter]
     fn cycle(&self) -> f64 {
         self.cycle_s
     }
 
-    /// The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s,
-    /// rad/s].
+    /// Lowest and highest velocity of the robot: (v, omega) of each [m/s, rad/s].
     #[getter]
     fn limits(&self) -> ((f64, f64), (f64, f64)) {
         let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
         ((v_min_mps, -omega_max_radps), (v_max_mps, omega_max_radps))
     }
 
-    /// Range of the sensor [m]; of several the longest.
+    /// Range of the sensor [m]; the longest one of several.
     #[getter]
     fn range(&self) -> f64 {
         self.range_m

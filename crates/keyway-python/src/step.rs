@@ -19,15 +19,15 @@ pub(crate) struct Step {
     v: f64,
     /// Turn rate, positive to the left [rad/s].
     omega: f64,
-    /// `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`,
-    /// or `idle` (there is no goal).
+    /// `drive`, `blocked` (there is no acceptable command at the moment; the given one is safe),
+    /// `arrived`, or `idle` (there is no goal).
     status: &'static str,
-    /// The reason why the robot is blocked, for people; otherwise `None`.
+    /// Message with the reason for `blocked`; otherwise `None`.
     why: Option<String>,
-    /// The kind of that as a number, which never changes, for programs; otherwise `None`.
+    /// Number of the reason for `blocked`, which never changes; otherwise `None`.
     kind: Option<u16>,
-    /// A notice for people: the robot began nearer to something than it can stand, and is leaving
-    /// it. Otherwise `None`.
+    /// Message that the robot started with less clearance than it needs, and is leaving the
+    /// obstacle; otherwise `None`.
     notice: Option<String>,
 }
 

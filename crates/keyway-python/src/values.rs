@@ -1,4 +1,4 @@
-//! What comes in: positions, poses, ranges, grids.
+//! Conversion of arguments: positions, poses, ranges, grids.
 
 use crate::errors::bad_value;
 use keyway::geometry::Point;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::type_hint_union;
 use pyo3::types::PyComplex;
 
-/// Type of an argument in stubs.
+/// Type of a numeric argument in the stubs.
 macro_rules! numbers_hint {
     () => {
         #[cfg(feature = "stubs")]
@@ -27,7 +27,7 @@ macro_rules! numbers_hint {
     };
 }
 
-/// Some numbers: a tuple, a list, an array.
+/// A sequence of numbers: a tuple, a list or an array.
 pub(crate) struct Numbers(Vec<f64>);
 
 impl<'py> FromPyObject<'_, 'py> for Numbers {
@@ -72,7 +72,7 @@ impl Numbers {
         }
     }
 
-    /// A position \[m\], or with a heading \[m, m, rad\].
+    /// A position \[m\], or a pose \[m, m, rad\].
     pub(crate) fn place(&self, name: &str) -> PyResult<(Point, Option<f64>)> {
         match self.0[..] {
             [x, y] => Ok((finite(Point::new(x, y), name)?, None)),
@@ -86,7 +86,8 @@ impl Numbers {
         }
     }
 
-    /// Exactly this many numbers, of which `names` are the names. Whether they can be true is the navigator's to say.
+    /// Exactly this many numbers, with their names in `names` for errors. The navigator checks
+    /// the values.
     pub(crate) fn exactly<const N: usize>(&self, name: &str, names: &str) -> PyResult<[f64; N]> {
         <[f64; N]>::try_from(&self.0[..]).map_err(|_| self.wrong(name, names))
     }
@@ -96,7 +97,7 @@ impl Numbers {
     }
 }
 
-/// A position for people, in few digits whatever its size.
+/// Formats a position for messages, with few digits.
 pub(crate) fn point_text(Point { x, y }: Point) -> String {
     let is_short = x.abs().max(y.abs()) < 1e9;
     if is_short { format!("({x}, {y})") } else { format!("({x:e}, {y:e})") }
@@ -112,7 +113,8 @@ fn finite(point: Point, name: &str) -> PyResult<Point> {
     )))
 }
 
-/// A list of texts or paths. A single text is a list of letters for Python, and a mistake here.
+/// A list of texts or paths. A single text is refused: Python would treat it as a list of
+/// letters.
 pub(crate) struct Listed<T>(pub(crate) Vec<T>);
 
 impl<'py, T: FromPyObjectOwned<'py>> FromPyObject<'_, 'py> for Listed<T> {
@@ -130,7 +132,7 @@ impl<'py, T: FromPyObjectOwned<'py>> FromPyObject<'_, 'py> for Listed<T> {
     }
 }
 
-/// What somebody gave, for an error: its type, and the shape of an array.
+/// Describes an argument for an error: its type, and the shape of an array.
 pub(crate) fn described(object: &Bound<'_, PyAny>) -> String {
     if let Ok(array) = object.cast::<PyUntypedArray>() {
         return format!("an array of {} of shape {}", array.dtype(), shape_text(array.shape()));
@@ -145,7 +147,8 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// An array of float64 of numbers of any kind that are real: numpy would leave out imaginary parts, and read texts.
+/// Converts real numbers of any type to an array of float64. Complex numbers and texts are
+/// refused, which numpy would convert.
 fn reals<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let array = object.py().import("numpy")?.call_method1("asarray", (object,))?;
     let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
@@ -155,7 +158,7 @@ fn reals<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     array.call_method1("astype", ("float64", "K", "unsafe", true, false))
 }
 
-/// A row of numbers, such as the ranges of a scan: an array of float64 is read where it is.
+/// A 1-D array of numbers, such as the ranges of a scan; an array of float64 is read in place.
 pub(crate) struct Ranges<'py>(Bound<'py, PyAny>);
 
 impl<'py> FromPyObject<'_, 'py> for Ranges<'py> {
@@ -168,7 +171,7 @@ impl<'py> FromPyObject<'_, 'py> for Ranges<'py> {
 }
 
 impl Ranges<'_> {
-    /// The numbers.
+    /// Returns the numbers.
     pub(crate) fn numbers(&self, name: &str) -> PyResult<Vec<f64>> {
         let wrong =
             |got: String| bad_value(format!("{name}: expected a row of numbers, got {got}"));
@@ -186,7 +189,7 @@ impl Ranges<'_> {
     }
 }
 
-/// Positions, a row for each: an array of float64 is read where it is.
+/// Positions, one per row; an array of float64 is read in place.
 pub(crate) struct Positions(pub(crate) Vec<[f64; 2]>);
 
 impl<'py> FromPyObject<'_, 'py> for Positions {
@@ -228,7 +231,7 @@ impl<'py> FromPyObject<'_, 'py> for Positions {
 }
 
 impl Positions {
-    /// The same as points; the first that is none is named.
+    /// Converts them to points. An error names the first invalid one.
     pub(crate) fn points(&self, name: &str) -> PyResult<Vec<Point>> {
         let point =
             |(i, &[x, y]): (usize, &[f64; 2])| finite(Point::new(x, y), &format!("{name}[{i}]"));
@@ -236,7 +239,7 @@ impl Positions {
     }
 }
 
-/// Cells of a map: whether they are occupied, or their occupancy as in `nav_msgs`.
+/// Cells of a map: a mask of the occupied ones, or their occupancy as in `nav_msgs`.
 pub(crate) enum Grid<'py> {
     Mask(Bound<'py, PyArray2<bool>>),
     Values(Bound<'py, PyArray2<i8>>),
@@ -272,7 +275,7 @@ impl<'py> FromPyObject<'_, 'py> for Grid<'py> {
 }
 
 impl Grid<'_> {
-    /// Rows, then columns.
+    /// Number of rows and columns.
     pub(crate) fn shape(&self) -> (usize, usize) {
         let shape = match self {
             Self::Mask(array) => array.shape(),
@@ -281,7 +284,7 @@ impl Grid<'_> {
         (shape[0], shape[1])
     }
 
-    /// Reads the array where it is, whatever its strides.
+    /// Reads the array in place, whatever its strides.
     pub(crate) fn read<R>(
         &self,
         mask: impl FnOnce(ArrayView2<'_, bool>) -> R,

@@ -1,4 +1,4 @@
-//! Long calls: the interpreter goes on meanwhile, Ctrl-C stops them, and somebody may watch.
+//! Long calls: they release the interpreter, can be stopped by Ctrl-C, and report their progress.
 
 use crate::errors::warn;
 use keyway_sim::episode::EpisodeObserver;
@@ -11,10 +11,10 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// Between two looks at the signals.
+/// Interval between two checks of the signals.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Who is called while long work is done.
+/// Callback during long calls.
 pub(crate) struct Progress(Py<PyAny>);
 
 impl<'py> FromPyObject<'_, 'py> for Progress {
@@ -33,19 +33,19 @@ impl<'py> FromPyObject<'_, 'py> for Progress {
     }
 }
 
-/// How far a call has come, and whether it is to stop.
+/// Progress of a call, and the request to stop it.
 #[derive(Default)]
 pub(crate) struct Watch {
     done: AtomicU64,
-    /// 0 while nobody knows.
+    /// 0 while it is unknown.
     expected: AtomicU64,
     is_stopped: AtomicBool,
-    /// What is usually a mistake and was not yet said.
+    /// Warnings about likely mistakes that are not issued yet.
     warnings: Mutex<Vec<String>>,
 }
 
 impl Watch {
-    /// One more of `expected` is done.
+    /// Counts one more of `expected` as done.
     pub(crate) fn advance(&self, expected: u64) {
         self.done.fetch_add(1, Ordering::Relaxed);
         self.expected.store(expected, Ordering::Relaxed);
@@ -55,7 +55,7 @@ impl Watch {
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// So much of it is done; true stops the work.
+    /// Sets the progress; true stops the work.
     pub(crate) fn is_stopped_at(&self, done: u64, expected: u64) -> bool {
         self.done.store(done, Ordering::Relaxed);
         self.expected.store(expected, Ordering::Relaxed);
@@ -66,7 +66,7 @@ impl Watch {
         self.is_stopped.load(Ordering::Relaxed)
     }
 
-    /// Waits for the result; what is raised meanwhile stops the work.
+    /// Waits for the result; an exception raised meanwhile stops the work.
     fn wait<R>(&self, receiver: &Receiver<R>, progress: Option<&Progress>) -> PyResult<R> {
         loop {
             match receiver.recv_timeout(LOOK) {
@@ -76,7 +76,7 @@ impl Watch {
                         self.is_stopped.store(true, Ordering::Relaxed);
                     })?;
                 }
-                // The work has panicked, and its thread has said so.
+                // The work has panicked, and its thread has printed the message.
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(PyRuntimeError::new_err("the work has ended without a result"));
                 }
@@ -84,7 +84,8 @@ impl Watch {
         }
     }
 
-    /// Lets Python handle its signals, warns, and calls whoever watches; an error stops the call.
+    /// Lets Python handle its signals, issues warnings, and calls the callback; an exception
+    /// stops the call.
     fn look(&self, progress: Option<&Progress>) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;
@@ -114,7 +115,7 @@ impl keyway_lab::progress::Progress for Watch {
     }
 }
 
-/// Counts the cycles of a run.
+/// Observer that counts the cycles of a run.
 pub(crate) struct Cycles<'a>(pub(crate) &'a Watch);
 
 impl EpisodeObserver for Cycles<'_> {
@@ -127,9 +128,10 @@ impl EpisodeObserver for Cycles<'_> {
     }
 }
 
-/// Does long work in a thread of its own. This thread waits without holding the interpreter, and looks at signals and calls
-/// `progress(done, expected)` twenty times a second and at the end. What either raises stops the work and is raised here at
-/// once: work that does not look whether it is stopped goes on to its end, and its result is dropped.
+/// Runs long work in a thread of its own. The calling thread waits without holding the
+/// interpreter; it checks for signals and calls `progress(done, expected)` twenty times a second
+/// and at the end. An exception in either stops the work and is raised at once: work that does
+/// not check for a stop continues to its end, and its result is dropped.
 pub(crate) fn watched<R: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Progress>,
@@ -145,7 +147,8 @@ pub(crate) fn watched<R: Send + 'static>(
     Ok(result)
 }
 
-/// The same for work that writes files: who stops it waits until it has put them in order. Whoever stops it twice does not.
+/// The same for work that writes files: after a stop, the call waits until the files are
+/// consistent. A second stop does not wait.
 pub(crate) fn watched_to_its_end<R: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Progress>,
@@ -172,7 +175,7 @@ fn started<R: Send + 'static>(
 ) -> PyResult<Receiver<R>> {
     let (sender, receiver) = channel();
     let watch = Arc::clone(watch);
-    // Nobody receives the result of work that was stopped.
+    // After a stop, nobody receives the result.
     let thread = move || drop(sender.send(work(&watch)));
     std::thread::Builder::new().spawn(thread).map_err(|error| {
         PyRuntimeError::new_err(format!("cannot start a thread for the work: {error}"))

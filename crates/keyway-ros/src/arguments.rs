@@ -1,5 +1,5 @@
-//! The command line and the environment, as all programs of ROS 2 have them: `--ros-args`, and the
-//! variables that choose the network.
+//! Command line and environment, as in all ROS 2 programs: `--ros-args`, and the variables that
+//! configure the network.
 
 use crate::error::StartError;
 use std::path::PathBuf;
@@ -7,25 +7,25 @@ use std::path::PathBuf;
 /// A command line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Arguments {
-    /// To print the help, and nothing else.
+    /// Print the help and exit.
     pub(crate) help: bool,
-    /// To print the version, and nothing else.
+    /// Print the version and exit.
     pub(crate) version: bool,
-    /// Other name of the node.
+    /// Node name that replaces the default.
     pub(crate) node: Option<String>,
     pub(crate) namespace: Option<String>,
-    /// Names of topics, services and actions, and what they are in their place.
+    /// Remapping rules: names of topics, services and actions, and their replacements.
     pub(crate) remappings: Vec<(String, String)>,
-    /// Parameters and their values, as YAML, in the order in which they were given.
+    /// Parameters and their values, as YAML, in the given order.
     pub(crate) parameters: Vec<(String, String)>,
     pub(crate) parameter_files: Vec<PathBuf>,
 }
 
 impl Arguments {
-    /// Name of the node, unless it is given another one.
+    /// Default node name.
     pub(crate) const NODE: &str = "keyway";
 
-    /// Parses what follows the name of the program.
+    /// Parses the arguments after the program name.
     pub(crate) fn parse(arguments: impl IntoIterator<Item = String>) -> Result<Self, StartError> {
         let mut parsed = Self::default();
         let mut arguments = arguments.into_iter();
@@ -42,7 +42,7 @@ impl Arguments {
                 ("-r" | "--remap", true) => parsed.remappings.push(rule(&value()?)?),
                 ("-p" | "--param", true) => parsed.parameters.push(rule(&value()?)?),
                 ("--params-file", true) => parsed.parameter_files.push(value()?.into()),
-                // How much is logged is not ours to choose for others; it is little.
+                // Log levels are accepted and ignored: the node logs little.
                 ("--log-level" | "--log-config-file" | "-e" | "--enclave", true) => {
                     value()?;
                 }
@@ -59,13 +59,13 @@ impl Arguments {
         self.node.as_deref().unwrap_or(Self::NODE)
     }
 
-    /// Its namespace.
+    /// Namespace of the node.
     pub(crate) fn namespace(&self) -> &str {
         self.namespace.as_deref().unwrap_or("/")
     }
 
-    /// Takes the names of the node out of the rules, then leaves those rules that are for this
-    /// node: they may stand before its name.
+    /// Extracts the name and namespace of the node from the rules, and drops the rules for other
+    /// nodes. Rules may precede the node name.
     fn take_names(&mut self) -> Result<(), StartError> {
         let names_node =
             |name| matches!(for_node(name), (None | Some(Self::NODE), "__node" | "__name"));
@@ -94,11 +94,10 @@ impl Arguments {
         }
     }
 
-    /// The full name that a topic, a service or an action has: what the first rule for it says, or
-    /// its own.
+    /// Full name of a topic, a service or an action, after the first matching remapping rule.
     pub(crate) fn remapped(&self, name: &str) -> String {
         let namespace = self.namespace();
-        // What begins with `~` is in the namespace of the node itself.
+        // Names that begin with `~` are in the node's own namespace.
         let full = |name: &str| match name.strip_prefix("~/") {
             Some(own) => full_name(&format!("{}/{own}", self.node_name()), namespace),
             None => full_name(name, namespace),
@@ -108,18 +107,18 @@ impl Arguments {
     }
 }
 
-/// True for letters, digits and underscores, if it does not begin with a digit.
+/// True for letters, digits and underscores that do not begin with a digit.
 fn is_name(text: &str) -> bool {
     let is_word = text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
     is_word && text.bytes().next().is_some_and(|first| !first.is_ascii_digit())
 }
 
-/// True for `/`, and for names with a slash before each.
+/// True for `/`, and for names with a slash before each of them.
 fn is_namespace(text: &str) -> bool {
     text == "/" || text.strip_prefix('/').is_some_and(|names| names.split('/').all(is_name))
 }
 
-/// True for names with slashes between them, perhaps after `/` or `~/`.
+/// True for names separated by slashes, optionally after `/` or `~/`.
 fn is_topic(text: &str) -> bool {
     let names = text.strip_prefix("~/").or_else(|| text.strip_prefix('/')).unwrap_or(text);
     names.split('/').all(is_name)
@@ -133,7 +132,7 @@ pub(crate) fn full_name(name: &str, namespace: &str) -> String {
     format!("{}/{name}", namespace.trim_end_matches('/'))
 }
 
-/// The node for which a rule is, if for one alone, and the rest.
+/// The node that a rule is for, if it is for a single one, and the rest of the rule.
 fn for_node(name: &str) -> (Option<&str>, &str) {
     name.split_once(':').map_or((None, name), |(node, rest)| (Some(node), rest))
 }
@@ -147,20 +146,20 @@ fn rule(text: &str) -> Result<(String, String), StartError> {
     Ok((from.to_owned(), to.to_owned()))
 }
 
-/// The network that the environment chooses.
+/// Network settings of the environment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Network {
-    /// Robots of other domains do not see each other.
+    /// Robots in different domains do not see each other.
     pub(crate) domain: u16,
-    /// This machine alone.
+    /// Restricted to this machine.
     pub(crate) is_local: bool,
 }
 
 impl Network {
-    /// The highest domain: beyond it there are no ports for it.
+    /// The highest domain: the ports of higher ones would exceed the valid range.
     const LAST_DOMAIN: u16 = 232;
 
-    /// From variables by their names.
+    /// Reads the variables by their names.
     pub(crate) fn of_environment(
         variable: impl Fn(&str) -> Option<String>,
     ) -> Result<Self, StartError> {
@@ -176,7 +175,7 @@ impl Network {
                 _ => return Err(wrong(DOMAIN, text, "a whole number from 0 to 232")),
             },
         };
-        // As in ROS, the older variable wins where it is set.
+        // As in ROS, the older variable has priority if it is set.
         let is_local = match (set(LOCAL).as_deref(), set(RANGE)) {
             (Some("1"), _) => true,
             (Some("0") | None, None) => false,

@@ -1,29 +1,29 @@
-//! The time by which the node goes: that of the machine, or that of a simulation.
+//! The clock of the node: system time, or simulated time.
 
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-/// A clock that may be set.
+/// A clock that may be set, or simulated.
 pub(crate) struct Clock {
-    /// The time of a simulation \[s\], once it was told; without one that of the machine.
+    /// The last simulated time \[s\], once it was received; unused with system time.
     simulated_s: Option<f64>,
     is_simulated: bool,
-    /// The last look at the time of the machine: by the clock that is never set, and by the one
-    /// that may be \[s\].
+    /// The last reading of the system time: by the monotonic clock, and by the clock that may be
+    /// set \[s\].
     looked: Option<(Instant, f64)>,
     was_set: bool,
-    /// The last cycle of a simulation \[s\].
+    /// Time of the last cycle in a simulation \[s\].
     cycle_s: Option<f64>,
 }
 
 impl Clock {
-    /// The clock of the machine is corrected all the time; this much at once is more \[s\].
+    /// The system clock is corrected continuously; a larger step than this is a jump \[s\].
     const JUMP_S: f64 = 0.5;
 
     pub(crate) const fn new(is_simulated: bool) -> Self {
         Self { simulated_s: None, is_simulated, looked: None, was_set: false, cycle_s: None }
     }
 
-    /// The time of a simulation is told \[s\].
+    /// Receives a simulated time \[s\].
     pub(crate) fn tell(&mut self, now_s: f64) {
         if self.simulated_s.is_some_and(|before_s| now_s < before_s) {
             (self.was_set, self.cycle_s) = (true, None);
@@ -31,7 +31,7 @@ impl Clock {
         self.simulated_s = Some(now_s);
     }
 
-    /// The present time \[s\]; `None` before a simulation has told it.
+    /// The current time \[s\]; `None` before the first simulated time.
     pub(crate) fn now_s(&mut self) -> Option<f64> {
         if self.is_simulated {
             return self.simulated_s;
@@ -40,7 +40,7 @@ impl Clock {
         Some(self.look(Instant::now(), since.as_secs_f64()))
     }
 
-    /// The time of the machine by both of its clocks \[s\].
+    /// Records the system time of both clocks \[s\] and detects jumps.
     fn look(&mut self, steady: Instant, now_s: f64) -> f64 {
         if let Some((before, before_s)) = self.looked.replace((steady, now_s)) {
             let passed_s = steady.duration_since(before).as_secs_f64();
@@ -55,13 +55,13 @@ impl Clock {
         std::mem::take(&mut self.was_set)
     }
 
-    /// The time for a cycle \[s\]; `None` where in a simulation it is not yet time for one.
+    /// The time of the next cycle \[s\]; `None` if it is not due yet in a simulation.
     pub(crate) fn next_cycle_s(&mut self, period_s: f64) -> Option<f64> {
         let now_s = self.now_s()?;
         if !self.is_simulated {
             return Some(now_s);
         }
-        // A simulation may be told of in steps as long as a cycle, up to rounding.
+        // Simulated time may arrive in steps of one cycle, up to rounding.
         let is_due = self.cycle_s.is_none_or(|last_s| now_s >= last_s + 0.99 * period_s);
         is_due.then(|| {
             self.cycle_s = Some(now_s);

@@ -1,4 +1,5 @@
-//! Costmaps to look at: Nav2's costs of what a robot knows and senses. It does not drive by them.
+//! Costmaps for display: Nav2 costs of the robot's map and sensed obstacles. The robot does not
+//! plan with them.
 
 use crate::messages::nav_msgs::{MapMetaData, OccupancyGrid};
 use crate::messages::nav2_msgs::services::{Costmap, CostmapMetaData};
@@ -7,24 +8,24 @@ use keyway::geometry::{Point, Pose};
 use keyway::map::{self, BitGrid, Cell, CellState, CellWindow, CostmapConfig, GridFrame};
 use keyway::navigate::Navigator;
 
-/// A costmap that is shown.
+/// The displayed costmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
-    /// Around the robot.
+    /// The surroundings of the robot.
     Local,
-    /// As much of the map as one message may hold.
+    /// The map, as far as it fits into one message.
     Global,
 }
 
 impl Shown {
-    /// Cells along a side.
+    /// Maximum number of cells along a side.
     const MOST_CELLS: f64 = 400.0;
 
-    /// More at once does not fit into the buffers with which others receive (208 kB, where nobody
-    /// has set them): it comes seconds later, or never.
+    /// Maximum message size. Larger messages do not fit into the default receive buffers (208 kB)
+    /// of the receivers: they arrive seconds later, or never.
     pub(crate) const MOST_BYTES: usize = 160_000;
 
-    /// The reach around the robot, along both axes \[m\].
+    /// Half the side length around the robot, along both axes \[m\].
     fn reach_m(self, resolution_m: f64) -> f64 {
         const LOCAL_M: f64 = 3.0;
         let most_m = 0.5 * (Self::MOST_CELLS - 1.0) * resolution_m;
@@ -35,7 +36,7 @@ impl Shown {
     }
 }
 
-/// A copy of what a robot knows and senses.
+/// A copy of the robot's map and sensed obstacles.
 pub(crate) struct Known {
     map: keyway::OccupancyGrid,
     sensed: BitGrid,
@@ -50,7 +51,7 @@ pub(crate) struct Costs {
 }
 
 impl Known {
-    /// That of a navigator.
+    /// Copies the state of a navigator.
     pub(crate) fn of(navigator: &Navigator) -> Self {
         Self {
             map: navigator.map().clone(),
@@ -59,14 +60,14 @@ impl Known {
         }
     }
 
-    /// All of its cells.
+    /// The window of all cells.
     fn everything(&self) -> CellWindow {
         let frame = self.map.frame();
         let high = Cell::new(frame.width() as i32 - 1, frame.height() as i32 - 1);
         CellWindow { low: Cell::new(0, 0), high }
     }
 
-    /// The cells that are shown of a robot at a place.
+    /// The window for a robot at a position.
     pub(crate) fn window(&self, shown: Shown, place: Point) -> CellWindow {
         let frame = self.map.frame();
         let reach_m = shown.reach_m(frame.resolution_m());
@@ -77,7 +78,8 @@ impl Known {
         CellWindow::around(frame, place, reach_m)
     }
 
-    /// The costs of a window, by what is in it and around it; `None` for one without cells.
+    /// Costs of a window, computed from its cells and those around it; `None` for an empty
+    /// window.
     pub(crate) fn costs(&self, window: CellWindow) -> Option<Costs> {
         let config = CostmapConfig::default();
         let inflation_radius_m = config.inflation_radius_m.max(self.inscribed_radius_m);
@@ -102,7 +104,7 @@ impl Known {
         self.map.state(cell).unwrap_or(CellState::Unknown)
     }
 
-    /// The window with what is around it.
+    /// The window extended on all sides.
     fn wider(&self, window: CellWindow, by_m: f64) -> CellWindow {
         let by = (by_m / self.map.frame().resolution_m()).ceil() as i32 + 1;
         let CellWindow { low, high } = window;
@@ -126,7 +128,7 @@ impl Known {
 }
 
 impl Costs {
-    /// As costs, which is what services give.
+    /// Converts them to costs, for services.
     pub(crate) fn costmap(self, header: Header) -> Costmap {
         let Self { frame, costs } = self;
         let metadata = CostmapMetaData {
@@ -141,14 +143,14 @@ impl Costs {
         Costmap { header, metadata, data: costs }
     }
 
-    /// As occupancies, which is what topics show.
+    /// Converts them to occupancies, for topics.
     pub(crate) fn grid(&self, header: Header) -> OccupancyGrid {
         let info = MapMetaData::of(&self.frame, header.stamp);
         OccupancyGrid { header, info, data: self.costs.iter().map(|&cost| shown(cost)).collect() }
     }
 }
 
-/// The occupancy by which Nav2 shows a cost.
+/// The occupancy value that Nav2 displays for a cost.
 fn shown(cost: u8) -> i8 {
     const LARGEST: u16 = map::Costmap::INSCRIBED as u16 - 1;
     match cost {
@@ -167,7 +169,7 @@ mod tests {
     use keyway::map::Edit;
     use keyway::navigate::Stack;
 
-    /// A field of 10 m x 8 m that begins at (-2, 1), with a post.
+    /// A field of 10 m x 8 m with its origin at (-2, 1), with a post.
     fn field() -> Known {
         let robot = Robot::small();
         let frame = GridFrame::new(100, 80, 0.1, Pose::new(-2.0, 1.0, 0.0)).unwrap();
@@ -179,7 +181,8 @@ mod tests {
         known
     }
 
-    /// Obstacles beside the window count as well: a part has the costs that the whole has there.
+    /// Obstacles beside the window are included: the costs of a part equal those of the whole map
+    /// there.
     #[test]
     fn a_part_is_a_part_of_the_whole() {
         let known = field();

@@ -19,19 +19,19 @@ pub enum StartError {
     /// A value that is not of the form `a:=b`.
     #[error("`{0}` is no rule of the form `name:=value`")]
     NoRule(String),
-    /// A namespace that is none.
+    /// An invalid namespace.
     #[error(
         "`{0}` is no namespace: it is `/`, or names with a slash before each, such as `/robot1/base`; names are letters, digits and \
          underscores, and begin with no digit"
     )]
     Namespace(String),
-    /// A name of a node that is none.
+    /// An invalid node name.
     #[error(
         "`{0}` is no name of a node: it is letters, digits and underscores, and begins with no digit; \
          `__ns` gives a namespace"
     )]
     Node(String),
-    /// A name of a topic, a service or an action that is none.
+    /// An invalid name of a topic, a service or an action.
     #[error(
         "`{0}` is no name of a topic: it is names with a slash between them, such as `front/scan`, perhaps \
          after `/` or `~/`; names are letters, digits and underscores, and begin with no digit"
@@ -40,14 +40,14 @@ pub enum StartError {
     /// The help, or the version, cannot be printed.
     #[error("cannot print: {0}")]
     Output(String),
-    /// A variable of the environment that means nothing.
+    /// An environment variable with an invalid value.
     #[error("the variable {name} of the environment is `{value}`, and must be {expected}")]
     Variable {
         /// Its name.
         name: &'static str,
         /// Its value.
         value: String,
-        /// The values that it may have.
+        /// The valid values.
         expected: &'static str,
     },
     /// A file that cannot be read.
@@ -58,7 +58,7 @@ pub enum StartError {
         /// The fault.
         why: String,
     },
-    /// A parameter that cannot be used.
+    /// An invalid parameter.
     #[error("parameter `{name}`: {why}")]
     Parameter {
         /// Its name.
@@ -69,15 +69,15 @@ pub enum StartError {
     /// A robot and a stack that do not fit together.
     #[error(transparent)]
     Navigate(#[from] NavigateError),
-    /// A scene that cannot be driven in.
+    /// An invalid scene.
     #[error("{0}")]
     Scene(String),
-    /// The network does not work.
+    /// A network failure.
     #[error("cannot {what}: {why}")]
     Network {
-        /// The thing that did not work.
+        /// The failed operation.
         what: String,
-        /// The reason that the network gives.
+        /// The reason reported by the network.
         why: String,
     },
 }

@@ -1,21 +1,21 @@
-//! Keyway as a node of ROS 2: it takes a map, scans, odometry and transforms, and drives to goals,
-//! by the names that Nav2 gives to all of them. It needs no ROS installation.
+//! Keyway as a ROS 2 node: it receives a map, scans, odometry and transforms, and drives to
+//! goals. Its topics, services and actions have the names of Nav2. It needs no ROS installation.
 //!
-//! It is a shell over [`keyway::Navigator`], without any logic of driving of its own.
+//! It is a shell over [`keyway::Navigator`], without driving logic of its own.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `arguments` | the command line and the environment of ROS |
-//! | `settings` | parameters, and what they make: a robot, a stack, names of frames and topics |
-//! | `messages` | messages of ROS as values |
-//! | `transforms` | where frames are, by time |
-//! | `pilot` | messages -> what the navigator observes -> commands and outcomes; no network |
-//! | `served` | the actions: what their goals want, how their outcomes are written |
-//! | `clock` | the time of the machine, or of a simulation |
-//! | `costmaps`, `pictures` | costmaps to look at, drawn beside control |
+//! | `settings` | parameters, converted to a robot, a stack, names of frames and topics |
+//! | `messages` | messages of ROS as Rust types |
+//! | `transforms` | poses of frames, by time |
+//! | `pilot` | messages -> observations of the navigator -> commands and outcomes; no network |
+//! | `served` | the actions: tasks of their goals, messages of their outcomes |
+//! | `clock` | system time, or simulated time |
+//! | `costmaps`, `pictures` | costmaps for display, drawn in a separate thread |
 //! | `wire` | the only module that knows the network |
 //! | `node` | the loop between `wire` and `pilot` |
-//! | `simulator` | a robot in the world of a scene, in the place of a real one |
+//! | `simulator` | a simulated robot in the world of a scene |
 
 mod arguments;
 mod clock;
@@ -45,12 +45,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Runs the node with the arguments after the name of the program, until it is told to stop (by
-/// SIGINT, SIGTERM or SIGQUIT, or the end of its terminal), or prints what it was asked for.
+/// Runs the node until it is stopped (by SIGINT, SIGTERM or SIGQUIT, or the end of its terminal),
+/// or prints the help or version. `arguments` are those after the program name.
 ///
 /// # Errors
-/// An argument, a parameter or a variable of the environment that cannot be used, or a network that
-/// does not work.
+/// Returns [`StartError`] for an invalid argument, parameter or environment variable, or if the
+/// network fails.
 pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError> {
     let mut arguments = arguments.into_iter().peekable();
     let is_simulator = arguments.next_if(|first| first == "sim").is_some();
@@ -68,7 +68,7 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
     let network = Network::of_environment(variable)?;
     let is_over = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGQUIT, SIGHUP] {
-        // Under `nohup` the end of the terminal is to change nothing.
+        // Under `nohup` the end of the terminal is ignored.
         if !is_ignored(signal) {
             signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
                 StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
@@ -86,12 +86,12 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
     Node::new(&arguments, network, pilot)?.run(&is_over)
 }
 
-/// Says something to whoever has started the program. Where nobody can read it, the robot goes on.
+/// Logs a message to the standard error. The robot continues if it cannot be written.
 pub(crate) fn say(what: impl Display) {
     _ = writeln!(std::io::stderr(), "keyway-ros: {what}");
 }
 
-/// Prints what was asked for; a reader who has gone is no fault.
+/// Prints a text; a broken pipe is not an error.
 fn print(text: &str) -> Result<(), StartError> {
     match std::io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -101,7 +101,7 @@ fn print(text: &str) -> Result<(), StartError> {
     }
 }
 
-/// True for a signal that the program was started to ignore, as far as the system tells.
+/// True if the parent process set the signal to be ignored, as far as the system reports it.
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // What is no text is no argument of ours, and is refused by how it looks.
+    // Arguments that are not valid Unicode are never valid: they are refused in their lossy form.
     let arguments = std::env::args_os().skip(1);
     match keyway_ros::run(arguments.map(|argument| argument.to_string_lossy().into_owned())) {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! Costmaps for those who look on, made beside the control of the robot: it never waits for them.
+//! Costmaps for display, drawn in a separate thread: control never waits for them.
 
 use crate::costmaps::{Known, Shown};
 use crate::messages::nav_msgs::OccupancyGrid;
@@ -6,11 +6,11 @@ use crate::messages::std_msgs::Header;
 use keyway::geometry::Point;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-/// An order to draw.
+/// A drawing order.
 pub(crate) struct Order {
     pub(crate) shown: Shown,
     pub(crate) known: Known,
-    /// The robot's place.
+    /// Position of the robot.
     pub(crate) place: Point,
     pub(crate) header: Header,
 }
@@ -22,14 +22,14 @@ impl Order {
     }
 }
 
-/// The thread that draws.
+/// The drawing thread.
 pub(crate) struct Pictures {
     orders: SyncSender<Order>,
     drawn: Receiver<(Shown, OccupancyGrid)>,
 }
 
 impl Pictures {
-    /// Starts it; it ends with the last order.
+    /// Starts the thread; it ends when this value is dropped.
     pub(crate) fn new() -> std::io::Result<Self> {
         let (orders, received) = sync_channel::<Order>(2);
         let (sent, drawn) = sync_channel(4);
@@ -43,12 +43,12 @@ impl Pictures {
         Ok(Self { orders, drawn })
     }
 
-    /// Has something drawn, unless too much waits already.
+    /// Sends an order, unless too many are waiting.
     pub(crate) fn order(&self, order: Order) {
         drop(self.orders.try_send(order));
     }
 
-    /// All that has been drawn since the last call.
+    /// All pictures drawn since the last call.
     pub(crate) fn take_all(&self) -> impl Iterator<Item = (Shown, OccupancyGrid)> + '_ {
         self.drawn.try_iter()
     }

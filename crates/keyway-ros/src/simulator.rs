@@ -1,6 +1,6 @@
-//! A robot in the world of a scene, in the place of a real one: it publishes map, scans, odometry,
-//! transforms and the time, and obeys `cmd_vel`. So nodes, viewers and programs can be tried
-//! without a robot.
+//! A simulated robot in the world of a scene, in place of a real one: it publishes map, scans,
+//! odometry, transforms and the clock, and executes `cmd_vel`. Nodes, viewers and programs can be
+//! tried without a robot.
 
 use crate::arguments::{Arguments, Network};
 use crate::error::StartError;
@@ -41,14 +41,14 @@ pub(crate) struct Simulator {
     transforms: Outbox<TFMessage>,
     fixed: Outbox<TFMessage>,
     clock: Outbox<Clock>,
-    /// It is answered by the pose that the robot has.
+    /// Answered with the actual pose of the robot.
     initial_pose: Inbox<PoseWithCovarianceStamped>,
     amcl_pose: Outbox<PoseWithCovarianceStamped>,
-    /// Of the run \[s\], from the time of the run to that of the network.
+    /// Offset from the time of the run to that of the network \[s\].
     began_s: f64,
-    /// Cycles of all runs.
+    /// Cycles since the start, over all runs.
     cycles: u64,
-    /// The last command, and the cycle in which it came.
+    /// The last command, and the cycle of its arrival.
     commanded: (Velocity, u64),
 }
 
@@ -58,10 +58,10 @@ enum Commands {
 }
 
 impl Simulator {
-    /// The base stops when no command has come for so long \[s\].
+    /// The base stops if no command has arrived for this time \[s\].
     const WATCHDOG_S: f64 = 0.5;
 
-    /// Cycles that are later are not made up for: the process was halted.
+    /// Delay above which cycles are not made up for, as the process was halted.
     const HALT: Duration = Duration::from_millis(500);
 
     /// Joins the network, with the robot of a scene at its start.
@@ -105,7 +105,7 @@ impl Simulator {
         Ok(simulator)
     }
 
-    /// Publishes what never changes.
+    /// Publishes the static messages.
     fn set_out(&mut self) {
         // The first cycle ends now.
         let cycle_s = self.episode.robots[0].robot.cycle_s;
@@ -120,7 +120,7 @@ impl Simulator {
         self.fixed.publish(TFMessage { transforms });
     }
 
-    /// Runs until it is told to stop, cycle by cycle.
+    /// Runs until it is stopped, cycle by cycle.
     pub(crate) fn run(&mut self, is_over: &Arc<AtomicBool>) -> Result<(), StartError> {
         let cycle_s = self.episode.robots[0].robot.cycle_s;
         let period = Duration::from_secs_f64(cycle_s / self.settings.rate);
@@ -132,7 +132,7 @@ impl Simulator {
             if now >= next {
                 let late = now - next;
                 if late > Self::HALT {
-                    // The world stood still meanwhile, and the clock of the machine did not.
+                    // The world was halted meanwhile, unlike the system clock.
                     next = now;
                     if !self.settings.use_sim_time {
                         self.began_s += late.as_secs_f64();
@@ -160,7 +160,7 @@ impl Simulator {
         }
     }
 
-    /// One cycle of the world.
+    /// Runs one cycle of the world.
     fn cycle(&mut self, cycle_s: f64) -> Result<(), StartError> {
         let (command, since) = self.commanded;
         let silent_s = cycle_s * (self.cycles - since) as f64;
@@ -171,13 +171,13 @@ impl Simulator {
         let outcome = self.run.step(&control).map_err(|error| fault(error.to_string()))?;
         self.cycles += 1;
         if self.cycles.is_multiple_of((1.0 / cycle_s).ceil() as u64) {
-            // One who sends commands of the wrong kind would never be heard.
+            // Reports publishers of commands of another type, which are never received.
             self.wire.misfits();
         }
         if matches!(outcome, Some(Outcome::Collided { .. })) {
             self.wire.say("the robot touched something; it is put back to its start");
             self.run = stepper(&self.episode).map_err(fault)?;
-            // The time goes on.
+            // Time continues.
             self.began_s += cycle_s * self.cycles as f64 - self.run.told().stamp_s;
             self.cycles = 0;
             self.commanded = (Velocity::ZERO, 0);
@@ -186,7 +186,7 @@ impl Simulator {
         Ok(())
     }
 
-    /// Publishes what the robot measures.
+    /// Publishes the measurements of the robot.
     fn tell(&self) {
         let told = self.run.told();
         let stamp_s = self.began_s + told.stamp_s;
@@ -229,11 +229,11 @@ impl Simulator {
     }
 }
 
-/// The world and the robot of a scene, in which no run ends but by a contact.
+/// The world and the robot of a scene; its runs end only by a contact.
 fn episode(path: &Path) -> Result<Episode, String> {
     const EVER_S: f64 = 1e9;
     let folder = path.parent().unwrap_or(Path::new(""));
-    // Errors of files name them themselves.
+    // Errors of files already name their file.
     let in_scene = |why: String| format!("{}: {why}", path.display());
     let scene = read_scene(path).map_err(|error| error.to_string())?;
     let map = match (scene.generated_map(), &scene.map) {
@@ -254,7 +254,7 @@ fn episode(path: &Path) -> Result<Episode, String> {
     Ok(episode)
 }
 
-/// A fault of a scene, in words.
+/// A fault of a scene, as text.
 struct Fault(String);
 
 impl From<String> for Fault {
@@ -269,12 +269,12 @@ impl From<SceneError> for Fault {
     }
 }
 
-/// Its robot at the start.
+/// The robot of a scene at its start.
 fn stepper(episode: &Episode) -> Result<Stepper, String> {
     episode.stepper().map_err(|error| error.to_string())
 }
 
-/// The name of something that the first lidar has without a number.
+/// The name with a number, except for the first lidar.
 fn numbered(name: &str, sensor: usize) -> String {
     if sensor == 0 { name.to_owned() } else { format!("{name}_{sensor}") }
 }
@@ -285,7 +285,7 @@ fn transform(header: Header, child: &str, pose: Pose) -> TransformStamped {
     TransformStamped { header, child_frame_id: child.to_owned(), transform }
 }
 
-/// The time of this machine \[s\].
+/// The system time \[s\].
 fn machine_s() -> f64 {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs_f64()
 }
@@ -294,7 +294,7 @@ fn machine_s() -> f64 {
 mod tests {
     use super::*;
 
-    /// Scenes of the repository, on maps of files and of seeds.
+    /// Scenes of the repository, with maps from files and from seeds.
     #[test]
     fn scenes_have_a_robot_at_their_start() {
         let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -1,6 +1,6 @@
-//! Answers questions of a page natively, so that those of the module of WebAssembly can be compared
-//! with them: reads messages from the standard input, each after its length (4 bytes,
-//! little-endian), and writes their answers in the same way.
+//! Answers the questions of a page natively, for comparison with the WebAssembly module: reads
+//! messages from the standard input, each after its length (4 bytes, little-endian), and writes
+//! their answers in the same way.
 
 use keyway_web::{Message, Page};
 use std::io::{Read, Write, stdin, stdout};

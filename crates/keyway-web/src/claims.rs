@@ -1,4 +1,4 @@
-//! Claims of the papers, measured again on maps of a page.
+//! Claims of the papers, measured on the maps of a page.
 
 use crate::error::{Kind, PageError};
 use crate::map::{MapFacts, Opened, cells_of, facts};
@@ -15,19 +15,19 @@ use keyway_sim::report::MapSource;
 use keyway_sim::sim::Outcome;
 use serde::{Deserialize, Serialize};
 
-/// `{"ask": "open_claim", "id", "seed"}`: opens a map of a claim's experiment, and shows what all
-/// methods do there. The answer is a [`ClaimMap`].
+/// `{"ask": "open_claim", "id", "seed"}`: opens a map of a claim's experiment, and returns the
+/// results of all methods on it. The answer is a [`ClaimMap`].
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenClaim {
     /// Name such as `S0-1`.
     pub id: String,
-    /// Seed of the map; `null` for the scene in which the paper's map was reconstructed.
+    /// Seed of the map; `null` for the reconstruction of the paper's map.
     pub seed: Option<u64>,
 }
 
 /// `{"ask": "measure_claim", "id", "seed"}`: the results of all methods on one map, a [`MapRow`].
-/// It asks as [`OpenClaim`] does, and leaves the map that is open.
+/// It has the fields of [`OpenClaim`], and does not change the open map.
 pub type MeasureClaim = OpenClaim;
 
 /// `{"ask": "judge_claim", "id", "rows", "scene"}`: the verdict on a claim. The answer is a
@@ -54,27 +54,27 @@ pub struct ClaimFacts {
     pub statement: &'static str,
     /// The maps of its experiment in a sentence.
     pub about: &'static str,
-    /// Names of the methods that are compared.
+    /// Names of the compared methods.
     pub methods: Vec<&'static str>,
     /// True if the paper's map was reconstructed.
     pub has_scene: bool,
 }
 
-/// A map of a claim. The part `cells` is as for a map; `line i` is the path of method `i` or what
-/// it drove, points of two numbers of 64 bits \[m\], and is missing where it failed.
+/// A map of a claim. The part `cells` is as for a map; `line i` is the path or trajectory of
+/// method `i`, points of two 64-bit numbers \[m\]. It is missing if the method failed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ClaimMap {
     /// The map.
     pub map: MapFacts,
     /// Start and goal \[m\].
     pub ends: [Point; 2],
-    /// Length of the line of each method \[m\]; `null` where it failed.
+    /// Length of the line of each method \[m\]; `null` if it failed.
     pub lengths_m: Vec<Option<f64>>,
-    /// True for each drive that did not reach its goal: its line stops before.
+    /// True for each drive that did not reach its goal: its line ends early.
     pub is_cut_off: Vec<bool>,
-    /// Discs that the map does not show, `[x, y, radius]` \[m\].
+    /// Discs that are not on the map, `[x, y, radius]` \[m\].
     pub discs: Vec<[f64; 3]>,
-    /// Moving obstacles at the beginning, `[x, y, radius]` \[m\].
+    /// Moving obstacles at the start, `[x, y, radius]` \[m\].
     pub movers: Vec<[f64; 3]>,
 }
 
@@ -83,20 +83,20 @@ pub struct ClaimMap {
 pub struct Judged {
     /// The report of the claim, as in `keyway.reproduce`.
     pub report: ClaimReport,
-    /// Its figures, for people.
+    /// Its figures, as text.
     pub figures: Vec<JudgedFigure>,
 }
 
-/// A figure of a claim, for people.
+/// A figure of a claim, as text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct JudgedFigure {
-    /// The claim about it.
+    /// Statement of the figure.
     pub statement: String,
     /// The published value; a dash if nothing comparable was published.
     pub published: String,
     /// The measured value.
     pub measured: String,
-    /// The verdict; `null` where nothing is judged.
+    /// The verdict; `null` if the figure is not judged.
     pub verdict: Option<FigureVerdict>,
 }
 
@@ -163,7 +163,7 @@ pub(crate) fn measure_claim(ask: &MeasureClaim) -> Result<Message, PageError> {
     Ok(Message::new(json(&row.ok_or_else(|| no_scene(&ask.id))?)))
 }
 
-/// Judges a claim by what was measured.
+/// Judges a claim by its measurements.
 pub(crate) fn judge_claim(ask: JudgeClaim) -> Result<Message, PageError> {
     let claim = claim(&ask.id)?;
     let (mut family, wanted) = (Family { scene: ask.scene, ..Family::default() }, ask.rows.len());

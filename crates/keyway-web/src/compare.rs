@@ -1,4 +1,4 @@
-//! Comparisons of planners on the map of a page, and of stacks by the runs that they made.
+//! Comparisons of planners on the map of a page, and of stacks by their runs.
 
 use crate::error::{Kind, PageError};
 use crate::map::Opened;
@@ -46,8 +46,8 @@ pub struct Comparison {
     pub latex: String,
 }
 
-/// `{"ask": "summary", "rows"}`: what the runs of several stacks say together, as in
-/// `keyway batch`. The answer is a [`Summary`].
+/// `{"ask": "summary", "rows"}`: summarises the runs of several stacks, as in `keyway batch`. The
+/// answer is a [`Summary`].
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summarise {

@@ -15,8 +15,8 @@ use keyway_sim::episode::{CycleReport, Episode, RobotReport, RunOptions, watch_e
 use keyway_sim::scene_files::{SceneFile, SceneMap};
 use serde::{Deserialize, Serialize};
 
-/// `{"ask": "drive", "scene", ..}`: drives all robots of a scene. A scene without a world of its
-/// own is on the map that is open.
+/// `{"ask": "drive", "scene", ..}`: drives all robots of a scene. A scene without a `[world]`
+/// uses the open map.
 ///
 /// The answer is a [`Driven`].
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -26,27 +26,28 @@ pub struct Drive {
     pub scene: String,
     /// Its name in rows of tables.
     pub name: String,
-    /// In the place of the scene's seed.
+    /// Replaces the scene's seed.
     pub seed: Option<u64>,
-    /// Name of the stack in the place of those of all robots.
+    /// Name of the stack that replaces those of all robots.
     pub stack: Option<String>,
-    /// Drive on the map that is open, also where the scene has a world of its own.
+    /// Use the open map even if the scene has a `[world]`.
     pub on_open_map: bool,
-    /// Leave out the cycles: only reports.
+    /// Omit the cycles and return only reports.
     pub reports_only: bool,
-    /// Leave out the reasons of decisions, which cost several times what the drive does.
+    /// Omit the reasons of decisions, which cost several times as much as the drive.
     pub without_reasons: bool,
 }
 
-/// A drive. The parts hold, for each robot `i` in turn: `poses i`, of each cycle x, y, heading
-/// (three numbers of 64 bits); `hits i`, of each cycle the number of points where its scans met
-/// something, then two numbers each (all of 32 bits); `sensed i`, of each cycle the number of cells
-/// that were sensed first in it, then column and row of each (32 bits); `movers i`, of each cycle
-/// the place of each moving obstacle (two numbers of 32 bits); `fans i`, of each cycle the number
-/// of velocities that were tried, then of each [`FAN_NUMBERS`](crate::film::FAN_NUMBERS) numbers
-/// of 32 bits: its fate (0 admissible, 1 the one that was chosen, 2 the second best, 3 it would
-/// touch something, 4 another rule refuses it), its score, and points \[m\] of where it would
-/// lead.
+/// A drive. It has these parts for each robot `i`; all numbers have 32 bits unless stated:
+///
+/// - `poses i`: x, y and heading of each cycle (64 bits).
+/// - `hits i`: for each cycle the number of hit points of the scans, then two numbers for each.
+/// - `sensed i`: for each cycle the number of newly sensed cells, then column and row of each.
+/// - `movers i`: for each cycle the position of each moving obstacle, two numbers.
+/// - `fans i`: for each cycle the number of candidate velocities, then
+///   [`FAN_NUMBERS`](crate::film::FAN_NUMBERS) numbers for each: its fate (0 admissible, 1
+///   chosen, 2 second best, 3 collision, 4 refused by another rule), its score, and points \[m\]
+///   of its trajectory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Driven {
     /// `keyway.navigate/4` of each robot.
@@ -55,24 +56,22 @@ pub struct Driven {
     pub row: Row,
     /// `keyway.cycle/1` of each robot's cycles.
     pub cycles: Vec<Vec<CycleReport>>,
-    /// Routes of each robot: the number of the cycle from which on it drives along it, and its
-    /// points \[m\].
+    /// Routes of each robot: the first cycle on the route, and its points \[m\].
     pub routes: Vec<Vec<(u64, Vec<Point>)>>,
-    /// Refusals of the stop rule, for each robot: the number of the cycle, and the reason for
-    /// people.
+    /// Refusals of the stop rule, for each robot: the cycle, and the reason as text.
     pub refusals: Vec<Vec<(u64, String)>>,
-    /// The outline of each robot.
+    /// The footprint of each robot.
     pub outlines: Vec<Outline>,
     /// The radius of each moving obstacle \[m\].
     pub mover_radii_m: Vec<f64>,
 }
 
-/// The outline of a robot: a disc, or a polygon in the robot's frame.
+/// The footprint of a robot: a disc, or a polygon in the robot's frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outline {
     /// Radius of the disc \[m\]; `null` for a polygon.
     pub radius_m: Option<f64>,
-    /// Vertices of the polygon \[m\]; none for a disc.
+    /// Vertices of the polygon \[m\]; empty for a disc.
     pub vertices: Vec<Point>,
 }
 
@@ -108,7 +107,7 @@ pub(crate) fn drive(ask: &Drive, opened: Option<&Opened>) -> Result<Message, Pag
     drive_episode(&episode, ask, &scene)
 }
 
-/// The scene of a text.
+/// Parses a scene.
 pub(crate) fn scene_of(text: &str) -> Result<SceneFile, PageError> {
     SceneFile::from_toml(text).map_err(|error| scene_error(&error))
 }
@@ -117,7 +116,7 @@ pub(crate) fn scene_error(error: &dyn std::fmt::Display) -> PageError {
     PageError::new(Kind::Input, error).field("scene")
 }
 
-/// The run of a scene, with bundled robots and stacks.
+/// The episode of a scene, with bundled robots and stacks.
 pub(crate) fn episode_of(scene: &SceneFile, map: SceneMap) -> Result<Episode, PageError> {
     let episode = scene.episode(map, |robot, stack| {
         let robot = named_robot(robot)?;
@@ -127,7 +126,7 @@ pub(crate) fn episode_of(scene: &SceneFile, map: SceneMap) -> Result<Episode, Pa
     episode.map_err(|Refused(error)| error)
 }
 
-/// A scene's error as one of the page.
+/// Converts the error of a scene into that of the page.
 struct Refused(PageError);
 
 impl From<keyway_sim::scene_files::SceneError> for Refused {

@@ -1,4 +1,4 @@
-//! Reasons why a question has no answer.
+//! Errors of questions.
 
 use serde::Serialize;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ pub enum Kind {
     Input,
     /// A parameter.
     Config,
-    /// A start or a goal without room.
+    /// A start or goal without enough clearance.
     Position,
 }
 
@@ -23,9 +23,9 @@ pub enum Kind {
 pub struct PageError {
     /// Its kind.
     pub kind: Kind,
-    /// The fault and what was expected, for people.
+    /// Message with the fault and what was expected.
     pub message: String,
-    /// The field or the file that is to blame, if it is a single one.
+    /// The field or the file to blame, if it is a single one.
     pub field: Option<String>,
 }
 

@@ -1,5 +1,5 @@
-//! The functions of the module of WebAssembly. A page writes a question where [`room`] says, calls
-//! [`ask`], and reads the answer there.
+//! The functions of the WebAssembly module. A page writes a question to the address returned by
+//! [`room`], calls [`ask`], and reads the answer at the address it returns.
 
 use crate::message::Message;
 use crate::page::Page;
@@ -16,7 +16,7 @@ thread_local! {
     static EXCHANGE: RefCell<Exchange> = RefCell::default();
 }
 
-/// Makes room for a question of so many bytes; returns the address of the first one.
+/// Allocates memory for a question and returns its address.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn room(bytes: usize) -> usize {
@@ -26,7 +26,7 @@ pub(crate) extern "C" fn room(bytes: usize) -> usize {
     })
 }
 
-/// Answers the question; returns the address of the answer's first byte.
+/// Answers the question and returns the address of the answer.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn ask() -> usize {
@@ -38,7 +38,7 @@ pub(crate) extern "C" fn ask() -> usize {
     })
 }
 
-/// The number of bytes of the answer.
+/// Returns the number of bytes of the answer.
 #[expect(unsafe_code, reason = "an exported name is unsafe to give, and this one is given once")]
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn answer_bytes() -> usize {

@@ -7,12 +7,12 @@ use keyway::navigate::Navigator;
 use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::MovingObstacle;
 
-/// Points of where a velocity would lead, beside the place of the robot.
+/// Number of points of a candidate's trajectory, without the robot's position.
 pub const FAN_POINTS: usize = 6;
-/// Numbers of a velocity that was tried: its fate, its score, and its points.
+/// Numbers of a candidate velocity: its fate, its score, and its points.
 pub const FAN_NUMBERS: usize = 2 + 2 * FAN_POINTS;
 
-/// The cycles of a robot, to be looked at.
+/// The recorded cycles of a robot.
 #[derive(Clone, Default)]
 pub(crate) struct Film {
     pub(crate) cycles: Vec<CycleReport>,
@@ -41,7 +41,7 @@ impl Film {
         }
     }
 
-    /// The places of all movers in each cycle.
+    /// Positions of all moving obstacles in each cycle.
     pub(crate) fn places_of(&self, movers: &[MovingObstacle]) -> Vec<u8> {
         let places = |cycle: &CycleReport| {
             let t_s = cycle.t_s;
@@ -90,13 +90,13 @@ impl Film {
     }
 }
 
-/// Poses of a way at equal steps, the last one its end; `None` for a way without poses.
+/// Poses of a trajectory at equal steps, including the last one; `None` for an empty trajectory.
 fn spread(poses: &[Pose]) -> impl Iterator<Item = Option<&Pose>> {
     let step = |i: usize| (poses.len() * i).div_ceil(FAN_POINTS).checked_sub(1);
     (1..=FAN_POINTS).map(move |i| step(i).and_then(|at| poses.get(at)))
 }
 
-/// The order of the cells of a grid, row by row.
+/// Sort key of the cells of a grid, row by row.
 const fn key(cell: Cell) -> (i32, i32) {
     (cell.y, cell.x)
 }

@@ -1,10 +1,10 @@
-//! Keyway for a page in a browser, as one module of WebAssembly without imports.
+//! Keyway for a page in a browser, as one WebAssembly module without imports.
 //!
-//! A page holds a [`Page`]: it opens maps from bytes, plans on them, shows searches step by step
-//! and drives scenes. Every question is a [`Message`] whose head is JSON, and so is every answer;
-//! what is long, such as the cells of a map or the events of a search, comes as parts of bytes
-//! beside the head. No file is read and no clock: times in reports are `null`, and equal questions
-//! have equal answers, in a browser as on any other machine.
+//! A [`Page`] opens maps from bytes, plans on them, shows searches step by step and drives
+//! scenes. Every question and every answer is a [`Message`] with a JSON head. Long data, such as
+//! the cells of a map or the events of a search, comes as binary parts beside the head. It reads
+//! no files and no clock: times in reports are `null`, and equal questions have equal answers on
+//! every machine.
 //!
 //! ```
 //! use keyway_web::{Message, Page};
@@ -21,23 +21,23 @@
 //!
 //! | question | answer | parts |
 //! |---|---|---|
-//! | [`names`](names::Names) | the names of all that can be chosen | |
+//! | [`names`](names::Names) | the names of all available choices | |
 //! | [`open_map`](map::OpenMap) | facts about the map | `cells` |
-//! | [`edit_map`](map::EditMap) | the number of cells that changed | |
+//! | [`edit_map`](map::EditMap) | the number of changed cells | |
 //! | [`plan`](route::Plan) | the report `keyway.plan/3` | `line`, `smoothed`, `shortest` |
 //! | [`search`](route::Plan) | events and path of the search | see [`search::Search`] |
 //! | [`open_scene`](scene::OpenScene) | facts about the scene and its map | `cells` |
-//! | [`barn_scenes`](scene::BarnScenes) | the scenes of a table of BARN | |
+//! | [`barn_scenes`](scene::BarnScenes) | the scenes of a BARN table | |
 //! | [`drive`](drive::Drive) | reports `keyway.navigate/4`, and cycles | see [`drive::Driven`] |
 //! | [`compare`](compare::Compare) | the report `keyway.compare/1`, and tables | |
-//! | [`summary`](compare::Summarise) | what runs of several stacks say together | |
+//! | [`summary`](compare::Summarise) | a summary of the runs of several stacks | |
 //! | [`claims`](claims::ClaimFacts) | the claims of the papers | |
 //! | [`open_claim`](claims::OpenClaim) | a map of a claim | see [`claims::ClaimMap`] |
 //! | [`measure_claim`](claims::MeasureClaim) | results on one map | |
 //! | [`judge_claim`](claims::JudgeClaim) | the verdict on a claim | |
 //!
-//! An answer to what cannot be done is `{"error": {"kind", "message", "field"}}`; the page keeps
-//! what it had.
+//! An error answer is `{"error": {"kind", "message", "field"}}`; the state of the page does not
+//! change.
 
 pub mod claims;
 pub mod compare;

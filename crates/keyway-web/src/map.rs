@@ -11,44 +11,44 @@ use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// `{"ask": "open_map", "name", "resolution_m"}`: the parts are the map's files by their names, the
-/// one called `name` and the image that it may name.
+/// `{"ask": "open_map", "name", "resolution_m"}`: opens a map. The parts are its files by their
+/// names: the one called `name`, and the image that it may name.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenMap {
     /// The file of the map: `.yaml`, `.map`, `.png` or `.pgm`.
     pub name: String,
-    /// Side of a cell \[m\], for a map whose file does not say it.
+    /// Cell size \[m\], for a file that does not contain it.
     pub resolution_m: Option<f64>,
 }
 
-/// Facts about a map. The part `cells` of the answer has a byte for each cell, row by row from the
-/// bottom: 0 free, 1 occupied, 2 unknown.
+/// Facts about a map. The part `cells` of the answer has a byte for each cell, row by row from
+/// the bottom: 0 free, 1 occupied, 2 unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapFacts {
     /// Its name.
     pub name: String,
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// Side of a cell \[m\].
+    /// Cell size \[m\].
     pub resolution_m: f64,
     /// Pose of the lower left corner, `[x_m, y_m, yaw_rad]`.
     pub origin: [f64; 3],
     /// Digest of the map, as in reports.
     pub digest: String,
-    /// Strange things in its files.
+    /// Warnings about its files.
     pub warnings: Vec<String>,
 }
 
-/// `{"ask": "edit_map", "cells": [[x, y], ..], "state": "occupied"}`.
+/// `{"ask": "edit_map", "cells": [[x, y], ..], "state": "occupied"}`: changes cells.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EditMap {
-    /// Columns and rows from the lower left corner; those beside the map are ignored.
+    /// Columns and rows from the lower left corner; cells outside the map are ignored.
     pub cells: Vec<(i32, i32)>,
-    /// The state of the cells from now on.
+    /// The new state of the cells.
     pub state: State,
 }
 
@@ -64,14 +64,14 @@ pub enum State {
     Unknown,
 }
 
-/// The number of cells that an edit has changed.
+/// Result of an edit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Edited {
-    /// The number.
+    /// Number of changed cells.
     pub changed: usize,
 }
 
-/// A map that is open.
+/// An open map.
 #[derive(Clone, Debug)]
 pub(crate) struct Opened {
     pub(crate) grid: OccupancyGrid,
@@ -79,7 +79,7 @@ pub(crate) struct Opened {
 }
 
 impl Opened {
-    /// The error of a question about a map while none is open.
+    /// Error of a question about a map if none is open.
     pub(crate) fn none() -> PageError {
         PageError::new(Kind::Usage, "no map is open, expected `open_map` before").field("ask")
     }
@@ -98,7 +98,7 @@ pub(crate) fn open(ask: &OpenMap, message: &Message) -> Result<(Opened, Message)
     Ok((opened, answer))
 }
 
-/// Reads a map from the parts of a message, and tells strange things in its files.
+/// Reads a map from the parts of a message, with warnings about its files.
 pub(crate) fn open_file(
     name: &Path,
     resolution_m: Option<f64>,
@@ -114,8 +114,8 @@ pub(crate) fn open_file(
     Ok((Opened::from(loaded), warnings))
 }
 
-/// The file of a name. A page knows files by their names alone, so folders before a name are
-/// passed over.
+/// The file with a name. A page knows files by their names alone, so folders in the name are
+/// ignored.
 pub(crate) fn part<'m>(message: &'m Message, name: &Path) -> Result<&'m [u8], ReadError> {
     let file = name.file_name().and_then(|name| name.to_str());
     let found = file.and_then(|file| message.part(file));
@@ -124,7 +124,7 @@ pub(crate) fn part<'m>(message: &'m Message, name: &Path) -> Result<&'m [u8], Re
     found.ok_or_else(missing)
 }
 
-/// Facts about a map.
+/// Collects the facts about a map.
 pub(crate) fn facts(opened: &Opened, warnings: Vec<String>) -> MapFacts {
     let Opened { grid, source } = opened;
     let frame = grid.frame();

@@ -16,10 +16,10 @@ pub struct Message {
     pub parts: Vec<(String, Vec<u8>)>,
 }
 
-/// The bytes of a message are not complete, or a text in them is not UTF-8.
+/// Error of an incomplete message, or of a text that is not UTF-8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MessageError {
-    /// The byte at which the text or its length begins.
+    /// Offset of the text or of its length.
     pub at: usize,
 }
 
@@ -50,7 +50,7 @@ impl Message {
         found.map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// All of it as bytes.
+    /// Encodes the message.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut put = |content: &[u8]| {
@@ -65,10 +65,10 @@ impl Message {
         bytes
     }
 
-    /// The message that was written as `bytes`.
+    /// Decodes a message.
     ///
     /// # Errors
-    /// If they are cut off, or head or names are not UTF-8.
+    /// Returns [`MessageError`] if the bytes are cut off, or the head or a name is not UTF-8.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, MessageError> {
         let mut reader = Reader { bytes, at: 0 };
         let mut message = Self::new(reader.text()?);
@@ -100,12 +100,12 @@ impl<'b> Reader<'b> {
     }
 }
 
-/// The bytes of numbers of 32 bits.
+/// Encodes 32-bit numbers.
 pub(crate) fn numbers(numbers: impl Iterator<Item = i32>) -> Vec<u8> {
     numbers.flat_map(i32::to_le_bytes).collect()
 }
 
-/// A value as the head of a message. Plain data with string keys: this cannot fail.
+/// Encodes a value as the head of a message. Plain data with string keys: this cannot fail.
 pub(crate) fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn every_cut_is_seen() {
         let bytes = Message::new("{}").with("a", vec![1, 2]).to_bytes();
-        // A message ends behind its head, or behind any part.
+        // A message may end after its head, or after any part.
         for end in (0..bytes.len()).filter(|&end| end != 6) {
             assert!(Message::from_bytes(&bytes[..end]).is_err(), "{end}");
         }

@@ -1,4 +1,4 @@
-//! The names of all that can be chosen.
+//! The names of all available choices.
 
 use keyway::guide::GuideConfig;
 use keyway::local::LocalConfig;
@@ -28,7 +28,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// All names that the library knows.
+    /// All names in the library.
     pub const ALL: Self = Self {
         version: env!("CARGO_PKG_VERSION"),
         robots: &Robot::NAMES,

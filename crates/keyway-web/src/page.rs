@@ -13,7 +13,7 @@ use crate::search;
 use keyway::search::Workspace;
 use serde::{Deserialize, Serialize};
 
-/// Everything that a page has open.
+/// The state of a page: everything that it has open.
 #[derive(Debug, Default)]
 pub struct Page {
     map: Option<Opened>,
@@ -41,14 +41,14 @@ enum Question {
     JudgeClaim(JudgeClaim),
 }
 
-/// The head of an answer to a question that has none.
+/// The head of an error answer.
 #[derive(Serialize)]
 struct Refusal {
     error: PageError,
 }
 
 impl Page {
-    /// The answer to a question; an error is an answer, too, and changes nothing.
+    /// Answers a question. An error is an answer, too, and does not change the state.
     pub fn answer(&mut self, message: &Message) -> Message {
         let question = serde_json::from_str(&message.head)
             .map_err(|error| PageError::new(Kind::Usage, error).field("ask"));
@@ -90,7 +90,7 @@ impl Page {
         }
     }
 
-    /// Goes on with another map.
+    /// Replaces the map.
     fn open(&mut self, (opened, answer): (Opened, Message)) -> Message {
         (self.map, self.layers) = (Some(opened), None);
         answer

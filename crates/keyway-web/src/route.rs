@@ -19,11 +19,11 @@ use keyway_sim::report::{RouteAnswer, RouteRequest};
 use serde::Deserialize;
 use std::path::Path;
 
-/// `{"ask": "plan", ..}` for a route, `{"ask": "search", ..}` to look into its search. What is not
-/// given is as in `keyway plan`.
+/// `{"ask": "plan", ..}` for a route, `{"ask": "search", ..}` to inspect its search. Defaults are
+/// those of `keyway plan`.
 ///
-/// The answer to `plan` is the report `keyway.plan/3`; its parts `line`, `smoothed` and `shortest`
-/// are points, two numbers of 64 bits each \[m\]. The answer to `search` is a
+/// The answer to `plan` is the report `keyway.plan/3`; its parts `line`, `smoothed` and
+/// `shortest` are points, two 64-bit numbers each \[m\]. The answer to `search` is a
 /// [`Search`](crate::search::Search).
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -38,21 +38,21 @@ pub struct Plan {
     pub radius_m: Option<f64>,
     /// Parameters, as in a file of parameters (TOML).
     pub settings: String,
-    /// Values of the papers, for maps with cells of 1 m.
+    /// Parameters of the papers, for maps with cells of 1 m.
     pub as_published: bool,
     /// Start \[m\].
     pub start: [f64; 2],
     /// Goal \[m\].
     pub goal: [f64; 2],
-    /// Drive to the nearest place that can be reached where the goal cannot.
+    /// If the goal cannot be reached, plan to the nearest reachable position.
     pub nearest_reachable: bool,
     /// Limit of expanded nodes.
     pub budget: Option<u64>,
-    /// Tell the shortest line in any direction, too, for a path that is found.
+    /// Add the shortest any-angle line, if a path is found.
     pub with_shortest: bool,
 }
 
-/// The layers of the map, kept from plan to plan.
+/// The layers of the map, cached between plans.
 pub(crate) type Layers = Option<(LayerConfig, RobotSize, SearchMap)>;
 
 /// The robot and the stack of a plan, the layers of the map for them, and the planner.
@@ -129,7 +129,7 @@ pub(crate) fn plan(
     Ok(message)
 }
 
-/// The message with the shortest line in any direction, where it is asked for.
+/// Adds the shortest any-angle line, if it is requested.
 pub(crate) fn with_shortest(
     message: Message,
     ask: &Plan,
@@ -149,7 +149,7 @@ pub(crate) const fn if_unreachable(ask: &Plan) -> IfUnreachable {
     if ask.nearest_reachable { IfUnreachable::NearestReachable } else { IfUnreachable::Fail }
 }
 
-/// Makes a plan ready; its layers are those of the last one where they are the same.
+/// Prepares a plan. The layers of the last plan are reused if they are the same.
 pub(crate) fn ready<'l>(
     ask: &Plan,
     opened: &Opened,
@@ -191,7 +191,7 @@ fn smoother(config: &SmootherConfig) -> Result<Option<Box<dyn Smoother + Send + 
     config.build().map(Some).map_err(blame)
 }
 
-/// The positions, not only the cells, of an end without room.
+/// Error of a start or goal without enough clearance, with its position and not only its cell.
 pub(crate) fn refused(map: &SearchMap, ask: &Plan, error: &PlanError) -> PageError {
     let ends = [ask.start, ask.goal].map(point);
     let (PlanError::OutsideMap { end, .. }

@@ -14,18 +14,18 @@ use keyway_sim::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// `{"ask": "open_scene", "name", "seed"}`: opens a scene and its map. The parts are the scene file
-/// by its name, and the files of its map, unless the scene has a world of its own.
+/// `{"ask": "open_scene", "name", "seed"}`: opens a scene and its map. The parts are the scene
+/// file by its name, and the files of its map, unless the scene has a `[world]`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenScene {
     /// The scene file (TOML).
     pub name: String,
-    /// In the place of the scene's seed.
+    /// Replaces the scene's seed.
     pub seed: Option<u64>,
 }
 
-/// `{"ask": "barn_scenes", "name"}`: the scenes of a table of BARN's cylinders, which is the part
+/// `{"ask": "barn_scenes", "name"}`: the scenes of a table of BARN cylinders, which is the part
 /// of that name. The answer is a list of [`SceneText`].
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -43,28 +43,28 @@ pub struct SceneText {
     pub text: String,
 }
 
-/// A scene that was opened. The part `cells` is as for a map.
+/// Facts about an open scene. The part `cells` is as for a map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneFacts {
     /// The map.
     pub map: MapFacts,
-    /// True if the map is made from the seed.
+    /// True if the map is generated from the seed.
     pub is_generated: bool,
-    /// True if another seed gives another drive.
+    /// True if the drive depends on the seed.
     pub is_random: bool,
     /// The seed.
     pub seed: u64,
-    /// Its description, for people.
+    /// Its description.
     pub description: Option<String>,
     /// The robots.
     pub robots: Vec<SceneRobot>,
-    /// Discs that the map does not show, `[x, y, radius]` \[m\].
+    /// Discs that are not on the map, `[x, y, radius]` \[m\].
     pub discs: Vec<[f64; 3]>,
-    /// Polygons that the map does not show \[m\].
+    /// Polygons that are not on the map \[m\].
     pub polygons: Vec<Vec<Point>>,
-    /// Cells that the map does not show: column, row.
+    /// Occupied cells that are not on the map: column, row.
     pub hidden_cells: Vec<[i32; 2]>,
-    /// Moving obstacles at the beginning, `[x, y, radius]` \[m\].
+    /// Moving obstacles at the start, `[x, y, radius]` \[m\].
     pub movers: Vec<[f64; 3]>,
 }
 
@@ -73,7 +73,7 @@ pub struct SceneFacts {
 pub struct SceneRobot {
     /// Its start \[m\].
     pub start: Point,
-    /// Its way-points, in their order \[m\].
+    /// Its waypoints, in order \[m\].
     pub via: Vec<Point>,
     /// Its goal \[m\].
     pub goal: Point,
@@ -81,7 +81,7 @@ pub struct SceneRobot {
     pub stack: String,
 }
 
-/// The scenes of a table of BARN.
+/// Generates the scenes of a BARN table.
 pub(crate) fn barn_scenes(ask: &BarnScenes, message: &Message) -> Result<Message, PageError> {
     let blame = |error: &dyn std::fmt::Display| PageError::new(Kind::Input, error).field("name");
     let path = Path::new(&ask.name);
@@ -93,7 +93,7 @@ pub(crate) fn barn_scenes(ask: &BarnScenes, message: &Message) -> Result<Message
     Ok(Message::new(json(&scenes.into_iter().map(text).collect::<Vec<_>>())))
 }
 
-/// The text of a scene of BARN. What writes any scene would make the page a twentieth larger.
+/// Serialises a BARN scene. A general TOML writer would make the module 5 % larger.
 fn text(scene: &SceneFile) -> String {
     let description = scene.description.as_deref().unwrap_or_default();
     let mut lines = vec![
@@ -142,7 +142,7 @@ pub(crate) fn open_scene(
     Ok((opened.clone(), Message::new(json(&scene_facts)).with("cells", cells_of(&opened))))
 }
 
-/// The map of a scene: one that it makes, or one of the files.
+/// The map of a scene: generated, or read from files.
 fn map_of(scene: &SceneFile, message: &Message) -> Result<(Opened, Vec<String>), PageError> {
     if let Some(made) = scene.generated_map() {
         let SceneMap { grid, source } = made.map_err(|error| scene_error(&error))?;
@@ -184,7 +184,7 @@ fn scene_facts(scene: &SceneFile, map: MapFacts, episode: &Episode) -> SceneFact
 mod tests {
     use super::*;
 
-    /// Worlds as they are published, with digits that nobody would choose.
+    /// Worlds as published, with arbitrary digits.
     #[test]
     fn scenes_of_barn_are_the_same_after_writing_and_reading() {
         let table =

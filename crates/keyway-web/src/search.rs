@@ -10,28 +10,28 @@ use keyway::route::RouteQuery;
 use keyway::search::{Observer, Side, Workspace};
 use serde::Serialize;
 
-/// Events of a search that are told at most. A page needs 24 bytes for each, several times.
+/// Maximum number of reported events. A page needs 24 bytes for each, several times.
 pub const MOST_EVENTS: usize = 2_000_000;
 
-/// A search to be looked at. The part `events` has six numbers of 32 bits for each event, in their
-/// order: kind ([`EVENT_KINDS`]), side (0 from the start, 1 from the goal), column and row of the
-/// node, column and row of the other end. The part `path` has two, the column and the row of each
-/// cell of the path. The part `shortest` is as in a plan.
+/// A recorded search. The part `events` has six 32-bit numbers for each event, in order: kind
+/// ([`EVENT_KINDS`]), side (0 from the start, 1 from the goal), column and row of the node,
+/// column and row of the other end. The part `path` has column and row of each cell of the path.
+/// The part `shortest` is as in a plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Search {
-    /// Names of the kinds of events, by their numbers.
+    /// Names of the kinds of events, by index.
     pub kinds: [&'static str; 6],
-    /// Number of events that are told.
+    /// Number of reported events.
     pub events: usize,
-    /// Number of events after these, which are not told: there are more than [`MOST_EVENTS`].
+    /// Number of further events, which are dropped beyond [`MOST_EVENTS`].
     pub left_out: usize,
-    /// Nodes that were expanded, on both sides.
+    /// Number of expanded nodes, on both sides.
     pub expanded: u64,
-    /// Nodes that were generated, on both sides.
+    /// Number of generated nodes, on both sides.
     pub generated: u64,
     /// Cost of the path \[cells\]; `null` without a path.
     pub cost_cells: Option<f64>,
-    /// Reason why there is no path; `null` where there is one.
+    /// Reason for a failed search; `null` if there is a path.
     pub why: Option<String>,
 }
 
@@ -39,7 +39,7 @@ pub struct Search {
 pub const EVENT_KINDS: [&str; 6] =
     ["expanded", "generated", "reparented", "scanned", "linked", "met"];
 
-/// Searches, and tells what the search did.
+/// Searches with a recording observer.
 pub(crate) fn search(
     ask: &Plan,
     opened: &Opened,
@@ -75,7 +75,7 @@ pub(crate) fn search(
     Ok(if is_found { with_shortest(answer, ask, map, &*planner) } else { answer })
 }
 
-/// Events as numbers, up to [`MOST_EVENTS`].
+/// Recorder of events as numbers, up to [`MOST_EVENTS`].
 #[derive(Default)]
 struct Told {
     events: Vec<[i32; 6]>,

@@ -1,4 +1,4 @@
-//! Scenes, comparisons and claims of a page, against the laboratory that answers them.
+//! Tests of scenes, comparisons and claims of a page, compared with the laboratory.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway_lab::claims::{Claim, ClaimReport, Family, Verdict};
@@ -11,7 +11,7 @@ const BAY: [(&str, &[u8]); 3] = [
     ("bay.yaml", include_bytes!("../../../scenes/fleet/bay.yaml")),
     ("bay.pgm", include_bytes!("../../../scenes/fleet/bay.pgm")),
 ];
-/// A world that is made from the seed, with one obstacle that the map does not show.
+/// A world generated from the seed, with one unmapped obstacle.
 const MADE: &str = "version = 2\nseed = 4\nstart = [1.0, 1.0]\ngoal = [9.0, 9.0]\n\
     [world]\nwidth_m = 10.0\nheight_m = 10.0\nresolution_m = 0.1\n\
     obstacles = { blocks = { share = 0.04, side_m = [0.2, 0.6] } }\n\
@@ -44,7 +44,7 @@ fn a_scene_brings_its_map_and_its_robots() {
     assert_eq!(driven["cycles"].as_array().unwrap().len(), 2, "{}", driven["error"]);
     assert!(answer.part("fans 1").is_some());
     assert_eq!((&driven["row"]["robots"], &driven["row"]["scene"]), (&json!(2), &json!("bay")));
-    // A map that was edited is not that of another scene.
+    // An edited map does not become that of another scene.
     let (refused, _) = with_files(&mut Page::default(), &open, &BAY[..1]);
     assert_eq!(refused["error"]["field"], "scene");
     assert!(refused["error"]["message"].as_str().unwrap().contains("bay.yaml"), "{refused}");
@@ -95,7 +95,7 @@ fn a_drive_on_the_map_as_it_was_edited() {
     assert_eq!([outcome(&mut page, false), outcome(&mut page, true)], ["reached", "no_path"]);
 }
 
-/// A stack in the place of those of the scene, and the candidates of each cycle.
+/// A stack that replaces those of the scene, and the candidates of each cycle.
 #[test]
 fn fans_hold_what_was_tried() {
     let mut page = Page::default();
@@ -212,7 +212,7 @@ fn claims_are_measured_and_judged_as_in_the_laboratory() {
     let (map, answer) = ask(&mut page, &json!({"ask": "open_claim", "id": "S0-1", "seed": null}));
     assert!((map["lengths_m"][0].as_f64().unwrap() - 29.213).abs() < 1e-3, "{map}");
     assert_eq!(answer.part("line 0").unwrap().len() % 16, 0);
-    // The map of the claim is open from now on.
+    // The map of the claim is now the open one.
     let plan = json!({"ask": "plan", "planner": "astar", "start": map["ends"][0],
         "goal": map["ends"][1], "with_shortest": true});
     let (planned, answer) = ask(&mut page, &plan);

@@ -1,4 +1,4 @@
-//! Questions of a page, against the library that answers them.
+//! Tests of the answers of a page, compared with the library.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
 use keyway::map::formats::map_from_bytes;
@@ -98,7 +98,7 @@ fn a_search_tells_what_it_did() {
     assert_eq!(answer.part("path"), Some(&[][..]));
 }
 
-/// The page holds nothing that the library does not say.
+/// A page contains the results of the library, and nothing else.
 #[test]
 fn a_drive_is_that_of_the_library() {
     let mut page = with_house();
@@ -115,7 +115,7 @@ fn a_drive_is_that_of_the_library() {
     assert_eq!(head["reports"][0]["outcome"], "reached");
     let cycles = head["cycles"][0].as_array().unwrap();
     assert_eq!(answer.part("poses 0").unwrap().len(), 24 * cycles.len());
-    // Each list is as long as its counts say.
+    // Each list has the length given by its counts.
     let counted = |part: &str| {
         let (numbers, mut at, mut lists, mut sum) = (numbers(answer.part(part).unwrap()), 0, 0, 0);
         while at < numbers.len() {
@@ -226,7 +226,7 @@ struct Cases {
     case: Vec<Case>,
 }
 
-/// A case of `testdata/plan`, as its README says.
+/// A case of `testdata/plan`; the format is described in its README.
 #[derive(Deserialize)]
 struct Case {
     name: String,
@@ -258,7 +258,7 @@ impl Case {
     }
 }
 
-/// The cases that every shell gives.
+/// Cases shared by all bindings.
 #[test]
 fn plans_of_every_optimal_planner() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../testdata/plan");

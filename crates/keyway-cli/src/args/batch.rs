@@ -38,7 +38,7 @@ pub(crate) struct BatchCli {
 }
 
 impl BatchCli {
-    /// Form of the answer on the standard output.
+    /// Output format of the answer on the standard output.
     pub(crate) fn format(&self) -> Format {
         let merge = self.command.as_ref().map(|BatchCommand::Merge(args)| args.format);
         merge.or(self.run.as_ref().map(|args| args.format)).unwrap_or_default()
@@ -47,7 +47,7 @@ impl BatchCli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum BatchCommand {
-    /// Puts batches together that were made elsewhere, such as the parts of one (`--shard`)
+    /// Merges results computed elsewhere, such as the parts of one batch (`--shard`)
     Merge(MergeArgs),
 }
 
@@ -59,10 +59,10 @@ needed, and nothing is driven.
 Examples:
   keyway batch merge part-1 part-2 --out merged")]
 pub(crate) struct MergeArgs {
-    /// Folders of results
+    /// Result folders
     #[arg(value_name = "DIR", required = true)]
     pub(crate) folders: Vec<PathBuf>,
-    /// Folder for the results of all together
+    /// Folder for the merged results
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
@@ -71,53 +71,53 @@ pub(crate) struct MergeArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct BatchArgs {
-    /// Scene files, and folders with scene files in them or in their subfolders
+    /// Scene files, or folders with scene files in them or in their subfolders
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// The stacks that drive each scene, all robots of it (see `keyway list`), or files with one;
-    /// `all` [default: that of the scene]
+    /// Stacks to drive each scene with, for all its robots (see `keyway list`), or stack files;
+    /// or `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
-    /// The robot that drives each scene, in the place of all its robots (see `keyway list`), or a
-    /// file with one [default: that of the scene]
+    /// Robot to drive each scene with, in place of all its robots (see `keyway list`), or a robot
+    /// file [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Change one value of all robots, such as `robot.cycle_s=0.2`, or one parameter of all stacks,
-    /// such as `controller.blocked_s=5`; may be repeated
+    /// Change one value of all robots, such as `robot.cycle_s=0.2`, or one parameter of all
+    /// stacks, such as `controller.blocked_s=5`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
-    /// Issue only commands after which a robot can still stop before it touches anything, whatever
-    /// its stack wants: in all scenes, also where they do not say `safe = true`
+    /// Issue only commands after which the robot can still stop before a contact, overriding its
+    /// stack; in all scenes, even without `safe = true`
     #[arg(long)]
     pub(crate) safe: bool,
-    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a
-    /// scene [default: that of the scene]
+    /// Disturbances of actuation, sensing and localisation: a TOML file with the fields of
+    /// `[disturbances]` of a scene [default: that of the scene]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
-    /// Reach the goal by the true pose or by the one that the robot believes [default: as the scene
-    /// says, or truth]
+    /// Pose that counts as reaching the goal: the true one or the estimated one [default: as the
+    /// scene says, or truth]
     #[arg(long, value_enum, value_name = "POSE")]
     pub(crate) reached_by: Option<ReachedByArg>,
-    /// How many seeds each scene is driven with: its own, and the numbers that follow
+    /// Number of seeds for each scene: its own and those that follow it
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, LEAST_SEEDS, MOST_SEEDS>)]
     pub(crate) seeds: u64,
-    /// Runs at the same time [default: as many as there are processors]
+    /// Number of parallel runs [default: as many as there are processors]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
     pub(crate) jobs: Option<usize>,
-    /// Folder for the results; runs that it holds are not made again
+    /// Folder for the results; finished runs in it are not repeated
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Make the I-th of N parts of the runs only; `keyway batch merge` puts the parts together
+    /// Compute only the I-th of N parts of the runs; `keyway batch merge` merges the parts
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
-    /// Of which runs to store a full record, for `keyway replay`, in the folder `records` of --out
+    /// Runs to store a full record of, for `keyway replay`, in the folder `records` of --out
     #[arg(long, value_enum, default_value_t)]
     pub(crate) keep: Keep,
-    /// Refuse a map of more cells, before memory is taken for it
-    // As [`MapLimitArgs`](super::groups::MapLimitArgs): optional groups cannot hold others.
+    /// Maximum number of cells of a map; larger maps are refused before memory is allocated
+    // Same as [`MapLimitArgs`](super::groups::MapLimitArgs): optional groups cannot be nested.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     #[arg(default_value_t = DEFAULT_MAX_CELLS, value_parser = whole::<u64, 1, MAX_CELLS>)]
     pub(crate) max_cells: u64,
@@ -125,36 +125,37 @@ pub(crate) struct BatchArgs {
     pub(crate) format: Format,
 }
 
-/// Of which runs a batch stores a full record.
+/// Runs of a batch that get a full record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Keep {
-    /// Of none
+    /// No runs
     #[default]
     None,
-    /// Of those that did not reach their goal
+    /// Runs that did not reach their goal
     Failures,
-    /// Of all
+    /// All runs
     All,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum SceneCommand {
-    /// Makes a scene of each world of BARN: a course of 10 m among cylinders that no map shows
+    /// Generates a scene for each BARN world: 10 m among cylinders that are not on the map
     Barn(BarnArgs),
-    // Help texts have no backticks.
+    // This help text is an attribute: as a doc comment, the name would need backticks.
     #[command(
         about = "Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move"
     )]
     Dynabarn(DynabarnArgs),
-    /// Makes a scene of each pair of start and goal in a table, with random obstacles near the way
+    /// Generates a scene for each row of a table of starts and goals, with random obstacles near
+    /// the path
     Pairs(PairsArgs),
-    /// Makes scenes of the papers' maps: generated ones on which the baselines have the published
-    /// figures
+    /// Generates scenes on maps reconstructed from the papers, on which the baselines have the
+    /// published results
     Papers(PapersArgs),
-    /// Makes scenes of narrow places for robots of any shape: tunnels, doors, bays, corners, lanes,
+    /// Generates narrow scenes for robots of any shape: tunnels, doors, bays, corners, lanes,
     /// furnished rooms, and walls to drive along
     Narrow(NarrowArgs),
-    /// Prints the JSON schema of scene files, by which editors complete and check them
+    /// Prints the JSON schema of scene files, for completion and checks in editors
     #[command(after_help = "\
 Examples:
   keyway scene schema > scene.schema.json")]
@@ -168,14 +169,14 @@ Examples:
   keyway scene barn barn_cylinders.csv --summary barn_summary.csv --out barn --format json
   keyway scene barn barn_cylinders.csv --known --out barn-known")]
 pub(crate) struct BarnArgs {
-    /// The cylinders: CSV with the columns `world`, `x`, `y` and `radius` [m]
+    /// Cylinders: CSV with the columns `world`, `x`, `y` and `radius` [m]
     #[arg(value_name = "CYLINDERS.csv")]
     pub(crate) cylinders: PathBuf,
-    /// The best times: CSV with the columns `world` and `optimal_time_s`
+    /// Optimal times: CSV with the columns `world` and `optimal_time_s`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) summary: Option<PathBuf>,
-    /// Put the cylinders on the map: cells of 5 cm whose centres they hold, and no others, stand in
-    /// the world
+    /// Put the cylinders on the map; the obstacles of the world are then exactly the 5 cm cells
+    /// whose centres lie in a cylinder
     #[arg(long)]
     pub(crate) known: bool,
     /// Folder for the scenes
@@ -194,7 +195,7 @@ pub(crate) struct PapersArgs {
     /// Reconstructions, such as you2021 [default: all of them]
     #[arg(value_name = "NAME")]
     pub(crate) names: Vec<String>,
-    /// How many scenes of each: the first maps that fit, by their seeds from 1 on
+    /// Number of scenes of each: the first maps that fit, by their seeds from 1 on
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 30, value_parser = whole::<usize, 1, 1000>)]
     pub(crate) count: usize,
@@ -215,10 +216,10 @@ pub(crate) struct NarrowArgs {
     /// Kinds: tunnel, door, bay, corner, lane, room, wall [default: all of them]
     #[arg(value_name = "KIND")]
     pub(crate) names: Vec<String>,
-    /// Seed of the first scene of each kind; the others have those that follow
+    /// Seed of the first scene of each kind; the others have the seeds that follow
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// How many scenes of each kind
+    /// Number of scenes of each kind
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 20, value_parser = whole::<usize, 1, 10000>)]
     pub(crate) count: usize,
@@ -234,11 +235,11 @@ pub(crate) struct NarrowArgs {
 Examples:
   keyway scene dynabarn dynabarn_keyframes.csv --worlds dynabarn_worlds.csv --out dynabarn")]
 pub(crate) struct DynabarnArgs {
-    /// Where cylinders are when: CSV with the columns `plugin`, `duration_s`, `t`, `x` and `y` [s,
-    /// m]
+    /// Trajectories of the cylinders: CSV with the columns `plugin`, `duration_s`, `t`, `x` and
+    /// `y` [s, m]
     #[arg(value_name = "KEYFRAMES.csv")]
     pub(crate) key_frames: PathBuf,
-    /// Which cylinders each world has: CSV with the columns `world`, `plugin` and `radius` [m]
+    /// Cylinders of each world: CSV with the columns `world`, `plugin` and `radius` [m]
     #[arg(long, value_name = "WORLDS.csv")]
     pub(crate) worlds: PathBuf,
     /// Folder for the scenes
@@ -255,19 +256,20 @@ Examples:
   keyway scene pairs pairs.csv --unknown 3 --moving 2 --out pairs
   keyway batch pairs --seeds 2 --out pairs-results")]
 pub(crate) struct PairsArgs {
-    /// The pairs: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and `goal_y_m`;
-    /// the map's path is that from the table's folder
+    /// Starts and goals: CSV with the columns `map`, `start_x_m`, `start_y_m`, `goal_x_m` and
+    /// `goal_y_m`; map paths are relative to the table's folder
     #[arg(value_name = "PAIRS.csv")]
     pub(crate) pairs: PathBuf,
-    /// The robot that drives (see `keyway list`), or a file with one
+    /// Robot (see `keyway list`), or a robot file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "small")]
     pub(crate) robot: String,
-    /// Unknown obstacles that stand near the way, of 0.1 to 0.3 m radius, other ones for each seed
+    /// Number of static unknown obstacles near the path, of 0.1 to 0.3 m radius, different for
+    /// each seed
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) unknown: u32,
-    /// Obstacles that walk to and fro across the way, of 0.2 to 0.35 m radius at 0.3 to 1 m/s,
-    /// other ones for each seed
+    /// Number of obstacles that move to and fro across the path, of 0.2 to 0.35 m radius at 0.3
+    /// to 1 m/s, different for each seed
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) moving: u32,

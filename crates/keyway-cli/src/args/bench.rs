@@ -15,7 +15,7 @@ Examples:
 pub(crate) enum BenchCommand {
     /// Answers the queries of MovingAI scenario files and checks every answer
     Grid(BenchGridArgs),
-    /// Plans from corner to corner of a map, tiled to larger and larger sizes
+    /// Plans from corner to corner of a map, tiled to increasing sizes
     Scale(BenchScaleArgs),
 }
 
@@ -32,12 +32,12 @@ pub(crate) struct BenchScaleArgs {
     pub(crate) map: PathBuf,
     #[command(flatten)]
     pub(crate) limit: MapLimitArgs,
-    /// Sides of the square maps that it is tiled to, with mirror images [cells]
+    /// Sides of the square maps, tiled from mirror images [cells]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N,...", value_delimiter = ',')]
     #[arg(default_value = "1024,2048,4096", value_parser = whole::<u32, 2, { u32::MAX as u64 }>)]
     pub(crate) sides: Vec<u32>,
-    /// A planner (see `keyway list`); may be repeated
+    /// Planner (see `keyway list`); may be repeated
     #[arg(long, value_name = "NAME", default_value = "jps")]
     pub(crate) planner: Vec<String>,
     #[command(flatten)]
@@ -49,7 +49,7 @@ pub(crate) struct BenchScaleArgs {
     /// Folder for the report and a chart of time and memory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Measure the first planner and side in this very process
+    /// Measure the first planner and side in this process
     #[arg(long, hide = true)]
     pub(crate) alone: bool,
 }
@@ -63,29 +63,29 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = format!("{GRID_TERMS}\n\n{GRID_EXAMPLES}"))]
 pub(crate) struct BenchGridArgs {
-    /// Scenario files; the map of each is looked for beside it
+    /// Scenario files, each with its map in the same folder
     #[arg(value_name = "FILE.scen", required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
-    /// A planner (see `keyway list`); may be repeated [default: jps]
+    /// Planner (see `keyway list`); may be repeated [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Vec<String>,
-    /// Answer every query this many times, the planners in turns, and count the fastest time of
-    /// each
+    /// Answer every query this many times, alternating between planners, and keep the fastest
+    /// time of each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1000>)]
     pub(crate) repeat: u64,
-    /// Answer only every K-th query, beginning with the first
+    /// Answer only every K-th query, starting with the first
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "K", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1_000_000>)]
     pub(crate) every: u64,
-    /// Number of files worked on at once; more than one disturbs the times
+    /// Number of files processed in parallel; more than one disturbs the times
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1024>)]
     pub(crate) jobs: u64,
-    /// Folder of the maps, instead of that of the scenario file
+    /// Folder of the maps, in place of that of the scenario file
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Options that several commands share.
+//! Options shared by several commands.
 
 use super::values::{PoseArg, radius, resolution, whole};
 use clap::{Args, ValueEnum};
@@ -10,32 +10,32 @@ use keyway_sim::sim::ReachedBy;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Parameters of planner, smoother and everything else.
+/// Parameters of planner, smoother and all other parts of a stack.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConfigArgs {
-    /// Parameters from a file: any part of a stack
+    /// File with parameters of any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as map.unknown=free, or that of a planner or smoother by its
-    /// name: `hsta.if_no_path=fail`; `navigate` takes those of the robot, too:
+    /// Change one parameter, such as map.unknown=free, or one of a planner or smoother by its
+    /// name: `hsta.if_no_path=fail`; `navigate` also accepts those of the robot:
     /// `robot.limits.v_max_mps=0.3`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
-    /// What unknown cells count as [default: blocked]
+    /// Handling of unknown cells [default: blocked]
     #[arg(long, value_enum)]
     pub(crate) unknown: Option<Unknown>,
 }
 
 impl ConfigArgs {
-    /// The assignments to values of the robot (`robot.limits.v_max_mps=0.3`), by their paths in a
-    /// robot file, and all other parameters.
+    /// Splits the assignments: those of the robot (`robot.limits.v_max_mps=0.3`), by their paths
+    /// in a robot file, and the remaining parameters.
     pub(crate) fn split_robot(&self) -> (Vec<Assignment>, Self) {
         let robot = self.set.iter().filter_map(Assignment::of_robot).collect();
         let of_others = self.set.iter().filter(|one| one.of_robot().is_none());
         (robot, Self { set: of_others.cloned().collect(), ..self.clone() })
     }
 
-    /// The same as words of a command line.
+    /// The same options as words of a command line.
     pub(crate) fn words(&self) -> Vec<OsString> {
         let config = self.config.iter().flat_map(|file| ["--config".into(), file.into()]);
         let set = self.set.iter().flat_map(|set| ["--set".into(), set.to_string().into()]);
@@ -44,7 +44,7 @@ impl ConfigArgs {
     }
 }
 
-/// What a search makes of unknown cells.
+/// Handling of unknown cells in a search.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Unknown {
     /// Obstacles
@@ -56,7 +56,7 @@ pub(crate) enum Unknown {
 }
 
 impl Unknown {
-    /// As in a config file.
+    /// Name in a config file.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Blocked => "blocked",
@@ -66,46 +66,46 @@ impl Unknown {
     }
 }
 
-/// How a robot plans and drives.
+/// The stack and its parts.
 #[derive(Debug, Args)]
 pub(crate) struct StackArgs {
-    /// The stack (see `keyway list`), or a file with one, as `keyway list NAME` prints it [default:
+    /// Stack (see `keyway list`), or a stack file, as printed by `keyway list NAME` [default:
     /// keyway]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) stack: Option<String>,
-    /// The stack with the values of its paper, on the paper's robot, a point named `paper`: for
-    /// maps with cells of 1 m
+    /// Use the stack with the parameters of its paper, on the paper's robot, a point named
+    /// `paper`; for maps with cells of 1 m
     #[arg(long, conflicts_with = "radius")]
     pub(crate) as_published: bool,
-    /// Another planner in this stack (see `keyway list`)
+    /// Replace the planner of the stack (see `keyway list`)
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
-    /// Another smoother
+    /// Replace the smoother
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
-    /// Another guide
+    /// Replace the guide
     #[arg(long, value_name = "NAME")]
     pub(crate) guide: Option<String>,
-    /// Another local planner
+    /// Replace the local planner
     #[arg(long, value_name = "NAME")]
     pub(crate) local: Option<String>,
 }
 
-/// The size of the robot that a path is for.
+/// Size of the robot that a path is planned for.
 #[derive(Debug, Default, Args)]
 pub(crate) struct SizeArgs {
-    /// The robot: paths keep its (inscribed) radius from every obstacle, and smoothers begin with
-    /// distances for it (see `keyway list`) [default: none, a point]
+    /// Robot: paths keep its (inscribed) radius from every obstacle, and the default distances of
+    /// smoothers are derived from it (see `keyway list`) [default: none, a point]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Radius that paths keep from every obstacle, instead of the robot's own; without a robot also
-    /// the safe distance of smoothers that have one [m] [default: 0]
+    /// Clearance of paths to every obstacle, in place of the robot's radius; without a robot,
+    /// also the safe distance of smoothers that have one [m] [default: 0]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
 }
 
 impl SizeArgs {
-    /// The same as words of a command line.
+    /// The same options as words of a command line.
     pub(crate) fn words(&self) -> Vec<OsString> {
         let robot = self.robot.iter().flat_map(|name| ["--robot".into(), name.into()]);
         let radius = self.radius.iter().flat_map(|m| ["--radius".into(), m.to_string().into()]);
@@ -113,13 +113,13 @@ impl SizeArgs {
     }
 }
 
-/// Placement of a map whose file does not say where it lies, and the largest number of cells.
+/// Placement of a map whose file does not contain it, and the maximum number of cells.
 #[derive(Debug, Args)]
 pub(crate) struct PlaceArgs {
-    /// Side of a cell of an image or .map file [m] [default: 1]
+    /// Cell size of an image or .map file [m] [default: 1]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = resolution)]
     pub(crate) resolution: Option<f64>,
-    /// Where the lower left corner of an image or .map file lies [m, m, deg] [default: 0,0]
+    /// Pose of the lower left corner of an image or .map file [m, m, deg] [default: 0,0]
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     pub(crate) origin: Option<PoseArg>,
     #[command(flatten)]
@@ -127,12 +127,12 @@ pub(crate) struct PlaceArgs {
 }
 
 impl PlaceArgs {
-    /// Reads maps that lie there.
+    /// Returns a reader for maps at this placement.
     pub(crate) fn reader(&self) -> MapReader {
         MapReader { placement: self.placement(), ..self.limit.reader() }
     }
 
-    /// `None` when nothing was given.
+    /// Returns the placement; `None` if no option was given.
     pub(crate) fn placement(&self) -> Option<ImagePlacement> {
         if self.resolution.is_none() && self.origin.is_none() {
             return None;
@@ -146,33 +146,33 @@ impl PlaceArgs {
     }
 }
 
-/// Largest number of cells of a map that is read.
+/// Maximum number of cells of a map.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct MapLimitArgs {
-    /// Refuse a map of more cells, before memory is taken for it
+    /// Maximum number of cells of a map; larger maps are refused before memory is allocated
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     #[arg(default_value_t = DEFAULT_MAX_CELLS, value_parser = whole::<u64, 1, MAX_CELLS>)]
     pub(crate) max_cells: u64,
 }
 
 impl MapLimitArgs {
-    /// The same as words of a command line.
+    /// The same options as words of a command line.
     pub(crate) fn words(self) -> [OsString; 2] {
         ["--max-cells".into(), self.max_cells.to_string().into()]
     }
 
-    /// Reads maps that say themselves where they lie, or lie at the origin.
+    /// Returns a reader for maps that contain their placement, or lie at the origin.
     pub(crate) fn reader(self) -> MapReader {
         MapReader { max_cells: self.max_cells, ..MapReader::default() }
     }
 }
 
-/// Pose by which a goal is reached.
+/// The pose that counts as reaching a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ReachedByArg {
-    /// The true one
+    /// The true pose
     Truth,
-    /// The one that the robot believes, as where its localisation is disturbed
+    /// The pose estimated by the robot, for use with disturbed localisation
     Belief,
 }
 
@@ -185,12 +185,12 @@ impl From<ReachedByArg> for ReachedBy {
     }
 }
 
-/// Form of the answer on the standard output.
+/// Output format of the answer on the standard output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// For people
+    /// Human-readable text
     #[default]
     Table,
-    /// For programs
+    /// Machine-readable JSON
     Json,
 }

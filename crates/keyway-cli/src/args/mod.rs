@@ -1,4 +1,4 @@
-//! What the command line may hold.
+//! Arguments of the command line.
 
 mod batch;
 mod bench;
@@ -28,7 +28,7 @@ use keyway_lab::compare::CompareRequest;
 use std::path::PathBuf;
 use values::{positive_length, radius, whole};
 
-/// Plans paths for mobile robots, drives them through simulated buildings, and measures both.
+/// Plans paths for mobile robots, drives the robots in simulation, and evaluates both.
 #[derive(Debug, Parser)]
 #[command(name = "keyway", version, after_help = ROOT_EXAMPLES)]
 pub(crate) struct Cli {
@@ -49,19 +49,19 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
-    /// Prepares a map that does not change, so that paths on it are found in microseconds
+    /// Prepares a static map, so that paths on it are found in microseconds
     Prepare(PrepareArgs),
-    /// Plans a path and drives along it among obstacles that are not on the map
+    /// Plans a path and drives it among obstacles that are not on the map
     Navigate(NavigateArgs),
-    /// Drives many scenes with many stacks and seeds, and measures them
+    /// Drives many scenes with many stacks and seeds, and evaluates the runs
     Batch(BatchCli),
-    /// Makes recorded runs of a batch again, and shows them
+    /// Recomputes recorded runs of a batch and shows them
     Replay(ReplayArgs),
-    /// Measures again what the papers claim, and says what holds
+    /// Reproduces the papers' claims and reports a verdict on each
     Reproduce(ReproduceArgs),
     /// Compares the paths of planners and smoothers with each other and with the shortest line
     Compare(CompareArgs),
-    /// Measures planners
+    /// Benchmarks planners
     #[command(after_help = BENCH_EXAMPLES)]
     Bench {
         #[command(subcommand)]
@@ -73,27 +73,27 @@ pub(crate) enum Command {
         #[command(subcommand)]
         command: MapCommand,
     },
-    /// Makes scene files of the field's benchmarks, and of tables of starts and goals
+    /// Generates scene files from published benchmarks and from tables of starts and goals
     #[command(after_help = SCENE_EXAMPLES)]
     Scene {
         #[command(subcommand)]
         command: SceneCommand,
     },
     /// Lists planners, smoothers, guides, local planners, stacks and robots, or the parameters of
-    /// one
+    /// one of them
     List(ListArgs),
-    /// Drives a robot with ROS 2, as the program `keyway-ros`, whose arguments it takes
+    /// Drives a robot with ROS 2: the program `keyway-ros`, with the same arguments
     #[cfg(feature = "ros")]
     #[command(disable_help_flag = true)]
     Ros {
-        /// As of `keyway-ros`
+        /// Arguments of `keyway-ros`
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Prints completions for a shell
+    /// Prints shell completions
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
-        /// The shell
+        /// Shell
         shell: clap_complete::Shell,
     },
 }
@@ -114,7 +114,7 @@ Examples:
   keyway demo
   keyway demo --out my-first-run")]
 pub(crate) struct DemoArgs {
-    /// Folder for the scene, its map, and everything that the run leaves
+    /// Folder for the scene, its map and all result files
     #[arg(long, value_name = "DIR", default_value = "keyway-demo")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
@@ -140,54 +140,54 @@ Examples:
 pub(crate) struct PlanArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// Where the path begins [m]
+    /// Start position [m]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) start: PositionArg,
-    /// Where it ends [m]; may be repeated: the goal with the cheapest path comes first
+    /// Goal position [m]; may be repeated: the goal with the cheapest path comes first
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, required = true)]
     pub(crate) goal: Vec<PositionArg>,
-    /// If the goal cannot be reached, go to the nearest cell that can
+    /// If the goal cannot be reached, plan to the nearest reachable cell
     #[arg(long)]
     pub(crate) nearest_reachable: bool,
     /// Positions are cells: column and row, from the lower left
     #[arg(long)]
     pub(crate) cells: bool,
-    /// The planner (see `keyway list`) [default: jps]
+    /// Planner (see `keyway list`) [default: jps]
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
-    /// Plan with this preparation of the map, as `keyway prepare` wrote it
+    /// Plan with this prepared map, a file written by `keyway prepare`
     #[arg(long, value_name = "FILE", conflicts_with = "planner")]
     pub(crate) prepared: Option<PathBuf>,
-    /// The smoother (see `keyway list`) [default: none]
+    /// Smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
-    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever
-    /// the robot
+    /// Use the parameters of the papers for planners and smoothers, whatever the robot; for maps
+    /// with cells of 1 m
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
-    /// Give up after this many expanded nodes
+    /// Stop the search after this many expanded nodes
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "NODES", value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) budget: Option<u64>,
-    /// Report by how much the path is longer than the shortest one of straight and diagonal steps
+    /// Report how much longer the path is than the shortest one of straight and diagonal steps
     #[arg(long)]
     pub(crate) excess: bool,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
-    /// Draw the map, what the search did, and the path into this file
+    /// Draw the map, the search and the path into this file
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) picture: Option<PictureFile>,
-    /// Play the search into this file, then show the path
+    /// Animate the search in this file, then show the path
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
     /// Write the (smoothed) path into this file, sampled by arc length: positions, headings,
-    /// curvatures, and the fastest speeds within the limits of --robot (without one, of the robot
-    /// `small`) of speed, turn rate and acceleration (how fast the turn rate changes is not
-    /// limited)
+    /// curvatures, and the highest speeds within the limits of --robot on speed, turn rate and
+    /// acceleration (without --robot, of the robot `small`); angular acceleration along curves is
+    /// not limited
     #[arg(long, value_name = "FILE.csv|.json")]
     pub(crate) curve: Option<CurveFile>,
     /// Distance between two samples of --curve [m] [default: 0.01]
@@ -207,7 +207,7 @@ Examples:
 pub(crate) struct PrepareArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// File to write
+    /// Output file
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
     /// Prepare only if that takes less time than jps needs for this many paths [default: 100000]
@@ -255,19 +255,19 @@ pub(crate) struct NavigateArgs {
     pub(crate) map: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Where the robot stands [m, m, deg]; without a yaw it faces along its path, or as nearly so
-    /// as it has room
+    /// Start pose [m, m, deg]; without a yaw, the robot faces along its path, as closely as its
+    /// clearance allows
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) start: Option<PoseArg>,
-    /// Where it is to go [m, m, deg]; without a yaw any heading is right
+    /// Goal pose [m, m, deg]; without a yaw, any heading is accepted
     #[arg(long, value_name = "X,Y[,YAW_DEG]", allow_hyphen_values = true)]
     #[arg(required_unless_present = "scene")]
     pub(crate) goal: Option<PoseArg>,
-    /// If the goal cannot be reached on the map, drive to the nearest place that can
+    /// If the goal cannot be reached on the map, drive to the nearest reachable position
     #[arg(long)]
     pub(crate) nearest_reachable: bool,
-    /// A way-point on the way to the goal [m]; may be repeated, in the order of the way
+    /// Waypoint before the goal [m]; may be repeated, in driving order
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pub(crate) via: Vec<PositionArg>,
     /// Scene file with map, robot, start, goal and unknown and moving obstacles
@@ -278,37 +278,37 @@ pub(crate) struct NavigateArgs {
     pub(crate) cells: bool,
     #[command(flatten)]
     pub(crate) stack: StackArgs,
-    /// The robot (see `keyway list`) [default: small]
+    /// Robot (see `keyway list`) [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Make the robot a disc of this radius [m]
+    /// Replace the footprint by a disc of this radius [m]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
-    /// An obstacle that is not on the map: centre and radius [m]; may be repeated
+    /// Obstacle that is not on the map: centre and radius [m]; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<DiscArg>,
-    /// An obstacle that moves: its centre, its radius and its velocity [m, m/s], for ever straight
-    /// on; or its speed and the points that it goes to in turn, for ever around; may be repeated
+    /// Moving obstacle: centre, radius and constant velocity [m, m/s]; or centre, radius, speed
+    /// and the waypoints of a closed loop; may be repeated
     #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) moving: Vec<MovingArg>,
-    /// Issue only commands after which the robot can still stop before it touches anything,
-    /// whatever the local planner wants (`controller.safe`)
+    /// Issue only commands after which the robot can still stop before a contact, overriding the
+    /// local planner (`controller.safe`)
     #[arg(long)]
     pub(crate) safe: bool,
-    /// What keeps the robot from being ideal: a TOML file with the fields of `[disturbances]` of a
-    /// scene, in place of those of the scene
+    /// Disturbances of actuation, sensing and localisation: a TOML file with the fields of
+    /// `[disturbances]` of a scene, in place of those of the scene
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
-    /// Reach the goal by the true pose or by the one that the robot believes [default: as the scene
-    /// says, or truth]
+    /// Pose that counts as reaching the goal: the true one or the estimated one [default: as the
+    /// scene says, or truth]
     #[arg(long, value_enum, value_name = "POSE")]
     pub(crate) reached_by: Option<ReachedByArg>,
-    /// Of all that is random, in place of the seed of the scene [default: 0]
+    /// Seed of all random values, in place of the scene's seed [default: 0]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: Option<u64>,
-    /// Give up after this simulated time [s] [default: 60 + 4 x path length / top speed]
+    /// Stop after this simulated time [s] [default: 60 + 4 x path length / top speed]
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     pub(crate) time_limit: Option<f64>,
     #[command(flatten)]
@@ -337,25 +337,25 @@ pub(crate) struct CompareArgs {
     pub(crate) maps: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
-    /// Planners (see `keyway list`), or `all` that can plan on the map [default: jps,theta-star;
-    /// only jps with --smoothers, the one of the file with --config]
+    /// Planners (see `keyway list`), or `all` for all that support the map [default:
+    /// jps,theta-star; only jps with --smoothers, that of the file with --config]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
     /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:
-    /// none,taut,continuous-curvature; only none with --planners, the one of the file with
-    /// --config]; `--set hierarchical.safe_distance_m=0.2` sets a parameter of this one (or of a
-    /// planner, by its name), `--set smoother.safe_distance_m=0.2` sets it for all (and
-    /// `planner...` for all planners)
+    /// none,taut,continuous-curvature; only none with --planners, that of the file with
+    /// --config]. A parameter of one smoother is set by its name,
+    /// `--set hierarchical.safe_distance_m=0.2`, one of all smoothers by
+    /// `--set smoother.safe_distance_m=0.2`; the same holds for planners (`planner...`)
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], in another order under a
-    /// header with these names; with a column `map` in the header, each line is for that map only
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], or in the order of a
+    /// header with these names; with a column `map`, each line applies to that map only
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
-    /// Number of queries on each map: those of a scenario file, evenly spread; otherwise random
+    /// Number of queries on each map, evenly spread over those of a scenario file, or else random
     /// ones between connected cells [default: 10, or all of a file]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", conflicts_with = "pairs")]
@@ -366,14 +366,14 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "N", default_value_t = 0, conflicts_with_all = ["pairs", "scen"])]
     #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: u64,
-    /// Answer every query this many times, the planners in turns, and count the fastest time of
-    /// each
+    /// Answer every query this many times, alternating between planners, and keep the fastest
+    /// time of each
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, { CompareRequest::MOST_REPEATS }>)]
     pub(crate) repeat: u64,
-    /// Planners and smoothers with the values of their papers, for maps with cells of 1 m, whatever
-    /// the robot
+    /// Use the parameters of the papers for planners and smoothers, whatever the robot; for maps
+    /// with cells of 1 m
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]
@@ -385,7 +385,7 @@ pub(crate) struct CompareArgs {
     /// shortfalls, plan, smooth [default: most of them; in LaTeX all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Vec<String>,
-    /// Leave out all times: then the same input gives the same bytes
+    /// Omit all times; the output is then deterministic
     #[arg(long)]
     pub(crate) no_times: bool,
     #[arg(long, value_enum, default_value_t)]
@@ -397,9 +397,9 @@ pub(crate) struct CompareArgs {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum MapCommand {
-    /// Shows how large a map is, where it lies and what its cells are
+    /// Shows the size, placement and cell counts of a map
     Info(MapInfoArgs),
-    /// Writes a map in another format
+    /// Converts a map to another format
     Convert(MapConvertArgs),
 }
 
@@ -423,8 +423,8 @@ Examples:
 pub(crate) struct MapConvertArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// File to write; its extension names the format (.yaml with an image .pgm beside it, .map,
-    /// .png, .pgm). What the format does not keep is reported
+    /// Output file; its extension selects the format (.yaml with an image .pgm beside it, .map,
+    /// .png, .pgm). Information that the format does not keep is reported
     #[arg(value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
@@ -439,14 +439,14 @@ Examples:
   keyway list keyway --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this one; of a stack or a robot, as a file for `--stack` or
+    /// Print the parameters of this entry; for a stack or a robot, as a file for `--stack` or
     /// `--robot`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
-    /// The robot that defaults are derived for [default: small]
+    /// Robot that defaults are derived for [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Print a stack with the values of its paper
+    /// Print a stack with the parameters of its paper
     #[arg(long, requires = "name", conflicts_with = "robot")]
     pub(crate) as_published: bool,
     #[arg(long, value_enum, default_value_t)]

@@ -1,35 +1,35 @@
-//! Arguments of `keyway replay`, and those that it shares with `keyway navigate`.
+//! Arguments of `keyway replay`, some of them shared with `keyway navigate`.
 
 use super::groups::{Format, MapLimitArgs};
 use super::values::{AnimationFile, seconds};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// What a drive leaves.
+/// Output files of a drive.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct DriveFileArgs {
     /// Folder for report, pictures and trajectory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw, into the folder of --out, the velocities that the local planner tried at this
-    /// simulated time, and what became of them [s]
+    /// Draw, into the folder of --out, the candidate velocities of the local planner at this
+    /// simulated time, and their evaluation [s]
     #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
     #[arg(value_parser = seconds)]
     pub(crate) fan: Option<f64>,
-    /// Write into this file why each velocity was chosen, and what would free a robot that cannot
-    /// drive: JSON, a line for every cycle
+    /// Write the reasons for each chosen velocity into this file, and remedies for a robot that
+    /// cannot drive: JSON, a line for every cycle
     #[arg(long, value_name = "FILE.jsonl")]
     pub(crate) explain: Option<PathBuf>,
-    /// Play the drive into this file: the robot, what it sees, and what it tries
+    /// Animate the drive in this file: the robot, its scans and its candidates
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
-    /// Record everything that the robot observes and decides into this file, which Foxglove,
-    /// Lichtblick and rosbag2 open, and `keyway replay` decides again
+    /// Record all observations and decisions of the robot into this file; Foxglove, Lichtblick
+    /// and rosbag2 can open it, and `keyway replay` recomputes the decisions
     #[arg(long, value_name = "FILE.mcap", value_parser = recording)]
     pub(crate) record: Option<PathBuf>,
 }
 
-/// A name by which a recording is known as one.
+/// Parses the name of a recording: it must end in `.mcap`.
 fn recording(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_one = ReplayArgs::is_recording(&path);
@@ -49,10 +49,10 @@ Examples:
   keyway navigate --scene keyway-demo/small_house.toml --record run.mcap
   keyway replay run.mcap")]
 pub(crate) struct ReplayArgs {
-    /// Records that `keyway batch --keep` stored, or recordings
+    /// Records stored by `keyway batch --keep`, or recordings
     #[arg(value_name = "RECORD.json|.mcap", required = true)]
     pub(crate) records: Vec<PathBuf>,
-    /// Folder of the maps, instead of those where they were when the runs were recorded
+    /// Folder of the maps, in place of their folders at the time of recording
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
     #[command(flatten)]
@@ -64,7 +64,7 @@ pub(crate) struct ReplayArgs {
 }
 
 impl ReplayArgs {
-    /// True for the name of a recording.
+    /// True if the file name is that of a recording.
     pub(crate) fn is_recording(path: &Path) -> bool {
         path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap"))
     }

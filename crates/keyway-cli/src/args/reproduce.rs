@@ -22,30 +22,29 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_help = format!("{REPRODUCE_TERMS}\n\n{REPRODUCE_EXAMPLES}"))]
 pub(crate) struct ReproduceArgs {
-    /// Claims, such as S0-1; s0, s1, s2 or s4 for those of a paper; `all`
+    /// Claims, such as S0-1; or s0, s1, s2 or s4 for all claims of a paper; or `all`
     #[arg(value_name = "CLAIM", default_value = "all")]
     pub(crate) claims: Vec<String>,
-    /// How many maps each claim is measured on
+    /// Number of maps for each claim
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 100, value_parser = whole::<usize, 2, 100_000>)]
     pub(crate) maps: usize,
-    /// Seed of the first map; those that follow have the numbers that follow
+    /// Seed of the first map; the others have the seeds that follow
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: u64,
-    /// Maps worked on at the same time [default: as many as there are processors]
+    /// Number of maps processed in parallel [default: as many as there are processors]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
     pub(crate) jobs: Option<usize>,
-    /// Also measure what each part of the methods does, and what their parameters do
+    /// Also run ablations of the parts of the methods, and sweeps of their parameters
     #[arg(long)]
     pub(crate) ablations: bool,
-    /// Leave out all times, and the figures of claims that are times: then the same input gives the
-    /// same bytes
+    /// Omit all times, and the figures of claims that are times; the output is then deterministic
     #[arg(long)]
     pub(crate) no_times: bool,
-    /// Folder for the report (JSON, a page, tables, pictures), and what was measured on each map; a
-    /// reproduction that was interrupted goes on where it was
+    /// Folder for the report (JSON, a page, tables, pictures) and the measurements on each map;
+    /// an interrupted reproduction is resumed
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

@@ -1,4 +1,4 @@
-//! What the words in tables mean: below the tables, and in the help of their commands.
+//! Definitions of the terms in tables, shown below the tables and in the help of their commands.
 
 /// Columns of `keyway compare`.
 pub(crate) const COMPARE_TERMS: &str = "\

@@ -1,4 +1,4 @@
-//! Values that are written in a form of their own.
+//! Argument values with a syntax of their own.
 
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Point};
@@ -28,28 +28,28 @@ pub(crate) struct DiscArg(pub(crate) Disc);
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MovingArg {
     radius_m: f64,
-    /// The first is where it is at the beginning.
+    /// The first is the position at the start.
     points: Vec<Point>,
     pace: Pace,
 }
 
-/// How fast something moves, and which way.
+/// Motion of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pace {
-    /// For ever at a velocity \[m/s\].
+    /// Constant velocity \[m/s\].
     Velocity(Point),
-    /// From point to point and back to the first, at a speed \[m/s\].
+    /// A closed loop from point to point, at a speed \[m/s\].
     Round(f64),
 }
 
-/// A picture to be written.
+/// Output file of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PictureFile {
     pub(crate) path: PathBuf,
     pub(crate) is_png: bool,
 }
 
-/// An animation to be written.
+/// Output file of an animation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct AnimationFile {
     pub(crate) path: PathBuf,
@@ -62,7 +62,7 @@ pub(crate) enum AnimationFormat {
     Apng,
 }
 
-/// A sampled path to be written.
+/// Output file of a sampled path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CurveFile {
     pub(crate) path: PathBuf,
@@ -113,12 +113,13 @@ impl FromStr for DiscArg {
 impl MovingArg {
     const FORMS: &str = "X,Y,RADIUS,VX,VY or X,Y,RADIUS,SPEED:X,Y[:X,Y...]";
 
-    /// Its points as they were given.
+    /// The points as given.
     pub(crate) fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// The obstacle, with its points where they are in the world: one for each that was given.
+    /// Returns the obstacle. `points` are its points in the world frame, one for each given
+    /// point.
     pub(crate) fn mover(&self, points: Vec<Point>) -> Result<MovingObstacle, ConfigError> {
         let motion = match (self.pace, &points[..]) {
             (Pace::Velocity(velocity_mps), &[from, ..]) => Motion::Straight { from, velocity_mps },
@@ -150,7 +151,7 @@ impl FromStr for MovingArg {
         let mut points = vec![Point::new(x, y)];
         points.extend(others);
         let moving = Self { radius_m, points, pace };
-        // A mistake is one of the argument.
+        // Check now, so that an error blames this argument.
         moving.mover(moving.points.clone()).map_err(|error| error.to_string())?;
         Ok(moving)
     }
@@ -202,7 +203,7 @@ pub(super) fn positive_length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A moment of a run.
+/// A time of a run.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if time >= 0.0 && f64::is_finite(time) => Ok(time),
@@ -210,7 +211,7 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// The side of a cell.
+/// The side length of a cell.
 pub(super) fn resolution(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(side) if GridFrame::RESOLUTIONS_M.contains(&side) => Ok(side),
@@ -226,7 +227,7 @@ pub(super) fn radius(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A whole number between two ends.
+/// An integer in a range.
 pub(super) fn whole<T: TryFrom<u64>, const LEAST: u64, const MOST: u64>(
     text: &str,
 ) -> Result<T, String> {
@@ -237,7 +238,7 @@ pub(super) fn whole<T: TryFrom<u64>, const LEAST: u64, const MOST: u64>(
     })
 }
 
-/// A file, and the format that the end of its name stands for, in upper or lower case.
+/// A file, and the format of its extension, in upper or lower case.
 fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf, T), String> {
     let path = PathBuf::from(text);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -249,7 +250,7 @@ fn by_extension<T: Copy>(text: &str, formats: [(&str, T); 2]) -> Result<(PathBuf
     Ok((path, format))
 }
 
-/// No map reaches this far \[m\], and no number up to it is longer than a line.
+/// Largest coordinate \[m\]: no map extends this far, and numbers up to it fit on a line.
 const FARTHEST: f64 = 1e12;
 
 fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {

@@ -1,4 +1,4 @@
-//! `keyway demo`: the bundled scene, driven as `keyway navigate --scene` drives it.
+//! `keyway demo`: drives the bundled scene as `keyway navigate --scene` does.
 
 use super::navigate::{FILES, Wanted, drive, given, given_scene, table, write_files, written};
 use super::{Done, print};
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
 }
 
-/// What `keyway navigate --scene` runs.
+/// The episode that `keyway navigate --scene` runs.
 fn bundled(out: &OutDir) -> Result<Episode, CliError> {
     let scene = out.path(SCENE);
     let argv = ["keyway".as_ref(), "navigate".as_ref(), "--scene".as_ref(), scene.as_os_str()];

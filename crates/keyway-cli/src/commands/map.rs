@@ -1,4 +1,4 @@
-//! `keyway map`: what a map file holds, and the same in another format.
+//! `keyway map`: inspects a map file, or converts it to another format.
 
 use super::{Done, print};
 use crate::args::{Format, MapCommand, MapConvertArgs, MapInfoArgs};
@@ -32,17 +32,18 @@ struct MapReport {
     /// `[x, y, yaw_rad]` of the lower left corner.
     origin: [f64; 3],
     cells: CellCounts,
-    /// `[[column, row], [column, row]]`: lower left and upper right of all cells that are known.
+    /// `[[column, row], [column, row]]`: lower left and upper right cell of the bounding box of
+    /// all known cells.
     known_cells: Option<[[i32; 2]; 2]>,
     has_values: bool,
-    /// For a conversion: what the file does not keep of the map that was converted.
+    /// Of a conversion: information of the map that the file does not keep.
     #[serde(skip_serializing_if = "Option::is_none")]
     lost: Option<Lost>,
-    /// The files that were written.
+    /// The written files.
     files: Vec<String>,
 }
 
-/// What a file does not keep; null where there was nothing to lose.
+/// Information that a file does not keep; null if nothing was lost.
 #[derive(Serialize)]
 struct Lost {
     resolution_m: Option<f64>,
@@ -50,7 +51,7 @@ struct Lost {
     origin: Option<[f64; 3]>,
     /// Cells that became occupied.
     unknown_cells: u64,
-    /// Cells that keep only the state of their occupancy.
+    /// Cells that keep only their occupancy state.
     value_cells: u64,
 }
 
@@ -90,7 +91,7 @@ fn info(args: &MapInfoArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-/// Reports on the file that was written, as it is read again.
+/// Reports on the written file, after reading it back.
 fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     let Some(format) = MapFormat::from_path(&args.out) else {
         let message = format!(
@@ -100,13 +101,13 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
         return Err(CliError::new(Kind::Usage, message).field("OUT"));
     };
     let loaded = load_map(&args.map.path, &args.map.place.reader())?;
-    // A map in YAML is written with an image beside it.
+    // A YAML map is written with an image beside it.
     let image = (format == MapFormat::Ros).then(|| args.out.with_extension("pgm"));
     for path in std::iter::once(&args.out).chain(&image) {
         refuse_to_replace_a_source(&loaded.sources, path, "OUT")?;
         refuse_unwritable(path, "OUT")?;
     }
-    // Until both are written and have been read again.
+    // The lock is held until both are written and have been read back.
     let lock =
         OutputLock::of_file(&args.out).map_err(|error| CliError::from(error).field("OUT"))?;
     if lock.is_unguarded() {
@@ -133,7 +134,7 @@ fn convert(args: &MapConvertArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-/// The option with which a file is read that does not keep a part of a map.
+/// Returns the option that restores a lost part of a map when the file is read.
 fn option_of(loss: &MapLoss) -> String {
     match loss {
         MapLoss::Resolution(side_m) => format!("; read the file with --resolution {side_m}"),
@@ -144,8 +145,8 @@ fn option_of(loss: &MapLoss) -> String {
     }
 }
 
-/// Refuses to replace an image that nothing named: neither the command line nor the YAML file that
-/// the new one will replace. An image with the same content may stay or be replaced.
+/// Refuses to replace an image named neither by the command line nor by the YAML file that will
+/// be replaced. An image with the same content is accepted.
 fn refuse_to_replace_an_image(
     yaml: &Path,
     image: &Path,
@@ -166,7 +167,7 @@ fn refuse_to_replace_an_image(
     Err(CliError::new(Kind::Output, message).field("OUT"))
 }
 
-/// True if a YAML file names an image as its own.
+/// True if the YAML file refers to the image.
 fn is_image_of(yaml: &Path, image: &Path) -> bool {
     let named = read_file(yaml, MAX_MAP_BYTES).ok().and_then(|bytes| RosMap::parse(&bytes).ok());
     let folder = yaml.parent().unwrap_or(Path::new(""));
@@ -200,7 +201,7 @@ fn report(path: &Path, loaded: &LoadedMap) -> MapReport {
     }
 }
 
-/// The smallest rectangle around everything that is free or occupied.
+/// Bounding box of all free or occupied cells.
 fn known_cells(loaded: &LoadedMap) -> Option<[[i32; 2]; 2]> {
     let unknown = loaded.grid.unknown();
     let spans = (0..unknown.height() as i32).filter_map(|y| {

@@ -1,4 +1,4 @@
-//! The commands: each takes its arguments, calls the library, and writes what came out.
+//! The commands: each takes its arguments, calls the library, and writes the results.
 
 pub(crate) mod batch;
 pub(crate) mod bench;
@@ -23,12 +23,12 @@ use keyway::map::{BlockedBy, Hindrance, SearchMap};
 use keyway::plan::{Advice, GlobalPlanner, PathEnd, PlanError, PlannerConfig};
 use keyway::smooth::{Smoother, SmootherConfig};
 
-/// How a command that was not refused ended.
+/// Result of a command that was not refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Done {
     /// Exit code 0.
     Success,
-    /// There is no path, the goal was not reached, or an answer was wrong. Exit code 1.
+    /// No path exists, the goal was not reached, or an answer was wrong. Exit code 1.
     Failure,
 }
 
@@ -43,7 +43,7 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     crate::stdout::print(&format!("{text}\n"))
 }
 
-/// The option that gives one end of a path.
+/// The option for the start or goal of a path.
 pub(crate) const fn end_flag(end: PathEnd) -> &'static str {
     match end {
         PathEnd::Start => "--start",
@@ -51,12 +51,12 @@ pub(crate) const fn end_flag(end: PathEnd) -> &'static str {
     }
 }
 
-/// Why there is no plan, and what helps.
+/// Message of a failed plan, with a remedy.
 pub(crate) fn why(error: &PlanError) -> String {
     format!("{error}{}", remedy(error))
 }
 
-/// What helps, as it can be put into the command line; a clause that follows the error.
+/// The remedy as options of the command line: a clause that follows the error.
 pub(crate) fn remedy(error: &PlanError) -> String {
     match error {
         PlanError::Blocked {
@@ -74,11 +74,11 @@ pub(crate) fn remedy(error: &PlanError) -> String {
     }
 }
 
-/// The way out of unknown space that counts as an obstacle.
+/// Remedy if unknown space counts as an obstacle.
 pub(crate) const THROUGH_UNKNOWN: &str =
     "with --unknown free, paths may lead through unknown space";
 
-/// A planner for a map, which is prepared if the planner needs it.
+/// Builds a planner for a map, and prepares the map if the planner needs it.
 pub(crate) fn build_planner(
     planner: &PlannerConfig,
     map: &SearchMap,
@@ -86,7 +86,7 @@ pub(crate) fn build_planner(
     planner.build(map).map_err(unusable_planner)
 }
 
-/// Why a planner cannot be used, whatever the query.
+/// Error of a planner that is unusable for any query.
 pub(crate) fn unusable_planner(error: PlanError) -> CliError {
     match error {
         PlanError::Config(error) => {
@@ -97,7 +97,7 @@ pub(crate) fn unusable_planner(error: PlanError) -> CliError {
     }
 }
 
-/// A smoother.
+/// Builds a smoother.
 pub(crate) fn build_smoother(
     smoother: &SmootherConfig,
 ) -> Result<Box<dyn Smoother + Send + Sync>, CliError> {

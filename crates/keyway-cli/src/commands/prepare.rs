@@ -1,4 +1,4 @@
-//! `keyway prepare`: a map -> a file with which paths on it are found in microseconds.
+//! `keyway prepare`: prepares a map, so that paths on it are found in microseconds.
 
 use super::{Done, print};
 use crate::args::{Format, PrepareArgs};
@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
-/// Preparations that take longer are announced \[s\].
+/// Duration above which a preparation is announced \[s\].
 const LONG_S: f64 = 5.0;
 
 /// `keyway.prepare/2`.
@@ -28,16 +28,16 @@ struct PrepareReport {
     schema: &'static str,
     map: String,
     map_digest: String,
-    /// `None` if nobody asked for it.
+    /// `None` if it was not needed.
     estimate: Option<Estimate>,
-    /// `None` if it does not pay.
+    /// `None` if it does not pay off.
     preparation: Option<Made>,
     config: LayerConfig,
-    /// The files that were written.
+    /// The written files.
     files: Vec<String>,
 }
 
-/// The costs of the preparation, before it was made.
+/// Estimated cost of the preparation.
 #[derive(Serialize)]
 struct Estimate {
     #[serde(flatten)]
@@ -45,7 +45,7 @@ struct Estimate {
     pays_from_paths: Option<f64>,
 }
 
-/// The costs of the preparation that was made.
+/// Measured cost of the preparation.
 #[derive(Serialize)]
 struct Made {
     #[serde(flatten)]
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &PrepareArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-/// The costs beforehand, where it depends on them if the map is prepared, or somebody waits.
+/// Estimates the cost if the decision to prepare depends on it, or a user watches the terminal.
 fn estimate(map: &SearchMap, args: &PrepareArgs) -> Result<Option<Estimate>, CliError> {
     let is_watched = std::io::stderr().is_terminal();
     if args.if_it_pays.is_none() && !is_watched {
@@ -125,7 +125,7 @@ fn refused(error: PrepareError) -> CliError {
     CliError::new(Kind::Config, error).field("MAP")
 }
 
-/// On a terminal only.
+/// A progress bar, on a terminal only.
 fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -138,7 +138,7 @@ fn progress_bar() -> ProgressBar {
 }
 
 impl Estimate {
-    /// True if the preparation takes less time than the paths that are to be planned.
+    /// True if the preparation takes less time than planning the expected number of paths.
     fn pays(&self, args: &PrepareArgs) -> bool {
         let paths = args.if_it_pays.map(|paths| paths as f64);
         paths.zip(self.pays_from_paths).is_none_or(|(paths, from)| paths >= from)

@@ -1,10 +1,9 @@
-//! Bad arguments of every command: each is refused, and its message is for the one who typed it.
+//! Tests of bad arguments of every command: each is refused with a message for the user.
 
 use crate::examples::COMMANDS;
 use crate::support::{folder, keyway_args, write};
 
-/// What only programmers of this program would say, and what asks for a number that nobody can
-/// read.
+/// Internal words that are no use to users, and requests for numbers that are hard to read.
 fn internal_words(text: &str) -> Option<String> {
     const WORDS: [&str; 25] = [
         "::",
@@ -46,7 +45,7 @@ const COMPARE: &str = "compare walled.map --queries 1";
 const GRID: &str = "bench grid rooms.map.scen --every 100";
 const SCALE: &str = "bench scale walled.map --sides 14";
 
-/// What follows on a line, and the argument (or parameter) that is to be blamed.
+/// The rest of a command line, and the argument (or parameter) to blame.
 type Bad = (&'static str, &'static str);
 
 const SIZES: [Bad; 9] = [
@@ -89,7 +88,7 @@ fn of_a_robot_s_size() {
 #[test]
 fn of_parameters() {
     for command in [PLAN, DRIVE, COMPARE, "prepare walled.map --out w", GRID, SCALE] {
-        // For a robot, the clearance of the map is its own.
+        // With a robot, the clearance of the map is that of the robot.
         all(command, &CONFIGS);
     }
 }
@@ -280,7 +279,7 @@ fn of_benchmarks_maps_and_lists() {
     refused("completions tea", "<SHELL>");
 }
 
-/// What `keyway list` and the help texts say is for users, too.
+/// `keyway list` and the help texts address users, too.
 #[test]
 fn lists_and_help_use_no_internal_words() {
     let folder = folder();
@@ -308,8 +307,7 @@ fn refused(line: &str, blamed: &str) -> String {
     check(line, blamed).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
-/// Checks exit code, message and the argument that is blamed; returns the message. `''` is an empty
-/// word.
+/// Checks exit code, message and the blamed argument; returns the message. `''` is an empty word.
 fn check(line: &str, blamed: &str) -> Result<String, String> {
     let folder = folder();
     write(&folder, "q.csv", "1.5,0.5,5.5,0.5\n");

@@ -1,11 +1,11 @@
-//! `keyway batch`.
+//! Tests of `keyway batch`.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
-/// A generated hall of 6 m x 4 m, with more to come from other seeds.
+/// A generated hall of 6 m x 4 m; other seeds give other halls.
 const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]\n[world]\nwidth_m = 6\nheight_m = 4\n\
                     resolution_m = 0.05\n[world.obstacles.clutter]\nshare = 0.05\nradius_m = [0.1, 0.2]\n\
                     [rules]\nreference_time_s = 10\n";
@@ -13,7 +13,7 @@ const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]
 /// Two scenes, with two stacks and two seeds: eight runs.
 const BATCH: &str = "batch scenes --stacks key-point-fusion,astar-follow --seeds 2";
 
-/// All that must not depend on how often, where and on how many threads it was made.
+/// Files that must not depend on the number of repetitions and threads, nor on the parts.
 const SAME: [&str; 11] = [
     "runs.jsonl",
     "runs.csv",
@@ -61,7 +61,7 @@ fn the_results_are_the_same_on_any_number_of_threads_and_in_parts() {
     let merged = keyway(folder.path(), "batch merge b a --out whole --format json");
     assert_eq!(merged.expect_code(0).json()["runs"], 8);
     assert_eq!(results(&folder, "one"), results(&folder, "whole"));
-    // What was measured was taken over, too: nothing was driven again.
+    // The measured times were merged, too: nothing was driven again.
     let times: String = ["a", "b"].map(|out| read(&folder, &format!("{out}/times.jsonl"))).concat();
     let whole = read(&folder, "whole/times.jsonl");
     assert!(whole.lines().all(|line| times.contains(line)), "{whole}\n{times}");
@@ -84,8 +84,8 @@ fn each_run_says_what_it_was() {
     assert_eq!((&first["outcome"], &first["reference_time_s"]), (&json!("reached"), &json!(10.0)));
     let (time_s, score) = (first["time_s"].as_f64().unwrap(), first["score"].as_f64().unwrap());
     assert!((score - 10.0 / time_s.clamp(20.0, 80.0)).abs() < 1e-12, "{first}");
-    // The same runs by themselves: with the first stack, and with the one that drives in its world
-    // after it.
+    // The same runs one at a time: with the first stack, and with the one that drives in the same
+    // world after it.
     for (stack, row) in [("key-point-fusion", first), ("astar-follow", &rows[2])] {
         let line = format!("navigate --scene scenes/hall.toml --stack {stack} --format json");
         let alone = keyway(folder.path(), &line).expect_code(0).json();
@@ -101,7 +101,7 @@ fn nothing_finished_is_lost_or_made_again() {
     let batch = |out: &str| keyway(folder.path(), &format!("{BATCH} --out {out}")).expect_code(0);
     batch("whole");
     let whole = results(&folder, "whole");
-    // A batch that was killed while it wrote its sixth run down.
+    // A batch that was killed while writing its sixth run.
     let journal: Vec<String> = read(&folder, "whole/runs.jsonl")
         .lines()
         .map(|line| {
@@ -124,7 +124,7 @@ fn nothing_finished_is_lost_or_made_again() {
     assert_ne!(results(&folder, "torn"), whole);
 }
 
-/// The same worlds with another robot and under other conditions, and each run by itself.
+/// The same worlds with another robot and other disturbances, compared with single runs.
 #[test]
 fn robot_and_disturbances_are_those_that_are_given() {
     let folder = scenes();
@@ -233,7 +233,7 @@ fn two_batches_at_once_need_two_folders() {
     assert!(message.starts_with(expected), "{message}");
     merged.expect_code(0);
     assert!(merge.expect_code(2).err.contains("at work in this folder"));
-    // Killed, it is in nobody's way.
+    // Once killed, it no longer blocks others.
     child.kill().unwrap();
     child.wait().unwrap();
     let known = finished();
@@ -269,7 +269,7 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
         assert_eq!(field, "--shard");
         assert!(message.contains("the first of four parts, of at most 10000"), "{message}");
     }
-    // Somebody's own file.
+    // A file of the user.
     write(&folder, "journal.jsonl", "dear diary\n");
     let error = keyway(folder.path(), "batch scenes --out . --format json").expect_code(2).json();
     assert!(error["message"].as_str().unwrap().contains("not the journal of a batch"), "{error}");
@@ -279,7 +279,7 @@ fn what_cannot_be_driven_is_refused_before_anything_is() {
     assert!(read(&folder, "journal.jsonl").ends_with("end of the line"));
 }
 
-/// The size that a file of results states is not believed.
+/// The result files are validated: their stated size is not trusted.
 #[test]
 fn results_that_are_damaged_are_named_by_file_and_line() {
     let folder = scenes();
@@ -327,11 +327,12 @@ fn results_that_are_damaged_are_named_by_file_and_line() {
         assert!(error.contains(&expected), "{error}");
         write(&folder, &format!("part/{name}"), &text);
     }
-    // A table that Keyway wrote, as its list says, and that no longer is what it was: made again.
+    // A table that Keyway wrote, as its file list shows, but that was modified: it is written
+    // again.
     keyway(folder.path(), &format!("{BATCH} --shard 1/2 --out part")).expect_code(0);
 }
 
-/// The scenes are not needed; what does not belong together is refused.
+/// The scenes are not needed; parts of different batches are refused.
 #[test]
 fn parts_are_put_together_when_all_are_there() {
     let folder = scenes();
@@ -376,12 +377,12 @@ fn parts_are_put_together_when_all_are_there() {
             ["one", "whole"].map(|out| read(&folder, &format!("{out}/records/{name}")));
         assert!(one == whole, "{name}");
     }
-    // A batch that was merged is a whole one; others follow it.
+    // A merged batch is complete; other batches may follow it.
     run("batch merge whole other --out all").expect_code(0);
     let all = read(&folder, "all/runs.jsonl");
     let both = ["whole", "other"].map(|out| read(&folder, &format!("{out}/runs.jsonl")));
     assert_eq!(all, both.concat());
-    // A part that is under way.
+    // A part that is still running.
     write(&folder, "part-2/journal.jsonl", "");
     assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not ended"));
     std::fs::remove_file(folder.path().join("part-2/journal.jsonl")).unwrap();
@@ -398,7 +399,7 @@ fn parts_are_put_together_when_all_are_there() {
     assert!(message.contains("not those that the batch was divided into"), "{message}");
 }
 
-/// Two tables with intervals; a file's name may have what means something to TeX.
+/// Two tables with intervals; file names may contain special characters of TeX.
 #[test]
 fn the_summary_is_a_table_for_papers() {
     let folder = scenes();
@@ -419,7 +420,7 @@ fn the_summary_is_a_table_for_papers() {
     row(&against, r"./my\_own.toml & ");
 }
 
-/// What a plot has nothing to show for is left out, and that of an earlier batch goes with it.
+/// Empty plots are omitted, and those of an earlier batch are removed.
 #[test]
 fn plots_show_what_there_is() {
     let folder = scenes();
@@ -457,7 +458,7 @@ fn plots_show_what_there_is() {
     assert_eq!(names(), "");
 }
 
-/// On the command line, or in the scenes.
+/// The stop rule is enabled on the command line, or in the scenes.
 #[test]
 fn the_stop_rule_is_behind_every_stack_by_one_word() {
     let folder = scenes();

@@ -1,4 +1,4 @@
-//! `keyway batch` and `keyway replay` of scenes in which several robots drive.
+//! Tests of `keyway batch` and `keyway replay` on scenes with several robots.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Two robots side by side, with other obstacles for each seed; the second one has its own stack.
+/// Two robots side by side, with different obstacles for each seed; the second one has its own
+/// stack.
 const PAIR: &str = "version = 2\nseed = 3\n[world]\nwidth_m = 6\nheight_m = 5\nresolution_m = 0.05\n[rules]\nreference_time_s = 5\n\
     [random.unknown]\ncount = 2\nradius_m = [0.1, 0.15]\n\
     [[robots]]\nstart = [0.7, 1.2]\ngoal = [5.3, 1.2]\n\
@@ -15,11 +16,11 @@ const PAIR: &str = "version = 2\nseed = 3\n[world]\nwidth_m = 6\nheight_m = 5\nr
 /// One robot.
 const HALL: &str = "version = 2\nstart = [0.7, 2.0]\ngoal = [3.3, 2.0]\n[world]\nwidth_m = 4\nheight_m = 4\nresolution_m = 0.05\n";
 
-/// All that must not depend on how often, where and on how many threads it was made.
+/// Files that must not depend on the number of repetitions and threads, nor on the parts.
 const SAME: [&str; 6] =
     ["runs.jsonl", "runs.csv", "robots.jsonl", "robots.csv", "summary.csv", "summary.md"];
 
-/// The scenes, and two that the project has, in which two robots collide, or pass a door.
+/// The scenes, and two of the project's scenes, in which two robots collide, or pass a door.
 fn scenes() -> TempDir {
     let folder = folder();
     fs::create_dir(folder.path().join("scenes")).unwrap();
@@ -54,7 +55,7 @@ fn a_run_is_that_of_all_robots_and_each_has_a_row() {
     for run in &runs {
         let [scene, stack] = ["scene", "stack"].map(|name| run[name].as_str().unwrap());
         let own: Vec<&Value> = robots.iter().filter(|row| row["digest"] == run["digest"]).collect();
-        // The same run by itself.
+        // The same run on its own.
         let line = format!("navigate --scene scenes/{scene}.toml --stack {stack} --format json");
         let alone = keyway(folder.path(), &line).json();
         if scene == "hall" {
@@ -109,7 +110,7 @@ fn a_run_is_that_of_all_robots_and_each_has_a_row() {
     assert!(csv.starts_with("scene,stack,seed,robot,") && csv.lines().count() == 13, "{csv}");
     assert!(!read(&folder, "out/runs.csv").lines().next().unwrap().contains(",robot,"));
     assert!(read(&folder, "out/summary.md").contains("| robots |"));
-    // Without several robots there is none of all this, and what was there is gone.
+    // Without several robots there are no such files, and earlier ones are removed.
     keyway(folder.path(), "batch scenes/hall.toml --out out").expect_code(0);
     assert!(!folder.path().join("out/robots.csv").exists());
     assert!(!read(&folder, "out/summary.md").contains("| robots |"));
@@ -149,7 +150,7 @@ fn killed_or_in_parts_it_is_the_same() {
     let whole = results(&folder, "whole");
     run("--out three --jobs 3");
     assert_eq!(results(&folder, "three"), whole);
-    // A batch that was killed while it wrote its fifth run down, the third that has several robots.
+    // A batch that was killed while writing its fifth run, the third one with several robots.
     let robots = lines(&folder, "whole/robots.jsonl");
     let journal = lines(&folder, "whole/runs.jsonl").into_iter().map(|run| {
         let own = robots.iter().filter(|row| row["digest"] == run["digest"]);
@@ -166,11 +167,11 @@ fn killed_or_in_parts_it_is_the_same() {
     assert_eq!(results(&folder, "torn"), whole);
     let again = || read(&folder, "torn/times.jsonl").matches("4321.0").count();
     assert_eq!(again(), 4);
-    // What is known from the results is not driven again, either.
+    // Runs known from the results are not driven again, either.
     run("--out torn --jobs 1");
     assert_eq!((results(&folder, "torn"), again()), (whole.clone(), 4));
-    // Unless the rows of its robots are lost: three scenes of several robots, of which two seeds
-    // were in the journal.
+    // They are if the rows of their robots are lost: three scenes with several robots, of which
+    // two seeds were in the journal.
     fs::remove_file(folder.path().join("torn/robots.jsonl")).unwrap();
     run("--out torn");
     assert_eq!(results(&folder, "torn"), whole);
@@ -242,7 +243,7 @@ fn a_record_of_several_robots_is_replayed() {
     }
     let text = refused(&|_| (), "--fan 1 --out out2");
     assert!(text.contains("--fan shows the decisions of one robot"), "{text}");
-    // A scene with `[[robots]]` of which there is one.
+    // A scene with a single `[[robots]]` table.
     let (one, _) = PAIR.rsplit_once("[[robots]]").unwrap();
     write(&folder, "one.toml", one);
     keyway(folder.path(), "batch one.toml --keep all --out one").expect_code(0);

@@ -1,4 +1,4 @@
-//! `keyway batch` of folders with subfolders, and with files beside the scenes.
+//! Tests of `keyway batch` on folders with subfolders, and with files beside the scenes.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -7,13 +7,13 @@ use tempfile::TempDir;
 
 const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 1.0]\ngoal = [3.3, 1.0]\n[world]\nwidth_m = 4\nheight_m = 2\nresolution_m = 0.05\n";
 
-/// Two robots, one of them with a robot file of another folder.
+/// Two robots, one of them with a robot file in another folder.
 const PAIR: &str = "version = 2\n[world]\nwidth_m = 4\nheight_m = 4\nresolution_m = 0.05\n\
     [[robots]]\nstart = [0.7, 0.8]\ngoal = [3.3, 0.8]\n\
     [[robots]]\nstart = [3.3, 3.2]\ngoal = [0.7, 3.2]\nrobot = \"../robots/mine.toml\"\n";
 
-/// Scenes of one name in two subfolders, one that is the same as another, and files that scenes
-/// refer to: a robot and a stack.
+/// Scenes with the same name in two subfolders, two identical scenes, and files that scenes refer
+/// to: a robot and a stack.
 fn scenes() -> TempDir {
     let folder = folder();
     for name in ["a/deep", "b", "robots", ".hidden"] {
@@ -48,7 +48,7 @@ fn scenes_of_subfolders_are_named_by_their_paths() {
         assert!(folder.path().join("one/records").join(name).exists(), "{name}");
     }
     run("replay one/records/b%2Fpair.keyway.0.json --out replayed");
-    // What is known is not driven again, of two scenes that are the same neither.
+    // Known runs are not driven again, nor are those of two identical scenes.
     let times = read(&folder, "one/times.jsonl");
     run("batch scenes --keep all --out one");
     assert_eq!(read(&folder, "one/times.jsonl"), times);
@@ -77,7 +77,7 @@ fn what_is_no_scene_is_refused_unless_something_refers_to_it() {
         ),
         "{error}"
     );
-    // Only the scene of another folder refers to it.
+    // Only a scene in another folder refers to it.
     let error = refused("batch scenes/robots");
     assert!(error.contains("robots/mine.toml: this is no scene"), "{error}");
     let error = refused("batch scenes/robots --robot scenes/robots/mine.toml");
@@ -87,7 +87,7 @@ fn what_is_no_scene_is_refused_unless_something_refers_to_it() {
     assert!(error.contains("scenes/b/broken.toml: missing field `version`"), "{error}");
 }
 
-/// The folder of the project's scenes, and that of the complaints, in which there is a robot.
+/// The folder of the project's scenes, and that of the complaints, which contains a robot.
 #[test]
 fn the_folders_of_the_project_are_batches() {
     let folder = folder();

@@ -1,4 +1,4 @@
-//! `keyway bench grid`.
+//! Tests of `keyway bench`.
 
 use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -39,7 +39,7 @@ fn the_bundled_benchmark() {
     );
 }
 
-/// Over two files with one query each: the means of both, and the range between the two.
+/// Two files with one query each: means over both, and the range between the two.
 #[test]
 fn several_files_have_totals() {
     let folder = folder();
@@ -108,7 +108,7 @@ fn wrong_answers_are_listed() {
             ("scenarios", |v| v == "q.scen"),
             ("line", |v| v == 3),
             ("planner", |v| v == "jps"),
-            // The file counts from the top.
+            // Rows in the file count from the top.
             ("start", |v| *v == json!([1, 0])),
             ("goal", |v| *v == json!([5, 0])),
             ("expected_cells", |v| v == 9.5),
@@ -124,7 +124,7 @@ fn wrong_answers_are_listed() {
         table.contains("line 4: jps, (1, 0) to (5, 0): expected no path, got one of 10.828"),
         "{table}"
     );
-    // Only some of many.
+    // Only the first of many are listed.
     write(&folder, "q.scen", &format!("version 1\n{}", wrong.repeat(12)));
     let table = keyway(folder.path(), "bench grid q.scen").expect_code(1).out;
     assert_eq!(table.matches("expected a path").count(), 10, "{table}");
@@ -238,7 +238,7 @@ fn a_map_is_tiled_to_larger_ones() {
         ],
     );
     assert_eq!(rows[2]["cost_cells"], rows[3]["cost_cells"]);
-    // The same as a plan on the map as it is.
+    // Same result as a plan on the untiled map.
     let ends = |row: &Value| [&row["start"], &row["goal"]].map(Value::to_string);
     let [start, goal] = ends(&rows[0]);
     let [start, goal] = [start.trim_matches(['[', ']']), goal.trim_matches(['[', ']'])];
@@ -266,7 +266,7 @@ fn parameters_reach_the_measured_process() {
         let line = format!("bench scale walled.map --sides 7 {more} --format json");
         keyway(folder.path(), &line).expect_code(0).json()["rows"][0]["cost_cells"].clone()
     };
-    // With corners cut, the way over the wall is shorter.
+    // With corner cutting, the path over the wall is shorter.
     assert!(ask("--planner astar --set planner.corners=allow").as_f64() < ask("").as_f64());
     for (line, part) in [
         ("bench scale nowhere.map", "nowhere.map"),

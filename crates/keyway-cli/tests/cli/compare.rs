@@ -1,4 +1,4 @@
-//! `keyway compare`.
+//! Tests of `keyway compare`.
 
 use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::Value;
@@ -122,7 +122,7 @@ fn one_query_by_hand() {
     assert_eq!(row["corners"], "allow");
 }
 
-/// Each smoother has its own safe distance, or all have one; the same goes for planners.
+/// Each smoother has its own safe distance, or all share one; the same holds for planners.
 #[test]
 fn parameters_of_one_and_of_all() {
     let folder = folder();
@@ -251,7 +251,7 @@ fn queries_without_a_path_are_reported_with_the_reason() {
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
     assert_eq!(ends[..4], ["line", "2", "3", "4"]);
     assert!(csv.lines().nth(3).unwrap().ends_with("there is no path from the start to the goal,4"));
-    // Only some of many, and nothing where there are none.
+    // Only the first of many are listed, and nothing if there are none.
     write(&folder, "q.csv", &wall.repeat(7));
     let many = keyway(folder.path(), "compare closed.map --pairs q.csv").expect_code(1).out;
     assert_eq!(many.matches("inside an obstacle").count(), 5, "{many}");
@@ -337,7 +337,7 @@ fn pairs_of_several_maps() {
     assert!(refused.out.contains("names closed.map in no line"), "{}", refused.out);
 }
 
-/// ROS maps are usually called `map.yaml`, in a folder that says what they show.
+/// ROS maps are usually called `map.yaml`, in a folder named after their content.
 #[test]
 fn maps_of_one_file_name_have_names_of_their_own() {
     let folder = folder();

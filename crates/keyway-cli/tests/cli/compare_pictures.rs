@@ -1,4 +1,4 @@
-//! The files that `keyway compare` leaves.
+//! Tests of the files written by `keyway compare`.
 
 use crate::compare::{SCEN, rows};
 use crate::support::{folder, keyway, read, write};
@@ -31,7 +31,7 @@ fn tables_and_pictures() {
         assert!(svg.contains(&part), "{part}");
     }
     assert!(std::fs::read(folder.path().join("out/rooms.png")).unwrap().starts_with(b"\x89PNG"));
-    // Nobody else's file is overwritten.
+    // Files of the user are not overwritten.
     write(&folder, "out/table.csv", "mine");
     let refused = keyway(folder.path(), &format!("{SCEN} --out out")).expect_code(2);
     assert!(refused.err.contains("table.csv is in the way"), "{}", refused.err);
@@ -66,14 +66,14 @@ fn pictures_of_an_earlier_comparison_go() {
     let all = ["rooms.png", "rooms.svg", "walled.png", "walled.svg"];
     assert_eq!(compare("rooms.map walled.map"), all);
     assert_eq!(compare("walled.map"), all[2..]);
-    // What is somebody else's stays: a file that was never Keyway's, and one that was edited.
+    // Files of the user are kept: one that Keyway never wrote, and one that was edited.
     write(&folder, "out/rooms.txt", "mine");
     write(&folder, "out/walled.svg", "edited");
     assert_eq!(compare("rooms.map"), ["rooms.png", "rooms.svg", "rooms.txt", "walled.svg"]);
     assert_eq!(read(&folder, "out/walled.svg"), "edited");
 }
 
-/// In the folder of the demo, the map is a file of Keyway's own.
+/// In the folder of the demo, the map was written by Keyway.
 #[test]
 fn the_map_itself_is_not_replaced_by_its_picture() {
     let folder = tempfile::tempdir().unwrap();

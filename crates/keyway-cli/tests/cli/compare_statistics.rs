@@ -1,5 +1,5 @@
-//! `keyway compare`: intervals, tests against the first row, columns, and what is compared by
-//! default.
+//! Tests of `keyway compare`: intervals, tests against the first row, columns, and the default
+//! planners and smoothers.
 
 use crate::compare::{number, rows};
 use crate::support::{folder, keyway, read, write};
@@ -67,12 +67,12 @@ fn planners_that_cannot_weigh_unknown_cells_are_left_out_of_all() {
     let table = keyway(folder.path(), &format!("{line} --planners all")).expect_code(0).out;
     let note = format!("Left out:\n  walled.map: {}: needs one cost", left_out.join(", "));
     assert!(table.contains(&note), "{table}");
-    // Who is named is not left out.
+    // A named planner is not left out.
     let refused = keyway(folder.path(), &format!("{line} --planners astar,jps")).expect_code(2).err;
     assert!(
         refused.contains("jps needs one cost for all cells") && refused.contains("--planners all")
     );
-    // And on other maps nobody is.
+    // On other maps, no planner is left out.
     let report =
         keyway(folder.path(), "compare walled.map --queries 1 --planners all --format json").json();
     assert_eq!(report["maps"][0]["left_out"], Value::Array(Vec::new()));
@@ -135,7 +135,7 @@ fn columns_are_chosen() {
     }
 }
 
-/// Paths of `astar` are as long as those of `jps`, without diagonal steps they are longer.
+/// Paths of `astar` are as long as those of `jps`; without diagonal steps they are longer.
 #[test]
 fn each_row_is_tested_against_the_first() {
     let folder = folder();
@@ -154,7 +154,7 @@ fn each_row_is_tested_against_the_first() {
     assert_eq!((&equal["length_p"], &equal["rank_biserial"]), (&1.0.into(), &0.0.into()));
     assert_eq!(equal["median_length_difference_m"], 0.0);
     let longer = find("astar4");
-    // Of 256 signs the ones that are seen, and their mirror image.
+    // Of 256 sign patterns, the observed one and its mirror image.
     assert_eq!((&longer["equal"], &longer["length_p"]), (&0.into(), &(2.0 / 256.0).into()));
     assert_eq!(longer["rank_biserial"], 1.0);
     assert!(number(longer, "ci_low_length_difference_m") > 0.0, "{longer}");
@@ -175,7 +175,7 @@ fn each_row_is_tested_against_the_first() {
     assert!(row.ends_with(" 1.00  0.039   1.000"), "{row}");
 }
 
-/// Where it may not lower its constraint, `hsta` misses most doors.
+/// Without lowering its constraint, `hsta` misses most doors.
 #[test]
 fn what_one_planner_solves_more_often_is_tested() {
     let folder = folder();
@@ -188,7 +188,7 @@ fn what_one_planner_solves_more_often_is_tested() {
     let test = &report["against_first"][0];
     assert_eq!((&test["planner"], &test["only_solved_by_first"]), (&"hsta".into(), &more.into()));
     assert_eq!(test["only_solved_by_this"], 0);
-    // All fall on one side: 2 / 2^n, and twice that of two planners.
+    // All differences have the same sign: 2 / 2^n, and twice that for two planners.
     let p = 2.0 / 2f64.powi(more as i32);
     assert!((number(test, "solved_p") / p.min(1.0) - 1.0).abs() < 1e-12, "{test}");
     assert!((number(test, "solved_p_holm") / (2.0 * p).min(1.0) - 1.0).abs() < 1e-12, "{test}");

@@ -1,6 +1,7 @@
-//! What users of navigation stacks complain about, driven: the scenes of `docs/lab/complaints.md`.
+//! Common complaints about navigation stacks as simulated runs: the scenes of
+//! `docs/lab/complaints.md`.
 //!
-//! The bounds say what a user would still call solved. They are not what is measured today.
+//! The bounds say what a user would still accept as solved. They are not today's measurements.
 
 use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Point, wrap_angle};
@@ -38,7 +39,7 @@ fn reached(name: &str) -> (Episode, RobotReport) {
     (episode, report)
 }
 
-/// Where the robot is at the end of a cycle, and how it moves.
+/// Position and velocity of the robot at the end of a cycle.
 #[derive(Clone, Copy, Debug)]
 struct At {
     place: Point,
@@ -62,7 +63,7 @@ fn end(report: &RobotReport) -> At {
     *drive(report).last().unwrap()
 }
 
-/// How often the turning direction changes; slower turns than 0.05 rad/s count as none.
+/// Number of changes of turning direction; turn rates below 0.05 rad/s count as none.
 fn turning_back(drive: &[At]) -> usize {
     let turns = drive.iter().map(|at| at.omega_radps).filter(|omega| omega.abs() > 0.05);
     let turns: Vec<f64> = turns.collect();
@@ -82,12 +83,12 @@ fn shaking_near_the_goal_and_near_an_obstacle() {
     assert!(at_goal.len() > 10 && at_obstacle.len() > 10);
     assert!(turning_back(&at_goal) <= 1, "{}", turning_back(&at_goal));
     assert!(turning_back(&at_obstacle) <= 2, "{}", turning_back(&at_obstacle));
-    // In the last metre it does not stop and start again.
+    // In the last metre it does not stop and restart.
     let stops = at_goal.windows(2).filter(|pair| pair[0].v_mps > 0.0 && pair[1].v_mps == 0.0);
     assert_eq!(stops.count(), 1);
 }
 
-/// Keeps the reports of all cycles.
+/// Observer that keeps the reports of all cycles.
 #[derive(Default)]
 struct Reasons(Vec<CycleReport>);
 
@@ -114,7 +115,7 @@ fn no_valid_trajectory_says_which_rule_and_what_would_free_the_robot() {
     assert!(first.rejected.count("contact") > 0, "{:?}", first.rejected);
     let reason = first.reason.as_ref().unwrap();
     assert!(reason.contains("touch something"), "{reason}");
-    // Each was tried; the tests of the explanations apply them.
+    // Each remedy was tried; the tests of the explanations apply them.
     assert!(first.remedies.iter().any(|remedy| remedy.frees), "{:?}", first.remedies);
     let ends = run_episode(&episode("boxed_in")).unwrap().first();
     assert_eq!(ends.outcome, EpisodeOutcome::Stuck);
@@ -128,8 +129,8 @@ fn a_narrow_door_is_passed_near_its_middle() {
     let (_, report) = reached("narrow_door");
     // It cannot turn on the spot in front of the door, and drives a curve.
     assert!(matches!(report.misfit, Some(Misfit::Turn { .. })), "{:?}", report.misfit);
-    // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of room at each
-    // side. It comes at an angle and straightens, and is through in two cycles.
+    // The wall is from x = 2.9 to 3.1 m, the door from y = 2.3 to 2.8 m: 3.5 cm of clearance on
+    // each side. The robot approaches at an angle and straightens, and is through in two cycles.
     let drive = drive(&report);
     let inside = || drive.iter().filter(|at| (2.9..3.1).contains(&at.place.x));
     assert!(inside().count() > 1);
@@ -153,7 +154,7 @@ fn the_blocked_path_does_not_pull_the_robot_back() {
             away_m(a).total_cmp(&away_m(b))
         })
         .unwrap();
-    // Once past it, it never comes nearer again.
+    // Once past the obstacle, it never comes nearer again.
     let after = drive[nearest..].windows(2);
     let mut away_m = after.map(|pair| [0, 1].map(|i| pair[i].place.distance(obstacle)));
     assert!(away_m.all(|[before, then]| then > before - 0.01 || then > 2.0));
@@ -167,7 +168,7 @@ fn a_u_trap_is_left_by_its_open_side() {
     let (_, report) = reached("u_trap");
     let drive = drive(&report);
     let turned = drive.iter().position(|at| at.place.x < 0.3).unwrap();
-    // And is not entered again.
+    // The trap is not entered again.
     let is_inside =
         |at: &At| at.place.x > 0.5 && at.place.x < 2.0 && (0.6..2.0).contains(&at.place.y);
     assert!(drive[0].place.x > 1.0 && !drive[turned..].iter().any(is_inside));
@@ -191,7 +192,7 @@ fn every_velocity_has_its_reasons() {
     }
 }
 
-/// On its way to somebody who walks ahead of it, it drives.
+/// A robot that drives towards a walker ahead of it is reported as driving.
 #[test]
 fn who_drives_up_to_a_walker_is_said_to_drive() {
     let cycles = reasons("pacing", 1.0);
@@ -212,7 +213,7 @@ fn people_who_walk_across_the_way_are_not_run_into() {
     assert!(run.time_s < 60.0);
 }
 
-/// Somebody walks to and fro in the gap ahead. A robot that only waits for them gets nowhere.
+/// A walker moves to and fro in the gap ahead. A robot that only waits for it makes no progress.
 #[test]
 fn who_walks_to_and_fro_is_gone_around() {
     let (_, report) = reached("pacing");
@@ -229,7 +230,7 @@ fn who_walks_to_and_fro_is_gone_around() {
     assert_eq!(outcome, EpisodeOutcome::Stuck, "otherwise the scene shows nothing");
 }
 
-/// What is gone around in each cycle.
+/// Observer that keeps the obstacles that are avoided by a detour in each cycle.
 #[derive(Default)]
 struct Walked(Vec<Vec<[f64; 3]>>);
 
@@ -268,7 +269,7 @@ fn the_whole_footprint_turns_without_contact() {
 #[test]
 fn a_rectangle_turns_while_it_has_room_to() {
     let mut episode = episode("open_hall");
-    // Backing up would help it, too.
+    // Backing up would help the robot, too.
     episode.robots[0].robot.limits.v_min_mps = 0.0;
     let report = run_episode(&episode).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
@@ -276,7 +277,7 @@ fn a_rectangle_turns_while_it_has_room_to() {
     assert!(run.min_clearance_m.unwrap() > 0.0 && run.time_s < 40.0);
 }
 
-/// It can neither turn nor back up: on a wide arc it gets off the wall.
+/// The robot can neither turn nor back up: it leaves the wall on a wide arc.
 #[test]
 fn a_rectangle_close_beside_a_wall_gets_away() {
     let (_, report) = reached("beside_a_wall");
@@ -292,7 +293,7 @@ fn the_goal_is_met_with_its_heading() {
     assert!(end.place.distance(episode.robots[0].goal.position) <= controller.goal_tolerance_m);
     let off_rad = wrap_angle(end.yaw_rad - episode.robots[0].goal.heading_rad.unwrap());
     assert!(off_rad.abs() <= controller.goal_yaw_tolerance_rad, "{off_rad}");
-    // The final turn goes one way, and no farther than half around.
+    // The final turn has a single direction, and is at most half a turn.
     let drive = drive(&report);
     let stands = drive.iter().rposition(|at| at.v_mps != 0.0).unwrap() + 1;
     assert_eq!(turning_back(&drive[stands..]), 0);
@@ -305,7 +306,7 @@ fn the_goal_is_met_with_its_heading() {
 fn neither_zigzag_nor_along_the_walls() {
     let (_, report) = reached("zigzag");
     let run = report.run.as_ref().unwrap();
-    // A bend of the way turns it once to each side; the last key point is the goal.
+    // A bend of the route turns it once to each side; the last key point is the goal.
     let bends = report.key_points_m.as_ref().unwrap().len() - 1;
     assert!(turning_back(&drive(&report)) <= 2 * bends, "{bends} bends");
     assert!(run.length_m < 1.02 * report.smoothed.as_ref().unwrap().length_m);
@@ -315,7 +316,7 @@ fn neither_zigzag_nor_along_the_walls() {
 #[test]
 fn a_dead_end_is_left_for_another_way() {
     let (_, report) = reached("dead_end");
-    // As soon as its end is seen, 3.5 m ahead, and not in front of it.
+    // It leaves as soon as it sees the dead end, 3.5 m ahead, not in front of it.
     let in_corridor = drive(&report).into_iter().filter(|at| at.place.y < 1.6 && at.place.x < 7.4);
     let farthest_m = in_corridor.map(|at| at.place.x).fold(0.0, f64::max);
     assert!(farthest_m < 6.0, "{farthest_m}");
@@ -337,7 +338,7 @@ fn a_wrong_heading_at_the_start_is_mended_backwards() {
     assert!(report.run.unwrap().time_s < 60.0);
 }
 
-/// Every scene is in the page, and every test that the page names is here.
+/// Every scene is on the page, and every test named by the page exists.
 #[test]
 fn the_page_lists_scenes_and_tests() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/lab/complaints.md");

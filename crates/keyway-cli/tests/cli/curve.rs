@@ -1,4 +1,4 @@
-//! `keyway plan --curve`.
+//! Tests of `keyway plan --curve`.
 
 use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::Value;
@@ -40,19 +40,20 @@ fn rows(csv: &str) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-/// The file has the same digits, but `serde_json` reads them with an error in the last one.
+/// True if equal up to the last digit: the file has the same digits, but `serde_json` reads the
+/// last one with an error.
 fn is_read_as(json: &Value, number: f64) -> bool {
     (json.as_f64().unwrap() - number).abs() <= 4.0 * f64::EPSILON * number.abs()
 }
 
-/// From rest to rest under the largest rate and its growth and fall.
+/// Time from rest to rest with a bounded rate, and bounds on its increase and decrease.
 fn time_s(distance: f64, rate: f64, up: f64, down: f64) -> f64 {
     let peak = (2.0 * distance * up * down / (up + down)).sqrt().min(rate);
     let ramps = peak / up + peak / down;
     ramps + (distance - 0.5 * peak * ramps) / peak
 }
 
-/// Over the wall in straight legs, with a stop and a turn at every corner.
+/// The path crosses the wall in straight legs, with a stop and a turn at every corner.
 #[test]
 fn a_path_with_corners_by_hand() {
     let folder = folder();
@@ -116,7 +117,7 @@ fn a_curve_reads_back_as_the_smoothed_path() {
     assert_eq!(json["spacing_m"], 0.01);
     let limit = |name: &str| json["inputs"]["robot"]["limits"][name].as_f64().unwrap();
     assert_eq!(limit("v_max_mps"), 2.0, "a jackal");
-    // The report's line has chords of the curve.
+    // The report's line consists of chords of the curve.
     let length_m = report["smoothed"]["length_m"].as_f64().unwrap();
     assert!((last.s_m / length_m - 1.0).abs() < 1e-3, "{} {length_m}", last.s_m);
 
@@ -130,7 +131,7 @@ fn a_curve_reads_back_as_the_smoothed_path() {
         chords_m += chord[0].hypot(chord[1]);
         if step_m > 1e-6 {
             driven_s += 2.0 * step_m / (a.v_mps + b.v_mps);
-            // A chord of a curve has the mean of the headings at its ends, nearly.
+            // A chord of a curve has approximately the mean of the headings at its ends.
             let off = |heading: f64| {
                 let across = chord[1] * heading.cos() - chord[0] * heading.sin();
                 across / step_m

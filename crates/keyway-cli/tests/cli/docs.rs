@@ -1,4 +1,4 @@
-//! The documentation describes what there is.
+//! Tests that the documentation matches the program.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -10,8 +10,8 @@ fn doc(name: &str) -> String {
     std::fs::read_to_string(path).unwrap()
 }
 
-/// Names of all members, but not of those in a config or a robot, which `keyway list` explains, or
-/// in a scene.
+/// Names of all members, except those in a config or a robot, which `keyway list` explains, or in
+/// a scene.
 fn collect(value: &Value, names: &mut BTreeSet<String>) {
     for (name, value) in value.as_object().into_iter().flatten() {
         names.insert(name.clone());
@@ -123,7 +123,7 @@ fn the_files_of_the_scene_guide_can_be_used() {
     keyway(folder.path(), "navigate --scene scene.toml --config safe.toml").expect_code(0);
     keyway(folder.path(), "navigate --scene scene.toml --robot few.toml").expect_code(0);
     keyway(folder.path(), "navigate --scene scene.toml --robot like.toml").expect_code(0);
-    // Nobody drives with all of them at once.
+    // One run with all disturbances at once, which is unrealistic but sufficient here.
     let disturbed =
         format!("{line} --disturbances disturbances.toml --time-limit 0.1 --format json");
     let report = keyway(folder.path(), &disturbed).expect_code(1).json();

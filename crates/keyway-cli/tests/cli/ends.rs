@@ -1,4 +1,5 @@
-//! Where a path begins and ends: in one cell, in unknown space, in parts that no path joins.
+//! Tests of starts and goals: in one cell, in unknown space, and in separate components of the
+//! map.
 
 use crate::support::{folder, keyway, write};
 use keyway::plan::PlannerConfig;
@@ -69,7 +70,7 @@ fn a_robot_at_its_goal_has_arrived() {
     assert_eq!(report["plan"]["length_m"].as_f64().unwrap().to_bits(), 0);
 }
 
-/// Two rooms and a door of 3 cells of 0.3 m, and a third one beyond unknown space.
+/// Two rooms connected by a door of 3 cells of 0.3 m, and a third room beyond unknown space.
 fn rooms() -> TempDir {
     let folder = folder();
     let row = |y: i32| -> String {
@@ -142,7 +143,7 @@ fn no_path_says_in_which_parts_the_ends_lie() {
     assert!(why.contains("whatever the radius") && !why.contains("unknown"), "{why}");
 }
 
-/// Two rooms that meet at a corner of their cells; in the second map they do not.
+/// Two rooms that touch at a corner of their cells; in the second map they do not.
 #[test]
 fn no_path_says_where_only_a_corner_has_to_be_cut() {
     let folder = folder();

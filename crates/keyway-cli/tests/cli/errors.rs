@@ -1,4 +1,4 @@
-//! Bad input: exit code 2, and a message that helps.
+//! Tests of bad input: exit code 2, and a helpful message.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::Value;
@@ -104,7 +104,7 @@ fn outputs_without_a_folder_are_refused_before_the_search() {
     assert!(!folder.path().join("b.svg").exists());
 }
 
-/// A preparation may have any name.
+/// A preparation may have any file name.
 #[test]
 fn outputs_do_not_replace_what_is_read() {
     let folder = folder();
@@ -215,7 +215,7 @@ fn positions() {
     refused(&folder, outside, &["it is outside the map"], "position", Some("--goal"));
 }
 
-/// Around the wall is a zone that is free, and yet may not be planned to.
+/// Around the wall is a zone that is free but must not be planned to.
 #[test]
 fn positions_in_a_zone() {
     let folder = folder();
@@ -226,7 +226,7 @@ fn positions_in_a_zone() {
     let constrained = format!("{beside} --set map.published.l1_constraint=2");
     let parts = ["goal (2.500, 0.500)", "l1_constraint is 2", "map.free_ends_m"];
     refused(&folder, &constrained, &parts, "position", Some("--goal"));
-    // A disc around the goal helps, but not into the wall.
+    // A free disc around the goal helps, but not if the goal is in the wall.
     for zone in [&expanded, &constrained] {
         let freed = format!("{zone} --set map.free_ends_m=0.5 --format json");
         let report = keyway(folder.path(), &freed).expect_code(0).json();
@@ -279,7 +279,8 @@ fn foreign_files_stay() {
     refused(&folder, file, &["file"], "output", Some("--out"));
 }
 
-/// What could not be printed is not a success; a reader that has read enough is not a failure.
+/// An answer that could not be printed is not a success; a reader that closes the pipe early is
+/// not a failure.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_output_that_cannot_be_written() {

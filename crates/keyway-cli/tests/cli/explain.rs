@@ -1,4 +1,4 @@
-//! `keyway navigate` says and shows why it drives as it does.
+//! Tests that `keyway navigate` explains and draws its decisions.
 
 use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::Value;
@@ -6,8 +6,8 @@ use tempfile::TempDir;
 
 const SHORT: &str = "navigate small_house.yaml --start -8.175,-2.825 --goal -6,-2.6 --format json";
 
-/// Discs around the start: 2 cm away from the robot, and 28 cm of room between two of them are not
-/// enough.
+/// Discs around the start: they are 2 cm away from the robot, and the gap of 28 cm between two of
+/// them is too narrow.
 const BOXED_IN: &str = "navigate small_house.yaml --start -8.175,-2.825,0 --goal -6,-2.6 --format json \
     --time-limit 0.3 --explain why.jsonl --obstacle -7.875,-2.825,0.1 --obstacle -8.175,-2.525,0.1 \
     --obstacle -8.475,-2.825,0.1 --obstacle -8.175,-3.125,0.1";
@@ -57,12 +57,12 @@ fn a_line_for_every_cycle() {
     let far = |line: &&Value| number(&line["remaining_m"]) > 0.5;
     let watched = lines.iter().take_while(far).count();
     assert!(watched > 20 && watched < lines.len());
-    // Nearer to the goal the controller brakes, whatever the local planner wants.
+    // Nearer to the goal the controller brakes, overriding the local planner.
     for (line, (before, after)) in lines[..watched].iter().zip(rows.iter().zip(&rows[1..])) {
         assert_eq!(line["pose"], serde_json::json!([before[1], before[2], before[3]]));
         assert_eq!(line["command"]["v_mps"], line["chosen"]["v_mps"]);
         assert_eq!(line["command"]["omega_radps"], line["chosen"]["omega_radps"]);
-        // The motors obey.
+        // The motors follow the command.
         assert!((number(&line["command"]["v_mps"]) - after[4]).abs() < 1e-9);
         for best in [&line["chosen"], &line["runner_up"]] {
             let shares = best["shares"].as_array().unwrap();
@@ -118,7 +118,8 @@ fn the_fan_of_a_moment_is_drawn_beside_the_other_pictures() {
     ] {
         assert!(svg.contains(text), "{text}");
     }
-    // Of a run that ends before there is none; the earlier one would seem to belong to it.
+    // A run that ends before has no such picture; an earlier one is removed, as it would seem to
+    // belong to it.
     let late = keyway(folder.path(), &format!("{SHORT} --out run --fan 1000")).expect_code(0);
     assert!(late.err.contains("--fan 1000: the run ended after"), "{}", late.err);
     assert!(!folder.path().join("run/fan.svg").exists());
@@ -136,7 +137,7 @@ fn a_drive_is_played() {
     keyway(folder.path(), &format!("{line} --animate drive.apng")).expect_code(1);
     let apng = std::fs::read(folder.path().join("drive.apng")).unwrap();
     let at = apng.windows(4).position(|name| name == b"acTL").unwrap();
-    // 20 cycles, and the end.
+    // 20 cycles, and the final state.
     assert_eq!(u32::from_be_bytes(apng[at + 4..at + 8].try_into().unwrap()), 21);
     assert!(gif.len() < 1_000_000 && apng.len() < 1_000_000);
 }
@@ -158,8 +159,9 @@ fn what_cannot_be_drawn_or_written_is_refused() {
     }
 }
 
-/// Around a disc that no map shows `s4-guided` drives to a point behind it, equation (19) of
-/// [ZhuYin2024], and not to the guide's point; with nothing unknown, to its follower's carrot.
+/// Around an unmapped disc `s4-guided` drives to a point behind it, equation (19) of
+/// [ZhuYin2024], and not to the guide's point; without unknown obstacles, to its follower's
+/// carrot.
 #[test]
 fn the_target_is_where_the_local_planner_drives() {
     let folder = folder();
@@ -169,7 +171,7 @@ fn the_target_is_where_the_local_planner_drives() {
     let disc = "[[unknown]]\nposition = [4.5, 2.05]\nradius_m = 0.3\n";
     write(&folder, "disc.toml", &format!("{hall}{disc}"));
     let targets = |scene: &str| -> Vec<[f64; 3]> {
-        // Nobody plans a route around the disc.
+        // The route is not replanned around the disc.
         let line = format!("navigate --scene {scene} --set controller.watch_route=false");
         keyway(folder.path(), &format!("{line} --explain why.jsonl")).expect_code(1);
         let lines = lines(&folder, "why.jsonl").into_iter();
@@ -182,7 +184,7 @@ fn the_target_is_where_the_local_planner_drives() {
     for [robot, _, target] in free {
         assert!((0.0..0.7).contains(&(target - robot)), "{target} from {robot}");
     }
-    // From where the disc is seen until it is passed.
+    // From the first detection of the disc until it is passed.
     let around = targets("disc.toml");
     let is_behind =
         |[robot, guide, target]: &&[f64; 3]| *robot < 4.1 && *target > 4.8 && target - guide > 0.3;

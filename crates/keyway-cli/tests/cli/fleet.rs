@@ -1,4 +1,4 @@
-//! Several robots in one world: scenes with `[[robots]]`.
+//! Tests of several robots in one world: scenes with `[[robots]]`.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ fn driven(folder: &TempDir, arguments: &str, code: i32) -> Value {
     report
 }
 
-/// What every robot came to.
+/// The outcome of every robot.
 fn outcomes(report: &Value) -> Vec<&str> {
     let outcomes: Vec<&str> =
         report["outcomes"].as_array().unwrap().iter().map(|one| one.as_str().unwrap()).collect();
@@ -32,7 +32,8 @@ fn outcomes(report: &Value) -> Vec<&str> {
     outcomes
 }
 
-/// In mirror images of each other's situations, too, and where there is room for one only.
+/// The robots also pass in mirror images of each other's situations, and where only one has
+/// space.
 #[test]
 fn robots_with_the_usual_stack_get_past_each_other() {
     let folder = scenes();
@@ -54,12 +55,12 @@ fn robots_with_the_usual_stack_get_past_each_other() {
     assert_eq!(outcomes(&driven(&folder, line, 1)), ["stuck"; 2], "otherwise it shows nothing");
 }
 
-/// None of these outcomes is wanted or unwanted: they are what the stacks do today.
+/// The outcomes document today's behaviour of the stacks; none is a requirement.
 #[test]
 fn what_becomes_of_the_robots_of_the_scenes() {
     let folder = scenes();
     for (scene, stack, expected) in [
-        // Each gives way to the same side as the other, for more than a minute.
+        // Both give way to the same side, for more than a minute.
         ("crossing", "key-point-fusion", vec!["reached"; 2]),
         ("crossing", "s0-key-point", vec!["stuck"; 2]),
         ("crossing", "s4-guided", vec!["collided"; 2]),
@@ -67,7 +68,7 @@ fn what_becomes_of_the_robots_of_the_scenes() {
         ("doorway", "s1-adaptive", vec!["reached"; 2]),
         ("corridor", "key-point-fusion", vec!["reached"; 2]),
         ("corridor", "s1-adaptive", vec!["reached"; 2]),
-        // It avoids nothing that moves.
+        // The stack does not avoid moving obstacles.
         ("corridor", "s4-guided", vec!["collided"; 2]),
         ("circle_swap", "key-point-fusion", vec!["reached"; 6]),
         ("circle_swap", "s4-guided", vec!["collided"; 6]),
@@ -143,7 +144,7 @@ fn the_files_show_all_robots() {
     for text in ["robot 0, keyway", "robot 1, keyway", "robot at a time [s]"] {
         assert!(map.contains(text), "{text}");
     }
-    // They are told apart without colours: by dashes, and by numbers at both ends.
+    // Dashes, and numbers at both ends, distinguish the robots without colours.
     assert!(map.contains("stroke-dasharray=\"6 2.5\""));
     assert!(map.matches(">0</text>").count() >= 2 && map.matches(">1</text>").count() >= 2);
     assert!(read(&folder, "out/speed.svg").contains(">robot 1</text>"));
@@ -226,7 +227,8 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
     assert!(message.contains("there is no stack `none-such`"), "{message}");
 }
 
-/// As many as find a place, near the ways of all robots; the report of each has them.
+/// As many obstacles as find space, near the paths of all robots; the report of each robot lists
+/// them.
 #[test]
 fn random_obstacles_are_those_of_the_seed() {
     let folder = scenes();
@@ -267,7 +269,7 @@ fn random_obstacles_are_those_of_the_seed() {
     assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
 }
 
-/// A hall in which somebody walks to and fro across the robot's way.
+/// A hall with a walker that moves to and fro across the robot's path.
 const WALKER: &str = "version = 2\nstart = [0.7, 2.0, 0.0]\ngoal = [7.3, 2.0]\n[world]\nwidth_m = 8\nheight_m = 4\n\
     resolution_m = 0.1\n[[moving]]\nradius_m = 0.25\nway_points = [[6.0, 2.0], [2.0, 2.0]]\nspeed_mps = 0.5\nto_and_fro = true\n";
 
@@ -290,10 +292,10 @@ fn an_obstacle_that_gives_way_is_reported_and_drawn_where_it_went() {
         (frames.len(), &frames[0]),
         (polite["trajectory"].as_array().unwrap().len(), &json!([0.0, 6.0, 2.0]))
     );
-    // It leaves its straight line.
+    // The obstacle leaves its straight line.
     let aside_m = frames.iter().map(|frame| (frame[2].as_f64().unwrap() - 2.0).abs());
     assert!(aside_m.fold(0.0, f64::max) > 0.2);
-    // Of one that is drawn standing, all times are in one mark.
+    // A stationary obstacle has a single mark for all times.
     assert!(!read(&folder, "out/map.svg").contains("2 \u{2026} 12"));
     assert_eq!(polite["outcome"], "timeout");
     assert!(polite["run"]["min_mover_clearance_m"].as_f64() > Some(0.0));

@@ -1,8 +1,9 @@
-//! Mistakes that are easily made, and messages that say what was meant.
+//! Tests of common mistakes, and of messages that suggest a correction.
 
 use crate::support::{folder, keyway, write};
 
-/// Checks that a line is refused with all parts in its message, and which field is to blame.
+/// Checks that a line is refused, that the message contains all parts, and that the field is
+/// blamed.
 #[track_caller]
 fn refused(folder: &tempfile::TempDir, line: &str, parts: &[&str], field: &str) {
     let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(2).json();

@@ -1,4 +1,4 @@
-//! A strict reader of the LaTeX that tables are written in: what it does not know is an error.
+//! A strict reader for the LaTeX of tables: everything unknown is an error.
 
 /// Commands of LaTeX and `booktabs` that a table may use.
 const COMMANDS: [&str; 23] = [
@@ -27,9 +27,9 @@ const COMMANDS: [&str; 23] = [
     "rightarrow",
 ];
 
-/// The cells of a table's rows, with all that the table is made of tested: characters that pdfLaTeX
-/// knows, commands, braces and dollar signs in pairs, rules in their places, and as many cells in
-/// each row as there are columns.
+/// The cells of a table's rows. It checks the whole table: characters known to pdfLaTeX,
+/// commands, balanced braces and dollar signs, rules in their places, and one cell per column in
+/// each row.
 pub(crate) fn read(text: &str) -> Vec<Vec<String>> {
     let lines: Vec<&str> = text.split(['\n', '\r']).map(without_comment).map(str::trim).collect();
     let mut lines = lines.into_iter().filter(|line| !line.is_empty());
@@ -100,7 +100,7 @@ fn cells(row: &str) -> Vec<String> {
     cells.iter().map(|cell| cell.trim().to_owned()).collect()
 }
 
-/// Of a backslash and what belongs to it.
+/// Length of a backslash and the command after it.
 fn command_length(text: &str) -> usize {
     let name: String = text[1..].chars().take_while(char::is_ascii_alphabetic).collect();
     if name.is_empty() {
@@ -111,10 +111,10 @@ fn command_length(text: &str) -> usize {
     1 + name.len()
 }
 
-/// Printable ASCII, and letters of Latin alphabets that LaTeX composes of a letter and an accent in
-/// its oldest fonts.
+/// Printable ASCII, and letters of Latin alphabets that LaTeX composes of a letter and an accent
+/// in its oldest fonts.
 fn is_known(letter: char) -> bool {
-    // Of Icelandic, and with a hook or a stroke: not in those fonts.
+    // Icelandic letters, and letters with a hook or a stroke: those fonts lack them.
     let is_missing = "ÐÞðþĄąĐđĘęĦħĮįŲųŊŋŦŧĸſŉ×÷".contains(letter);
     matches!(letter, ' '..='~') || (matches!(letter, 'À'..='ž') && !is_missing)
 }

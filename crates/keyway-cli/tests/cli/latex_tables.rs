@@ -1,13 +1,13 @@
-//! Tables for papers: LaTeX that is sound, whatever files are called.
+//! Tests that the LaTeX tables are valid for any file name.
 
 use crate::batch::scenes;
 use crate::latex_reader;
 use crate::support::{keyway, read, write};
 
-/// A name in which nearly all means something to TeX, or is unknown to it.
+/// A name of characters that are special to TeX, or unknown to it.
 const HOSTILE: &str = "a_b%&#$~^{}[]*--\u{2192}\u{e9}\u{4e2d}";
 
-/// What the reader takes is as wide as its header in every row.
+/// The strict reader accepts the tables, and every row is as wide as the header.
 #[test]
 fn tables_for_papers_are_sound_whatever_files_are_called() {
     let folder = scenes();

@@ -1,4 +1,4 @@
-//! `keyway list` and `keyway completions`.
+//! Tests of `keyway list` and `keyway completions`.
 
 use crate::support::{expect_members, folder, keyway, write};
 use serde_json::{Value, json};
@@ -59,7 +59,7 @@ fn parameters_have_units_defaults_and_papers() {
     assert_eq!((&corners["default"], &corners["paper"]), (&json!("forbid"), &Value::Null));
     let weight = parameter("list bidirectional-jps --format json", "planner.a");
     assert_eq!((&weight["default"], &weight["paper"]), (&json!(3.0), &json!(3.0)));
-    // What a paper leaves to the reader is not a value of the paper.
+    // A parameter that the paper does not state has no value of the paper.
     let paper = |name: &str, path: &str| {
         parameter(&format!("list {name} --format json"), path)["paper"].clone()
     };
@@ -128,7 +128,7 @@ fn methods_of_the_papers_are_options_that_work() {
         let name = entry["name"].as_str().unwrap();
         let report = keyway(folder.path(), &format!("list {name} --format json")).json();
         let drives = entry["kind"] == "local_planner" || entry["kind"] == "stack";
-        // Whether it gets there is not asked here.
+        // Reaching the goal is not required here.
         let command = if drives { "navigate --time-limit 2" } else { "plan" };
         for method in report["entries"][0]["published"].as_array().unwrap() {
             let options = method["options"].as_array().unwrap();
@@ -138,7 +138,7 @@ fn methods_of_the_papers_are_options_that_work() {
                 continue;
             }
             let run = keyway(folder.path(), &line);
-            // A method may miss a path on a map that is not its paper's; its options are right.
+            // A method may miss a path on a map that is not its paper's; its options are valid.
             assert!([0, 1].contains(&run.code), "{line}: {}", run.err);
             if run.code == 0 && command == "plan" {
                 let planner = run.json()["planner"].clone();

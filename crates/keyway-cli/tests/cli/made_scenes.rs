@@ -1,4 +1,4 @@
-//! `keyway scene`: worlds of benchmarks, and rows of positions, as scenes.
+//! Tests of `keyway scene`: benchmark worlds, and rows of positions, as scenes.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -18,11 +18,12 @@ fn worlds_of_barn_become_scenes() {
     assert_eq!(run["inputs"]["obstacles"], json!([[-2.0, 8.0, 0.075], [-2.5, 9.0, 0.1]]));
     assert_eq!(run["inputs"]["start"], json!([-2.25, 3.0, 90.0]));
     assert_eq!(run["inputs"]["arrival"], "passing");
-    // 9 m from the rim of the goal, which is passed at speed.
+    // 9 m to the rim of the goal, which is passed at speed.
     assert!(run["run"]["time_s"].as_f64().unwrap() < 6.5, "{}", run["run"]);
     let batch = keyway(folder.path(), "batch barn --out out --format json").expect_code(0).json();
     assert_eq!((&batch["runs"], &batch["stacks"][0]["mean_score"]), (&json!(2), &json!(0.5)));
-    // On the map: all 20 m x 20 m are the same but for the cells within 7.5 and 10 cm.
+    // With the cylinders on the map, all 20 m x 20 m are the same except for cells within 7.5 and
+    // 10 cm.
     let line = "scene barn c.csv --known --out known";
     keyway(folder.path(), line).expect_code(0);
     let run = keyway(folder.path(), "navigate --scene known/barn_known_007.toml --format json");
@@ -40,7 +41,8 @@ fn worlds_of_barn_become_scenes() {
 #[test]
 fn worlds_of_dynabarn_become_scenes() {
     let folder = folder();
-    // One passes the course ahead of the robot when it comes, one stays beside it and jumps.
+    // One cylinder crosses ahead of the robot when it arrives, one stays beside the path and
+    // jumps.
     let frames =
         "plugin,duration_s,repeat,t,x,y\nb,9.5,1,0,0,-5\nb,9.5,1,4,0,5\na,4,1,0,5,5\na,4,1,4,6,5\n";
     write(&folder, "k.csv", frames);
@@ -105,7 +107,7 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     write(&folder, "made/pairs/000_small_house.toml", &other);
     let again = &keyway(folder.path(), line).json()["inputs"];
     assert_ne!(again["obstacles"], inputs["obstacles"]);
-    // What finds no place is said.
+    // Obstacles that find no space are reported.
     let wide = scene.replacen("free_ends_m = 0.5", "free_ends_m = 100.0", 1);
     write(&folder, "wide.toml", &wide.replace("../../small", "small"));
     let short = "navigate --scene wide.toml --time-limit 0.1";
@@ -118,7 +120,7 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     );
     keyway(folder.path(), "batch wide.toml --out wide").expect_code(0);
     assert_eq!(read(&folder, "wide/runs.jsonl").parse::<Value>().unwrap()["left_out"], json!(3));
-    // A robot of one's own is found from the scenes' folder, too.
+    // A robot file of the user is found from the scenes' folder, too.
     let robot = keyway(folder.path(), "list small").expect_code(0).out;
     write(&folder, "mine.toml", &robot);
     let line = "scene pairs data/pairs.csv --robot mine.toml --out own";
@@ -132,8 +134,8 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
 }
 
-/// On the scenes of the repository A* has the published length, and they are what the command
-/// writes.
+/// On the scenes of the repository, A* has the published length, and the command writes the same
+/// scenes.
 #[test]
 fn maps_of_papers_become_scenes() {
     let folder = folder();
@@ -161,7 +163,7 @@ fn maps_of_papers_become_scenes() {
     assert!(error.contains("expected one of you2021, s1"), "{error}");
 }
 
-/// A bay in which the robot has to face out: it backs in.
+/// A bay in which the robot has to end facing out: it backs in.
 #[test]
 fn narrow_places_are_made_by_seed() {
     let folder = folder();
@@ -169,18 +171,18 @@ fn narrow_places_are_made_by_seed() {
     let report = keyway(folder.path(), line).expect_code(0).json();
     assert_eq!(report["files"], json!(["n/bay_00015.toml", "n/bay_00016.toml"]));
     keyway(folder.path(), "scene narrow bay --seed 9 --count 1 --out n").expect_code(0);
-    // The last one can turn in its bay at one place or another, but at none all the way.
+    // The last robot can turn partly at several positions in its bay, but nowhere fully.
     for seed in ["15", "16", "09"] {
         let line = format!("navigate --scene n/bay_000{seed}.toml --format json");
         let run = keyway(folder.path(), &line).expect_code(0).json();
         assert_eq!(run["outcome"], json!("reached"), "{seed}");
         assert_eq!(run["run"]["recoveries"]["manoeuvre"], json!(0), "{seed}");
     }
-    // Robots without a reverse gear, which would not come out again had they entered aslant.
+    // Robots without a reverse gear, which could not get out again if they entered at an angle.
     for scene in ["door_00002", "door_00019", "tunnel_00006"] {
         let run = driven(&folder, scene);
         assert_eq!(run["outcome"], json!("reached"), "{scene}");
-        // Two of them have to be led in.
+        // Two of them need a manoeuvre to enter.
         let is_led = run["run"]["recoveries"]["manoeuvre"].as_u64().unwrap() > 0;
         assert_eq!(is_led, scene != "door_00019", "{scene}");
     }
@@ -198,8 +200,8 @@ fn driven(folder: &TempDir, scene: &str) -> Value {
     keyway(folder.path(), &format!("navigate --scene n/{scene}.toml --format json")).json()
 }
 
-/// Passages whose middle lies between two rows of cells: no centre of a cell has the room that the
-/// robot needs.
+/// Passages with their middle between two rows of cells: no cell centre has the clearance that
+/// the robot needs.
 #[test]
 fn passages_between_cells_are_driven() {
     let folder = folder();
@@ -209,6 +211,6 @@ fn passages_between_cells_are_driven() {
         let clearance_m = run["run"]["min_clearance_m"].as_f64().unwrap();
         assert!(clearance_m > 0.0, "{scene}: {clearance_m}");
     }
-    // This one is as wide as the robot, but not as its margin asks for.
+    // This one is as wide as the robot, but narrower than the robot with its margin.
     assert_eq!(driven(&folder, "door_07010")["outcome"], json!("no_path"));
 }

@@ -1,4 +1,4 @@
-//! The real program: its commands, its JSON, its exit codes, its errors.
+//! Tests of the real program: its commands, its JSON, its exit codes, its errors.
 #![allow(clippy::unwrap_used)]
 
 mod arguments;

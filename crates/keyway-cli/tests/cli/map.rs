@@ -1,4 +1,4 @@
-//! `keyway map`.
+//! Tests of `keyway map`.
 
 use crate::support::{expect_members, folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -71,7 +71,7 @@ fn no_output_replaces_what_is_read() {
     }
 }
 
-/// Nothing named it: neither the command line nor the YAML file that the new one replaces.
+/// The image is named neither by the command line nor by the YAML file that is replaced.
 #[test]
 fn a_conversion_replaces_no_image_of_somebody_else() {
     let folder = folder();
@@ -81,7 +81,7 @@ fn a_conversion_replaces_no_image_of_somebody_else() {
     assert!(refused.err.contains("precious.pgm is in the way"), "{}", refused.err);
     assert_eq!(read(&folder, "precious.pgm"), "mine");
     assert!(!folder.path().join("precious.yaml").exists());
-    // The same beside a map of another image.
+    // The same beside a map with another image.
     let yaml = read(&folder, "small_house.yaml");
     write(&folder, "precious.yaml", &yaml);
     keyway(folder.path(), line).expect_code(2);
@@ -101,7 +101,7 @@ fn a_conversion_may_be_repeated() {
         keyway(folder.path(), &line).expect_code(0).json()["digest"].clone()
     };
     assert_eq!(info("a.yaml"), info("closed.map"));
-    // Killed between the YAML file and its image, whose content waits for its name.
+    // Killed between writing the YAML file and renaming its image.
     std::fs::remove_file(folder.path().join("a.pgm")).unwrap();
     write(&folder, ".a.pgm.keyway-0.tmp", "P5 1 1");
     keyway(folder.path(), "map convert walled.map a.yaml").expect_code(0);
@@ -147,7 +147,7 @@ fn likely_mistakes_are_said() {
     write(&folder, "a.yaml", &yaml.replace("occupied_thresh: 0.65", "occupied_thresh: 0.1"));
     let warning = "warning: a.yaml: `free_thresh` (0.196) is above `occupied_thresh` (0.1)";
     assert!(info("a.yaml").starts_with(warning));
-    // Beside an answer for programs.
+    // The warnings are also printed beside a JSON answer.
     let line = "plan small_house.png --cells --start 86,193 --goal 87,193 --format json";
     let plan = keyway(folder.path(), line).expect_code(0);
     assert!(plan.err.starts_with("warning: ") && plan.json().is_object());

@@ -1,4 +1,4 @@
-//! Limits on the size of the maps that commands read.
+//! Tests of the limit on the size of maps.
 
 use crate::support::{folder, keyway, write};
 

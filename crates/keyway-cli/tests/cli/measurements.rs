@@ -1,4 +1,4 @@
-//! Tables of measurements say what prints them, and what they name exists.
+//! Tests that tables of measurements name the command that prints them, and that it exists.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ const DOCUMENTS: [&str; 6] = [
     "docs/smoothers.md",
 ];
 
-/// What a table comes from: a command, a test, or something that is not here.
+/// Possible origins of a table: a command, a test, or a source outside the repository.
 const ORIGINS: [&str; 8] = [
     "keyway batch",
     "keyway bench",
@@ -27,7 +27,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Each table with the paragraphs before it, up to the table or heading before those, and the ones
+/// Each table with the paragraphs before it, back to the previous table or heading, and those
 /// after it, up to the next heading.
 fn tables(text: &str) -> Vec<(String, String)> {
     let is_table = |block: &str| block.starts_with('|') && block.contains("|--");
@@ -78,7 +78,7 @@ fn every_table_of_measurements_names_what_prints_it() {
     assert!(measured > 15, "{measured} tables");
 }
 
-/// True if a cell says between what its values lie: `6.92 (2.1 to 14.3)`, or `median / worst`.
+/// True if a cell contains the range of its values: `6.92 (2.1 to 14.3)`, or `median / worst`.
 fn is_range(cell: &str) -> bool {
     let is_digit = |letter: char| letter.is_ascii_digit();
     [" to ", " / "].iter().any(|between| {

@@ -1,10 +1,10 @@
-//! What pictures show of what moves: of somebody who walks to and fro, and is driven up to and gone
-//! around.
+//! Tests of moving obstacles in pictures: a walker that moves to and fro, which the robot
+//! approaches and then passes by a detour.
 
 use crate::support::{folder, keyway, read};
 use std::path::Path;
 
-/// The picture of the candidates at a time, and whether its texts hold this one.
+/// True if the picture of the candidates at a time contains this text.
 #[track_caller]
 fn fan_says(time_s: &str, text: &str) -> bool {
     let folder = folder();

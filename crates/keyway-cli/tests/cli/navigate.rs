@@ -1,4 +1,4 @@
-//! `keyway navigate` and `keyway demo`.
+//! Tests of `keyway navigate` and `keyway demo`.
 
 use crate::support::{expect_members, folder, keyway, read, without_times, write};
 use serde_json::{Value, json};
@@ -62,7 +62,7 @@ fn the_bundled_scene() {
     let limit = 60.0 + 4.0 * report["smoothed"]["length_m"].as_f64().unwrap() / 0.5;
     assert_eq!(inputs["time_limit_s"], limit);
 
-    // The obstacle stands on the route that was planned without it, and was not touched.
+    // The obstacle is on the route, which was planned without it, and was not touched.
     let away = |[x, y]: [f64; 2]| (x - 0.3).hypot(y + 0.275);
     let rows: Vec<[f64; 6]> = serde_json::from_value(report["trajectory"].clone()).unwrap();
     let nearest = rows.iter().map(|row| away([row[1], row[2]])).fold(f64::INFINITY, f64::min);
@@ -156,8 +156,8 @@ fn movers_of_a_scene_and_of_arguments_are_the_same() {
 #[test]
 fn a_mover_that_jumps_onto_the_robot_is_reported() {
     let folder = folder();
-    // It is ahead of the robot for a moment, far away until three seconds, and back where the robot
-    // is by then.
+    // It is ahead of the robot for a moment, then far away until three seconds, and then back at
+    // the position of the robot at that time.
     let mover = "[[moving]]\nradius_m = 0.5\nduration_s = 3.02\n\
                  spline = [[0, -7.0, -2.4], [0.5, -3.0, -2.4], [1.5, 8.0, 5.0]]\n";
     write(&folder, "jump.toml", &format!("{}\n{mover}", read(&folder, "small_house.toml")));
@@ -172,7 +172,7 @@ fn a_mover_that_jumps_onto_the_robot_is_reported() {
 #[test]
 fn a_mover_that_runs_into_the_robot_is_reported() {
     let folder = folder();
-    // Faster than the robot ever gets away.
+    // Faster than the robot can escape.
     let hit = keyway(folder.path(), &format!("{SHORT} --moving -8.175,-7.825,0.3,0,5"));
     let hit = hit.expect_code(1).json();
     let contact = &hit["run"]["contact"];
@@ -251,7 +251,7 @@ fn the_nearest_place_is_driven_to_where_the_goal_cannot_be_reached() {
     assert_eq!((open.err.as_str(), &open.json()["inputs"]["goal"]), ("", &json!([4.2, 0.7])));
 }
 
-/// A robot of which little is said, and one value of it.
+/// A robot file with few fields, and one overridden value.
 #[test]
 fn a_robot_is_a_few_lines_and_values_are_set() {
     let folder = folder();
@@ -294,7 +294,7 @@ fn robots_by_name_and_from_files() {
     let inputs = report.expect_code(0).json()["inputs"].clone();
     assert_eq!(inputs["robot"]["sensors"][0]["beams"], 90);
     assert_eq!(inputs["robot"]["footprint"]["radius_m"], 0.15);
-    // The stack follows from the robot: radius and a cycle at full speed.
+    // The stack is derived from the robot: radius plus one cycle at full speed.
     let clearance = inputs["config"]["map"]["clearance_m"].as_f64().unwrap();
     assert!((clearance - 0.23).abs() < 1e-12, "{clearance}");
 
@@ -319,7 +319,7 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
     for line in &listed {
         assert!(folder.path().join(line).is_file(), "{line}");
     }
-    // The hidden lists of Keyway's files are not among them.
+    // Hidden file lists of Keyway are not counted.
     let entries = std::fs::read_dir(folder.path().join("keyway-demo")).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(listed.len(), names.filter(|name| !name.starts_with('.')).count());
@@ -335,8 +335,8 @@ fn demo_leaves_a_scene_that_can_be_driven_again() {
 #[test]
 fn unknown_shapes_are_met_and_reported() {
     let folder = folder();
-    // A box and two cells (of 0.05 m) around which there is no way in sight: it drives until it
-    // sees them.
+    // A box and two cells (of 0.05 m) without a detour in sight: the robot drives until it senses
+    // them.
     let hall = "version = 2\nmap = \"walled.map\"\nstart = [1.5, 1.5]\ngoal = [5.5, 1.5]\n";
     let touched = |shape: &str, with: Value, reason: &str| {
         write(&folder, "shape.toml", &format!("{hall}[[unknown]]\n{shape}\n"));
@@ -346,7 +346,7 @@ fn unknown_shapes_are_met_and_reported() {
         assert!(report["reason"].as_str().unwrap().starts_with(reason), "{}", report["reason"]);
         read(&folder, "shape/map.svg")
     };
-    // Where the robot begins.
+    // Around the start of the robot.
     let around = "vertices_m = [[1.2, 1.2], [1.8, 1.2], [1.8, 1.8], [1.2, 1.8]]";
     let svg = touched(around, json!({"polygon": 0}), "touched unknown polygon 0 at (1.500, 1.500)");
     assert!(svg.contains(">unknown obstacle<"));

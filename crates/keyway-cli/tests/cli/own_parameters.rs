@@ -1,5 +1,5 @@
-//! Parameters that name their planner or smoother, on the command line and in files: what an error
-//! advises can be pasted into the command that gave it.
+//! Tests of parameters that name their planner or smoother, on the command line and in files: the
+//! advice of an error can be pasted into the command that caused it.
 
 use crate::batch::scenes;
 use crate::support::{folder, keyway, read, write};
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// A gap of one cell, which the distance of `hsta` closes.
 const GAP: &str = "walled.map --pairs q.csv --planners";
 
-/// The setting that a message advises.
+/// The setting advised by a message.
 fn advice(message: &str) -> String {
     let (_, setting) = message.split_once("add --set ").unwrap_or_else(|| panic!("{message}"));
     setting.split_whitespace().next().unwrap().to_owned()
@@ -54,7 +54,7 @@ fn what_is_advised_works_where_it_is_advised() {
         let line = format!("{bench} --planner jps --planner hsta --set {setting}");
         keyway(folder.path(), &line).expect_code(0);
     }
-    // The stack whose planner it is.
+    // The stack with this planner.
     let drive =
         "navigate walled.map --start 1.5,0.5 --goal 5.5,0.5 --set planner.name=hsta --time-limit 1";
     keyway(folder.path(), &format!("{drive} --set {setting}")).expect_code(1);
@@ -95,7 +95,7 @@ fn in_files() {
     assert!(wrong.contains("the name of hsta cannot be set"), "{wrong}");
 }
 
-/// Values of the robot and of the stack, for all runs; and those that there are not.
+/// Values of the robot and of the stack, for all runs; and unknown ones.
 #[test]
 fn values_are_set_for_all_runs() {
     let folder = scenes();

@@ -1,4 +1,4 @@
-//! Every source is defined once, in `docs/papers.md`, and cited by its key.
+//! Tests that every source is defined once, in `docs/papers.md`, and cited by its key.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -7,14 +7,14 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// All text that may cite something: sources and documentation, `docs/papers.md` itself left out.
+/// All texts with possible citations: sources and documentation, without `PAPERS.md` itself.
 fn texts() -> Vec<(PathBuf, String)> {
     let mut folders = ["crates", "docs", "scenes"].map(|folder| root().join(folder)).to_vec();
     let mut texts = Vec::new();
     let mut read = |path: PathBuf| {
         let is_text =
             path.extension().is_some_and(|extension| extension == "rs" || extension == "md");
-        if is_text && !path.ends_with("docs/papers.md") {
+        if is_text && !path.ends_with("PAPERS.md") {
             texts.push((path.clone(), std::fs::read_to_string(path).unwrap()));
         }
     };
@@ -42,7 +42,7 @@ fn definitions() -> BTreeMap<String, String> {
     all
 }
 
-/// A name and a year: `Hart1968`, and `S1`, whose year is not known.
+/// A name and a year: `Hart1968`, or `S1`, whose year is unknown.
 fn is_key(word: &str) -> bool {
     let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
     let year = &word[name.len()..];
@@ -71,14 +71,14 @@ fn every_citation_is_defined_and_every_definition_is_cited() {
     for key in defined.keys() {
         assert!(is_key(key) && cited.contains(key), "{key} is defined and cited nowhere");
     }
-    // What this test tells apart.
+    // The patterns of this test.
     assert!(["Hart1968", "ZhuYin2024", "S1"].iter().all(|key| is_key(key)));
     assert!(
         !["Nav2", "v2024", "S2", "Berlin_0_1024", "A2024", "2024"].iter().any(|word| is_key(word))
     );
 }
 
-/// Titles are in `docs/papers.md` alone, where they cannot differ.
+/// Titles appear in `PAPERS.md` alone, so that they cannot differ.
 #[test]
 fn no_source_is_cited_by_its_title() {
     let plain = |text: &str| -> String {

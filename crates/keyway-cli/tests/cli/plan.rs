@@ -1,4 +1,4 @@
-//! `keyway plan`.
+//! Tests of `keyway plan`.
 
 use crate::support::{expect_members, folder, keyway, read, without_times, write};
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ fn the_report_of_a_path_by_hand() {
             ("files", Value::is_array),
         ],
     );
-    // Up to row 4 (one step aside on the way), over the wall in a straight line, and down again.
+    // Up to row 4 (with one step aside), over the wall in a straight line, and down again.
     let expected = 6.0 + 2.0 * 2f64.sqrt() + 2.0;
     let length = report["length_m"].as_f64().unwrap();
     assert!((length - expected).abs() < 1e-9, "{length}");
@@ -222,12 +222,12 @@ fn pictures_show_the_search() {
     assert!(both.contains(">the two sides met</text>"));
     let jumps = picture(WALLED, 0);
     assert!(jumps.contains(">scans, early to late</text>"));
-    // A search that failed is drawn, too; one that did not begin is not.
+    // A failed search is drawn, too; one that did not start is not.
     let failed = picture(&format!("{WALLED} --planner astar --budget 3"), 1);
     assert!(failed.contains(">expanded, early to late</text>") && !failed.contains("planned path"));
     let closed = picture(&WALLED.replace("walled", "closed"), 1);
     assert!(!closed.contains("early to late"));
-    // That of the nearest goal.
+    // The search for the nearest goal.
     let nearest = picture(&WALLED.replace("5.5,0.5", "2.5,0.5 --planner astar"), 0);
     let several = format!("{WALLED} --planner astar --goal 2.5,0.5 --picture a.svg");
     keyway(folder.path(), &several).expect_code(0);
@@ -253,7 +253,7 @@ fn animations_play_the_search() {
         let failed = play(&format!("{astar} --budget 3"), name, 1);
         assert!(failed.starts_with(magic) && failed.len() < found.len());
     }
-    // No search began: a single picture.
+    // No search started: a single picture.
     assert!(play(&WALLED.replace("walled", "closed"), "c.gif", 1).starts_with(b"GIF89a"));
     let house = "plan small_house.yaml --start -8.175,-2.825 --goal 8.725,0.875";
     let house = play(house, "house.gif", 0);
@@ -297,7 +297,7 @@ fn the_table_is_for_people() {
 #[test]
 fn the_nearest_reachable_cell_stands_in_for_a_goal() {
     let folder = folder();
-    // Beyond the closed wall of column 3, and inside it: column 2 is as near as one gets.
+    // Beyond the closed wall of column 3, and inside it: column 2 is the nearest reachable one.
     for (goal, cell, gap) in [("5.5,1.5", [2, 1], 3.0), ("3.25,2.5", [2, 2], 0.75)] {
         let line = format!("plan closed.map --start 0.5,0.5 --goal {goal} --nearest-reachable");
         let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
@@ -378,8 +378,8 @@ fn all_goals_are_drawn_and_the_reached_one_is_marked() {
     assert!(one.contains(">goal<") && !one.contains(">other goal<"), "{one}");
 }
 
-/// The end is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to bend
-/// on.
+/// The goal is 0.5 m beside the wall, and the corner of the path is sharp: there is no edge to
+/// bend on.
 #[test]
 fn what_a_smoother_could_not_give_is_named() {
     let folder = folder();
@@ -397,7 +397,7 @@ fn what_a_smoother_could_not_give_is_named() {
     assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
 }
 
-/// The jump points reach the smoother, whichever command smooths.
+/// The jump points reach the smoother in every command that smooths.
 #[test]
 fn key_points_are_chosen_from_the_jump_points_of_the_plan() {
     let folder = folder();

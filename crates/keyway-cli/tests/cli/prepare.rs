@@ -1,4 +1,4 @@
-//! `keyway prepare`, and planning with what it wrote.
+//! Tests of `keyway prepare`, and of plans on prepared maps.
 
 use crate::support::{expect_members, folder, keyway, read, without_times, write};
 use serde_json::Value;
@@ -45,7 +45,7 @@ fn prepare_and_plan() {
     let on_the_spot = with("--planner prepared").expect_code(0).json();
     assert_eq!(without_times(from_file), without_times(on_the_spot));
 
-    // Another clearance is another map.
+    // A map with another clearance is a different map.
     let refused = keyway(folder.path(), &format!("{plan} --prepared house.prepared"));
     let error = refused.expect_code(2).json();
     assert_eq!((&error["kind"], &error["field"]), (&"input".into(), &"--prepared".into()));

@@ -1,4 +1,4 @@
-//! Files that cannot be used: their messages, their sizes, and that an answer comes at once.
+//! Tests of unusable files: their messages, their sizes, and a prompt answer.
 
 use crate::support::{Answer, folder, keyway, read, write};
 use std::fs;
@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 const PLAN: &str = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5";
 
-/// What only a programmer understands.
+/// Words that only programmers understand.
 const FORBIDDEN: [&str; 28] = [
     "u8",
     "u16",
@@ -186,7 +186,7 @@ fn every_kind_of_file_is_named_with_its_line() {
     }
 }
 
-/// Its size and its speed are enough, or another robot; both are named at once.
+/// Size and speed are sufficient, or a base robot; the message names both alternatives at once.
 #[test]
 fn what_a_robot_file_needs_is_named() {
     let folder = folder();
@@ -208,7 +208,7 @@ fn what_a_robot_file_needs_is_named() {
     );
 }
 
-/// A device that never ends, and pipes, which say nothing about their size.
+/// A device without end, and pipes, which do not report their size.
 #[cfg(target_os = "linux")]
 #[test]
 fn no_reader_reads_without_end() {
@@ -234,7 +234,7 @@ fn no_reader_reads_without_end() {
     }
 }
 
-/// As of `--config <(...)`.
+/// Pipes, as in `--config <(...)`.
 #[cfg(target_os = "linux")]
 #[test]
 fn pipes_are_read() {
@@ -260,7 +260,7 @@ fn pipes_are_read() {
     }
 }
 
-/// Before anything is computed: the start is in a wall, which is found by the search.
+/// The check comes before any computation: the start is in a wall, which only the search detects.
 #[cfg(target_os = "linux")]
 #[test]
 fn outputs_that_cannot_be_written_are_found_first() {
@@ -287,7 +287,8 @@ fn outputs_that_cannot_be_written_are_found_first() {
     }
 }
 
-/// In metres these lengths are larger than any map: whatever grew with them would take minutes.
+/// In metres these lengths exceed any map: a computation that scales with them would take
+/// minutes.
 #[test]
 fn lengths_in_millimetres_are_answered() {
     let folder = folder();

@@ -1,11 +1,11 @@
-//! `keyway navigate --record` and `keyway replay` of what it leaves.
+//! Tests of `keyway navigate --record`, and of `keyway replay` on recordings.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;
 
-/// Around a post that no map shows, with late motors, noise and lost scans.
+/// A drive around an unmapped post, with motor lag, noise and lost scans.
 const SCENE: &str = "version = 2\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]\nseed = 3\n\
     [world]\nwidth_m = 6\nheight_m = 4\nresolution_m = 0.05\n\
     [world.obstacles.clutter]\nshare = 0.03\nradius_m = [0.1, 0.2]\n\
@@ -54,7 +54,7 @@ fn every_decision_of_a_recording_is_made_again() {
 #[test]
 fn a_decision_that_is_another_one_is_said() {
     let folder = recorded("");
-    // The text of a step, in a chunk that is not compressed: a digit of a command is changed.
+    // A digit of a command is changed in the text of a step, in an uncompressed chunk.
     let bytes = fs::read(folder.path().join("run.mcap")).unwrap();
     let stream = mcap::MessageStream::new(&bytes).unwrap();
     let mut out = std::io::Cursor::new(Vec::new());

@@ -1,21 +1,21 @@
-//! `keyway batch --keep` and `keyway replay`.
+//! Tests of `keyway batch --keep` and `keyway replay`.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
 use std::fs;
 use tempfile::TempDir;
 
-/// A course that is too long for its time limit.
+/// A route that is too long for its time limit.
 const LATE: &str = "version = 2\nmap = \"../rooms.map\"\nstart = [1.5, 1.5]\ngoal = [30.5, 30.5]\n[rules]\ntime_limit_s = 3\n\
                     [disturbances.actuation]\nv_relative = 0.1\n";
 
-/// One that is not, in a generated hall.
+/// A shorter one, in a generated hall.
 const HALL: &str = "version = 2\nseed = 5\nstart = [0.7, 2.0]\ngoal = [5.3, 2.0]\n[world]\nwidth_m = 6\nheight_m = 4\n\
                     resolution_m = 0.05\n[world.obstacles.clutter]\nshare = 0.05\nradius_m = [0.1, 0.2]\n";
 
 const BATCH: &str = "batch scenes --stacks keyway,astar-follow --seeds 2";
 
-/// Of the four runs that do not reach their goal.
+/// Records of the four runs that do not reach their goal.
 const FAILED: [&str; 4] = [
     "late.astar-follow.0.json",
     "late.astar-follow.1.json",
@@ -31,7 +31,7 @@ fn scenes() -> TempDir {
     folder
 }
 
-/// The files of a folder, with what they hold.
+/// The files of a folder, with their content.
 fn files(folder: &TempDir, of: &str) -> Vec<(String, String)> {
     let entries = fs::read_dir(folder.path().join(of)).unwrap();
     let mut names: Vec<String> =
@@ -52,8 +52,8 @@ fn the_records_are_those_of_the_runs_that_failed_however_often_it_was_killed() {
     assert_eq!(report["records"], 4);
     let one = files(&folder, "one/records");
     assert_eq!(names(&one), FAILED);
-    // Killed after six runs of a batch that kept no records, and after the first record of one that
-    // did.
+    // Killed after six runs of a batch without records, and after the first record of one with
+    // records.
     batch("--out other");
     let rows = read(&folder, "other/runs.jsonl");
     let journal = rows.lines().map(|run| {
@@ -64,15 +64,15 @@ fn the_records_are_those_of_the_runs_that_failed_however_often_it_was_killed() {
     fs::create_dir_all(folder.path().join("killed/records")).unwrap();
     write(&folder, "killed/journal.jsonl", &journal.take(6).collect::<String>());
     write(&folder, &format!("killed/records/{}", FAILED[2]), &one[2].1);
-    // One that was kept of an earlier batch with another seed.
+    // A record that was kept of an earlier batch with another seed.
     write(&folder, "killed/records/late.astar-follow.7.json", &one[1].1);
     batch("--keep failures --out killed --jobs 2");
     assert_eq!(files(&folder, "killed/records"), one);
     assert_eq!(read(&folder, "killed/runs.jsonl"), rows);
-    // Four that reached the goal, and the one whose record was there; the other was made again for
+    // Four runs that reached the goal, and the one with a record; the other one was repeated for
     // its record.
     assert_eq!(read(&folder, "killed/times.jsonl").matches("4321.0").count(), 5);
-    // A batch that keeps none removes none, unless they are of something else.
+    // A batch without records removes none, unless they belong to something else.
     batch("--out killed");
     assert_eq!(files(&folder, "killed/records"), one);
     write(&folder, "scenes/late.toml", &LATE.replace("time_limit_s = 3", "time_limit_s = 2"));
@@ -116,7 +116,7 @@ fn a_replay_is_the_run_as_navigate_shows_it() {
     assert!(text.contains("the same run again") && text.contains("timeout"), "{text}");
 }
 
-/// All but the report, which has measured times.
+/// All files but the report, which contains measured times.
 fn files_as_bytes(folder: &TempDir, of: &str) -> Vec<(String, Vec<u8>)> {
     let names = ["map.svg", "map.png", "speed.svg", "trajectory.csv", "fan.svg", "fan.png"];
     let bytes = |name: &str| fs::read(folder.path().join(of).join(name)).unwrap();
@@ -174,7 +174,7 @@ fn what_is_no_longer_the_same_is_said() {
     });
     assert!(text.contains("its trajectory had 30 rows and has 31 now"), "{text}");
     assert!(text.contains("recorded by keyway 0.0.7, this is keyway "), "{text}");
-    // The program would drive otherwise: here because the robot is another one.
+    // The program would drive differently: here because the robot is a different one.
     let text = changed(&|record| record["robot"]["limits"]["v_max_mps"] = json!(0.4));
     assert!(text.contains("of its trajectory was ["), "{text}");
     let text = changed(&|record| record["robot"]["cycle_s"] = json!(-1));
@@ -188,7 +188,7 @@ fn what_is_no_longer_the_same_is_said() {
         let robot = json!({"start": scene.remove("start"), "goal": scene.remove("goal")});
         scene.insert("robots".to_owned(), json!([robot]));
     });
-    // The scene has several robots, if only one, and the record is that of one.
+    // The scene has `[[robots]]`, although only one, and the record is that of a single robot.
     assert!(
         text.contains("it must say who drove: `robots`, as many as the scene has, 1, and"),
         "{text}"
@@ -197,7 +197,7 @@ fn what_is_no_longer_the_same_is_said() {
     assert!(text.contains("\"keyway.record/2\"; this program replays keyway.record/1"), "{text}");
     assert!(message("replay scenes/late.toml").contains("not a record"));
     assert!(message("replay nowhere.json").contains("nowhere.json"));
-    // Another map in the same place; the old one elsewhere.
+    // Another map at the same path; the old one elsewhere.
     let map = read(&folder, "rooms.map");
     write(&folder, "rooms.map", &map.replacen('.', "@", 1));
     let text = message(&format!("replay {path}"));

@@ -1,4 +1,4 @@
-//! `keyway reproduce`: the claims of the papers, measured again.
+//! Tests of `keyway reproduce`: the claims of the papers, measured again.
 
 use crate::latex_reader;
 use crate::support::{Member, expect_members, folder, keyway, read, write};
@@ -77,12 +77,12 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
         ("verdict", Value::is_string),
     ];
     expect_members(expanded, &figure);
-    // The scene is fitted to the length of A*, and its time was measured.
+    // The scene is fitted to the path length of A*, and its time was measured.
     let scene = &claims[0]["scene"];
     assert_eq!(scene["file"], "scenes/you2021/corner_to_corner.toml");
     assert!((scene["figures"][2]["old"].as_f64().unwrap() - 29.213).abs() < 1e-3);
     assert!(claims[0]["family"]["figures"][0]["new_mean"].as_f64().unwrap() > 0.0);
-    // As many maps that fit as were asked for. On each, A* has the published length.
+    // As many fitting maps as requested. On each, A* has the published length.
     let reconstructed: [Member; 5] = [
         ("name", |v| v == "you2021"),
         ("tried", |v| v.as_u64() > Some(6)),
@@ -94,7 +94,7 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     let length_m = claims[0]["reconstructed"]["figures"][2]["old_mean"].as_f64().unwrap();
     assert!((length_m - 29.213).abs() < 1e-3, "{length_m}");
     assert_eq!((&claims[2]["scene"], &claims[2]["reconstructed"]), (&Value::Null, &Value::Null));
-    // Either there are maps that fit, or it is said why not.
+    // Either there are fitting maps, or a reason is given.
     for claim in claims {
         assert_ne!(claim["reconstructed"].is_null(), claim["not_reconstructed"].is_null());
     }
@@ -103,7 +103,7 @@ fn the_report_has_published_and_measured_figures_and_verdicts() {
     assert!(methods.iter().any(|method| method["method"] == "jps" && method["mean_excess"] == 0.0));
 }
 
-/// What the maps say, worked out again from the table of all maps.
+/// Recomputes the figures from the table of all maps.
 #[test]
 fn figures_follow_from_the_maps() {
     let folder = folder();
@@ -153,7 +153,7 @@ fn the_number_of_jobs_changes_no_byte() {
         (&json!(1), &json!(0))
     );
     assert_ne!(times["verdict"], "not_measured");
-    // Maps that are left out do not depend on who was first, either.
+    // Maps that are left out do not depend on the order of completion, either.
     let left_out = report["experiments"][0]["left_out"].as_u64().unwrap();
     assert!(left_out > 0, "{}", report["experiments"]);
 }
@@ -189,7 +189,7 @@ fn what_was_measured_is_not_measured_again() {
     let whole = measured();
     let lines = read(&whole, "out/maps.jsonl");
     assert!(!whole.path().join("out/journal.jsonl").exists());
-    // As a program that was killed leaves it: two maps are written down, and a third one half.
+    // As a killed program leaves it: two complete maps, and half of a third one.
     let killed = folder();
     std::fs::create_dir(killed.path().join("out")).unwrap();
     let lines: Vec<&str> = lines.lines().collect();
@@ -204,7 +204,7 @@ fn what_was_measured_is_not_measured_again() {
     assert_eq!(found.lines().next().unwrap(), marked);
     assert!(found.lines().skip(1).eq(lines[1..].iter().copied()), "{found}");
     assert!(!killed.path().join("out/journal.jsonl").exists());
-    // From the results, too; with times, everything is measured again.
+    // The results are reused, too; with times, everything is measured again.
     keyway(killed.path(), line).expect_code(0);
     assert_eq!(read(&killed, "out/maps.jsonl"), found);
     keyway(killed.path(), "reproduce S0-5 S4-6 --maps 3 --out out").expect_code(0);
@@ -218,7 +218,8 @@ fn what_was_measured_is_not_measured_again() {
 fn the_page_stands_alone_and_holds_every_picture() {
     let folder = measured();
     let page = read(&folder, "out/report.html");
-    // Links lead to places of the page; nothing is loaded. The only address is the name of SVG.
+    // Links lead to anchors on the page; nothing is loaded. The only address is the SVG
+    // namespace.
     let links: Vec<&str> =
         page.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
     assert!(links.len() > 4);
@@ -236,8 +237,8 @@ fn the_page_stands_alone_and_holds_every_picture() {
         assert!(page.contains(&svg));
         pictures += 1;
     }
-    // Bars of both claims, one of them with a bound; and of each experiment paths, searches and
-    // nodes.
+    // Bars of both claims, one of them with a bound; and paths, searches and nodes of each
+    // experiment.
     assert_eq!((pictures, page.matches("<figure>").count()), (9, 9));
     for part in ["S0-5", "keyway reproduce S4-6 --out DIR", "scenes/you2021/corner_to_corner.toml"]
     {
@@ -261,12 +262,12 @@ fn pictures_say_what_they_show_and_how_they_were_made() {
     let clearance = texts(&folder, "S1-6.clearance");
     assert!(clearance.contains("difference of clearance [m]"), "{clearance}");
     assert!(texts(&folder, "S4-5.missed").contains("difference of missed [1]"));
-    // Numbers stand beside their bars, with what was published, if anything was.
+    // Numbers are printed beside their bars, with the published value, if there is one.
     let note = "+0.500 m (+0.500 to +0.500) n = 2";
     assert!(clearance.contains(note) && !clearance.contains("published"), "{clearance}");
     let runs = texts(&folder, "S0-3.change");
     assert!(runs.contains("published \u{2212}13.59 %, n = 2"), "{runs}");
-    // A share has all of its axis, also where it is 0.
+    // The axis of a share is complete, even if the share is 0.
     let kept = texts(&folder, "S0-6.kept");
     assert!(kept.contains("0 20 40 60 80 100") && kept.contains("on 0 of 2 maps"), "{kept}");
     for figure in [
@@ -281,10 +282,10 @@ fn pictures_say_what_they_show_and_how_they_were_made() {
         assert!(texts.contains(made), "{figure}: {texts}");
     }
     assert!(texts(&folder, "s1-half-enclosed.speeds").contains("scenes/s1/half_enclosed.toml"));
-    // A stack that never arrives has a row all the same.
+    // A stack that never reaches the goal has a row nevertheless.
     let times = texts(&folder, "s1-half-enclosed.time");
     assert!(times.contains("dwa-to-goal") && times.contains("n = 0"), "{times}");
-    // Parts of a run are told apart in one picture of it; its time says nothing of them.
+    // Parts of a run are distinguished in one picture of it; its time does not apply to them.
     let paths = texts(&folder, "you2021-speeds.paths");
     for part in ["one run", "where obstacles are sparse", "where obstacles are dense"] {
         assert_eq!(paths.matches(part).count(), 1, "{part}: {paths}");
@@ -302,7 +303,7 @@ fn the_table_for_papers_is_sound() {
     assert_eq!((cells[1][0].as_str(), cells[3][0].as_str()), ("S0-5", "S4-6"));
 }
 
-/// A variant is compared with the method as published on the same maps, and the base has a point of
+/// A variant is compared with the published method on the same maps, and the base has a point of
 /// its own in a curve.
 #[test]
 fn ablations_are_asked_for() {
@@ -329,8 +330,8 @@ fn ablations_are_asked_for() {
     assert!(!folder.path().join("out/figures/wang2019-x.planning_time.svg").exists());
 }
 
-/// What was measured before it was killed is not lost, and the results are those of one that was
-/// not.
+/// Measurements before a kill are kept, and the results equal those of an uninterrupted
+/// reproduction.
 #[test]
 fn killed_on_the_way_it_goes_on() {
     let folder = folder();
@@ -351,7 +352,7 @@ fn killed_on_the_way_it_goes_on() {
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(finished() >= 2);
-    // A mark that a new measurement would not have, in what was measured before.
+    // A mark in the earlier measurements that a new one would not have.
     let held = std::fs::read_to_string(&journal).unwrap();
     let marked = held.replacen("\"non_smooth_turns\":", "\"non_smooth_turns\":1000", 1);
     assert_ne!(marked, held);
@@ -381,8 +382,7 @@ fn cells_of(text: &str, header: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// Which claims there are, how they are worded, and what was published; and that verdicts are
-/// counted right.
+/// The documented claims, their wording and published values, and the counts of verdicts.
 #[test]
 fn the_documentation_has_the_tables_that_are_written() {
     let folder = folder();

@@ -1,5 +1,5 @@
-//! The published schema of scene files accepts every scene that there is, and refuses what the
-//! program refuses for its form.
+//! Tests of the published schema of scene files: it accepts all existing scenes, and refuses
+//! files of a form that the program refuses.
 
 use crate::support::{folder, keyway, read, write};
 use serde_json::{Value, json};
@@ -9,8 +9,8 @@ fn schema() -> Value {
     keyway(Path::new("."), "scene schema").expect_code(0).json()
 }
 
-/// What is wrong with a value, if anything. Knows the keywords that the schema has, and stops at
-/// any other: none is passed over.
+/// The first fault of a value, if any. It knows the keywords that the schema uses, and fails on
+/// any other: none is ignored.
 fn fault(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
     let Some(keywords) = schema.as_object() else {
         return (schema != &json!(true)).then(|| format!("{at}: not allowed"));
@@ -85,13 +85,13 @@ fn is_of_type(value: &Value, name: &str) -> bool {
     }
 }
 
-/// What is wrong with the text of a scene, for the schema.
+/// The first fault of the text of a scene against the schema.
 fn fault_in(schema: &Value, text: &str) -> Option<String> {
     let table: toml::Table = toml::from_str(text).unwrap();
     fault(schema, schema, &serde_json::to_value(table).unwrap(), "scene")
 }
 
-/// The scene files in a folder and those within it.
+/// The scene files in a folder and its subfolders.
 fn scenes_in(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -125,7 +125,7 @@ fn every_scene_is_valid() {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = Vec::new();
     scenes_in(&here.join("../../scenes"), &mut paths);
-    // Robots lie among them.
+    // The folders also contain robots.
     paths.retain(|path| std::fs::read_to_string(path).unwrap().contains("version = "));
     assert!(paths.len() > 30, "{paths:?}");
     let folder = folder();
@@ -144,7 +144,7 @@ fn every_scene_is_valid() {
     ] {
         keyway(folder.path(), line).expect_code(0);
     }
-    // All fields but those of the scenes above.
+    // All fields that the scenes above do not have.
     let rest = "version = 2\nseed = 9223372036854775807\nstart = [1.0, 2]\nvia = [[2, 3]]\ngoal = [3, 4, 90]\nstack = \"s4-guided\"\n\
         [world]\nwidth_m = 6\nheight_m = 6\nresolution_m = 0.05\norigin = [-1, 0]\n[world.obstacles.u-traps]\ncount = 2\n\
         size_m = [0.4, 0.6]\nwall_m = 0.1\n[disturbances.sensor]\ndropped_scans = 0.1\n\

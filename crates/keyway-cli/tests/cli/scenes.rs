@@ -1,5 +1,5 @@
-//! The scenes of the papers: what the papers' baselines do there is what the papers print, and
-//! every run ends.
+//! Tests of the scenes of the papers: the papers' baselines have the printed results there, and
+//! every run ends as documented.
 
 use keyway::files::{find_robot, find_stack};
 use keyway::geometry::{Disc, Point, Segment};
@@ -88,7 +88,7 @@ fn plan(episode: &Episode, map: &SearchMap, planner: &str) -> Plan {
     plan
 }
 
-/// Scene, planner, steps, and the length as the paper prints it.
+/// Scene, planner, steps, and the length as printed in the paper.
 const PUBLISHED: [(&str, &str, Cost, &str); 13] = [
     ("you2021/corner_to_corner", "A*", Cost::new(8, 15), "29.213"),
     ("you2021/corner_to_corner", "bidirectional A*", Cost::new(4, 19), "30.870"),
@@ -164,8 +164,8 @@ fn paths_that_ignore_unknown_obstacles_touch_them_where_the_paper_says_so() {
     }
 }
 
-/// What is printed of \[ZhuYin2024\]'s other baseline, RRT, is possible; its table 3 is not, as the
-/// README says.
+/// The printed results of \[ZhuYin2024\]'s other baseline, RRT, are possible; those of table 3
+/// are not, as the README says.
 #[test]
 fn shortest_lines() {
     let shortest_m = |name: &str| {
@@ -189,7 +189,7 @@ fn shortest_lines() {
     assert!(row.contains(&format!("shortest line {coal_mine_m:.2} m")), "{coal_mine_m}");
 }
 
-/// The obstacles of each scene are those of the one before it, and some more.
+/// Each scene has the obstacles of the one before it, and some more.
 #[test]
 fn random_obstacles_are_added() {
     let scenes = [0, 5, 10, 20, 40].map(|count| (count, episode(&format!("s1/random_{count:02}"))));
@@ -203,7 +203,7 @@ fn random_obstacles_are_added() {
     }
 }
 
-/// What moves stays off the walls, the obstacles that stand, and the ends of the way.
+/// Moving obstacles stay clear of walls, static obstacles, starts and goals.
 #[test]
 fn movers_pass_through_nothing() {
     let mut movers = 0;
@@ -228,7 +228,8 @@ fn movers_pass_through_nothing() {
     assert_eq!(movers, 6);
 }
 
-/// What docs/lab/findings.md says of a scene with the default stack, on the robot of the scene.
+/// The documented outcome of a scene in docs/lab/findings.md, with the default stack and the robot of
+/// the scene.
 fn documented(scene: &str) -> EpisodeOutcome {
     let path = folder().join("../docs/lab/findings.md");
     let text = std::fs::read_to_string(path).unwrap();
@@ -252,7 +253,7 @@ fn documented(scene: &str) -> EpisodeOutcome {
     }
 }
 
-/// Every run ends as it is documented; where nothing moves, without contact.
+/// Every run ends as documented; without moving obstacles, it has no contact.
 fn drive(paper: &str) {
     for name in names().iter().filter(|name| name.starts_with(paper)) {
         let episode = episode(name);

@@ -1,4 +1,4 @@
-//! How large a robot is: `--robot` and `--radius`, wherever a path is planned.
+//! Tests of the size of a robot: `--robot` and `--radius` in every command that plans a path.
 
 use crate::support::{folder, keyway};
 use serde_json::json;
@@ -25,13 +25,13 @@ fn a_robot_gives_its_size_and_a_radius_counts_more() {
     let both = plan("--robot jackal --radius 0.1");
     let footprint = &both["inputs"]["robot"]["footprint"];
     assert_eq!((clearance(&both), footprint), (json!(0.1), &json!({ "radius_m": 0.1 })));
-    // A polygon is planned for with the disc that fits inside.
+    // For a polygon, the inscribed disc is used.
     assert_eq!(clearance(&plan("--robot jackal")), 0.215);
     assert_eq!(both["inputs"]["robot"]["cycle_s"], json!(0.05));
     // A single parameter takes precedence over options.
     assert_eq!(clearance(&plan("--robot small --set map.clearance_m=0.05")), 0.05);
-    // Without a robot the speeds of a curve are those of the usual one, and the size is that of a
-    // point.
+    // Without a robot, the speeds of a curve are those of the default robot, and the size is that
+    // of a point.
     let curve = plan("--curve c.json");
     assert_eq!(clearance(&curve), 0.0);
 }

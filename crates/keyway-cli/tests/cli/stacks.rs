@@ -1,10 +1,10 @@
-//! `--stack`: a name or a file; parts that are swapped; stacks as published.
+//! Tests of `--stack`: a name or a file; replaced parts; stacks as published.
 
 use crate::support::{folder, keyway, read, without_times, write};
 use serde_json::{Value, json};
 
 const SHORT: &str = "navigate small_house.yaml --start -8.175,-2.825 --goal -6,-2.6 --format json";
-/// Cells of 1 m; it does not matter whether the robot gets there.
+/// Cells of 1 m; reaching the goal does not matter.
 const BEGUN: &str =
     "navigate rooms.map --cells --start 1,1 --goal 30,30 --time-limit 1 --format json";
 
@@ -81,7 +81,8 @@ fn a_part_is_swapped_by_its_name() {
     let names = ["planner", "smoother", "guide", "local"].map(name);
     assert_eq!(names, ["theta-star", "none", "carrot", "adaptive-dwa"]);
     assert_eq!(config(&report)["guide"]["look_ahead_m"], 0.7);
-    // Parameters for the robot; one that the stack has already keeps those of the stack.
+    // Parameters are derived from the robot; a part that the stack already has keeps those of the
+    // stack.
     assert_eq!(config(&report)["local"]["safe_radius_m"], 0.125);
     let same = format!("{BEGUN} --stack s4-ref20 --as-published --local dwa");
     let same = keyway(folder.path(), &same).expect_code(1).json();

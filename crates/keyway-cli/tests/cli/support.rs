@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
-/// What a run of the program gave.
+/// The result of a run of the program.
 pub(crate) struct Answer {
     pub(crate) code: i32,
     pub(crate) out: String,
@@ -42,8 +42,8 @@ pub(crate) fn keyway(folder: &Path, line: &str) -> Answer {
     keyway_args(folder, line.split_whitespace())
 }
 
-/// A folder with the bundled maps and scene, as `keyway demo` leaves them, and a small map with
-/// a wall: `walled.map`, columns 0 to 6, rows 0 to 4, the wall in column 3 open in row 4 only.
+/// A folder with the bundled maps and scene, as written by `keyway demo`, and a small map with a
+/// wall: `walled.map`, columns 0 to 6, rows 0 to 4, the wall in column 3 open in row 4 only.
 pub(crate) fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
@@ -79,10 +79,10 @@ pub(crate) fn without_times(mut report: Value) -> Value {
     report
 }
 
-/// The name of a member of an object, and whether a value is right for it.
+/// The name of a member of an object, and a predicate for its value.
 pub(crate) type Member = (&'static str, fn(&Value) -> bool);
 
-/// Checks names and kinds of the members of an object, all of them.
+/// Checks the names and values of all members of an object.
 #[track_caller]
 pub(crate) fn expect_members(value: &Value, members: &[Member]) {
     let object = value.as_object().unwrap();

@@ -1,4 +1,4 @@
-//! Two programs that write into the same folder, and those that are killed there.
+//! Tests of two programs that write into the same folder, and of killed ones.
 
 use crate::support::{folder, keyway};
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ fn who_comes_second_is_refused_and_changes_nothing() {
         );
         assert!(refused.ends_with(&expected), "{line}: {refused}");
         assert_eq!(files_of(&out).into_keys().collect::<Vec<_>>(), [".keyway-lock"], "{line}");
-        // As if it had been killed.
+        // Released, as if the holder had been killed.
         drop(lock);
         let answer = keyway(folder.path(), line);
         assert!(answer.code < 2, "{line}: {}", answer.err);
@@ -72,7 +72,7 @@ fn a_map_and_its_image_are_written_by_one() {
     keyway(folder.path(), line).expect_code(0);
     let left = files_of(folder.path()).into_keys().filter(|name| name.contains("lock"));
     assert_eq!(left.count(), 0);
-    // Where there is no folder, none is made.
+    // If there is no folder, none is created.
     keyway(folder.path(), "map convert walled.map none/w.yaml").expect_code(2);
     assert!(!folder.path().join("none").exists());
 }
@@ -89,7 +89,7 @@ fn a_killed_one_is_in_nobodys_way() {
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
-        // It may be faster than this.
+        // The program may finish before it can be killed.
         while !out.join(".keyway-lock").exists() && child.try_wait().unwrap().is_none() {
             std::thread::yield_now();
         }

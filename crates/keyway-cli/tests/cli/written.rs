@@ -1,4 +1,4 @@
-//! Every command says which files it wrote, all in the same way.
+//! Tests that every command lists its written files in the same form.
 
 use crate::support::{folder, keyway};
 use serde_json::Value;

@@ -15,7 +15,7 @@ __all__ = ["Comparison", "Map", "Navigator", "Plan", "Planner", "Points", "Run",
 @final
 class Comparison:
     """
-    What a comparison gave: a row for each planner with each smoother.
+    Result of a comparison: a row for each combination of planner and smoother.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.eye(30, dtype=bool)[::-1] & (np.arange(30) % 3 > 0), resolution=0.1)
@@ -31,7 +31,8 @@ class Comparison:
     @property
     def report(self, /) -> dict[str, Any]:
         """
-        The whole report, `keyway.compare/1` of `docs/reference/json.md`: also every query, and the tests of each row against the first.
+        The whole report, `keyway.compare/1` of `docs/reference/json.md`. It also has every query, and the
+        tests of each row against the first.
         """
     @property
     def rows(self, /) -> list[dict[str, Any]]:
@@ -40,7 +41,7 @@ class Comparison:
         """
     def to_latex(self, /) -> str:
         """
-        The table as LaTeX, as a paper would print it.
+        The table as LaTeX, for use in a paper.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -49,15 +50,16 @@ class Comparison:
         """
     def to_pandas(self, /) -> Any:
         """
-        The rows as a `pandas.DataFrame`; pandas has to be installed.
+        The rows as a `pandas.DataFrame`; requires pandas.
         """
 
 @final
 class Map:
     """
-    An occupancy grid: for every cell occupied, unknown or free.
+    An occupancy grid: every cell is occupied, unknown or free.
 
-    Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are in metres.
+    Row 0 of all arrays is the bottom row of the map, as in `nav_msgs/OccupancyGrid`. Lengths are
+    in metres.
 
     >>> import keyway, numpy as np
     >>> occupied = np.zeros((40, 60), dtype=bool)
@@ -67,7 +69,7 @@ class Map:
     """
     def __reduce__(self, /) -> tuple[Any, tuple[NDArray[int8], tuple[int, int], float, tuple[float, float, float], str, tuple[float, list[float]] | None]]:
         """
-        Maps can be copied, pickled, and sent to other processes.
+        Supports copying, pickling and sending maps to other processes.
         """
     def __repr__(self, /) -> str: ...
     def _repr_png_(self, /) -> bytes: ...
@@ -76,8 +78,8 @@ class Map:
     def _restored(values: NDArray[bool_] | NDArray[int8], thresholds: tuple[int, int], resolution: float, origin: tuple[float, float, float], name: str, placement: tuple[float, Sequence[float]] | None) -> Map: ...
     def cells(self, /, positions: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[int32]:
         """
-        The cells (column, row) in which positions lie [m]: an array of int32 of shape (n, 2). A `ValueError` names the first
-        position that is outside the map.
+        Returns the cells (column, row) of positions [m]: an array of int32 of shape (n, 2).
+        Raises a `ValueError` that names the first position outside the map.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((4, 4), dtype=bool), resolution=0.5)
@@ -87,23 +89,26 @@ class Map:
     @property
     def digest(self, /) -> str:
         """
-        A number that identifies the map: equal maps have equal ones.
+        Identifier of the map's content: equal maps have equal digests.
         """
     def free_positions(self, /) -> NDArray[float64]:
         """
-        The centres of all free cells [m]: an array of float64 of shape (n, 2), row by row from the bottom.
+        Returns the centres of all free cells [m]: an array of float64 of shape (n, 2), row by row
+        from the bottom.
         """
     @staticmethod
     def from_array(occupied: NDArray[bool_] | NDArray[int8], resolution: float, origin: Sequence[float] | NDArray[Any] | None = None, occupied_threshold: int = 65, free_threshold: int = 25) -> Map:
         """
-        A map from an array of shape (rows, columns), row 0 at the bottom.
+        Creates a map from an array of shape (rows, columns), row 0 at the bottom.
 
-        `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as in `nav_msgs`: from
-        `occupied_threshold` on a cell is occupied, up to `free_threshold` it is free, and between the two, as below 0, it is
-        unknown. That is the rule by which Nav2 saves maps. Values that are not all 0 and all below `free_threshold` are a
-        `ValueError`: a mask is of bool. The array is read where it is, whatever its strides.
+        `occupied` is an array of bool, or of int8 with the occupancy of each cell, 0 to 100, as
+        in `nav_msgs`. A cell is occupied from `occupied_threshold` on and free up to
+        `free_threshold`; it is unknown between the two and below 0. Nav2 saves maps by the same
+        rule. Raises `ValueError` if the values are not all 0 but all below `free_threshold`: a
+        mask must be of type bool. The array is read in place, whatever its strides.
 
-        `resolution` is the side of a cell [m]; `origin` is where the lower left corner lies [m], or with a yaw [m, m, rad].
+        `resolution` is the cell size [m]; `origin` is the position [m] of the lower left corner,
+        or its pose [m, m, rad].
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.array([[0, 65, 50, -1]], dtype=np.int8), resolution=0.5)
@@ -121,7 +126,7 @@ class Map:
     @property
     def occupied(self, /) -> NDArray[bool_]:
         """
-        Which cells are occupied: a new array of bool of shape (rows, columns).
+        Mask of the occupied cells: a new array of bool of shape (rows, columns).
         """
     @property
     def origin(self, /) -> tuple[float, float, float]:
@@ -131,11 +136,12 @@ class Map:
     @staticmethod
     def read(path: str | PathLike[str], resolution: float | None = None, origin: Sequence[float] | NDArray[Any] | None = None, max_cells: int | None = None) -> Map:
         """
-        Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`, `.pgm`).
+        Reads a map file: ROS (`.yaml` with its image), MovingAI (`.map`), or an image (`.png`,
+        `.pgm`).
 
-        A YAML file says itself where its map lies. For other files `resolution` [m] and `origin` say so. What is usually a
-        mistake in such a file is a `UserWarning`. A map of more than `max_cells` [2^29] is a `ValueError`,
-        before memory is taken for it.
+        A YAML file contains the placement of its map. For other files it is given by `resolution`
+        [m] and `origin`. A likely mistake in such a file is a `UserWarning`. Raises `ValueError`
+        for a map of more than `max_cells` [2^29], before memory is allocated.
 
         >>> import keyway
         >>> keyway.Map.read("nowhere.yaml")
@@ -145,21 +151,21 @@ class Map:
     @property
     def resolution(self, /) -> float:
         """
-        Side of a cell [m].
+        Cell size [m].
         """
     @property
     def shape(self, /) -> tuple[int, int]:
         """
-        Rows and columns.
+        Number of rows and columns.
         """
     @property
     def unknown(self, /) -> NDArray[bool_]:
         """
-        Which cells are unknown: a new array of bool of shape (rows, columns).
+        Mask of the unknown cells: a new array of bool of shape (rows, columns).
         """
     def write(self, /, path: str | PathLike[str]) -> None:
         """
-        Writes the map; the extension of the file names its format, as for `read`.
+        Writes the map; the extension of the file selects the format, as for `read`.
 
         >>> import keyway, numpy as np, pathlib, tempfile
         >>> grid = keyway.Map.from_array(np.eye(3, dtype=bool), resolution=1.0)
@@ -172,20 +178,21 @@ class Map:
 @final
 class Navigator:
     """
-    Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a
+    Drives a robot to goals: plans on the known map, remembers sensed obstacles, and decides on a
     velocity in every cycle.
 
-    `robot` and `stack` are names of `keyway.names`, or files; a robot may also be a dictionary with
-    the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`, and is the
-    `small` one unless given. `parameters` are laid over the stack, as a dictionary with the names
-    of the TOML files. With `as_published` the stack has the values
-    of its paper. With `safe` only commands are issued after which the robot can still stop before
-    it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
-    layers of the map are made, which are not counted: (0, None).
+    `robot` and `stack` are names of `keyway.names`, or files. A robot may also be a dictionary
+    with the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`; the
+    default is `small`. `parameters` override those of the stack, as a dictionary with the names
+    of the TOML files. With `as_published` the stack has the parameters of its paper. With `safe`,
+    only commands are issued after which the robot can still stop before a contact, overriding the
+    stack. `progress(done, expected)` is called while the layers of the map are built; they are
+    not counted: (0, None).
 
-    It has no goal at first. Goals come and go while the robot drives; what was sensed stays.
+    A new navigator has no goal. Goals may change while the robot drives; sensed obstacles are
+    kept.
 
-    Raises `ValueError` for a value that cannot be used.
+    Raises `ValueError` for an invalid value.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -200,7 +207,7 @@ class Navigator:
     def __repr__(self, /) -> str: ...
     def back_up(self, /, distance: float, allowance: float) -> None:
         """
-        Drives straight back by a distance [m] in the same way.
+        Drives straight back by a distance [m], with the same rules as `spin`.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -212,12 +219,12 @@ class Navigator:
         """
     def cancel(self, /) -> None:
         """
-        Gives up what it was asked to do: the robot brakes, and stands.
+        Cancels the current task: the robot brakes to a stop.
         """
     @property
     def clear_scan(self, /) -> Scan:
         """
-        A scan of the robot's first sensor in which nothing was met.
+        A scan of the robot's first sensor without hits.
         """
     @property
     def cycle(self, /) -> float:
@@ -227,12 +234,12 @@ class Navigator:
     @property
     def doubts(self, /) -> list[str]:
         """
-        Contradictions in what was observed lately, for people, such as a velocity that is always 0
-        although the pose moves.
+        Messages about inconsistencies in recent observations, such as a velocity that is always 0
+        although the pose changes.
         """
     def drive_on_heading(self, /, distance: float, allowance: float) -> None:
         """
-        Drives straight ahead by a distance [m] in the same way.
+        Drives straight ahead by a distance [m], with the same rules as `spin`.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -242,8 +249,8 @@ class Navigator:
         """
     def edit_map(self, /, window: Map) -> None:
         """
-        Changes a part of the map to that of another one, cell by cell at the centres of the cells
-        of `window`.
+        Replaces a part of the map by that of another one, cell by cell at the centres of the
+        cells of `window`.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -255,12 +262,12 @@ class Navigator:
         """
     def follow(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> None:
         """
-        Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot,
-        to its end, as closely as along a route of its own. Where something is in the way, such a
-        route to the end takes its place.
+        Follows an external path to its end, as closely as a route of its own. `path` is an array
+        of shape (n, 2) [m] that starts near the robot. If an obstacle blocks it, a new route to
+        its end replaces it.
 
-        Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError`
-        for what is no path. Then it goes on as before.
+        Raises `NoRoom` if the robot does not fit along it on the map, and `ValueError` for an
+        invalid path. The navigator then continues as before.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -272,24 +279,24 @@ class Navigator:
         """
     def forget_sensed(self, /) -> None:
         """
-        Forgets all that was sensed, standing and moving.
+        Clears everything sensed, static and moving.
         """
     @property
     def goal(self, /) -> list[float] | None:
         """
-        The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` where there is
+        The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` if there is
         none.
         """
     @property
     def guide_points(self, /) -> NDArray[float64]:
         """
-        The points that the guide hands out along the route, its end last: a read-only array of
-        float64 of shape (n, 2) [m].
+        The points of the guide along the route, its end last: a read-only array of float64 of
+        shape (n, 2) [m].
         """
     def is_path_valid(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> bool:
         """
-        True if the robot fits along all of a path among what is known and sensed, turning on the
-        spot at its corners.
+        True if the robot fits along the whole path on the map and among the sensed obstacles,
+        turning on the spot at its corners.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -300,12 +307,12 @@ class Navigator:
     @property
     def map(self, /) -> Map:
         """
-        The map, as it was given and edited.
+        The map as given, with all edits.
         """
     def nearest_reachable(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any]) -> tuple[float, float] | None:
         """
-        The place nearest to a goal that can be reached from a start, on what is known and sensed
-        [m]; `None` where nothing can be reached.
+        Returns the position nearest to a goal that is reachable from a start, on the map and the
+        sensed obstacles [m]; `None` if nothing is reachable.
 
         >>> import keyway, numpy as np
         >>> walls = np.zeros((40, 40), dtype=bool)
@@ -316,9 +323,9 @@ class Navigator:
         """
     def note_override(self, /, now: float, command: Sequence[float] | NDArray[Any]) -> None:
         """
-        Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the
-        place of the last step's, at a time by the clock of the stamps [s]: of a person with a
-        joystick, or of a safety controller. To be called whenever such a command is given.
+        Notes that the robot received a command (v, omega) [m/s, rad/s] from another source, such
+        as a joystick or a safety controller, in place of that of the last step. `now` is the time
+        by the clock of the stamps [s]. Call it for every such command.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -328,24 +335,24 @@ class Navigator:
     @property
     def notice(self, /) -> str | None:
         """
-        That the robot was nearer to something than it can stand when it got its goal, until it has
-        left it, for people; otherwise `None`.
+        Message that the robot had less clearance than it needs when it got its goal, until it has
+        left the obstacle; otherwise `None`.
         """
     def observe(self, /, stamp: float, pose: Sequence[float] | NDArray[Any], velocity: Sequence[float] | NDArray[Any], scan: LaserScans | None = None, points: Points | Sequence[Points] | None = None) -> None:
         """
-        Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how
-        it moves (v, omega) [m/s, rad/s], and what its sensors see. Stamps are by any clock, the
-        same for all. They say when something was measured, not when it arrived.
+        Passes an observation: at a time [s], the pose (x, y, theta) [m, m, rad] and velocity (v,
+        omega) [m/s, rad/s] of the robot, and the data of its sensors. Stamps may be of any clock,
+        the same for all. They are the times of the measurements, not of their arrival.
 
-        `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
-        `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS,
-        `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a
-        stamp was made when the pose was measured. A robot with several sensors gives a list with
-        one scan of each, in their order, `None` where a sensor has made none. Without `scan` none
-        has arrived. `points` are those of other sensors: a `keyway.Points`, or a list of them.
+        `scan` is a `keyway.Scan`, which has the bearing of each beam: `Simulation.scan`, or
+        `keyway.Scan(ranges, angle_min, angle_increment)`. A ROS message, `sensor_msgs/LaserScan`,
+        is accepted as it is, with the stamp of its header. A scan without a stamp has that of the
+        pose. For a robot with several sensors it is a list with one scan per sensor, in their
+        order, `None` for a sensor without a new scan. Without `scan`, there is no new scan.
+        `points` are those of other sensors: a `keyway.Points`, or a list of them.
 
-        An observation that cannot be true, or is older than the last one, is not taken in; the next
-        `step` then stops the robot and says why.
+        An implausible observation, or one older than the last, is ignored; the next `step` then
+        stops the robot and gives the reason.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -359,9 +366,9 @@ class Navigator:
         """
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any]) -> NDArray[float64]:
         """
-        A route between two positions on what is known and sensed: a read-only array of float64 of
-        shape (n, 2) [m]. Nothing changes by it. An error where the robot touches something at the
-        start.
+        Plans a route between two positions on the map and the sensed obstacles: a read-only array
+        of float64 of shape (n, 2) [m]. The navigator does not change. Raises an exception if the
+        robot is in contact at the start.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -371,12 +378,12 @@ class Navigator:
         """
     def recoveries(self, /) -> dict[str, Any]:
         """
-        Counts of what was tried because the robot got no farther, by kind.
+        Returns the number of recoveries, by kind.
         """
     def relocate(self, /, pose: Sequence[float] | NDArray[Any]) -> None:
         """
-        Tells it where the robot is (x, y, theta) [m, m, rad]: before the first observation, or when
-        the localisation has been corrected.
+        Sets the pose of the robot (x, y, theta) [m, m, rad]: before the first observation, or
+        after a correction of the localisation.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -386,18 +393,18 @@ class Navigator:
     @property
     def remaining(self, /) -> float | None:
         """
-        Remaining length of the way [m]; `None` without a goal.
+        Remaining length of the route [m]; `None` without a goal.
         """
     def restart_clock(self, /) -> None:
         """
-        The clock of all stamps begins anew: the next observation may have any stamp.
+        Restarts the clock of all stamps: the next observation may have any stamp.
         """
     @staticmethod
     def restore(snapshot: bytes) -> Navigator:
         """
-        The navigator of a snapshot.
+        Restores the navigator of a snapshot.
 
-        Raises `ValueError` for bytes that are none, or of another version of Keyway.
+        Raises `ValueError` for bytes that are not a snapshot, or of another version of Keyway.
 
         >>> import keyway
         >>> keyway.Navigator.restore(b"nonsense")
@@ -407,26 +414,24 @@ class Navigator:
     @property
     def route(self, /) -> NDArray[float64]:
         """
-        The route being followed: a read-only array of float64 of shape (n, 2) [m]; empty without a
-        goal.
+        The current route: a read-only array of float64 of shape (n, 2) [m]; empty without a goal.
         """
     @property
     def routes_planned(self, /) -> int:
         """
-        Number of searches for a route: at first for each goal, when a scan showed something on it,
-        at way-points, after waits, and in recoveries.
+        Number of route searches: one for each goal, and more when a scan shows an obstacle on the
+        route, at waypoints, after waits, and in recoveries.
         """
     def set_goal(self, /, goal: Sequence[float] | NDArray[Any], progress: Progress | None = None) -> None:
         """
-        Drives to a goal from now on, in the place of the last one: a position [m], or with a
-        heading [m, m, rad].
+        Sets the goal, in place of the last one: a position [m], or with a heading [m, m, rad].
 
-        The robot may drive on in another thread while the route is searched. `progress(done,
-        expected)` is called meanwhile; nothing is counted: (0, None).
+        The robot may continue to drive in another thread during the search.
+        `progress(done, expected)` is called meanwhile; nothing is counted: (0, None).
 
-        Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no
-        way leads there, and `ValueError` where nobody has said where the robot is. Then it goes on
-        as before.
+        Raises `NoRoom` if the robot does not fit at its pose or at the goal, `NoPath` if no path
+        leads there, and `ValueError` if the pose of the robot is unknown. The navigator then
+        continues as before.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -438,7 +443,7 @@ class Navigator:
         """
     def set_goals(self, /, via: Sequence[Sequence[float]] | NDArray[Any], goal: Sequence[float] | NDArray[Any], progress: Progress | None = None) -> None:
         """
-        The same by way of some positions, in their order [m].
+        Sets a goal with waypoints before it, in their order [m].
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -450,8 +455,8 @@ class Navigator:
         """
     def set_map(self, /, grid: Map) -> None:
         """
-        Drives on another map from now on: one that has grown, or whose origin has moved. What was
-        sensed keeps its place in the world.
+        Replaces the map, such as by one that has grown, or whose origin has moved. Sensed
+        obstacles keep their positions in the world.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -463,9 +468,8 @@ class Navigator:
         """
     def set_masks(self, /, keep_out: Map | None = None, slow: tuple[Map, float] | None = None) -> None:
         """
-        Keeps out of the occupied cells of one map, and drives no faster than a speed [m/s] on those
-        of another one, in the place of what was given before. Their frames need not be that of the
-        navigator's map.
+        Keeps out of the occupied cells of one map, and limits the speed [m/s] on those of another
+        one. They replace earlier masks. Their frames may differ from that of the navigator's map.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -475,7 +479,7 @@ class Navigator:
         """
     def set_speed_limit(self, /, speed: float | None = None) -> None:
         """
-        Drives no faster than this from now on [m/s]; `None`: as fast as the robot can.
+        Limits the speed from now on [m/s]; `None` removes the limit.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -484,8 +488,9 @@ class Navigator:
         """
     def smooth(self, /, path: Sequence[Sequence[float]] | NDArray[Any]) -> NDArray[float64]:
         """
-        A line of positions, smoothed as its routes are, with the same clearance among what is known
-        and sensed where it is clear: a read-only array of float64 of shape (n, 2) [m].
+        Smooths a line of positions as the navigator's routes are, with the same clearance to the
+        map and the sensed obstacles where the line has it. Returns a read-only array of float64
+        of shape (n, 2) [m].
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -495,8 +500,8 @@ class Navigator:
         """
     def snapshot(self, /) -> bytes:
         """
-        All that it knows, wants and does, as bytes: `Navigator.restore` makes the same navigator of
-        them, which gives the same steps from here on. Navigators are copied and pickled so.
+        Returns the complete state as bytes. `Navigator.restore` creates the same navigator from
+        them, which gives the same steps from here on. Copying and pickling use snapshots.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -509,8 +514,8 @@ class Navigator:
     def spin(self, /, angle: float, allowance: float) -> None:
         """
         Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
-        brakes first, and has arrived when it stands again. Nothing is touched: where there is no
-        room it waits, until its time is over.
+        brakes first, and the turn ends when it is stationary again. It avoids contact: without
+        enough clearance it waits, until the time is over.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -520,8 +525,9 @@ class Navigator:
         """
     def step(self, /) -> Step:
         """
-        One control cycle: what the robot is to do, from what was observed. It counts for the time
-        that has passed by the stamps since the last step; the first one for a cycle of the robot.
+        Runs one control cycle: returns the command for the robot, based on the observations. The
+        cycle covers the time between the stamps of the last step and now; the first one lasts one
+        cycle of the robot.
         """
 
 @final
@@ -541,20 +547,23 @@ class Plan:
     @property
     def cells(self, /) -> NDArray[int32]:
         """
-        The planner's path, before smoothing: a read-only array of int32 of shape (n, 2), column and row of each cell.
+        The planner's path before smoothing: a read-only array of int32 of shape (n, 2), column
+        and row of each cell.
         """
     @property
     def cost(self, /) -> float:
         """
-        Cost of the planner's path [cells]: for the planners of the grid an exact number of straight and diagonal steps.
+        Cost of the planner's path [cells]. For grid planners it is an exact number of straight
+        and diagonal steps.
         """
     def curve(self, /, spacing: float = 0.05, robot: str | PathLike[str] | dict[str, Any] | None = None) -> NDArray[void]:
         """
-        The smoothed path by arc length, with the fastest way to drive along it within the limits of a robot (`keyway.names`,
-        a file, or a dictionary of its values).
+        Samples the smoothed path by arc length, with the fastest speeds within the limits of a
+        robot (a name of `keyway.names`, a file, or a dictionary of its values).
 
-        A structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`, `heading_rad`, `curvature_per_m`, `t_s`, `v_mps`
-        and `omega_radps`, all float64. At a corner the robot stops and turns on the spot.
+        Returns a structured array of shape (n,) with the fields `s_m`, `x_m`, `y_m`,
+        `heading_rad`, `curvature_per_m`, `t_s`, `v_mps` and `omega_radps`, all float64. At a
+        corner the robot stops and turns on the spot.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
@@ -565,17 +574,17 @@ class Plan:
     @property
     def expanded(self, /) -> int:
         """
-        Nodes taken from the open list.
+        Number of expanded nodes: nodes taken from the open list.
         """
     @property
     def generated(self, /) -> int:
         """
-        Nodes put into the open list, or improved there.
+        Number of generated nodes: nodes inserted or improved in the open list.
         """
     @property
     def jump_points(self, /) -> list[int]:
         """
-        Which of the cells are jump points, as ascending indices.
+        Indices of the cells that are jump points, ascending.
         """
     @property
     def length(self, /) -> float:
@@ -584,8 +593,9 @@ class Plan:
         """
     def metrics(self, /) -> dict[str, Any]:
         """
-        Measures of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`, `turning_angle_deg`, `non_smooth_turns`
-        and `min_clearance_m`. They are worked out at every call.
+        Returns metrics of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`,
+        `turning_angle_deg`, `non_smooth_turns` and `min_clearance_m`. They are computed at every
+        call.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((10, 10), dtype=bool), resolution=1.0)
@@ -600,7 +610,7 @@ class Plan:
     @property
     def shortfall(self, /) -> float | None:
         """
-        The distance that the path certainly keeps [m], where that is less than was asked for; otherwise `None`.
+        Clearance that the path guarantees [m], if it is less than requested; otherwise `None`.
         """
     @property
     def smoother(self, /) -> str:
@@ -610,16 +620,18 @@ class Plan:
     @property
     def xy(self, /) -> NDArray[float64]:
         """
-        The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. Of a curve, chords along it.
+        The smoothed path as a line: a read-only array of float64 of shape (n, 2) [m]. A curve is
+        approximated by chords.
         """
 
 @final
 class Planner:
     """
-    Plans many paths on one map: its layers, its planner and its smoother are made once.
+    Plans many paths on one map. Its layers, planner and smoother are built once.
 
-    The arguments are those of `keyway.plan`. `progress(done, expected)` is called meanwhile: the planner `prepared` counts twice
-    the cells at which paths may turn; `expected` is `None` for the others, which make a map's layers only.
+    The arguments are those of `keyway.plan`. `progress(done, expected)` is called during the
+    construction. The planner `prepared` counts twice the number of cells at which paths may turn;
+    for the other planners, which build only the layers, `expected` is `None`.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((50, 50), dtype=bool), resolution=0.1)
@@ -649,8 +661,9 @@ class Planner:
         """
     def plan_nearest(self, /, start: Sequence[float] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], budget: int | None = None, progress: Progress | None = None) -> tuple[int, Plan]:
         """
-        Plans a path to the nearest of several goals, by the cost of its path: `goals` are an array of shape (n, 2) [m]. Gives
-        the index of that goal, and the plan. Raises what `keyway.plan` does where no path leads to any of them.
+        Plans a path to the nearest of several goals, by path cost. `goals` are an array of shape
+        (n, 2) [m]. Returns the index of that goal, and the plan. Raises the exceptions of
+        `keyway.plan` if no goal has a path.
 
         >>> import keyway, numpy as np
         >>> planner = keyway.Planner(keyway.Map.from_array(np.zeros((9, 9), dtype=bool), resolution=1.0))
@@ -662,17 +675,17 @@ class Planner:
 @final
 class Points:
     """
-    Places at which a depth camera, a sonar or a bumper has met something, as points on the ground.
+    Hits of a depth camera, a sonar or a bumper, as points on the ground.
 
-    `positions` is an array of shape (n, 2), in the frame of the sensor [m]; points that are not
-    finite say nothing. `mount` is the pose of the sensor on the robot (x, y, theta) [m, m, rad].
-    Robots with several such sensors number them by `sensor`, from 0 to 7. `stamp` is the time at
-    which they were measured [s]; without one it is that of the pose with which they are given.
+    `positions` is an array of shape (n, 2), in the frame of the sensor [m]; non-finite points are
+    ignored. `mount` is the pose of the sensor on the robot (x, y, theta) [m, m, rad]. Robots with
+    several such sensors number them by `sensor`, from 0 to 7. `stamp` is the time of the
+    measurement [s]; by default it is that of the pose given with it.
 
-    They mark obstacles, which stay until the same sensor says that it sees nothing there. It does
-    where it has `bearings`, those of its right and left edge [rad] (0 where it looks, positive to
-    the left), and `ranges`, the nearest and the farthest at which it sees [m]: within these
-    everything that stands, unless something hides it.
+    The points mark obstacles, which stay until the same sensor clears them. A sensor clears if it
+    has `bearings`, those of its right and left edge [rad] (0 straight ahead, positive to the
+    left), and `ranges`, its minimum and maximum range [m]. Within these it detects every static
+    obstacle that is not occluded.
 
     >>> import keyway
     >>> keyway.Points([(1.0, 0.2), (1.0, 0.3)], bearings=(-0.7, 0.7), ranges=(0.3, 3.0))
@@ -687,7 +700,7 @@ class Points:
 @final
 class Run:
     """
-    A simulated run, and what was measured of it.
+    A simulated run, and its measurements.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -701,18 +714,18 @@ class Run:
     @property
     def metrics(self, /) -> dict[str, Any]:
         """
-        What was measured, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`, `min_clearance_m` and more. Without a
-        route it is empty.
+        Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`,
+        `min_clearance_m` and more. It is empty if there was no route.
         """
     @property
     def outcome(self, /) -> str:
         """
-        How it ended: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
+        Outcome of the run: `reached`, `collided`, `timeout`, `stuck` or `no_path`.
         """
     @property
     def reason(self, /) -> str | None:
         """
-        Why the goal was not reached, for people; otherwise `None`.
+        Message with the reason for not reaching the goal; otherwise `None`.
         """
     @property
     def report(self, /) -> dict[str, Any]:
@@ -722,26 +735,27 @@ class Run:
     @property
     def route(self, /) -> NDArray[float64]:
         """
-        The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]; of a curve, chords along it. Without a
-        route it is empty.
+        The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]. A curve
+        is approximated by chords. It is empty if there was no route.
         """
     @property
     def trajectory(self, /) -> NDArray[void]:
         """
-        The start, the end of every cycle, and the contact if there was one: a structured array of shape (n,) with the fields
-        `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all float64. Without a route it is empty.
+        The start, the end of every cycle, and the contact if there was one: a structured array of
+        shape (n,) with the fields `t_s`, `x_m`, `y_m`, `yaw_rad`, `v_mps` and `omega_radps`, all
+        float64. It is empty if there was no route.
         """
 
 @final
 class Scan:
     """
-    One turn of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
+    One scan of a range sensor, with the names and the meaning of `sensor_msgs/LaserScan`.
 
-    `ranges` are those of all beams [m]: infinity means that nothing was met, and NaN or 0 that the
-    beam says nothing. Beam i looks at the bearing `angle_min + i * angle_increment` [rad], 0
-    straight ahead and positive to the left: where the beams go clockwise, `angle_increment` is
-    negative. Sensors begin at the back, ahead or at a side; so neither angle has a default. `stamp`
-    is the time at which it was made [s]; without one it belongs to the pose with which it is given.
+    `ranges` are those of all beams [m]: infinity means no hit, and NaN or 0 an invalid beam. Beam
+    i has the bearing `angle_min + i * angle_increment` [rad], 0 straight ahead and positive to
+    the left; if the beams go clockwise, `angle_increment` is negative. Sensors start at the back,
+    at the front or at a side, so neither angle has a default. `stamp` is the time of the scan
+    [s]; by default it is that of the pose given with it.
 
     >>> import keyway, numpy as np
     >>> scan = keyway.Scan(np.full(360, np.inf), angle_min=0.0, angle_increment=np.pi / 180)
@@ -754,7 +768,7 @@ class Scan:
     @property
     def angle_increment(self, /) -> float:
         """
-        Bearing from one beam to the next [rad], negative where they go clockwise.
+        Bearing from one beam to the next [rad], negative if they go clockwise.
         """
     @property
     def angle_min(self, /) -> float:
@@ -774,17 +788,19 @@ class Scan:
     @property
     def stamp(self, /) -> float | None:
         """
-        Time at which it was made [s]; `None` where it was not said.
+        Time of the scan [s]; `None` if it was not given.
         """
 
 @final
 class Scene:
     """
-    A run to be made: map, robot, start, goal, and what stands or moves in the world but is not on the map.
+    Description of a run: map, robot, start, goal, and the static and moving obstacles that are
+    not on the map.
 
-    On a map in memory the arguments are those of a scene file, with the same names: `robot`, `stack`, `safe`, `via`, `seed`, `unknown`,
-    `moving`, `random`, `rules`, `disturbances`. `start` and `goal` are positions [m], or with a heading [m, m, rad]; in a scene
-    file the heading is in degrees. `Scene.read` reads a scene file.
+    For a map in memory, the arguments are those of a scene file, with the same names: `robot`,
+    `stack`, `safe`, `via`, `seed`, `unknown`, `moving`, `random`, `rules`, `disturbances`.
+    `start` and `goal` are positions [m], or poses [m, m, rad]; in a scene file the heading is in
+    degrees. `Scene.read` reads a scene file.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -794,7 +810,7 @@ class Scene:
     def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
     def __reduce__(self, /) -> tuple[Any, tuple[str, Path, Map | None]]:
         """
-        Scenes can be copied, pickled, and sent to other processes.
+        Supports copying, pickling and sending scenes to other processes.
         """
     def __repr__(self, /) -> str: ...
     @staticmethod
@@ -802,7 +818,7 @@ class Scene:
     @staticmethod
     def from_toml(text: str, folder: str | PathLike[str] | None = None) -> Scene:
         """
-        A scene from the text of a file; the files that it names are found from `folder`.
+        Parses the text of a scene file; paths in it are relative to `folder`.
 
         >>> import keyway
         >>> keyway.Scene.from_toml("version = 2")
@@ -812,12 +828,12 @@ class Scene:
     @property
     def is_random(self, /) -> bool:
         """
-        True if another seed gives another run.
+        True if the run depends on the seed.
         """
     @staticmethod
     def read(path: str | PathLike[str]) -> Scene:
         """
-        Reads a scene file. The files that it names are found from its folder.
+        Reads a scene file. Paths in it are relative to its folder.
 
         >>> import keyway
         >>> keyway.Scene.read("nowhere.toml")
@@ -826,7 +842,7 @@ class Scene:
         """
     def replace(self, /, seed: int | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, stack: str | None = None, safe: bool | None = None) -> Scene:
         """
-        The same scene with another seed, robot or stack, with the stop rule or without it.
+        Returns the same scene with another seed, robot or stack, with or without the stop rule.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -841,7 +857,7 @@ class Scene:
     @property
     def seed(self, /) -> int:
         """
-        Of all that is random.
+        Seed of all random values.
         """
     @property
     def stack(self, /) -> str:
@@ -850,7 +866,7 @@ class Scene:
         """
     def to_toml(self, /) -> str:
         """
-        The text of its file. A map in memory is called `array` there.
+        Returns the text of the scene file. A map in memory is called `array` there.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -861,12 +877,12 @@ class Scene:
 @final
 class Simulation:
     """
-    The world of a scene, in which somebody else drives: one control cycle per call, as learning
-    agents want it.
+    The world of a scene, driven by the caller: one control cycle per call, as in reinforcement
+    learning.
 
-    The goal is reached when the robot comes within its tolerance; it need not stand. The stack of
-    the scene plans the first route, by which the robot's heading at the start and the time limit
-    are chosen, and drives nothing. `progress(done, expected)` is called meanwhile, which is not
+    The goal is reached as soon as the robot is within its tolerance, even while moving. The stack
+    of the scene plans only the first route, which determines the initial heading and the time
+    limit; it does not drive. `progress(done, expected)` is called meanwhile; the work is not
     counted: (0, None).
 
     >>> import keyway, numpy as np
@@ -882,45 +898,45 @@ class Simulation:
     @property
     def cycle(self, /) -> float:
         """
-        Time of a step [s].
+        Duration of a step [s].
         """
     @property
     def goal(self, /) -> tuple[float, float]:
         """
-        Where the robot is to go (x, y) [m].
+        Position of the goal (x, y) [m].
         """
     @property
     def limits(self, /) -> tuple[tuple[float, float], tuple[float, float]]:
         """
-        The lowest and the highest velocity that the robot can drive: (v, omega) of each [m/s,
-        rad/s].
+        Lowest and highest velocity of the robot: (v, omega) of each [m/s, rad/s].
         """
     @property
     def outcome(self, /) -> str | None:
         """
-        How the run has ended, `reached`, `collided`, `timeout` or `stuck`; `None` while it goes on.
+        Outcome of the run, `reached`, `collided`, `timeout` or `stuck`; `None` while it is
+        running.
         """
     @property
     def pose(self, /) -> tuple[float, float, float]:
         """
-        Where the robot takes itself to be (x, y, theta) [m, m, rad].
+        Estimated pose of the robot (x, y, theta) [m, m, rad].
         """
     @property
     def range(self, /) -> float:
         """
-        Range of the sensor [m]; of several the longest.
+        Range of the sensor [m]; the longest one of several.
         """
     @property
     def scan(self, /) -> Scan:
         """
-        The present scan of the first sensor: ranges, and where their beams look.
-        `Navigator.observe` takes it as it is for a robot with a single sensor.
+        The current scan of the first sensor: ranges and bearings of its beams.
+        `Navigator.observe` accepts it for a robot with a single sensor.
         """
     @property
     def scans(self, /) -> list[Scan | None]:
         """
-        The present scans of all sensors, in their order; `None` where a sensor has made none in
-        this cycle. `Navigator.observe` takes them as they are.
+        The current scans of all sensors, in their order; `None` for a sensor without a scan in
+        this cycle. `Navigator.observe` accepts them.
         """
     @property
     def stamp(self, /) -> float:
@@ -929,12 +945,12 @@ class Simulation:
         """
     def step(self, /, v: float, omega: float, remaining: float | None = None) -> str | None:
         """
-        One control cycle: the robot drives towards the velocity (v, omega) [m/s, rad/s], as far as
-        its limits allow. Gives the outcome once the run has ended, and `None` before; a run that
-        has ended stays as it is.
+        Runs one control cycle: the robot accelerates towards the velocity (v, omega) [m/s,
+        rad/s], within its limits. Returns the outcome once the run has ended, and `None` before
+        that. A run that has ended does not change.
 
-        `remaining` is the way that is left [m], by which the robot counts as stuck; without it, the
-        straight line to the goal.
+        `remaining` is the remaining distance to the goal [m], which decides whether the robot is
+        stuck; by default it is the straight-line distance.
 
         >>> import keyway, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -945,7 +961,7 @@ class Simulation:
     @property
     def velocity(self, /) -> tuple[float, float]:
         """
-        How the robot takes itself to move (v, omega) [m/s, rad/s].
+        Estimated velocity of the robot (v, omega) [m/s, rad/s].
         """
 
 @final
@@ -965,13 +981,13 @@ class Step:
     @property
     def kind(self, /) -> int | None:
         """
-        The kind of that as a number, which never changes, for programs; otherwise `None`.
+        Number of the reason for `blocked`, which never changes; otherwise `None`.
         """
     @property
     def notice(self, /) -> str | None:
         """
-        A notice for people: the robot began nearer to something than it can stand, and is leaving
-        it. Otherwise `None`.
+        Message that the robot started with less clearance than it needs, and is leaving the
+        obstacle; otherwise `None`.
         """
     @property
     def omega(self, /) -> float:
@@ -981,8 +997,8 @@ class Step:
     @property
     def status(self, /) -> str:
         """
-        `drive`, `blocked` (there is no good way on at the moment; the command is safe), `arrived`,
-        or `idle` (there is no goal).
+        `drive`, `blocked` (there is no acceptable command at the moment; the given one is safe),
+        `arrived`, or `idle` (there is no goal).
         """
     @property
     def v(self, /) -> float:
@@ -992,7 +1008,7 @@ class Step:
     @property
     def why(self, /) -> str | None:
         """
-        The reason why the robot is blocked, for people; otherwise `None`.
+        Message with the reason for `blocked`; otherwise `None`.
         """
 
 def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
@@ -1000,17 +1016,16 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
     for byte, into the folder `out`.
 
-    `scenes` are scene files, and folders of them. `stacks` are names or files, or `["all"]`.
-    `seeds` is the number of seeds with which each scene is driven. `shard=(i, n)` makes only the
-    i-th of n parts; `keyway.merge` puts parts together. `jobs` is the number of threads. `keep`
-    chooses the runs whose full records are stored: `"none"`, `"failures"` or `"all"`. `robot` and
-    `disturbances` are names or files. `reached_by` is the pose by which a goal is reached,
-    `"truth"` or `"belief"`. With `safe` the stop rule stands behind every stack. `parameters` are
-    laid over every stack, those of `robot` in them over every robot. Runs that the folder holds are
-    not made again, so a batch that was stopped goes on where it was. `progress(done, expected)` is
-    called meanwhile.
+    `scenes` are scene files, or folders of them. `stacks` are names or files, or `["all"]`.
+    `seeds` is the number of seeds for each scene. `shard=(i, n)` runs only the i-th of n parts;
+    `keyway.merge` merges the parts. `jobs` is the number of threads. `keep` selects the runs that
+    get a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
+    files. `reached_by` is the pose that counts as reaching a goal, `"truth"` or `"belief"`.
+    `safe` enables the stop rule for every stack. `parameters` override those of every stack, and
+    their `robot` table those of every robot. Finished runs in the folder are not repeated, so an
+    interrupted batch is resumed. `progress(done, expected)` is called meanwhile.
 
-    Gives the report `keyway.batch/1` of `docs/reference/json.md`.
+    Returns the report `keyway.batch/1` of `docs/reference/json.md`.
 
     >>> import keyway
     >>> keyway.batch(["nowhere.toml"], out="unused")
@@ -1020,15 +1035,16 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
 
 def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
     """
-    Compares the paths of planners and smoothers on a map, with each other and with the shortest line, as `keyway compare`
-    does.
+    Compares the paths of planners and smoothers on a map, with each other and with the shortest
+    line, as `keyway compare` does.
 
-    `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are made from `seed`. `radius` is what
-    paths keep from every obstacle [m], `robot` a robot whose radius they keep. `parameters` are those of the TOML files as a
-    dictionary; by their names, of one planner or smoother only: `{"hsta": {"if_no_path": "fail"}}`.
-    With `as_published` they begin with the values of their papers, for maps with cells of 1 m,
-    whatever the robot. Without `times`, the same arguments give the same report.
-    `progress(done, expected)` is called meanwhile.
+    `planners` and `smoothers` are lists of names, or `["all"]`. `queries` random queries are
+    drawn from `seed`. `radius` is the clearance of paths to every obstacle [m]; `robot` is a
+    robot whose radius is used as clearance. `parameters` are those of the TOML files, as a
+    dictionary; those of one planner or smoother are set by its name:
+    `{"hsta": {"if_no_path": "fail"}}`. With `as_published`, planners and smoothers use the
+    parameters of their papers, for maps with cells of 1 m, whatever the robot. Without `times`,
+    the report is deterministic. `progress(done, expected)` is called meanwhile.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((20, 20), dtype=bool), resolution=1.0)
@@ -1039,8 +1055,8 @@ def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequenc
 
 def merge(parts: Sequence[str | PathLike[str]], out: str | PathLike[str]) -> dict[str, Any]:
     """
-    Puts together what `keyway.batch` has made in other folders, such as the parts of one batch.
-    Nothing is driven.
+    Merges results of `keyway.batch` from several folders, such as the parts of one batch. Nothing
+    is driven.
 
     >>> import keyway
     >>> keyway.merge([], out="unused")
@@ -1050,8 +1066,8 @@ def merge(parts: Sequence[str | PathLike[str]], out: str | PathLike[str]) -> dic
 
 def names(kind: str) -> list[str]:
     """
-    Names of what there is: of `planners`, `smoothers`, `guides`, `local-planners`, `stacks` or `robots`. `keyway list NAME`, a
-    command of the program, says what each of them is and what parameters it has.
+    Returns the available names of `planners`, `smoothers`, `guides`, `local-planners`, `stacks`
+    or `robots`. The command `keyway list NAME` describes each of them and its parameters.
 
     >>> import keyway
     >>> keyway.names("robots")[:3]
@@ -1060,23 +1076,24 @@ def names(kind: str) -> list[str]:
 
 def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
     """
-    Plans a path on a map, from one position to another [m], and smooths it.
+    Plans a path on a map from one position to another [m], and smooths it.
 
-    `planner` and `smoother` are names of `keyway.names`; `radius` is what the path keeps from every obstacle [m], `robot` a
-    robot whose inscribed radius it keeps instead. `parameters` are those of the TOML files, as a dictionary:
+    `planner` and `smoother` are names of `keyway.names`. `radius` is the clearance of the path to
+    every obstacle [m]; with `robot` it is the robot's inscribed radius instead. `parameters` are
+    those of the TOML files, as a dictionary:
     `{"planner": {"corners": "allow"}, "map": {"unknown": "free"}}`. With `as_published`, planner
-    and smoother begin with the values of their papers, for maps with cells of 1 m, whatever the
-    robot. `budget` limits the expanded nodes; with `nearest_reachable` the path ends in the cell
-    nearest to the goal that can be reached.
+    and smoother use the parameters of their papers, for maps with cells of 1 m, whatever the
+    robot. `budget` limits the expanded nodes. With `nearest_reachable` the path ends in the
+    reachable cell nearest to the goal.
 
-    What a map needs for a choice of parameters is kept with the map, so a second call is fast.
+    The layers for a choice of parameters are cached with the map, so a second call is fast.
 
-    `progress(done, expected)` is called meanwhile. What a `keyway.Planner` prepares is counted; a search is not, as nobody knows
-    how far it has to go: (0, None).
+    `progress(done, expected)` is called meanwhile. The preparation of a `keyway.Planner` is
+    counted. A search is not, as its length is unknown: (0, None).
 
-    Raises `NoPath` where no path joins the two and says what parts them, `NoRoom` where one of them is blocked or outside the
-    map, `Missed` where the planner finds none although there is one, `BudgetExhausted`, and `ValueError` for a parameter that
-    cannot be used.
+    Raises `NoPath` if no path connects the two, with the reason; `NoRoom` if one of them is
+    blocked or outside the map; `Missed` if the planner finds no path although there is one;
+    `BudgetExhausted`; and `ValueError` for an invalid parameter.
 
     >>> import keyway, numpy as np
     >>> occupied = np.zeros((60, 100), dtype=bool)
@@ -1093,8 +1110,9 @@ def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals
     """
     Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 
-    The other arguments are those of `keyway.plan`; `jobs` is the number of threads. Gives a list with a plan for each query, in
-    their order; where there is none, the exception that says why is in its place. `progress(done, expected)` is called meanwhile.
+    The other arguments are those of `keyway.plan`; `jobs` is the number of threads. Returns a
+    list with a plan for each query, in their order; for a query without one, the list contains
+    the exception. `progress(done, expected)` is called meanwhile.
 
     >>> import keyway, numpy as np
     >>> occupied = np.zeros((5, 5), dtype=bool)
@@ -1107,7 +1125,7 @@ def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals
 
 def program(words: Sequence[str]) -> int:
     """
-    The program `keyway` with these words of a command line; gives its exit code.
+    Runs the program `keyway` with the words of a command line and returns its exit code.
 
     >>> import keyway
     >>> keyway.program(["map", "info", "nowhere.map", "--format", "xml"])
@@ -1116,10 +1134,11 @@ def program(words: Sequence[str]) -> int:
 
 def simulate(scene: Scene, progress: Progress | None = None, times: bool = False) -> Run:
     """
-    Makes the run that a scene describes. The same scene gives the same run, to the last digit.
+    Simulates the run of a scene. The same scene gives the same run, to the last digit.
 
-    Start without a route, collision and timeout are outcomes and no exceptions. `progress(cycles, None)` is called meanwhile.
-    With `times` the times of decisions are measured; then two reports differ in them.
+    A start without a route, a collision and a timeout are outcomes, not exceptions.
+    `progress(cycles, None)` is called meanwhile. With `times`, the times of decisions are
+    measured; two reports then differ in them.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -1131,7 +1150,8 @@ def simulate(scene: Scene, progress: Progress | None = None, times: bool = False
 
 def simulate_team(scene: Scene, progress: Progress | None = None) -> list[Run]:
     """
-    Makes the runs of all robots of a scene, which drive in one world at the same time: a run for each, in their order.
+    Simulates the runs of all robots of a scene, which drive in one world at the same time.
+    Returns one run per robot, in their order.
 
     >>> import keyway, numpy as np
     >>> text = '''

@@ -1,5 +1,4 @@
-//! The world turns out to be otherwise: the place of the robot, the clock, the map, what is
-//! allowed.
+//! Changes of the robot's environment: its pose, the clock, the map, and limits.
 
 use super::{Navigator, told_pose};
 use crate::errors::{bad_value, navigate_error};
@@ -13,8 +12,8 @@ use std::sync::Arc;
 
 #[pymethods]
 impl Navigator {
-    /// Tells it where the robot is (x, y, theta) [m, m, rad]: before the first observation, or when
-    /// the localisation has been corrected.
+    /// Sets the pose of the robot (x, y, theta) [m, m, rad]: before the first observation, or
+    /// after a correction of the localisation.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -26,9 +25,9 @@ impl Navigator {
         Ok(())
     }
 
-    /// Notes that the robot was given a command (v, omega) [m/s, rad/s] of somebody else in the
-    /// place of the last step's, at a time by the clock of the stamps [s]: of a person with a
-    /// joystick, or of a safety controller. To be called whenever such a command is given.
+    /// Notes that the robot received a command (v, omega) [m/s, rad/s] from another source, such
+    /// as a joystick or a safety controller, in place of that of the last step. `now` is the time
+    /// by the clock of the stamps [s]. Call it for every such command.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -40,8 +39,8 @@ impl Navigator {
         Ok(())
     }
 
-    /// Drives on another map from now on: one that has grown, or whose origin has moved. What was
-    /// sensed keeps its place in the world.
+    /// Replaces the map, such as by one that has grown, or whose origin has moved. Sensed
+    /// obstacles keep their positions in the world.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -55,8 +54,8 @@ impl Navigator {
         py.detach(|| self.lock().navigator.set_map(&map)).map_err(|error| navigate_error(&error))
     }
 
-    /// Changes a part of the map to that of another one, cell by cell at the centres of the cells
-    /// of `window`.
+    /// Replaces a part of the map by that of another one, cell by cell at the centres of the
+    /// cells of `window`.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -79,13 +78,13 @@ impl Navigator {
         });
     }
 
-    /// The map, as it was given and edited.
+    /// The map as given, with all edits.
     #[getter]
     fn map(&self, py: Python<'_>) -> Map {
         py.detach(|| map_of_array(self.lock().navigator.map().clone()))
     }
 
-    /// Drives no faster than this from now on [m/s]; `None`: as fast as the robot can.
+    /// Limits the speed from now on [m/s]; `None` removes the limit.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -96,9 +95,8 @@ impl Navigator {
         py.detach(|| self.lock().navigator.set_speed_limit(speed)).map_err(bad_value)
     }
 
-    /// Keeps out of the occupied cells of one map, and drives no faster than a speed [m/s] on those
-    /// of another one, in the place of what was given before. Their frames need not be that of the
-    /// navigator's map.
+    /// Keeps out of the occupied cells of one map, and limits the speed [m/s] on those of another
+    /// one. They replace earlier masks. Their frames may differ from that of the navigator's map.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -123,12 +121,12 @@ impl Navigator {
         Ok(())
     }
 
-    /// Forgets all that was sensed, standing and moving.
+    /// Clears everything sensed, static and moving.
     fn forget_sensed(&self, py: Python<'_>) {
         py.detach(|| self.lock().navigator.forget_sensed());
     }
 
-    /// The clock of all stamps begins anew: the next observation may have any stamp.
+    /// Restarts the clock of all stamps: the next observation may have any stamp.
     fn restart_clock(&self, py: Python<'_>) {
         py.detach(|| self.lock().navigator.restart_clock());
     }

@@ -1,4 +1,4 @@
-//! Driving a robot.
+//! The navigator, which drives a robot.
 
 mod changes;
 mod storing;
@@ -23,20 +23,21 @@ use pyo3::prelude::*;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Drives a robot to goals: plans on the known map, remembers what scans show, and decides on a
+/// Drives a robot to goals: plans on the known map, remembers sensed obstacles, and decides on a
 /// velocity in every cycle.
 ///
-/// `robot` and `stack` are names of `keyway.names`, or files; a robot may also be a dictionary with
-/// the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`, and is the
-/// `small` one unless given. `parameters` are laid over the stack, as a dictionary with the names
-/// of the TOML files. With `as_published` the stack has the values
-/// of its paper. With `safe` only commands are issued after which the robot can still stop before
-/// it touches anything, whatever the stack wants. `progress(done, expected)` is called while the
-/// layers of the map are made, which are not counted: (0, None).
+/// `robot` and `stack` are names of `keyway.names`, or files. A robot may also be a dictionary
+/// with the fields of its file, such as `dict(like="jackal", limits=dict(v_max_mps=0.5))`; the
+/// default is `small`. `parameters` override those of the stack, as a dictionary with the names
+/// of the TOML files. With `as_published` the stack has the parameters of its paper. With `safe`,
+/// only commands are issued after which the robot can still stop before a contact, overriding the
+/// stack. `progress(done, expected)` is called while the layers of the map are built; they are
+/// not counted: (0, None).
 ///
-/// It has no goal at first. Goals come and go while the robot drives; what was sensed stays.
+/// A new navigator has no goal. Goals may change while the robot drives; sensed obstacles are
+/// kept.
 ///
-/// Raises `ValueError` for a value that cannot be used.
+/// Raises `ValueError` for an invalid value.
 ///
 /// >>> import keyway, numpy as np
 /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -111,26 +112,26 @@ impl Navigator {
         Ok(Self::of_parts(navigator, scans, (stack.to_owned(), cycle_s, sensors)))
     }
 
-    /// Contradictions in what was observed lately, for people, such as a velocity that is always 0
-    /// although the pose moves.
+    /// Messages about inconsistencies in recent observations, such as a velocity that is always 0
+    /// although the pose changes.
     #[getter]
     fn doubts(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| self.lock().navigator.doubts().iter().map(ToString::to_string).collect())
     }
 
-    /// Takes in what was measured: at a time [s], where the robot is (x, y, theta) [m, m, rad], how
-    /// it moves (v, omega) [m/s, rad/s], and what its sensors see. Stamps are by any clock, the
-    /// same for all. They say when something was measured, not when it arrived.
+    /// Passes an observation: at a time [s], the pose (x, y, theta) [m, m, rad] and velocity (v,
+    /// omega) [m/s, rad/s] of the robot, and the data of its sensors. Stamps may be of any clock,
+    /// the same for all. They are the times of the measurements, not of their arrival.
     ///
-    /// `scan` is a `keyway.Scan`, which says where each beam looks: `Simulation.scan`, or
-    /// `keyway.Scan(ranges, angle_min, angle_increment)`. A message of ROS,
-    /// `sensor_msgs/LaserScan`, is taken as it is, with the stamp of its header. A scan without a
-    /// stamp was made when the pose was measured. A robot with several sensors gives a list with
-    /// one scan of each, in their order, `None` where a sensor has made none. Without `scan` none
-    /// has arrived. `points` are those of other sensors: a `keyway.Points`, or a list of them.
+    /// `scan` is a `keyway.Scan`, which has the bearing of each beam: `Simulation.scan`, or
+    /// `keyway.Scan(ranges, angle_min, angle_increment)`. A ROS message, `sensor_msgs/LaserScan`,
+    /// is accepted as it is, with the stamp of its header. A scan without a stamp has that of the
+    /// pose. For a robot with several sensors it is a list with one scan per sensor, in their
+    /// order, `None` for a sensor without a new scan. Without `scan`, there is no new scan.
+    /// `points` are those of other sensors: a `keyway.Points`, or a list of them.
     ///
-    /// An observation that cannot be true, or is older than the last one, is not taken in; the next
-    /// `step` then stops the robot and says why.
+    /// An implausible observation, or one older than the last, is ignored; the next `step` then
+    /// stops the robot and gives the reason.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -167,8 +168,9 @@ impl Navigator {
         Ok(())
     }
 
-    /// One control cycle: what the robot is to do, from what was observed. It counts for the time
-    /// that has passed by the stamps since the last step; the first one for a cycle of the robot.
+    /// Runs one control cycle: returns the command for the robot, based on the observations. The
+    /// cycle covers the time between the stamps of the last step and now; the first one lasts one
+    /// cycle of the robot.
     fn step(&self, py: Python<'_>) -> Step {
         py.detach(|| {
             let navigator = &mut self.lock().navigator;
@@ -177,7 +179,7 @@ impl Navigator {
         })
     }
 
-    /// A scan of the robot's first sensor in which nothing was met.
+    /// A scan of the robot's first sensor without hits.
     #[getter]
     fn clear_scan(&self) -> crate::scan::Scan {
         crate::scan::Scan::new(Scan::of_nothing(&self.sensors[0]), None)
@@ -189,7 +191,7 @@ impl Navigator {
         self.cycle_s
     }
 
-    /// The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` where there is
+    /// The goal (x, y) [m], or with a heading (x, y, heading) [m, m, rad]; `None` if there is
     /// none.
     #[getter]
     fn goal(&self, py: Python<'_>) -> Option<Vec<f64>> {
@@ -197,8 +199,7 @@ impl Navigator {
         Some([Some(position.x), Some(position.y), heading_rad].into_iter().flatten().collect())
     }
 
-    /// The route being followed: a read-only array of float64 of shape (n, 2) [m]; empty without a
-    /// goal.
+    /// The current route: a read-only array of float64 of shape (n, 2) [m]; empty without a goal.
     #[getter]
     fn route(&self, py: Python<'_>) -> Floats2 {
         let points = py.detach(|| {
@@ -208,34 +209,34 @@ impl Navigator {
         Floats2(of_points(py, &points))
     }
 
-    /// The points that the guide hands out along the route, its end last: a read-only array of
-    /// float64 of shape (n, 2) [m].
+    /// The points of the guide along the route, its end last: a read-only array of float64 of
+    /// shape (n, 2) [m].
     #[getter]
     fn guide_points(&self, py: Python<'_>) -> Floats2 {
         Floats2(of_points(py, &py.detach(|| self.lock().navigator.guide_points())))
     }
 
-    /// That the robot was nearer to something than it can stand when it got its goal, until it has
-    /// left it, for people; otherwise `None`.
+    /// Message that the robot had less clearance than it needs when it got its goal, until it has
+    /// left the obstacle; otherwise `None`.
     #[getter]
     fn notice(&self, py: Python<'_>) -> Option<String> {
         py.detach(|| self.lock().navigator.too_near().map(ToString::to_string))
     }
 
-    /// Remaining length of the way [m]; `None` without a goal.
+    /// Remaining length of the route [m]; `None` without a goal.
     #[getter]
     fn remaining(&self, py: Python<'_>) -> Option<f64> {
         py.detach(|| self.lock().navigator.guidance().map(|guidance| guidance.remaining_m))
     }
 
-    /// Number of searches for a route: at first for each goal, when a scan showed something on it,
-    /// at way-points, after waits, and in recoveries.
+    /// Number of route searches: one for each goal, and more when a scan shows an obstacle on the
+    /// route, at waypoints, after waits, and in recoveries.
     #[getter]
     fn routes_planned(&self, py: Python<'_>) -> u32 {
         py.detach(|| self.lock().navigator.routes_planned())
     }
 
-    /// Counts of what was tried because the robot got no farther, by kind.
+    /// Returns the number of recoveries, by kind.
     fn recoveries(&self, py: Python<'_>) -> PyResult<Json> {
         json(py, &py.detach(|| self.lock().navigator.recoveries()))
     }
@@ -250,7 +251,7 @@ impl Navigator {
     }
 }
 
-/// A pose whose angle may be no number: the navigator refuses it.
+/// Converts a pose. Its angle may be non-finite: the navigator refuses it.
 fn told_pose(pose: &Numbers) -> PyResult<Pose> {
     let [x, y, theta] = pose.exactly("pose", "(x, y, theta)")?;
     Ok(if theta.is_finite() { Pose::new(x, y, theta) } else { Pose { x, y, theta } })

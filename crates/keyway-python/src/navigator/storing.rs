@@ -1,4 +1,4 @@
-//! A navigator as a value, and back.
+//! Snapshots of a navigator.
 
 use super::Navigator;
 use crate::errors::bad_value;
@@ -17,8 +17,8 @@ struct Stored {
 
 #[pymethods]
 impl Navigator {
-    /// All that it knows, wants and does, as bytes: `Navigator.restore` makes the same navigator of
-    /// them, which gives the same steps from here on. Navigators are copied and pickled so.
+    /// Returns the complete state as bytes. `Navigator.restore` creates the same navigator from
+    /// them, which gives the same steps from here on. Copying and pickling use snapshots.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -37,9 +37,9 @@ impl Navigator {
         Ok(PyBytes::new(py, &stored.map_err(bad_value)?))
     }
 
-    /// The navigator of a snapshot.
+    /// Restores the navigator of a snapshot.
     ///
-    /// Raises `ValueError` for bytes that are none, or of another version of Keyway.
+    /// Raises `ValueError` for bytes that are not a snapshot, or of another version of Keyway.
     ///
     /// >>> import keyway
     /// >>> keyway.Navigator.restore(b"nonsense")

@@ -1,4 +1,4 @@
-//! Goals, paths from elsewhere, single acts; and questions about ways.
+//! Goals, external paths and single behaviours of a navigator, and queries about paths.
 
 use super::Navigator;
 use crate::arrays::{Floats2, of_points};
@@ -10,7 +10,7 @@ use keyway::navigate::Goal;
 use pyo3::prelude::*;
 
 impl Navigator {
-    /// Searches without holding the navigator, and takes the goal only if nothing is raised
+    /// Searches without locking the navigator, and sets the goal only if no exception is raised
     /// meanwhile.
     fn set(
         &self,
@@ -30,15 +30,14 @@ impl Navigator {
 
 #[pymethods]
 impl Navigator {
-    /// Drives to a goal from now on, in the place of the last one: a position [m], or with a
-    /// heading [m, m, rad].
+    /// Sets the goal, in place of the last one: a position [m], or with a heading [m, m, rad].
     ///
-    /// The robot may drive on in another thread while the route is searched. `progress(done,
-    /// expected)` is called meanwhile; nothing is counted: (0, None).
+    /// The robot may continue to drive in another thread during the search.
+    /// `progress(done, expected)` is called meanwhile; nothing is counted: (0, None).
     ///
-    /// Raises `NoRoom` where the robot does not fit where it is or at the goal, `NoPath` where no
-    /// way leads there, and `ValueError` where nobody has said where the robot is. Then it goes on
-    /// as before.
+    /// Raises `NoRoom` if the robot does not fit at its pose or at the goal, `NoPath` if no path
+    /// leads there, and `ValueError` if the pose of the robot is unknown. The navigator then
+    /// continues as before.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -52,7 +51,7 @@ impl Navigator {
         self.set(py, &[], &goal, progress.as_ref())
     }
 
-    /// The same by way of some positions, in their order [m].
+    /// Sets a goal with waypoints before it, in their order [m].
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -72,12 +71,12 @@ impl Navigator {
         self.set(py, &via.points("via")?, &goal, progress.as_ref())
     }
 
-    /// Drives along a path from elsewhere, an array of shape (n, 2) [m] that begins near the robot,
-    /// to its end, as closely as along a route of its own. Where something is in the way, such a
-    /// route to the end takes its place.
+    /// Follows an external path to its end, as closely as a route of its own. `path` is an array
+    /// of shape (n, 2) [m] that starts near the robot. If an obstacle blocks it, a new route to
+    /// its end replaces it.
     ///
-    /// Raises `NoRoom` where the map shows that the robot does not fit along it, and `ValueError`
-    /// for what is no path. Then it goes on as before.
+    /// Raises `NoRoom` if the robot does not fit along it on the map, and `ValueError` for an
+    /// invalid path. The navigator then continues as before.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -92,8 +91,8 @@ impl Navigator {
     }
 
     /// Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
-    /// brakes first, and has arrived when it stands again. Nothing is touched: where there is no
-    /// room it waits, until its time is over.
+    /// brakes first, and the turn ends when it is stationary again. It avoids contact: without
+    /// enough clearance it waits, until the time is over.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -104,7 +103,7 @@ impl Navigator {
         py.detach(|| self.lock().navigator.spin(angle, allowance)).map_err(bad_value)
     }
 
-    /// Drives straight back by a distance [m] in the same way.
+    /// Drives straight back by a distance [m], with the same rules as `spin`.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -117,7 +116,7 @@ impl Navigator {
         py.detach(|| self.lock().navigator.back_up(distance, allowance)).map_err(bad_value)
     }
 
-    /// Drives straight ahead by a distance [m] in the same way.
+    /// Drives straight ahead by a distance [m], with the same rules as `spin`.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -128,14 +127,14 @@ impl Navigator {
         py.detach(|| self.lock().navigator.drive_on_heading(distance, allowance)).map_err(bad_value)
     }
 
-    /// Gives up what it was asked to do: the robot brakes, and stands.
+    /// Cancels the current task: the robot brakes to a stop.
     fn cancel(&self, py: Python<'_>) {
         py.detach(|| self.lock().navigator.cancel());
     }
 
-    /// A route between two positions on what is known and sensed: a read-only array of float64 of
-    /// shape (n, 2) [m]. Nothing changes by it. An error where the robot touches something at the
-    /// start.
+    /// Plans a route between two positions on the map and the sensed obstacles: a read-only array
+    /// of float64 of shape (n, 2) [m]. The navigator does not change. Raises an exception if the
+    /// robot is in contact at the start.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -149,8 +148,8 @@ impl Navigator {
         Ok(Floats2(of_points(py, route.smoothed.points())))
     }
 
-    /// True if the robot fits along all of a path among what is known and sensed, turning on the
-    /// spot at its corners.
+    /// True if the robot fits along the whole path on the map and among the sensed obstacles,
+    /// turning on the spot at its corners.
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -162,8 +161,9 @@ impl Navigator {
         Ok(py.detach(|| self.lock().navigator.is_path_valid(&path)))
     }
 
-    /// A line of positions, smoothed as its routes are, with the same clearance among what is known
-    /// and sensed where it is clear: a read-only array of float64 of shape (n, 2) [m].
+    /// Smooths a line of positions as the navigator's routes are, with the same clearance to the
+    /// map and the sensed obstacles where the line has it. Returns a read-only array of float64
+    /// of shape (n, 2) [m].
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
@@ -176,8 +176,8 @@ impl Navigator {
         Ok(Floats2(of_points(py, smoothed.points())))
     }
 
-    /// The place nearest to a goal that can be reached from a start, on what is known and sensed
-    /// [m]; `None` where nothing can be reached.
+    /// Returns the position nearest to a goal that is reachable from a start, on the map and the
+    /// sensed obstacles [m]; `None` if nothing is reachable.
     ///
     /// >>> import keyway, numpy as np
     /// >>> walls = np.zeros((40, 40), dtype=bool)

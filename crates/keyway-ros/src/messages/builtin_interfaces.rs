@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A time since 1970, or since a simulation began.
+/// A time since 1970, or since the start of a simulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Time {
     pub(crate) sec: i32,
@@ -10,19 +10,19 @@ pub(crate) struct Time {
 }
 
 impl Time {
-    /// The nearest one that ROS has.
+    /// The nearest representable time.
     pub(crate) fn of(stamp_s: f64) -> Self {
         let (sec, nanosec) = split(stamp_s);
         Self { sec, nanosec }
     }
 
-    /// In seconds: to a quarter of a microsecond, in this century.
+    /// The time in seconds, accurate to a quarter of a microsecond in this century.
     pub(crate) fn stamp_s(self) -> f64 {
         f64::from(self.sec) + 1e-9 * f64::from(self.nanosec)
     }
 }
 
-/// From one time to another.
+/// A time difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Duration {
     pub(crate) sec: i32,
@@ -30,19 +30,19 @@ pub(crate) struct Duration {
 }
 
 impl Duration {
-    /// The nearest one that ROS has.
+    /// The nearest representable duration.
     pub(crate) fn of(duration_s: f64) -> Self {
         let (sec, nanosec) = split(duration_s);
         Self { sec, nanosec }
     }
 
-    /// In seconds.
+    /// The duration in seconds.
     pub(crate) fn duration_s(self) -> f64 {
         f64::from(self.sec) + 1e-9 * f64::from(self.nanosec)
     }
 }
 
-/// Whole seconds, and nanoseconds after them.
+/// Whole seconds, and the remaining nanoseconds.
 fn split(time_s: f64) -> (i32, u32) {
     let whole = time_s.floor();
     let nanosec = ((time_s - whole) * 1e9).round() as u32;

@@ -6,7 +6,7 @@ use crate::transforms::Placement;
 use keyway::geometry::{self, Velocity};
 use serde::{Deserialize, Serialize};
 
-/// Of a vector or a point.
+/// A vector or a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Vector3 {
     pub(crate) x: f64,
@@ -31,27 +31,27 @@ impl Default for Quaternion {
 }
 
 impl Quaternion {
-    /// Around the z axis.
+    /// A rotation around the z axis.
     fn of_heading(heading_rad: f64) -> Self {
         let (z, w) = (0.5 * heading_rad).sin_cos();
         Self { x: 0.0, y: 0.0, z, w }
     }
 
-    /// The angle around the z axis \[rad\], as ROS computes yaw; `None` for one that is no
-    /// rotation, such as four zeros.
+    /// The angle around the z axis \[rad\], as ROS computes yaw; `None` for an invalid rotation,
+    /// such as four zeros.
     #[cfg(test)]
     pub(crate) fn heading_rad(self) -> Option<f64> {
         Some(placement(Vector3::default(), self)?.on_ground().theta)
     }
 }
 
-/// A frame that is there; `None` for one that is not finite or has no rotation.
+/// A frame at this position; `None` if it is not finite or has an invalid rotation.
 fn placement(position: Vector3, orientation: Quaternion) -> Option<Placement> {
     let (Vector3 { x, y, z }, turn) = (position, orientation);
     Placement::new([x, y, z], [turn.x, turn.y, turn.z, turn.w])
 }
 
-/// A place and a rotation.
+/// A position and a rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pose {
     pub(crate) position: Vector3,
@@ -59,7 +59,7 @@ pub(crate) struct Pose {
 }
 
 impl Pose {
-    /// On the ground; `None` for one that is not finite or has no rotation.
+    /// The pose on the ground; `None` if it is not finite or has an invalid rotation.
     pub(crate) fn on_ground(&self) -> Option<geometry::Pose> {
         Some(placement(self.position, self.orientation)?.on_ground())
     }
@@ -82,7 +82,7 @@ impl Named for PoseStamped {
     const NAME: (&'static str, &'static str) = ("geometry_msgs", "PoseStamped");
 }
 
-/// A pose that a user has set, or a localisation has found.
+/// A pose set by a user, or estimated by a localisation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PoseWithCovarianceStamped {
     pub(crate) header: Header,
@@ -115,7 +115,7 @@ impl Named for PolygonStamped {
     const NAME: (&'static str, &'static str) = ("geometry_msgs", "PolygonStamped");
 }
 
-/// Six times six, of which nothing is used.
+/// A 6 x 6 matrix; unused here.
 pub(crate) type Covariance = [[f64; 6]; 6];
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -171,7 +171,7 @@ pub(crate) struct Transform {
     pub(crate) rotation: Quaternion,
 }
 
-/// The place of a frame in another one.
+/// The pose of a frame in another one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TransformStamped {
     pub(crate) header: Header,
@@ -180,7 +180,7 @@ pub(crate) struct TransformStamped {
 }
 
 impl TransformStamped {
-    /// `None` for one that is not finite or has no rotation.
+    /// The placement; `None` if it is not finite or has an invalid rotation.
     pub(crate) fn placement(&self) -> Option<Placement> {
         placement(self.transform.translation, self.transform.rotation)
     }
@@ -197,7 +197,7 @@ mod tests {
             let found_rad = Quaternion::of_heading(heading_rad).heading_rad().unwrap();
             assert!((found_rad - heading_rad).abs() < 1e-12);
         }
-        // Around the x axis first, as of a lidar that hangs upside down: its heading stays.
+        // Around the x axis first, as for a lidar mounted upside down: its heading stays.
         let upside_down = Quaternion { x: 1.0, y: 0.0, z: 0.0, w: 0.0 };
         assert_eq!(upside_down.heading_rad(), Some(0.0));
         let turned = Quaternion { x: 0.0, y: 1.0, z: 0.0, w: 0.0 };

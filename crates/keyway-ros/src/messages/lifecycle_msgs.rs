@@ -4,7 +4,7 @@ use super::{Empty, Service, service};
 use serde::{Deserialize, Serialize};
 
 service! {
-    /// The state of a node that is started and stopped by a manager.
+    /// Query of the state of a managed node.
     "lifecycle_msgs", GetState: Empty => State
 }
 
@@ -15,7 +15,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Of a node that may work, or may not.
+    /// State of an active or inactive node.
     pub(crate) fn of(is_active: bool) -> Self {
         let (id, label) = if is_active { (3, "active") } else { (2, "inactive") };
         Self { id, label: label.to_owned() }

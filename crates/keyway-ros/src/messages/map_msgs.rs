@@ -4,7 +4,7 @@ use super::Named;
 use super::std_msgs::Header;
 use serde::{Deserialize, Serialize};
 
-/// A rectangle of a map that has changed.
+/// A changed rectangle of a map.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct OccupancyGridUpdate {
     pub(crate) header: Header,

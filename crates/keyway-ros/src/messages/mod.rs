@@ -1,7 +1,7 @@
-//! Messages of ROS 2 by their packages: their fields in the order of their definitions, which is
-//! their encoding (CDR).
+//! Messages of ROS 2, by package. The order of the fields is that of their definitions, which
+//! determines their encoding (CDR).
 //!
-//! The encoding says nothing of the fields, so a definition that differs between distributions is
+//! The encoding does not identify fields, so a definition that differs between distributions is
 //! written once for each of them.
 
 pub(crate) mod builtin_interfaces;
@@ -23,13 +23,13 @@ use serde::de::DeserializeOwned;
 
 /// A message of a topic.
 pub(crate) trait Named: Clone + Serialize + DeserializeOwned + Send + 'static {
-    /// Its package and its name in there.
+    /// Its package and its name in that package.
     const NAME: (&'static str, &'static str);
 }
 
-/// An action: what is asked for, what becomes of it, and what is told on the way.
+/// An action: its goal, its outcome, and its feedback.
 pub(crate) trait Action: 'static {
-    /// Its package and its name in there.
+    /// Its package and its name in that package.
     const NAME: (&'static str, &'static str);
     type Goal: Clone + Serialize + DeserializeOwned + Send + 'static;
     type Outcome: Clone + Serialize + DeserializeOwned + Send + 'static;
@@ -38,13 +38,13 @@ pub(crate) trait Action: 'static {
 
 /// A service: a request and its response.
 pub(crate) trait Service: 'static {
-    /// Its package and its name in there.
+    /// Its package and its name in that package.
     const NAME: (&'static str, &'static str);
     type Request: Clone + Serialize + DeserializeOwned + Send + 'static;
     type Response: Clone + Serialize + DeserializeOwned + Send + 'static;
 }
 
-/// Makes a service of its parts.
+/// Defines a service from its parts.
 macro_rules! service {
     ($(#[$doc:meta])* $package:literal, $service:ident: $request:ty => $response:ty) => {
         $(#[$doc])*
@@ -59,7 +59,7 @@ macro_rules! service {
 }
 use service;
 
-/// A definition without fields: it has one byte, as C knows no empty structs.
+/// A definition without fields: it has one byte, as C has no empty structs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub(crate) struct Empty {
     structure_needs_at_least_one_member: u8,

@@ -17,7 +17,7 @@ pub(crate) struct MapMetaData {
     pub(crate) origin: Pose,
 }
 
-/// Rows from the bottom; 0 is free, 100 is occupied, -1 is unknown.
+/// A grid of rows from the bottom; 0 is free, 100 is occupied, -1 is unknown.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct OccupancyGrid {
     pub(crate) header: Header,
@@ -30,7 +30,7 @@ impl Named for OccupancyGrid {
 }
 
 impl MapMetaData {
-    /// The size and the place of a grid.
+    /// The size and placement of a grid.
     pub(crate) fn of(frame: &GridFrame, map_load_time: Time) -> Self {
         Self {
             map_load_time,
@@ -43,7 +43,7 @@ impl MapMetaData {
 }
 
 impl OccupancyGrid {
-    /// A map.
+    /// Converts a map.
     pub(crate) fn of(map: &map::OccupancyGrid, header: Header) -> Self {
         let value = |cell| match map.state(cell) {
             Some(CellState::Free) => 0,
@@ -86,10 +86,10 @@ pub(crate) struct Goals {
 }
 
 impl Path {
-    /// Poses at most so far apart that their readers ask for no more \[m\].
+    /// Maximum distance between two poses that path consumers accept \[m\].
     const STEP_M: f64 = 0.05;
 
-    /// Along these points in small steps, with the heading of the way; at the end with this one.
+    /// Samples a polyline in small steps, with its headings; the last pose has the given heading.
     pub(crate) fn along(header: &Header, points: &[Point], heading_rad: Option<f64>) -> Self {
         let mut dense: Vec<Point> = points.first().copied().into_iter().collect();
         for pair in points.windows(2) {
@@ -100,8 +100,8 @@ impl Path {
         Self::new(header, &dense, heading_rad)
     }
 
-    /// Through these points, each with the heading to the next one; at the last one with this
-    /// heading, or with that of the way to it.
+    /// Poses at these points, each with the heading to the next one. The last one has the given
+    /// heading, or that of the last segment.
     pub(crate) fn new(header: &Header, points: &[Point], heading_rad: Option<f64>) -> Self {
         let along_rad = |index: usize| {
             let next = points.get(index + 1).map(|next| (points[index], *next));

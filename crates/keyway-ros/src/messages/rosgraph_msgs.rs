@@ -4,7 +4,7 @@ use super::Named;
 use super::builtin_interfaces::Time;
 use serde::{Deserialize, Serialize};
 
-/// The time of a simulation.
+/// The simulated time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Clock {
     pub(crate) clock: Time,

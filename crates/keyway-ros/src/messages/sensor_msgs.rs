@@ -23,7 +23,7 @@ impl Named for LaserScan {
     const NAME: (&'static str, &'static str) = ("sensor_msgs", "LaserScan");
 }
 
-/// A picture in a format such as PNG.
+/// An image in a format such as PNG.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct CompressedImage {
     pub(crate) header: Header,
@@ -31,7 +31,7 @@ pub(crate) struct CompressedImage {
     pub(crate) data: Vec<u8>,
 }
 
-/// Points in rows, each of a number of bytes in which its fields stand.
+/// Rows of points, each a fixed number of bytes that contain its fields.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointCloud2 {
     pub(crate) header: Header,
@@ -53,7 +53,7 @@ impl Named for PointCloud2 {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct PointField {
     pub(crate) name: String,
-    /// Bytes before it.
+    /// Offset in bytes.
     pub(crate) offset: u32,
     pub(crate) datatype: u8,
     pub(crate) count: u32,

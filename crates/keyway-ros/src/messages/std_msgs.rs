@@ -3,7 +3,7 @@
 use super::builtin_interfaces::Time;
 use serde::{Deserialize, Serialize};
 
-/// The time and the frame of something.
+/// The stamp and the frame of a message.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Header {
     pub(crate) stamp: Time,
@@ -16,7 +16,7 @@ impl Header {
     }
 }
 
-/// Each from 0 to 1.
+/// A colour; each component is from 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ColorRgba {
     pub(crate) r: f32,

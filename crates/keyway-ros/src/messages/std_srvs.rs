@@ -3,7 +3,7 @@
 use super::{Empty, Service};
 use serde::{Deserialize, Serialize};
 
-/// A question to be answered with yes or no: whether nodes are active.
+/// Query that asks if nodes are active.
 pub(crate) struct IsActive;
 
 impl Service for IsActive {
@@ -12,7 +12,7 @@ impl Service for IsActive {
     type Response = Triggered;
 }
 
-/// The answer, with a word about it.
+/// A success flag, with a message.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Triggered {
     pub(crate) success: bool,

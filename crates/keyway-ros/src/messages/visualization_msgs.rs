@@ -7,11 +7,11 @@ use super::sensor_msgs::CompressedImage;
 use super::std_msgs::{ColorRgba, Header};
 use serde::{Deserialize, Serialize};
 
-/// A thing to draw.
+/// A shape to draw.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Marker {
     pub(crate) header: Header,
-    /// `ns` in the definition: numbers count within it.
+    /// `ns` in the definition: the scope of the ids.
     pub(crate) namespace: String,
     pub(crate) id: i32,
     /// `type` in the definition.
@@ -20,7 +20,7 @@ pub(crate) struct Marker {
     pub(crate) pose: Pose,
     pub(crate) scale: Vector3,
     pub(crate) color: ColorRgba,
-    /// None: for ever.
+    /// Zero means unlimited.
     pub(crate) lifetime: Duration,
     pub(crate) frame_locked: bool,
     pub(crate) points: Vec<Vector3>,
@@ -38,10 +38,10 @@ impl Marker {
     pub(crate) const ARROW: i32 = 0;
     pub(crate) const CYLINDER: i32 = 3;
     pub(crate) const LINE_STRIP: i32 = 4;
-    /// A line from each point with an even number to the next one.
+    /// A line from each point with an even index to the next one.
     pub(crate) const LINE_LIST: i32 = 5;
 
-    /// The action that takes away all of the topic.
+    /// The action that deletes all markers of the topic.
     pub(crate) const DELETE_ALL: i32 = 3;
 }
 

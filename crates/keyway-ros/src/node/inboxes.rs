@@ -1,4 +1,4 @@
-//! Topics that come in.
+//! Subscriptions of the node.
 
 use crate::error::StartError;
 use crate::messages::geometry_msgs::{PoseStamped, PoseWithCovarianceStamped};
@@ -12,7 +12,7 @@ use crate::pilot::Pilot;
 use crate::settings::Settings;
 use crate::wire::{Delivery, Inbox, Wire};
 
-/// All topics that come in.
+/// All subscriptions.
 pub(super) struct Inboxes {
     map: Inbox<OccupancyGrid>,
     map_updates: Inbox<OccupancyGridUpdate>,
@@ -24,7 +24,7 @@ pub(super) struct Inboxes {
     initial_pose: Inbox<PoseWithCovarianceStamped>,
     speed_limit: Inbox<SpeedLimit>,
     filters: Vec<Inbox<CostmapFilterInfo>>,
-    /// Of the filters that were told of.
+    /// Masks of the announced filters.
     masks: Vec<(CostmapFilterInfo, Inbox<OccupancyGrid>)>,
     pub(super) clock: Option<Inbox<Clock>>,
 }
@@ -61,7 +61,7 @@ impl Inboxes {
         })
     }
 
-    /// Takes in where frames are, and what was sensed.
+    /// Passes transforms and sensor data to the pilot.
     pub(super) fn receive_sensed(&self, pilot: &mut Pilot) {
         for (inbox, is_fixed) in self.transforms.iter().zip([false, true]) {
             for message in inbox.take_all().iter().flat_map(|message| &message.transforms) {
@@ -86,7 +86,7 @@ impl Inboxes {
         }
     }
 
-    /// Takes in what is known of the ground, and limits; what was wrong with it.
+    /// Passes maps, masks and limits to the pilot; returns the faults found in them.
     pub(super) fn receive_known(&mut self, pilot: &mut Pilot, wire: &mut Wire) -> Vec<String> {
         let mut faults = Vec::new();
         if let Some(message) = self.map.take_all().pop()
@@ -111,16 +111,15 @@ impl Inboxes {
         for message in self.speed_limit.take_all() {
             pilot.limit_speed(&message);
         }
-        // Whoever sets a pose says that the one until now was wrong, and where the robot was wrong
-        // about itself, so it was about what it met.
+        // A new initial pose means that the estimate was wrong, and so are the positions of
+        // obstacles sensed with it.
         if self.initial_pose.take_all().pop().is_some() {
             pilot.forget_sensed();
         }
         faults
     }
 
-    /// Subscribes to the masks of filters that have told of themselves, each in the place of the
-    /// one of its kind.
+    /// Subscribes to the masks of announced filters. Each replaces the one of its kind.
     fn subscribe_to_masks(&mut self, wire: &mut Wire, faults: &mut Vec<String>) {
         for info in self.filters.iter().flat_map(Inbox::take_all) {
             if self.masks.iter().any(|(known, _)| is_same(known, &info)) {
@@ -137,7 +136,7 @@ impl Inboxes {
     }
 }
 
-/// True if they tell the same of the same mask.
+/// True if two announcements describe the same mask in the same way.
 fn is_same(a: &CostmapFilterInfo, b: &CostmapFilterInfo) -> bool {
     let told = |info: &CostmapFilterInfo| (info.kind, info.base, info.multiplier);
     a.filter_mask_topic == b.filter_mask_topic && told(a) == told(b)

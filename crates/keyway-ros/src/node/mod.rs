@@ -1,5 +1,5 @@
-//! The loop of the node: what comes from the network goes to the pilot, and in every cycle what the
-//! pilot says goes to the network.
+//! The main loop of the node: messages from the network are passed to the pilot, and in every
+//! cycle the commands of the pilot are published.
 
 mod inboxes;
 mod outboxes;
@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use timing::Timing;
 
-/// Everything that the node is.
+/// The node.
 pub(crate) struct Node {
     wire: Wire,
     pilot: Pilot,
@@ -29,35 +29,35 @@ pub(crate) struct Node {
     clock: Clock,
     inboxes: Inboxes,
     outboxes: Outboxes,
-    /// Actions for which the robot drives.
+    /// Actions that drive the robot.
     served: Vec<Box<dyn Served>>,
     answered: Vec<Box<dyn Answered>>,
-    /// The client that has asked for the present goal.
+    /// The client of the current goal.
     drives_for: Option<Client>,
-    /// The last command that was published, while it was one to move.
+    /// True if the last published command was nonzero.
     moves: bool,
     cycles: u64,
     began: Instant,
-    /// All that it needs has been there.
+    /// True once all inputs were available.
     was_ready: bool,
     timing: Timing,
-    /// The last thing that was said of standing still.
+    /// The last log message about a stationary robot.
     said: String,
 }
 
-/// The client for which the robot drives.
+/// The client that the robot drives for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Client {
     Topic,
-    /// Of an action, by its index among those that are served.
+    /// The client of an action, by the index of its server.
     Action(usize, GoalId),
 }
 
 impl Node {
-    /// So long after the start it says what it still waits for.
+    /// Delay after the start before missing inputs are logged.
     const PATIENCE: Duration = Duration::from_secs(5);
 
-    /// Joins the network, for a pilot.
+    /// Joins the network with a pilot.
     pub(crate) fn new(
         arguments: &Arguments,
         network: Network,
@@ -89,10 +89,10 @@ impl Node {
         })
     }
 
-    /// Runs until it is told to stop; then the robot is told to stand.
+    /// Runs until it is stopped; the robot is then commanded to stop.
     ///
     /// # Errors
-    /// When the network has ended.
+    /// Returns [`StartError`] if the network has failed.
     pub(crate) fn run(mut self, is_over: &Arc<AtomicBool>) -> Result<(), StartError> {
         let period = Duration::from_secs_f64(self.timing.period_s());
         let mut next = Instant::now();
@@ -107,10 +107,10 @@ impl Node {
             let is_due = now >= next;
             if is_due {
                 self.timing.note_delay(now - next);
-                // A cycle that was missed is not made up for.
+                // Missed cycles are not made up for.
                 next = (next + period).max(now);
             }
-            // A simulation may be faster than this machine's clock.
+            // A simulation may be faster than real time.
             if (is_due || self.settings.use_sim_time)
                 && let Some(now_s) = self.clock.next_cycle_s(period.as_secs_f64())
             {
@@ -125,8 +125,8 @@ impl Node {
         Ok(())
     }
 
-    /// Says, before all is there for the first time, what it waits for; while it drives, why the
-    /// robot stands.
+    /// Logs the missing inputs until all were available once; while driving, logs the reason for
+    /// a stationary robot.
     fn explain(&mut self, waits: Option<Waits>) {
         let is_late = self.began.elapsed() > Self::PATIENCE;
         match waits {
@@ -140,8 +140,8 @@ impl Node {
         }
     }
 
-    /// Stands after a halt of the process: nobody who comes to a robot that stands expects that it
-    /// drives on by itself.
+    /// Stops after a halt of the process: people near a stationary robot do not expect it to
+    /// start again by itself.
     fn end_after_halt(&mut self) {
         let Some(client) = self.drives_for.take() else { return };
         self.say("the process was halted: the robot stands, and its goal is given up");
@@ -151,7 +151,7 @@ impl Node {
         self.tell(client, GoalStatus::Aborted, &ended, &Report::default());
     }
 
-    /// Takes in all that has come.
+    /// Processes all received messages.
     fn receive(&mut self) {
         for message in self.inboxes.clock.iter().flat_map(Inbox::take_all) {
             self.clock.tell(message.clock.stamp_s());
@@ -179,7 +179,7 @@ impl Node {
         self.receive_goals(now_s);
     }
 
-    /// Takes in what clients of actions want.
+    /// Processes the goals of action clients.
     fn receive_goals(&mut self, now_s: f64) {
         for index in 0..self.served.len() {
             for wish in self.served[index].receive(Time::of(now_s)) {
@@ -195,10 +195,10 @@ impl Node {
         }
     }
 
-    /// Sets out for a client, in the place of the one before.
+    /// Starts the goal of a client, in place of the previous one.
     fn begin(&mut self, client: Client, wanted: Wanted, now_s: f64) {
         if let Some(before) = self.drives_for.take() {
-            // As Nav2 does: a goal that gives way to another one was aborted, without an error.
+            // As in Nav2, a preempted goal is aborted, without an error.
             let report = self.pilot.report(now_s).unwrap_or_default();
             self.tell(before, GoalStatus::Aborted, &Ended::Canceled, &report);
         }
@@ -212,7 +212,7 @@ impl Node {
         }
     }
 
-    /// Gives up the goal of a client.
+    /// Cancels the goal of a client.
     fn give_up(&mut self, client: Client, now_s: f64) {
         let report = self.pilot.report(now_s).unwrap_or_default();
         if self.drives_for == Some(client) {
@@ -222,14 +222,14 @@ impl Node {
         self.tell(client, GoalStatus::Canceled, &Ended::Canceled, &report);
     }
 
-    /// Tells a client how its goal ended.
+    /// Reports the end of a goal to its client.
     fn tell(&mut self, client: Client, status: GoalStatus, ended: &Ended, report: &Report) {
         if let Client::Action(index, id) = client {
             self.served[index].end(id, status, ended, report);
         }
     }
 
-    /// One cycle of control.
+    /// Runs one control cycle.
     fn cycle(&mut self, now_s: f64) {
         let began = Instant::now();
         let Cycle { command, ended, waits } = self.pilot.cycle(now_s);
@@ -259,7 +259,7 @@ impl Node {
         self.outboxes.command(command, (stamp_s, &self.settings.frames.base));
     }
 
-    /// Tells the client how far its robot is, in every other cycle.
+    /// Sends feedback to the client, in every other cycle.
     fn feed_back(&self, now_s: f64) {
         let Some(Client::Action(index, id)) = self.drives_for else { return };
         if !self.cycles.is_multiple_of(2) {
@@ -271,9 +271,9 @@ impl Node {
         }
     }
 
-    /// Says something, once.
+    /// Logs a message, once.
     fn say(&mut self, what: &str) {
-        // Numbers in it change from cycle to cycle.
+        // Digits are ignored, as numbers change from cycle to cycle.
         let kind: String = what.chars().filter(|letter| !letter.is_ascii_digit()).collect();
         if self.said != kind {
             self.wire.say(what);
@@ -282,7 +282,7 @@ impl Node {
     }
 }
 
-/// Whatever has ended it: its last command is to stand.
+/// However the node ends, its last command is to stop.
 impl Drop for Node {
     fn drop(&mut self) {
         if self.moves {

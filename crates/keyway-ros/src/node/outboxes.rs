@@ -1,4 +1,4 @@
-//! Topics that go out.
+//! Publishers of the node.
 
 use super::timing::Timing;
 use crate::costmaps::{Known, Shown};
@@ -14,7 +14,7 @@ use crate::settings::Settings;
 use crate::wire::{Delivery, Outbox, Wire};
 use keyway::geometry::Velocity;
 
-/// All topics that go out.
+/// All publishers.
 pub(super) struct Outboxes {
     command: Commands,
     plan: Outbox<Path>,
@@ -25,9 +25,9 @@ pub(super) struct Outboxes {
     fan: Outbox<MarkerArray>,
     diagnostics: Outbox<DiagnosticArray>,
     pictures: Pictures,
-    /// Routes that were planned when the last one was published.
+    /// Number of planned routes at the time of the last published one.
     routes_published: u32,
-    /// Cycles since the beginning.
+    /// Cycles since the start.
     cycles: u64,
 }
 
@@ -38,13 +38,13 @@ enum Commands {
 }
 
 impl Outboxes {
-    /// Seconds from one picture to the next.
+    /// Interval of pictures \[s\].
     const PICTURES_S: f64 = 0.5;
 
-    /// The same of global costmaps.
+    /// Interval of global costmaps \[s\].
     const GLOBAL_S: f64 = 2.0;
 
-    /// The same of diagnostics.
+    /// Interval of diagnostics \[s\].
     const DIAGNOSTICS_S: f64 = 1.0;
 
     pub(super) fn new(wire: &mut Wire, settings: &Settings) -> Result<Self, StartError> {
@@ -75,7 +75,7 @@ impl Outboxes {
         })
     }
 
-    /// Publishes a command, at a time \[s\].
+    /// Publishes a command, stamped with a time \[s\].
     pub(super) fn command(&self, command: Velocity, (stamp_s, frame): (f64, &str)) {
         match &self.command {
             Commands::Plain(outbox) => outbox.publish(command.into()),
@@ -86,7 +86,7 @@ impl Outboxes {
         }
     }
 
-    /// At the end of a cycle: all that others may look at, where somebody does.
+    /// Publishes the routes, diagnostics, pictures and costmaps that are due after a cycle.
     pub(super) fn show(&mut self, pilot: &Pilot, wire: &mut Wire, timing: &mut Timing, now_s: f64) {
         self.cycles += 1;
         self.show_route(pilot, now_s);
@@ -113,13 +113,13 @@ impl Outboxes {
         }
     }
 
-    /// True in the cycles that are so many seconds apart.
+    /// True in every cycle that is a multiple of the interval.
     fn is_time_for(&self, every_s: f64, timing: &Timing) -> bool {
         let every = (every_s / timing.period_s()).round().max(1.0) as u64;
         self.cycles.is_multiple_of(every)
     }
 
-    /// Publishes the route, if it is a new one.
+    /// Publishes the route if it is new.
     fn show_route(&mut self, pilot: &Pilot, now_s: f64) {
         let Some(navigator) = pilot.navigator() else { return };
         let planned = navigator.routes_planned();
@@ -145,7 +145,7 @@ impl Outboxes {
     }
 }
 
-/// Publishes what there is, if somebody listens.
+/// Publishes a message if there is one and it has subscribers.
 fn show<M: crate::messages::Named>(
     outbox: &Outbox<M>,
     wire: &Wire,

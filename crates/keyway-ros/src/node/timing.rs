@@ -1,4 +1,4 @@
-//! The times of cycles, and the diagnostics of the node.
+//! Timing of the cycles, and diagnostics of the node.
 
 use crate::messages::diagnostic_msgs::{DiagnosticArray, DiagnosticStatus, KeyValue};
 use crate::pilot::{Pilot, Waits};
@@ -6,15 +6,15 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::time::Duration;
 
-/// The cycles since the last diagnostics.
+/// Statistics of the cycles since the last diagnostics.
 pub(super) struct Timing {
     period_s: f64,
     cycles: u32,
     longest: Duration,
     all: Duration,
-    /// Cycles that began more than half a period late, since the beginning.
+    /// Cycles that started more than half a period late, since the start of the node.
     late: u64,
-    /// The reason why it stood in doubt in the last cycle.
+    /// The reason for a stationary robot in the last cycle, if there was one.
     waits: Option<Waits>,
 }
 
@@ -30,17 +30,17 @@ impl Timing {
         }
     }
 
-    /// From one cycle to the next \[s\].
+    /// Cycle period \[s\].
     pub(super) const fn period_s(&self) -> f64 {
         self.period_s
     }
 
-    /// A cycle began so much too late.
+    /// Records the delay of a cycle's start.
     pub(super) fn note_delay(&mut self, delay: Duration) {
         self.late += u64::from(delay.as_secs_f64() > 0.5 * self.period_s);
     }
 
-    /// A cycle has taken so long.
+    /// Records the duration of a cycle.
     pub(super) fn note(&mut self, taken: Duration, waits: Option<Waits>) {
         self.cycles += 1;
         self.longest = self.longest.max(taken);
@@ -48,8 +48,8 @@ impl Timing {
         self.waits = waits;
     }
 
-    /// The state of the robot, of its cycles since the last call, and of others on its topics that
-    /// do not fit.
+    /// Diagnostics: the state of the robot, of its cycles since the last call, and of
+    /// incompatible nodes on its topics.
     pub(super) fn diagnostics(
         &mut self,
         pilot: &Pilot,

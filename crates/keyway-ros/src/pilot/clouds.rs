@@ -1,5 +1,5 @@
-//! Clouds of points, of depth cameras and of lidars that look up and down: what is at the height of
-//! the robot, on the ground.
+//! Point clouds of depth cameras and 3-D lidars: extracts the points at the height of the robot,
+//! on the ground.
 
 use crate::messages::sensor_msgs::{PointCloud2, PointField};
 use crate::settings::PointsTaken;
@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use std::f64::consts::TAU;
 use thiserror::Error;
 
-/// A cloud that cannot be read.
+/// Error of an unreadable cloud.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub(crate) enum CloudError {
     #[error("a cloud has no field `{0}` of floating-point numbers")]
@@ -19,20 +19,20 @@ pub(crate) enum CloudError {
     Size { points: u64, step: u32, bytes: usize },
 }
 
-/// The obstacles of a cloud, seen from where its sensor is on the ground.
+/// The obstacles of a cloud, relative to the ground position of its sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Seen {
     pub(super) sensor: usize,
     pub(super) stamp_s: f64,
-    /// Of the sensor in the robot's frame; it looks where its x axis does on the ground.
+    /// Position of the sensor in the robot's frame, with the heading of the robot.
     mount: Pose,
     points: Vec<Point>,
     clears: Option<FieldOfView>,
 }
 
 impl Seen {
-    /// Of a cloud whose frame is there in that of the robot, and there in that of the map, in which
-    /// heights are measured.
+    /// Extracts the obstacles. `in_robot` and `in_map` are the placements of the cloud's frame in
+    /// those of the robot and of the map; heights are measured in the map.
     pub(super) fn of(
         sensor: usize,
         cloud: &PointCloud2,
@@ -43,14 +43,14 @@ impl Seen {
         let mount = Pose::new(at.x, at.y, 0.0);
         let (mut view, mut points, mut squares) = (View::default(), Vec::new(), HashSet::new());
         for point in Reader::new(cloud)?.points() {
-            // Many drivers write zeros where they have met nothing.
+            // Many drivers write zeros for missing returns.
             if point == [0.0; 3] || !point.iter().all(|value| value.is_finite()) {
                 continue;
             }
             let ([x, y, _], [.., height_m]) = (in_robot.point(point), in_map.point(point));
             let point = mount.body_from_world(Point::new(x, y));
             let range_m = point.norm();
-            // It sees past what is nearer than that.
+            // A point beyond the range still shows that the sensor sees up to the range.
             view.look_at(point.heading(), range_m.min(taken.range_m));
             if range_m > taken.range_m {
                 continue;
@@ -69,16 +69,16 @@ impl Seen {
     }
 }
 
-/// Points of one square of 2 cm are one.
+/// Index of a 2 cm square; points in the same square count once.
 fn near(point: Point) -> (i32, i32) {
     const SIDE_M: f64 = 0.02;
     ((point.x / SIDE_M).floor() as i32, (point.y / SIDE_M).floor() as i32)
 }
 
-/// The ground at which a cloud looks, by what it shows: between its nearest and its farthest point,
-/// and between the outermost of their bearings.
+/// The ground covered by a cloud, estimated from its points: between the nearest and the farthest
+/// range, and between the outermost bearings.
 struct View {
-    /// True for the bearings in which there is something, by their part of a turn.
+    /// True for the sectors of the turn that contain a point.
     bearings: [bool; Self::PARTS],
     nearest_m: f64,
     farthest_m: f64,
@@ -100,14 +100,14 @@ impl View {
         self.farthest_m = self.farthest_m.max(range_m);
     }
 
-    /// The rest of a turn without its widest gap; `None` for less than two bearings.
+    /// The turn without its widest gap; `None` for fewer than two bearings.
     fn field_of_view(&self) -> Option<FieldOfView> {
         let seen: Vec<usize> = (0..Self::PARTS).filter(|&part| self.bearings[part]).collect();
         let gap = |at: usize| {
             let next = seen.get(at + 1).copied().unwrap_or(seen[0] + Self::PARTS);
             next - seen[at]
         };
-        // Of equal gaps the first one.
+        // Of equal gaps, the first one.
         let widest = (0..seen.len()).rev().max_by_key(|&at| gap(at))?;
         let first = seen[(widest + 1) % seen.len()];
         let parts = Self::PARTS - gap(widest);
@@ -123,10 +123,10 @@ impl View {
     }
 }
 
-/// The coordinates in the bytes of a cloud.
+/// Decoder of the coordinates in a cloud.
 struct Reader<'a> {
     cloud: &'a PointCloud2,
-    /// The beginning of each coordinate, and true for one in double precision.
+    /// Offset of each coordinate, and true if it has double precision.
     fields: [(usize, bool); 3],
 }
 
@@ -189,7 +189,7 @@ mod tests {
 
     const TAKEN: PointsTaken = PointsTaken { heights_m: 0.05..=1.5, range_m: 5.0, timeout_s: 0.0 };
 
-    /// A cloud of two rows, each with four bytes behind its points.
+    /// A cloud of two rows, each with four bytes of padding at its end.
     fn cloud(points: &[[f32; 3]], is_bigendian: bool) -> PointCloud2 {
         let width = points.len().div_ceil(2);
         let mut data = Vec::new();
@@ -222,7 +222,7 @@ mod tests {
         }
     }
 
-    /// A camera 0.5 m above the ground, 0.2 m ahead of the robot's middle: z ahead, y down.
+    /// A camera 0.5 m above the ground, 0.2 m ahead of the robot's centre: z ahead, y down.
     fn camera() -> Placement {
         Placement::new([0.2, 0.0, 0.5], [-0.5, 0.5, -0.5, 0.5]).unwrap()
     }
@@ -230,11 +230,11 @@ mod tests {
     #[test]
     fn what_is_at_the_height_of_the_robot_is_an_obstacle() {
         let points = [
-            // 2 m ahead: on the ground, a hand above it, and far above.
+            // 2 m ahead: on the ground, 10 cm above it, and far above.
             [0.0, 0.5, 2.0],
             [0.0, 0.4, 2.0],
             [0.0, -1.5, 2.0],
-            // Once more, to the right, nothing, and too far.
+            // Once more, to the right, a missing return, and too far.
             [0.0, 0.3, 2.0],
             [1.0, 0.3, 1.0],
             [0.0, 0.0, 0.0],

@@ -1,14 +1,14 @@
-//! Ends of actions, with the numbers that Nav2 gives to errors.
+//! Outcomes of actions, with Nav2's error codes.
 
 use keyway::map::Hindrance;
 use keyway::navigate::NavigateError;
 use keyway::plan::{PathEnd, PlanError};
 
-/// The end of an action.
+/// The outcome of an action.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Ended {
     Succeeded,
-    /// By whoever asked for it, or by the next one.
+    /// By its client, or by the next goal.
     Canceled,
     Failed {
         fault: Fault,
@@ -17,7 +17,7 @@ pub(crate) enum Ended {
 }
 
 impl Ended {
-    /// Its number in a family, 0 without an error, and its text.
+    /// Its error code in a family, 0 without an error, and its text.
     pub(crate) fn code(&self, family: Family) -> (u16, &str) {
         match self {
             Self::Succeeded | Self::Canceled => (0, ""),
@@ -29,17 +29,17 @@ impl Ended {
         Self::Failed { fault, why: why.into() }
     }
 
-    /// Because a robot cannot be sent to a goal, or no way is found.
+    /// A goal that the robot cannot accept, or for which no path is found.
     pub(crate) fn refused(error: &NavigateError) -> Self {
         Self::failed(Fault::of(error), error.to_string())
     }
 }
 
-/// A kind of error, whatever the action.
+/// A kind of error, independent of the action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
     Unknown,
-    /// A transform, or a pose, that is missing.
+    /// A missing transform or pose.
     Transform,
     StartOutsideMap,
     GoalOutsideMap,
@@ -52,11 +52,11 @@ pub(crate) enum Fault {
     InvalidInput,
     NoProgress,
     Timeout,
-    /// Something is in the way of a single motion.
+    /// An obstacle blocks a single motion.
     NoRoom,
 }
 
-/// Actions whose errors have the same numbers.
+/// Actions with the same error codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Family {
     Navigate,
@@ -73,7 +73,7 @@ pub(crate) enum Family {
 }
 
 impl Fault {
-    /// For the reason why a robot cannot be sent to a goal, or no way is found.
+    /// Converts the error of a goal that cannot be accepted, or has no path.
     fn of(error: &NavigateError) -> Self {
         match error {
             NavigateError::NotFinite { end, .. }
@@ -111,8 +111,8 @@ impl Fault {
         }
     }
 
-    /// Its number among those of a planner, which begin at this one; `None` for what is not of
-    /// planning.
+    /// Its code among those of a planner, which begin at `first`; `None` if it is not a planning
+    /// error.
     const fn of_planner(self, first: u16) -> Option<u16> {
         let number = match self {
             Self::Transform => 2,
@@ -126,8 +126,8 @@ impl Fault {
         Some(first + number)
     }
 
-    /// Its number among those of a single motion: for no error that has a name, and for a time that
-    /// was too short, a transform, something in the way, and input that makes no sense.
+    /// Its code among those of a single motion: unnamed errors, timeout, transform, blocked, and
+    /// invalid input.
     fn of_motion(self, [unknown, timeout, transform, no_room, invalid]: [u16; 5]) -> u16 {
         match self {
             Self::Timeout => timeout,
@@ -138,7 +138,7 @@ impl Fault {
         }
     }
 
-    /// Its number in the definitions of Nav2's actions.
+    /// Its code in the definitions of Nav2's actions.
     pub(crate) fn number(self, family: Family) -> u16 {
         let of_controller = match self {
             Self::InvalidPath => Some(103),
@@ -173,7 +173,7 @@ impl Fault {
 mod tests {
     use super::*;
 
-    /// As the definitions of Kilted have them.
+    /// Codes as in the definitions of Kilted.
     #[test]
     fn numbers_are_those_of_nav2() {
         for (fault, family, expected) in [

@@ -1,4 +1,4 @@
-//! Errands of the robot, and their ends.
+//! Tasks of the robot, and their outcomes.
 
 use super::codes::{Ended, Fault};
 use super::waits::Waits;
@@ -7,34 +7,33 @@ use crate::messages::nav_msgs::Path;
 use keyway::geometry::{Pose, wrap_angle};
 use keyway::navigate::{Blocked, Navigator, Step, WayLeft, WayProgress};
 
-/// Something that the robot is asked to do.
+/// A task for the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Wanted {
-    /// To drive to the last of these poses, by way of the others.
+    /// Drive to the last of these poses, via the others.
     Poses(Vec<PoseStamped>),
-    /// To stop at each of these poses, from one on, and again at all of them so many times.
+    /// Stop at each of these poses, from index `first` on, and repeat all of them `again` times.
     Stops { poses: Vec<PoseStamped>, first: usize, again: usize },
-    /// To drive along a path.
+    /// Follow a path.
     Path(Path),
     /// A single motion.
     Act(Act),
-    /// To stand for a time \[s\].
+    /// Wait in place for a time \[s\].
     Wait(f64),
 }
 
-/// A single motion, the time that it may take \[s\] (0: an hour), and the speed that is not to be
-/// exceeded \[m/s\].
+/// A single motion, its time allowance \[s\] (0: an hour), and its speed limit \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Act {
     pub(crate) motion: Motion,
     pub(crate) allowance_s: f64,
     pub(crate) most_mps: Option<f64>,
-    /// The reason why it cannot be done by anybody.
+    /// The reason why the request is invalid.
     pub(crate) fault: Option<&'static str>,
 }
 
 impl Act {
-    /// The time that it may take \[s\].
+    /// The time allowance \[s\].
     pub(super) const fn allowed_s(&self) -> f64 {
         const HOUR_S: f64 = 3600.0;
         if self.allowance_s == 0.0 { HOUR_S } else { self.allowance_s }
@@ -52,39 +51,39 @@ pub(crate) enum Motion {
     Back(f64),
 }
 
-/// An errand under way.
+/// A running task.
 #[derive(Clone, Debug)]
 pub(super) struct Errand {
     began_s: f64,
     progress: WayProgress,
     progressed_s: f64,
-    /// Something has been in the way of a single motion since then \[s\].
+    /// Time since when an obstacle has blocked a single motion \[s\].
     blocked_s: Option<f64>,
-    /// The robot has stood in doubt since then \[s\].
+    /// Time since when the robot has been waiting for inputs \[s\].
     in_doubt_s: Option<f64>,
-    /// It ends then \[s\].
+    /// End time of a wait \[s\].
     pub(super) until_s: Option<f64>,
-    /// The stop to which it drives, if it has some, and those after it.
+    /// The current stop, for a task with stops.
     pub(super) present_stop: Option<PoseStamped>,
     stops: Stops,
-    /// A single motion has to end until then \[s\].
+    /// End time of a single motion \[s\].
     pub(super) deadline_s: Option<f64>,
-    /// The speed that a single motion may have \[m/s\].
+    /// Speed limit of a single motion \[m/s\].
     pub(super) most_mps: Option<f64>,
-    /// Poses to which it drives.
+    /// Number of goal poses.
     pub(super) poses: usize,
-    /// Recoveries before it.
+    /// Recoveries before the task.
     recoveries: u32,
     pub(super) made: Made,
     last: Option<Pose>,
 }
 
-/// Stops, in their order.
+/// Remaining stops, in their order.
 #[derive(Clone, Debug, Default)]
 struct Stops {
     poses: Vec<PoseStamped>,
     next: usize,
-    /// So many times at all of them, once these are done.
+    /// Number of repetitions of all stops, after these.
     again: usize,
 }
 
@@ -101,13 +100,13 @@ impl Iterator for Stops {
     }
 }
 
-/// The part of an errand that is done.
+/// Progress of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Made {
-    /// All turns, to either side \[rad\].
+    /// Sum of all turns, to either side \[rad\].
     pub(crate) turned_rad: f64,
     pub(crate) driven_m: f64,
-    /// Index of the present stop.
+    /// Index of the current stop.
     pub(crate) stop: usize,
     /// Stops that were not reached.
     pub(crate) missed: Vec<Missed>,
@@ -122,13 +121,13 @@ pub(crate) struct Missed {
 }
 
 impl Errand {
-    /// The longest time in which the robot may get no farther \[s\].
+    /// Maximum time without progress \[s\].
     const PATIENCE_S: f64 = 60.0;
 
-    /// The longest time for which something may be in the way of a single motion \[s\].
+    /// Maximum time for which an obstacle may block a single motion \[s\].
     const BLOCKED_S: f64 = 1.0;
 
-    /// One that begins at a time \[s\], after so many recoveries.
+    /// Creates a task that starts at a time \[s\], after a number of recoveries.
     pub(super) fn new(now_s: f64, recoveries: u32) -> Self {
         Self {
             began_s: now_s,
@@ -148,29 +147,29 @@ impl Errand {
         }
     }
 
-    /// Since it began \[s\].
+    /// Time since the start \[s\].
     pub(super) fn under_way_s(&self, now_s: f64) -> f64 {
         now_s - self.began_s
     }
 
-    /// Recoveries since it began, when there were so many in all.
+    /// Recoveries since the start. `in_all` is the total number.
     pub(super) const fn recoveries(&self, in_all: u32) -> u32 {
         in_all.saturating_sub(self.recoveries)
     }
 
-    /// Will stop at poses, from one on, and again at all of them so many times.
+    /// Sets the stops: poses from index `first` on, and `again` repetitions of all of them.
     pub(super) fn stop_at(&mut self, poses: &[PoseStamped], first: usize, again: usize) {
         self.poses = poses.len();
         self.made.stop = first;
         self.stops = Stops { poses: poses.to_vec(), next: first, again };
     }
 
-    /// The next stop, if one is left.
+    /// Takes the next stop, if there is one.
     pub(super) fn next_stop(&mut self) -> Option<PoseStamped> {
         self.stops.next()
     }
 
-    /// The stop to which it has driven is missed. Of very many the last ones are not counted.
+    /// Records the current stop as missed. The list is bounded: later ones are dropped.
     pub(super) fn miss(&mut self, pose: PoseStamped, ended: Ended) {
         const MOST: usize = 1000;
         if self.made.missed.len() < MOST {
@@ -178,13 +177,13 @@ impl Errand {
         }
     }
 
-    /// Goes on to the next stop.
+    /// Advances to the next stop.
     pub(super) fn leave_stop(&mut self, now_s: f64) {
         (self.progress, self.progressed_s) = (WayProgress::NEW, now_s);
         self.made.stop = (self.made.stop + 1) % self.poses.max(1);
     }
 
-    /// The robot is here now.
+    /// Updates the progress with the current pose.
     pub(super) fn note(&mut self, pose: Pose) {
         if let Some(before) = self.last.replace(pose) {
             self.made.turned_rad += wrap_angle(pose.theta - before.theta).abs();
@@ -192,20 +191,21 @@ impl Errand {
         }
     }
 
-    /// Its end, if the robot has stood in doubt for too long.
+    /// Returns the outcome if the robot has been waiting for inputs for too long.
     pub(super) fn stand(&mut self, why: &Waits, now_s: f64) -> Option<Ended> {
         let since_s = *self.in_doubt_s.get_or_insert(now_s);
         let is_over = now_s - since_s > Self::PATIENCE_S;
         is_over.then(|| Ended::failed(Fault::Transform, why.to_string()))
     }
 
-    /// Its end, if this step is the last one.
+    /// Returns the outcome if this step is the last one.
     pub(super) fn end(&mut self, navigator: &Navigator, step: &Step, now_s: f64) -> Option<Ended> {
         self.in_doubt_s = None;
         if let Some(until_s) = self.until_s {
             return (now_s >= until_s).then_some(Ended::Succeeded);
         }
-        // Nothing counts the time of a motion that cannot even begin, such as beside the map.
+        // The navigator does not count the time of a motion that cannot start, such as outside
+        // the map.
         if self.deadline_s.is_some_and(|deadline_s| now_s > deadline_s) {
             let why =
                 step.why().map_or_else(|| Blocked::OutOfTime.to_string(), ToString::to_string);
@@ -232,7 +232,7 @@ impl Errand {
         step: &Step,
         now_s: f64,
     ) -> Option<Ended> {
-        // A single motion has a time of its own.
+        // A single motion has its own time limit.
         let way_m = navigator.guidance()?.remaining_m;
         let left = WayLeft { way_m, turn_rad: navigator.turn_left_rad() };
         let step_m = WayProgress::step_m(navigator.stack().robot(), Self::PATIENCE_S);

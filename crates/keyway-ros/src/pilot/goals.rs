@@ -1,4 +1,4 @@
-//! Goals, paths and questions about ways, as messages ask for them.
+//! Goals, paths and path queries, as requested by messages.
 
 use super::Pilot;
 use super::codes::{Ended, Fault};
@@ -11,12 +11,12 @@ use keyway::geometry::{PlannedLine, Point, Polyline, Pose};
 use keyway::navigate::{Goal, NavigateError, Navigator};
 
 impl Pilot {
-    /// Sets out, in the place of what it was asked before.
+    /// Starts a task, in place of the previous one.
     pub(crate) fn begin(&mut self, wanted: Wanted, now_s: f64) -> Result<(), Ended> {
         if !self.is_active {
             return Err(Ended::failed(Fault::Unknown, super::INACTIVE));
         }
-        // It may be the first thing that happens.
+        // The request may come before the first cycle.
         let looked = self.look(now_s).err();
         let is_lost = self.navigator.as_ref().is_some_and(|navigator| navigator.now_s().is_none());
         if let Some(why) = looked.filter(|_| is_lost) {
@@ -57,7 +57,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// A single motion that is not over so long after its time is given up \[s\].
+    /// Time after its allowance at which a single motion is aborted \[s\].
     const GRACE_S: f64 = 1.0;
 
     fn set_goals(&mut self, poses: &[PoseStamped]) -> Result<(), Ended> {
@@ -69,10 +69,10 @@ impl Pilot {
         self.navigate(|navigator| navigator.set_goals(&way_points, goal))
     }
 
-    /// Sets out to the first stop that is left and can be reached; false where none can. Those
-    /// before it are missed.
+    /// Starts driving to the first remaining stop that is reachable; false if there is none. The
+    /// stops before it are missed.
     fn begin_stop(&mut self, errand: &mut Errand, now_s: f64) -> bool {
-        // Where none of a whole round can be reached, another round is in vain.
+        // If no stop of a whole round is reachable, another round is pointless.
         for _ in 0..errand.poses {
             let Some(pose) = errand.next_stop() else { return false };
             let Err(ended) = self.set_goals(std::slice::from_ref(&pose)) else {
@@ -85,7 +85,7 @@ impl Pilot {
         false
     }
 
-    /// Goes on to the next stop, if the errand has one; otherwise this is its end.
+    /// Advances to the next stop, if the task has one; otherwise returns the outcome.
     pub(super) fn next_stop(&mut self, ended: Ended, now_s: f64) -> Option<Ended> {
         let Some(mut errand) = self.errand.take_if(|errand| errand.present_stop.is_some()) else {
             return Some(ended);
@@ -101,7 +101,7 @@ impl Pilot {
         (!goes_on).then_some(Ended::Succeeded)
     }
 
-    /// Begins a single motion.
+    /// Starts a single motion.
     fn act(&mut self, act: Act) -> Result<(), Ended> {
         let Act { motion, most_mps, fault, .. } = act;
         let allowance_s = act.allowed_s();
@@ -120,7 +120,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Gives up what it was asked to do: the robot brakes, and stands.
+    /// Cancels the task: the robot brakes to a stop.
     pub(crate) fn stop(&mut self) {
         self.errand = None;
         self.limit_act(None);
@@ -129,30 +129,31 @@ impl Pilot {
         }
     }
 
-    /// Takes in a limit of the speed. One that means nothing changes nothing.
+    /// Sets the speed limit. An invalid one is ignored.
     pub(crate) fn limit_speed(&mut self, limit: &SpeedLimit) {
         let most_mps = self.settings.stack.robot().limits.v_max_mps;
         let share = if limit.percentage { 0.01 * most_mps } else { 1.0 };
         let speed_mps = share * limit.most;
         if speed_mps >= 0.0 && speed_mps.is_finite() {
-            // 0 means that there is none.
+            // 0 removes the limit.
             self.limit_mps = (speed_mps > 0.0).then_some(speed_mps);
             self.limit_act(self.errand.as_ref().and_then(|errand| errand.most_mps));
         }
     }
 
-    /// Drives no faster than the limit, and than a single motion may \[m/s\].
+    /// Applies the speed limit, and that of a single motion \[m/s\].
     fn limit_act(&mut self, most_mps: Option<f64>) {
         let most_mps = most_mps.filter(|speed_mps| *speed_mps > 0.0);
         let limits = [self.limit_mps, most_mps].into_iter().flatten();
         let limit_mps = limits.min_by(f64::total_cmp);
         if let Some(navigator) = &mut self.navigator {
-            // It is a positive number.
+            // A positive number is always valid.
             drop(navigator.set_speed_limit(limit_mps));
         }
     }
 
-    /// A way by some poses, from a start or from where the robot is, on what is known and sensed.
+    /// Plans a path via some poses, from a start or from the robot, on the map and the sensed
+    /// obstacles.
     pub(crate) fn path(
         &mut self,
         start: Option<&PoseStamped>,
@@ -175,7 +176,7 @@ impl Pilot {
         let mut from = start.point();
         for goal in goals {
             let route = self.navigate(|navigator| navigator.plan(from, goal.point()))?;
-            // Each leg begins where the one before ends.
+            // Each leg starts at the end of the one before.
             let known = usize::from(!points.is_empty());
             points.extend(route.smoothed.points().iter().skip(known));
             from = goal.point();
@@ -183,7 +184,7 @@ impl Pilot {
         Ok((points, heading_rad))
     }
 
-    /// A path made smooth, and whether the robot fits along it.
+    /// Smooths a path, and checks if the robot fits along it.
     pub(crate) fn smoothed(&mut self, path: &Path) -> Result<(Vec<Point>, bool), Ended> {
         let points = self.points(path)?;
         if points.points().len() < 2 {
@@ -197,7 +198,7 @@ impl Pilot {
         })
     }
 
-    /// A pose in the frame of the map. One without a frame is there already.
+    /// Converts a pose to the map frame. A pose without a frame is already in it.
     fn in_map(&self, stamped: &PoseStamped) -> Result<Pose, Ended> {
         let frame = &self.settings.frames.map;
         let pose = stamped.pose.on_ground().ok_or_else(|| {
@@ -208,7 +209,7 @@ impl Pilot {
         if own.is_empty() || own == frame {
             return Ok(pose);
         }
-        // As RViz does: a goal in another frame is meant where that frame is now.
+        // As in RViz, a goal in another frame refers to the current position of that frame.
         let at_s = self.transforms.latest_s(frame, own);
         let placement = at_s.and_then(|at_s| self.transforms.at(frame, own, at_s));
         let placement =
@@ -216,7 +217,7 @@ impl Pilot {
         Ok(placement.on_ground().compose(pose))
     }
 
-    /// The points of a path in the frame of the map. Poses without a frame are in that of the path.
+    /// Points of a path in the map frame. Poses without a frame are in that of the path.
     fn points(&self, path: &Path) -> Result<Polyline, Ended> {
         let point = |pose: &PoseStamped| {
             let mut pose = pose.clone();

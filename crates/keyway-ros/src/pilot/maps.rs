@@ -1,4 +1,4 @@
-//! Maps: from messages and files, and what the robot knows as a costmap.
+//! Maps from messages and files, and the robot's costmaps.
 
 use super::Pilot;
 use crate::costmaps::{Known, Shown};
@@ -12,7 +12,7 @@ use keyway::navigate::{NavigateError, Navigator};
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// A map that cannot be used.
+/// Error of an invalid map.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum MapError {
     #[error("a map of {width} x {height} cells has {values} values")]
@@ -25,7 +25,7 @@ pub(crate) enum MapError {
     Navigate(#[from] NavigateError),
 }
 
-/// A map that cannot be loaded.
+/// Error of a map that cannot be loaded.
 #[derive(Debug, Error)]
 pub(crate) enum UrlError {
     #[error("there is no map at {0}")]
@@ -37,14 +37,14 @@ pub(crate) enum UrlError {
 }
 
 impl Pilot {
-    /// Takes in a map, in the place of the last one. Where it cannot be used, that one stays.
+    /// Replaces the map. If the new one is invalid, the old one is kept.
     pub(crate) fn take_map(&mut self, message: &OccupancyGrid) -> Result<(), MapError> {
         self.check_frame(&message.header.frame_id)?;
         let map = map_of(message)?;
         self.drive_on(&map)
     }
 
-    /// Refuses what is in another frame than the map; without a name it is in that.
+    /// Refuses grids in another frame than the map frame. An empty frame name is accepted.
     pub(super) fn check_frame(&self, own: &str) -> Result<(), MapError> {
         let frame = self.settings.frames.map.trim_start_matches('/');
         let own = own.trim_start_matches('/');
@@ -65,7 +65,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Takes in a rectangle of the map that has changed. One that came before the map is part of
+    /// Applies a changed rectangle of the map. One that came before the map is already part of
     /// it.
     pub(crate) fn take_update(&mut self, update: &OccupancyGridUpdate) -> Result<(), MapError> {
         let &OccupancyGridUpdate { x, y, width, height, ref data, .. } = update;
@@ -80,7 +80,7 @@ impl Pilot {
             let along = |from: i32, steps: u32| from.checked_add_unsigned(steps);
             let cell = Cell::new(along(x, column)?, along(y, row)?);
             let state = state_of(value);
-            // Most of what comes is as it was.
+            // Most cells of an update are unchanged.
             map.state(cell).filter(|&before| before != state).map(|_| Edit { cell, state })
         };
         let edits: Vec<Edit> = data.iter().zip(cells).filter_map(edit).collect();
@@ -90,7 +90,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Drives on the map of a file from now on; its message, without cells where they are many.
+    /// Loads a map from a file and returns its message, without cells if there are too many.
     pub(crate) fn load_map(&mut self, url: &str, now_s: f64) -> Result<OccupancyGrid, UrlError> {
         let path = PathBuf::from(url.strip_prefix("file://").unwrap_or(url));
         if !path.exists() {
@@ -99,22 +99,22 @@ impl Pilot {
         let map = read_map(&path, None)?.grid;
         self.drive_on(&map)?;
         let mut message = OccupancyGrid::of(&map, self.header(now_s));
-        // A larger answer may never come: better one without cells.
+        // A larger answer may never arrive: omit the cells.
         if message.data.len() > Shown::MOST_BYTES {
             message.data = Vec::new();
         }
         Ok(message)
     }
 
-    /// Forgets all that was sensed.
+    /// Clears all sensed obstacles.
     pub(crate) fn forget_sensed(&mut self) {
         if let Some(navigator) = &mut self.navigator {
             navigator.forget_sensed();
         }
     }
 
-    /// Costs of Nav2 for what is known and sensed; `None` before there is a map. The robot does not
-    /// drive by them.
+    /// Nav2 costs of the map and the sensed obstacles; `None` before there is a map. The robot
+    /// does not plan with them.
     pub(crate) fn costmap(&self, shown: Shown, now_s: f64) -> Option<Costmap> {
         let navigator = self.navigator.as_ref()?;
         let frame = navigator.map().frame();
@@ -125,7 +125,7 @@ impl Pilot {
     }
 }
 
-/// A map of values.
+/// Converts the values of a message to a map.
 fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
     let mut values = message.data.iter();
     Ok(keyway::OccupancyGrid::from_fn(frame_of(message)?, |_| {
@@ -133,7 +133,7 @@ fn map_of(message: &OccupancyGrid) -> Result<keyway::OccupancyGrid, MapError> {
     }))
 }
 
-/// The frame of a message's grid, which must have a value for each of its cells.
+/// The frame of a message's grid. The number of values must match that of the cells.
 pub(super) fn frame_of(message: &OccupancyGrid) -> Result<GridFrame, MapError> {
     let info = &message.info;
     let (width, height) = (info.width, info.height);
@@ -142,13 +142,13 @@ pub(super) fn frame_of(message: &OccupancyGrid) -> Result<GridFrame, MapError> {
         return Err(MapError::Count { width, height, values });
     }
     let origin = info.origin.on_ground().ok_or(MapError::Origin)?;
-    // 0.05 in single precision is not 0.05; nobody makes cells of a part of a micrometre.
+    // 0.05 in single precision is not exactly 0.05; cell sizes are rounded to micrometres.
     let resolution_m = (f64::from(info.resolution) * 1e6).round() / 1e6;
     GridFrame::new(u64::from(width), u64::from(height), resolution_m, origin)
         .map_err(|error| MapError::Frame(error.to_string()))
 }
 
-/// 65 and more is occupied, as map servers have it; below 0 nothing is known.
+/// 65 and more is occupied, as for map servers; negative values are unknown.
 const fn state_of(value: i8) -> CellState {
     const OCCUPIED: i8 = 65;
     match value {

@@ -1,4 +1,4 @@
-//! Masks of ground, as Nav2's filters of costmaps have them: to keep out of, and to be slow on.
+//! Masks of Nav2's costmap filters: keep-out zones and speed limits.
 
 use super::Pilot;
 use super::maps::{MapError, frame_of};
@@ -9,7 +9,7 @@ use keyway::navigate::{Masks, SpeedMask};
 use std::sync::Arc;
 
 impl Pilot {
-    /// Takes in a mask, in the place of the last one of its kind.
+    /// Replaces the mask of its kind.
     pub(crate) fn take_mask(
         &mut self,
         info: &CostmapFilterInfo,
@@ -29,7 +29,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Lets the navigator keep to the masks.
+    /// Passes the masks to the navigator.
     pub(super) fn set_masks(&mut self) {
         if let Some(navigator) = &mut self.navigator {
             navigator.set_masks(Masks::clone(&self.masks));
@@ -37,7 +37,7 @@ impl Pilot {
     }
 }
 
-/// Ground to keep out of: where Nav2 lets no centre of a robot be.
+/// Keep-out zone: cells that Nav2 forbids for the robot's centre.
 fn keep_out(mask: &OccupancyGrid) -> Result<Arc<keyway::OccupancyGrid>, MapError> {
     const CLOSED: i8 = 99;
     let mut values = mask.data.iter();
@@ -47,7 +47,7 @@ fn keep_out(mask: &OccupancyGrid) -> Result<Arc<keyway::OccupancyGrid>, MapError
     })))
 }
 
-/// Speeds to keep; 0 and what is unknown are no limit, as in Nav2.
+/// Speed limits; 0 and unknown values are no limit, as in Nav2.
 fn speeds(
     info: &CostmapFilterInfo,
     mask: &OccupancyGrid,

@@ -1,5 +1,5 @@
-//! The robot between messages and commands: what came in is observed by the navigator, and in every
-//! cycle it says what to do. It knows no network and reads no clock.
+//! The robot between messages and commands: the navigator observes the received messages and
+//! returns a command in every cycle. This module knows no network and reads no clock.
 
 mod clouds;
 mod codes;
@@ -25,21 +25,21 @@ use keyway::geometry::{Pose, Velocity};
 use keyway::navigate::{Blocked, Masks, Navigator, Step};
 use sensing::Sensing;
 
-/// A robot that drives by messages.
+/// A robot controlled by messages.
 pub(crate) struct Pilot {
     settings: Settings,
     pub(crate) transforms: Transforms,
     pub(crate) sensing: Sensing,
-    /// Nothing can be done before there is a map.
+    /// `None` before there is a map.
     navigator: Option<Navigator>,
     errand: Option<Errand>,
-    /// Ground to keep out of, and to be slow on.
+    /// Keep-out zones and speed limits.
     masks: Masks,
-    /// Pose in the map, when it was last known.
+    /// Last known pose in the map.
     pose: Option<Pose>,
-    /// The speed that is not to be exceeded, whatever the errand \[m/s\].
+    /// Speed limit for all tasks \[m/s\].
     limit_mps: Option<f64>,
-    /// It may drive.
+    /// True if the lifecycle state is active.
     is_active: bool,
 }
 
@@ -47,32 +47,32 @@ pub(crate) struct Pilot {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cycle {
     pub(crate) command: Velocity,
-    /// The errand has ended in this cycle, having come so far.
+    /// The outcome and final report of a task that ended in this cycle.
     pub(crate) ended: Option<(Ended, Report)>,
-    /// The reason, if it stands in doubt.
+    /// The missing input, if the robot waits for one.
     pub(crate) waits: Option<Waits>,
 }
 
-/// The state of an errand.
+/// Progress report of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Report {
     /// Pose in the map.
     pub(crate) pose: Pose,
-    /// Since the errand began \[s\].
+    /// Time since the start of the task \[s\].
     pub(crate) under_way_s: f64,
-    /// The rest of the way \[m\].
+    /// Remaining distance \[m\].
     pub(crate) way_m: f64,
-    /// The rest of the time \[s\], at the present speed; 0 when the robot stands.
+    /// Remaining time \[s\], at the current speed; 0 for a stationary robot.
     pub(crate) left_s: f64,
     pub(crate) speed_mps: f64,
     pub(crate) recoveries: u32,
-    /// Poses to which it drives, and those of them that were passed.
+    /// Number of goal poses, and of those already passed.
     pub(crate) poses: usize,
     pub(crate) passed: usize,
     pub(crate) made: Made,
 }
 
-/// The reason why it does not drive when it is not active.
+/// Reason for not driving while inactive.
 const INACTIVE: &str = "the node is not active: its lifecycle was ended";
 
 impl Pilot {
@@ -91,7 +91,7 @@ impl Pilot {
         }
     }
 
-    /// The clock begins anew, such as that of a simulation.
+    /// Restarts the clock, such as that of a simulation.
     pub(crate) fn restart_clock(&mut self) {
         self.transforms.restart_clock();
         self.sensing.restart_clock();
@@ -101,12 +101,12 @@ impl Pilot {
         }
     }
 
-    /// True if it may drive, and has a map to drive on.
+    /// True if it is active and has a map.
     pub(crate) const fn is_active(&self) -> bool {
         self.is_active && self.navigator.is_some()
     }
 
-    /// Lets the robot drive, or not: what it was asked for is then given up in the next cycle.
+    /// Activates or deactivates the robot. On deactivation the task is aborted in the next cycle.
     pub(crate) const fn set_active(&mut self, is_active: bool) {
         self.is_active = is_active;
     }
@@ -120,23 +120,23 @@ impl Pilot {
         &self.settings
     }
 
-    /// Makes a change of its settings.
+    /// Applies a parameter change.
     pub(crate) fn change(&mut self, change: &Change) {
         self.settings.change(change);
         self.sensing.points_taken = self.settings.points_taken.clone();
     }
 
-    /// True while it has something to do.
+    /// True while it has a task.
     pub(crate) const fn drives(&self) -> bool {
         self.errand.is_some()
     }
 
-    /// The pose in the map, when it was last known.
+    /// Last known pose in the map.
     pub(crate) const fn pose(&self) -> Option<Pose> {
         self.pose
     }
 
-    /// The state of the errand; `None` without one, or where nobody has said where the robot is.
+    /// Progress of the task; `None` without a task, or if the pose is unknown.
     pub(crate) fn report(&self, now_s: f64) -> Option<Report> {
         const SLOW_MPS: f64 = 0.01;
         let (errand, pose) = (self.errand.as_ref()?, self.pose?);
@@ -158,12 +158,13 @@ impl Pilot {
         })
     }
 
-    /// Recoveries so far, whatever the errand.
+    /// Recoveries so far, over all tasks.
     fn recoveries(&self) -> u32 {
         self.navigator.as_ref().map_or(0, |navigator| navigator.recoveries().total())
     }
 
-    /// The next command, at a time \[s\]. In doubt of where it is the robot stands.
+    /// Runs a cycle at a time \[s\] and returns its command. The robot stops if its pose is
+    /// uncertain.
     pub(crate) fn cycle(&mut self, now_s: f64) -> Cycle {
         let step = self.look(now_s).map(|navigator| navigator.step_at(now_s));
         let (ended, waits) = match &step {
@@ -186,14 +187,14 @@ impl Pilot {
         Cycle { command, ended, waits }
     }
 
-    /// The reason, if the robot stands because it sees nothing.
+    /// The reason if the robot has stopped because its sensors are silent.
     fn blindness(&self, step: &Step) -> Option<Waits> {
         let why = step.why().filter(|why| matches!(why, Blocked::SensorSilent { .. }))?;
         let topics = self.settings.scan_topics.join(", ");
         Some(Waits::Blind { why: why.to_string(), topics })
     }
 
-    /// The command of a robot that stands, whatever the navigator would do.
+    /// The command of a stopped robot, overriding the navigator.
     fn stand(&mut self, now_s: f64) -> Velocity {
         if let Some(navigator) = &mut self.navigator {
             navigator.note_override(now_s, Velocity::ZERO);
@@ -201,7 +202,7 @@ impl Pilot {
         Velocity::ZERO
     }
 
-    /// Observes what has come.
+    /// Passes the received messages to the navigator.
     fn look(&mut self, now_s: f64) -> Result<&mut Navigator, Waits> {
         let Settings { frames, max_pose_age_s, .. } = &self.settings;
         let navigator = self.navigator.as_mut().ok_or(Waits::Map)?;
@@ -217,13 +218,13 @@ impl Pilot {
         Ok(navigator)
     }
 
-    /// The end of the errand, if the robot has stood in doubt for too long.
+    /// Outcome of the task if the robot has been waiting for inputs for too long.
     fn end_of_doubt(&mut self, why: &Waits, now_s: f64) -> Option<(Ended, Report)> {
         let ended = self.errand.as_mut()?.stand(why, now_s)?;
         Some((ended, self.report(now_s).unwrap_or_default()))
     }
 
-    /// The end of the errand, if this step is the last one.
+    /// Outcome of the task if this step is the last one.
     fn end_of_errand(&mut self, step: &Step, now_s: f64) -> Option<(Ended, Report)> {
         let (navigator, errand) = (self.navigator.as_ref()?, self.errand.as_mut()?);
         errand.note(self.pose?);

@@ -1,4 +1,4 @@
-//! Measurements since the last cycle.
+//! Sensor data since the last cycle.
 
 use super::clouds::Seen;
 use super::waits::Waits;
@@ -12,12 +12,12 @@ use keyway::navigate::Navigator;
 use keyway::sense::{Observation, Scan, SensorPoints, SensorScan};
 use std::collections::VecDeque;
 
-/// The latest odometry, and what was sensed and not observed yet.
+/// The latest odometry, and sensor data that the navigator has not observed yet.
 pub(crate) struct Sensing {
-    /// With its time \[s\].
+    /// With its stamp \[s\].
     velocity: Option<(f64, Velocity)>,
     scans: Vec<Waiting<LaserScan>>,
-    /// Of sensors that give clouds.
+    /// Point clouds, by sensor.
     clouds: Vec<Waiting<PointCloud2>>,
     pub(super) points_taken: PointsTaken,
     frames: Frames,
@@ -40,19 +40,20 @@ impl Sensed for PointCloud2 {
     }
 }
 
-/// Messages of a sensor, the oldest first: those that are newer than what the transforms tell wait
+/// Queued messages of a sensor, the oldest first. Messages newer than the latest transform wait
 /// for it.
 struct Waiting<M> {
     messages: VecDeque<M>,
     most: usize,
-    /// The time of the last one that came \[s\].
+    /// Stamp of the last received message \[s\].
     last_s: Option<f64>,
-    /// The reason why the last one could not be used: until one can, nobody knows what is there.
+    /// Fault of the last message. It is kept until a message can be used, as the sensor is blind
+    /// until then.
     fault: Option<Waits>,
 }
 
 impl<M: Sensed> Waiting<M> {
-    /// For so many at most: of more, the oldest is forgotten.
+    /// Creates a queue with a maximum length; if it is full, the oldest message is dropped.
     fn new(most: usize) -> Self {
         Self { messages: VecDeque::new(), most, last_s: None, fault: None }
     }
@@ -69,7 +70,8 @@ impl<M: Sensed> Waiting<M> {
         *self = Self::new(self.most);
     }
 
-    /// The oldest one, if it was made until a time \[s\] and it is known where its sensor was then.
+    /// Takes the oldest message, if its stamp is at most `until_s` \[s\] and the pose of its
+    /// sensor at that time is known.
     fn pop(
         &mut self,
         until_s: f64,
@@ -80,7 +82,7 @@ impl<M: Sensed> Waiting<M> {
         Ok(self.messages.pop_front_if(|oldest| oldest.header().stamp.stamp_s() <= until_s))
     }
 
-    /// Uses all that are due. One from before the first transform shows nothing.
+    /// Processes all messages that are due. Messages from before the first transform are dropped.
     fn use_due<T>(
         &mut self,
         until_s: f64,
@@ -108,7 +110,7 @@ impl<M: Sensed> Waiting<M> {
     }
 }
 
-/// A scan in the robot's frame.
+/// A scan with the pose of its sensor in the robot's frame.
 struct Placed {
     sensor: usize,
     stamp_s: f64,
@@ -119,7 +121,7 @@ struct Placed {
 impl Sensing {
     pub(crate) fn new(settings: &Settings) -> Self {
         const MOST_SCANS: usize = 16;
-        /// They are large.
+        /// Clouds are large.
         const MOST_CLOUDS: usize = 4;
         let scans = settings.scan_topics.iter().map(|_| Waiting::new(MOST_SCANS));
         let clouds = settings.cloud_topics.iter().map(|_| Waiting::new(MOST_CLOUDS));
@@ -132,7 +134,7 @@ impl Sensing {
         }
     }
 
-    /// Takes in a velocity, if it is one.
+    /// Stores a velocity, if it is valid.
     pub(crate) fn take_odometry(&mut self, message: &Odometry) {
         let velocity = Velocity::from(message.twist.twist);
         if velocity.v.is_finite() && velocity.omega.is_finite() {
@@ -140,14 +142,14 @@ impl Sensing {
         }
     }
 
-    /// Takes in a scan.
+    /// Queues a scan.
     pub(crate) fn take_scan(&mut self, sensor: usize, message: LaserScan) {
         if let Some(scans) = self.scans.get_mut(sensor) {
             scans.push(message);
         }
     }
 
-    /// Takes in a cloud.
+    /// Queues a cloud.
     pub(crate) fn take_cloud(&mut self, sensor: usize, message: PointCloud2) {
         if let Some(clouds) = self.clouds.get_mut(sensor) {
             clouds.push(message);
@@ -165,8 +167,8 @@ impl Sensing {
         self.velocity.map(|(_, velocity)| velocity)
     }
 
-    /// Lets the navigator observe a pose, which was at a time \[s\], and what was sensed until then.
-    /// An error where, at the present time \[s\], something is too old or cannot be used.
+    /// Passes a pose with its stamp \[s\], and the sensor data up to then, to the navigator.
+    /// Returns an error if data is too old at the current time \[s\], or invalid.
     pub(super) fn observe(
         &mut self,
         navigator: &mut Navigator,
@@ -200,21 +202,21 @@ impl Sensing {
         if age_s > max_age_s {
             return Err(Waits::NewOdometry { age_s });
         }
-        // By such a clock the pose of now is one of long ago.
+        // By such a clock, the current pose is long outdated.
         if age_s < -max_age_s {
             return Err(Waits::Ahead { ahead_s: -age_s });
         }
         self.fault(now_s).map_or(Ok(()), Err)
     }
 
-    /// The reason why the robot does not see what it should.
+    /// The fault of a sensor, if there is one.
     fn fault(&self, now_s: f64) -> Option<Waits> {
         let of_scans = self.scans.iter().find_map(|scans| scans.fault.clone());
         let of_clouds = || self.clouds.iter().find_map(|clouds| clouds.fault.clone());
         of_scans.or_else(of_clouds).or_else(|| self.silence(now_s))
     }
 
-    /// A sensor with clouds that is silent. Of lidars the navigator knows that itself.
+    /// Reports a silent point cloud sensor. The navigator itself detects silent lidars.
     fn silence(&self, now_s: f64) -> Option<Waits> {
         let timeout_s = self.points_taken.timeout_s;
         let silent = |clouds: &Waiting<PointCloud2>| {
@@ -226,7 +228,7 @@ impl Sensing {
 }
 
 impl Placed {
-    /// A scan where its lidar was on the robot.
+    /// Places a scan with the pose of its lidar on the robot.
     fn new(
         sensor: usize,
         message: LaserScan,
@@ -254,7 +256,7 @@ mod tests {
     use super::*;
     use crate::transforms::Placement;
 
-    /// A frame that moves on the robot, and is told of less often than scans are made.
+    /// A frame that moves on the robot, and whose transforms are less frequent than the scans.
     #[test]
     fn scans_wait_for_their_frame() {
         let mut transforms = Transforms::default();

@@ -1,4 +1,4 @@
-//! Pictures of what the robot does, for those who look on.
+//! Visualisation messages of the robot's state.
 
 use super::Pilot;
 use crate::messages::geometry_msgs::{Point32, Polygon, PolygonStamped, Pose as PoseMessage};
@@ -18,7 +18,7 @@ const GREEN: ColorRgba = ColorRgba { r: 0.15, g: 0.60, b: 0.25, a: 0.5 };
 const GREY: ColorRgba = ColorRgba { r: 0.50, g: 0.50, b: 0.50, a: 0.3 };
 
 impl Pilot {
-    /// The outline of the robot where it is.
+    /// The footprint of the robot at its pose.
     pub(crate) fn footprint(&self, now_s: f64) -> Option<PolygonStamped> {
         const CORNERS: u32 = 16;
         let pose = self.pose?;
@@ -47,7 +47,7 @@ impl Pilot {
         Some(Path::along(&self.header(now_s), points, heading_rad))
     }
 
-    /// The course that the last command began; no poses without one.
+    /// The trajectory that the last command started; empty without one.
     pub(crate) fn local_plan(&self, now_s: f64) -> Option<Path> {
         let header = self.header(now_s);
         let stamped = |pose: Pose| PoseStamped { header: header.clone(), pose: pose.into() };
@@ -55,7 +55,7 @@ impl Pilot {
         Some(Path { header: header.clone(), poses })
     }
 
-    /// The movers, the place to which the robot drives, and ground around which it goes.
+    /// Markers of the moving obstacles, the local target, and the obstacles avoided by a detour.
     pub(crate) fn markers(&self, now_s: f64) -> Option<MarkerArray> {
         let navigator = self.navigator()?;
         let draw = Drawing { header: self.header(now_s) };
@@ -74,7 +74,7 @@ impl Pilot {
         Some(MarkerArray { markers })
     }
 
-    /// The candidates of the last decision: those that might have been chosen, and the others. It
+    /// Markers of the candidates of the last decision, admissible ones and others. Computing them
     /// takes many times as long as the decision.
     pub(crate) fn fan(&self, now_s: f64) -> Option<MarkerArray> {
         let explanation = self.navigator()?.explain();
@@ -97,25 +97,25 @@ impl Pilot {
         Some(MarkerArray { markers })
     }
 
-    /// The header of a message of the map, at a time \[s\].
+    /// Header of a message in the map frame, at a time \[s\].
     pub(crate) fn header(&self, now_s: f64) -> Header {
         Header::new(now_s, &self.settings.frames.map)
     }
 }
 
-/// The header that all markers of a picture share.
+/// Header shared by all markers of a picture.
 struct Drawing {
     header: Header,
 }
 
 impl Drawing {
-    /// Takes the last picture away.
+    /// A marker that deletes the last picture.
     fn nothing(&self) -> Marker {
         let header = self.header.clone();
         Marker { header, action: Marker::DELETE_ALL, ..Marker::default() }
     }
 
-    /// A disc on the ground.
+    /// Marker of a disc on the ground.
     fn round(
         &self,
         namespace: &str,
@@ -136,7 +136,7 @@ impl Drawing {
         }
     }
 
-    /// A mover, and where it is in a second.
+    /// Markers of a moving obstacle and its position in one second.
     fn mover(&self, mover: &Mover) -> [Marker; 2] {
         const SHAFT_M: f64 = 0.06;
         let id = mover.id as i32;
@@ -166,7 +166,7 @@ impl Drawing {
     }
 }
 
-/// A place just above the ground, so that a map does not hide it.
+/// A point just above the ground, so that a map does not hide it.
 fn above(place: Point) -> Vector3 {
     Vector3 { x: place.x, y: place.y, z: 0.05 }
 }

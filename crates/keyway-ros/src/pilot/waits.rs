@@ -1,11 +1,11 @@
-//! Reasons to stand in doubt.
+//! Reasons for waiting.
 
 use super::clouds::CloudError;
 use crate::transforms::TransformError;
 use keyway::sense::ScanError;
 use thiserror::Error;
 
-/// The reason why a robot stands, whatever its goal.
+/// The reason for a stopped robot, independent of its goal.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum Waits {
     #[error("no map has come yet")]
@@ -20,7 +20,7 @@ pub(crate) enum Waits {
     Cloud(#[from] CloudError),
     #[error("cloud_topics[{cloud}] has been silent for more than {after_s} s (`cloud_timeout`)")]
     Silent { cloud: usize, after_s: f64 },
-    /// The lidars are silent: the reason in words, and their topics.
+    /// The lidars are silent: a message with the reason, and their topics.
     #[error("{why} (topics: {topics})")]
     Blind { why: String, topics: String },
     #[error("the odometry is {age_s:.2} s old")]

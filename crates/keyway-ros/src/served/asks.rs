@@ -1,4 +1,4 @@
-//! Actions that are answered at once: ways, and paths made smooth.
+//! Actions that are answered at once: planning and smoothing of paths.
 
 use super::{Asks, Told};
 use crate::messages::builtin_interfaces::Duration;

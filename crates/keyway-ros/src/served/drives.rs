@@ -1,4 +1,4 @@
-//! Actions for which the robot drives.
+//! Actions that drive the robot.
 
 use super::{Drives, Told};
 use crate::messages::builtin_interfaces::Duration;
@@ -63,7 +63,7 @@ impl Drives for Wait {
     }
 }
 
-/// Single motions, whose goals have the same fields in all distributions, and some one more.
+/// Single motions, whose goals have the same fields in all distributions, some with one more.
 macro_rules! single_motions {
     ($($distribution:ident),+) => { $(
         impl Drives for $distribution::Spin {
@@ -87,7 +87,7 @@ macro_rules! single_motions {
 
         impl Drives for $distribution::BackUp {
             fn wanted(goal: $distribution::DriveGoal) -> Wanted {
-                // As Nav2 has it, signs say nothing.
+                // As in Nav2, signs are ignored.
                 let way_m = -goal.target.x.abs();
                 straight(Target { x: way_m, ..goal.target }, -goal.speed.abs(), goal.time_allowance)
             }
@@ -119,7 +119,7 @@ macro_rules! single_motions {
 
 single_motions!(jazzy, kilted);
 
-/// A drive ahead, or back where the target is behind.
+/// A drive ahead, or back if the target is behind the robot.
 fn straight(target: Target, speed_mps: f32, allowance: Duration) -> Wanted {
     let (way_m, speed_mps) = (target.x, f64::from(speed_mps));
     let fault = if target.y != 0.0 || target.z != 0.0 {

@@ -1,6 +1,6 @@
-//! The actions and services of the node: those for which the robot drives, and those that only ask.
-//! Each is a few lines that say what its goal wants and how its outcome is written. What Nav2 has
-//! and this node has not is refused.
+//! Actions and services of the node: those that drive the robot, and queries. Each defines the
+//! task of its goal and the message of its outcome. Actions of Nav2 that this node lacks are
+//! refused.
 
 mod asks;
 mod drives;
@@ -20,7 +20,7 @@ use crate::messages::std_srvs::IsActive;
 use crate::pilot::{Ended, Pilot, Report, Wanted};
 use crate::wire::{ActionServer, GoalEvent, GoalId, GoalStatus, Wire, Wired};
 
-/// Versions of ROS whose messages differ.
+/// ROS distributions with different messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Distribution {
     Jazzy,
@@ -37,52 +37,52 @@ impl Distribution {
     }
 }
 
-/// The time and the frame of what is told.
+/// The time and the map frame for feedback and answers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told<'a> {
     pub(crate) now_s: f64,
     pub(crate) frame: &'a str,
 }
 
-/// An action for which the robot drives.
+/// An action that drives the robot.
 trait Drives: Action {
-    /// The errand that a goal asks for.
+    /// The task of a goal.
     fn wanted(goal: Self::Goal) -> Wanted;
 
-    /// The message of the end.
+    /// The message of the outcome.
     fn outcome(ended: &Ended, report: &Report) -> Self::Outcome;
 
-    /// The message on the way.
+    /// The feedback message.
     fn feedback(report: &Report, told: Told<'_>) -> Self::Feedback;
 }
 
 /// An action that is answered at once.
 trait Asks: Action {
-    /// Its outcome, and how it ended.
+    /// Returns its outcome message, and how it ended.
     fn answer(pilot: &mut Pilot, goal: Self::Goal, told: Told<'_>) -> (Ended, Self::Outcome);
 }
 
-/// A wish of a client.
+/// A request of a client.
 pub(crate) enum Wish {
     Begin(GoalId, Wanted),
     Cancel(GoalId),
 }
 
-/// A server of an action for which the robot drives.
+/// The server of an action that drives the robot.
 pub(crate) trait Served {
-    /// All that clients want since the last call.
+    /// All requests since the last call.
     fn receive(&mut self, now: Time) -> Vec<Wish>;
 
-    /// A goal has come to its end.
+    /// Ends a goal.
     fn end(&mut self, id: GoalId, status: GoalStatus, ended: &Ended, report: &Report);
 
-    /// Tells the client of a goal how far it is.
+    /// Sends feedback to the client of a goal.
     fn feed_back(&self, id: GoalId, report: &Report, told: Told<'_>);
 }
 
-/// A server of an action that is answered at once.
+/// The server of an action or service that is answered at once.
 pub(crate) trait Answered {
-    /// Answers all that clients ask since the last call.
+    /// Answers all requests since the last call.
     fn answer_all(&mut self, pilot: &mut Pilot, told: Told<'_>);
 }
 
@@ -107,7 +107,7 @@ impl<A: Drives + Wired> Served for ActionServer<A> {
 impl<A: Asks + Wired> Answered for ActionServer<A> {
     fn answer_all(&mut self, pilot: &mut Pilot, told: Told<'_>) {
         for event in self.events(Time::of(told.now_s)) {
-            // An answer has been given before it can be given up.
+            // An answer comes before it can be cancelled.
             let GoalEvent::Begin(id, goal) = event else { continue };
             let (ended, outcome) = A::answer(pilot, goal, told);
             let is_found = ended == Ended::Succeeded;
@@ -117,7 +117,7 @@ impl<A: Asks + Wired> Answered for ActionServer<A> {
     }
 }
 
-/// All actions for which the robot drives.
+/// All actions that drive the robot.
 pub(crate) fn served(
     wire: &mut Wire,
     distribution: Distribution,
@@ -148,8 +148,8 @@ pub(crate) fn served(
     Ok(served)
 }
 
-/// All actions and services that are answered at once. The node stands for others of Nav2, whose
-/// names are given.
+/// All actions and services that are answered at once. The node also answers in place of other
+/// Nav2 nodes, whose names are given.
 pub(crate) fn answered(
     wire: &mut Wire,
     distribution: Distribution,

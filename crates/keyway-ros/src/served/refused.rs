@@ -1,5 +1,5 @@
-//! Actions of Nav2 that this node does not have. Their goals are refused, so that a client which
-//! waits for one goes on.
+//! Actions of Nav2 that this node lacks. Their goals are refused, so that a waiting client
+//! continues.
 
 use super::Answered;
 use crate::error::StartError;
@@ -21,7 +21,7 @@ impl<A: Wired + Action<Goal = Unread>> Answered for Refused<A> {
     }
 }
 
-/// All of them.
+/// All refused actions.
 pub(super) fn refused(wire: &mut Wire) -> Result<Vec<Box<dyn Answered>>, StartError> {
     Ok(vec![
         Box::new(Refused(wire.action::<AssistedTeleop>("assisted_teleop")?)),

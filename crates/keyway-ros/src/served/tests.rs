@@ -1,4 +1,4 @@
-//! Every number of an error, by what leads to it.
+//! Tests of every error code, with its cause.
 
 use super::{Asks, Drives, Told};
 use crate::messages::builtin_interfaces::Duration;
@@ -15,18 +15,18 @@ use keyway::geometry::{Point, Pose};
 
 const TOLD: Told<'static> = Told { now_s: 100.0, frame: "map" };
 
-/// Something that is wrong.
+/// A fault of the test setup.
 #[derive(Clone, Copy, Debug)]
 enum Wrong {
     Nothing,
     NoMap,
     Inactive,
-    /// A wall from side to side.
+    /// A wall across the room.
     WallAcross,
     BesideTheMap,
     InAWall,
     Slips,
-    /// Nobody says any more where it is.
+    /// The pose is no longer published.
     Lost,
 }
 
@@ -53,7 +53,7 @@ fn robot(name: &str, wrong: Wrong) -> Robot {
     robot
 }
 
-/// The end of an action, within two minutes.
+/// The outcome of an action, within two minutes.
 fn outcome<A: Drives>(name: &str, goal: A::Goal, wrong: Wrong) -> A::Outcome {
     let mut robot = robot(name, wrong);
     if let Err(ended) = robot.pilot.begin(A::wanted(goal), robot.now_s) {
@@ -78,13 +78,13 @@ fn there(frame: &str, x: f64) -> PoseStamped {
     goal(frame, Pose::new(x, 2.0, 0.0))
 }
 
-/// A way along the middle of the room, to its right end.
+/// A path along the middle of the room.
 fn path(frame: &str, places: &[f64]) -> Path {
     let points: Vec<Point> = places.iter().map(|&x| Point::new(x, 2.0)).collect();
     Path::new(&Header::new(0.0, frame), &points, None)
 }
 
-/// What is wrong with poses, and the last digits of its number.
+/// A fault of the poses, and the last digits of its code.
 const POSES: [(&str, f64, Wrong, u16); 6] = [
     ("nowhere", 5.0, Wrong::Nothing, 2),
     ("map", 5.0, Wrong::BesideTheMap, 3),

@@ -1,9 +1,9 @@
-//! The parameters as other nodes see them, and what they may change while the node runs.
+//! The parameters declared to other nodes, and those that may change at run time.
 
 use super::Settings;
 use toml::Value;
 
-/// A parameter that another node has set.
+/// A parameter set by another node.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Change {
     name: String,
@@ -11,7 +11,7 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// One that may be made; otherwise the reason why it may not.
+    /// Checks a change; an error has the reason for its refusal.
     pub(crate) fn of(name: &str, value: &Value) -> Result<Self, String> {
         let number = super::number(value).ok_or_else(|| format!("must be a number, got {value}"));
         match name {
@@ -60,14 +60,14 @@ impl Settings {
         ]
     }
 
-    /// Makes a change.
+    /// Applies a change.
     pub(crate) fn change(&mut self, change: &Change) {
         let taken = &mut self.points_taken;
         let (lowest_m, highest_m) = taken.heights_m.clone().into_inner();
         match change.name.as_str() {
             "max_pose_age" => self.max_pose_age_s = change.number,
             "obstacle_max_range" => taken.range_m = change.number,
-            // One that passes the other takes it along.
+            // A bound that passes the other one moves it as well.
             "min_obstacle_height" => {
                 taken.heights_m = change.number..=highest_m.max(change.number);
             }

@@ -1,4 +1,4 @@
-//! Files of parameters: nodes by their names, in namespaces or not, each with its parameters.
+//! Parameter files: node names, with or without namespaces, and their parameters.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -7,10 +7,10 @@ use std::io::Read;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Longer files are not of parameters \[B\].
+/// Maximum size of a parameter file \[B\].
 const LONGEST_B: u64 = 1 << 20;
 
-/// The names at the top of a file, and what stands under them; otherwise the fault.
+/// The top-level names of a file with their content, or an error message.
 pub(super) fn read(path: &Path) -> Result<Table, String> {
     let mut text = Vec::new();
     let file = File::open(path).map_err(|error| error.to_string())?;
@@ -25,14 +25,14 @@ pub(super) fn read(path: &Path) -> Result<Table, String> {
     };
     match serde_saphyr::from_str(&text).map_err(fault)? {
         Item(Some(Value::Table(nodes))) => Ok(nodes),
-        // A file of comments alone gives nothing.
+        // A file with only comments is empty.
         Item(None) => Ok(Table::new()),
         Item(Some(_)) => Err("names of nodes are missing at the top".to_owned()),
     }
 }
 
-/// The nodes of a file with their parameters: names of namespaces may stand above them, and are
-/// part of theirs.
+/// The nodes of a file with their parameters. Namespaces above the nodes become part of their
+/// names.
 pub(super) fn nodes(file: &Table) -> Vec<(String, &Table)> {
     let mut nodes = Vec::new();
     for (name, inner) in file {
@@ -41,7 +41,7 @@ pub(super) fn nodes(file: &Table) -> Vec<(String, &Table)> {
             nodes.push((name.clone(), parameters));
         }
         nodes.extend(self::nodes(inner).into_iter().filter_map(|(node, parameters)| {
-            // Parameters that are tables are no nodes.
+            // Parameters that are tables are not nodes.
             (name != "ros__parameters").then(|| {
                 let node = node.strip_prefix('/').unwrap_or(&node);
                 (format!("{}/{node}", name.trim_end_matches('/')), parameters)
@@ -51,7 +51,7 @@ pub(super) fn nodes(file: &Table) -> Vec<(String, &Table)> {
     nodes
 }
 
-/// A value of YAML. What is null is as if it were not there.
+/// A YAML value. Null is treated as absent.
 struct Item(Option<Value>);
 
 impl<'de> Deserialize<'de> for Item {

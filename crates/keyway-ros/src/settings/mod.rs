@@ -1,5 +1,5 @@
-//! Parameters of the node: from files and the command line, as ROS has them, to a robot, a stack,
-//! and names of frames and topics.
+//! Parameters of the node, from files and the command line as in ROS: converted to a robot, a
+//! stack, and names of frames and topics.
 
 mod declared;
 mod file;
@@ -23,54 +23,54 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::Value;
 
-/// Everything that the node is told at its start.
+/// All settings at the start of the node.
 #[derive(Clone)]
 pub(crate) struct Settings {
     pub(crate) stack: Arc<FittedStack>,
-    /// As they were asked for; empty where the robot is that of a file of Nav2.
+    /// As requested; empty if the robot is described by a Nav2 file.
     robot_name: String,
     stack_name: String,
     pub(crate) frames: Frames,
     /// Topics of the lidars, in the order of the robot's sensors.
     pub(crate) scan_topics: Vec<String>,
-    /// Topics of other sensors, which give clouds of points.
+    /// Topics of point clouds.
     pub(crate) cloud_topics: Vec<String>,
     pub(crate) points_taken: PointsTaken,
-    /// Topics that tell of masks of ground.
+    /// Topics of filter metadata (masks).
     pub(crate) filter_info_topics: Vec<String>,
     pub(crate) odom_topic: String,
     pub(crate) distribution: Distribution,
-    /// Nodes of Nav2 in whose place this one answers whether they are active.
+    /// Names of Nav2 nodes for which this one answers lifecycle queries.
     pub(crate) stands_for: Vec<String>,
-    /// Commands have a stamp.
+    /// True if commands are stamped.
     pub(crate) is_cmd_vel_stamped: bool,
-    /// By the clock of a simulation.
+    /// True if the clock is that of a simulation.
     pub(crate) use_sim_time: bool,
-    /// No command is computed from a pose that is older \[s\].
+    /// Maximum age of a pose for computing a command \[s\].
     pub(crate) max_pose_age_s: f64,
 }
 
 /// Names of frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Frames {
-    /// Of the map and the goals.
+    /// Frame of the map and the goals.
     pub(crate) map: String,
-    /// Of the robot.
+    /// Frame of the robot.
     pub(crate) base: String,
 }
 
-/// The points of clouds that are obstacles.
+/// Selection of obstacle points in clouds.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PointsTaken {
-    /// Above the ground \[m\].
+    /// Heights above the ground \[m\].
     pub(crate) heights_m: RangeInclusive<f64>,
-    /// Farther from the sensor they do not count \[m\].
+    /// Maximum distance from the sensor \[m\].
     pub(crate) range_m: f64,
-    /// The robot stands when one of these sensors is silent for longer \[s\]; 0: never.
+    /// The robot stops if a sensor is silent for longer than this \[s\]; 0: never.
     pub(crate) timeout_s: f64,
 }
 
-/// The distribution, by the parameter or by `ROS_DISTRO`.
+/// The distribution, from the parameter or `ROS_DISTRO`.
 fn distribution_of(given: &mut Given, distro: Option<&str>) -> Result<Distribution, StartError> {
     match given.text("distribution")?.as_deref().or(distro) {
         Some("jazzy") => Ok(Distribution::Jazzy),
@@ -82,10 +82,10 @@ fn distribution_of(given: &mut Given, distro: Option<&str>) -> Result<Distributi
     }
 }
 
-/// Parameters by their names, as they were given.
+/// Given parameters, by name.
 type Parameters = BTreeMap<String, Value>;
 
-/// A parameter, and what it is for; the default is what stands in [`Settings::of`].
+/// Parameters and their descriptions; defaults are set in [`Settings::of`].
 const PARAMETERS: [(&str, &str); 18] = [
     ("robot", "name of a bundled robot, or its file (TOML); required without a file of Nav2"),
     ("stack", "name of a stack, or its file (TOML); `keyway`"),
@@ -110,7 +110,7 @@ const PARAMETERS: [(&str, &str); 18] = [
     ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
 ];
 
-/// The parameters of the node and of the simulator, one a line, for the help.
+/// The parameters of the node and of the simulator, one per line, for the help.
 pub(crate) fn help() -> [String; 2] {
     [&PARAMETERS[..], &simulator::PARAMETERS].map(|parameters| {
         let line = |(name, what): &(&str, &str)| format!("  {name:24}{what}");
@@ -119,7 +119,7 @@ pub(crate) fn help() -> [String; 2] {
 }
 
 impl Settings {
-    /// The settings by the arguments, and by `ROS_DISTRO`.
+    /// Derives the settings from the arguments and `ROS_DISTRO`.
     pub(crate) fn of(arguments: &Arguments, distro: Option<&str>) -> Result<Self, StartError> {
         let mut given = Given::read(arguments)?;
         let distribution = distribution_of(&mut given, distro)?;
@@ -201,23 +201,24 @@ impl Settings {
     }
 }
 
-/// Parameters that were given, and have not been looked at.
+/// Given parameters that are not processed yet.
 struct Given {
     own: Parameters,
-    /// Names that files give to all nodes alone: they may be for others.
+    /// Names given only to all nodes (`/**`): they may be for other nodes.
     of_all: BTreeSet<String>,
     nav2: Nav2,
 }
 
 impl Given {
-    /// Of all files in their order, then of the command line: the last one counts.
+    /// Reads all files in order, then the command line; the last value has priority.
     fn read(arguments: &Arguments) -> Result<Self, StartError> {
         let (mut given, mut nav2) = (Parameters::new(), Nav2::default());
         let mut of_all = BTreeSet::new();
         for path in &arguments.parameter_files {
             let fault = |why: String| StartError::File { path: path.clone(), why };
             let nodes = file::read(path).map_err(fault)?;
-            // What is given to this node itself counts more, wherever it stands.
+            // Parameters given to this node have priority over those of Nav2 nodes, whatever
+            // their order.
             let of_file = Nav2::of(&nodes, arguments.namespace());
             if !of_file.is_empty() {
                 nav2 = of_file;
@@ -244,7 +245,7 @@ impl Given {
         Ok(Self { own, of_all, nav2 })
     }
 
-    /// The points of clouds that count.
+    /// Selection of obstacle points in clouds.
     fn points_taken(&mut self) -> Result<PointsTaken, StartError> {
         let lowest_m = self.number("min_obstacle_height")?.unwrap_or(0.05);
         let highest_m = self.number("max_obstacle_height")?.unwrap_or(2.0);
@@ -259,7 +260,7 @@ impl Given {
         Ok(PointsTaken { heights_m: lowest_m..=highest_m, range_m, timeout_s })
     }
 
-    /// The robot as files of Nav2 describe it.
+    /// The robot described by Nav2 files.
     fn nav2_robot(&mut self) -> Result<Robot, StartError> {
         let names = Robot::NAMES.join(", ");
         if self.nav2.is_empty() {
@@ -277,14 +278,14 @@ impl Given {
                 format!("is not given, and what Nav2's parameters say is not enough: {error}");
             wrong("robot", why)
         })?;
-        // Nothing is said of the lidars but their topics.
+        // The file contains only the topics of the lidars.
         let lidar = robot.sensors[0].clone();
         let scans = self.own.get("scan_topics").and_then(Value::as_array).map_or(1, Vec::len);
         robot.sensors = vec![lidar; scans.clamp(1, Robot::MOST_SENSORS)];
         Ok(robot)
     }
 
-    /// Takes a parameter out.
+    /// Takes and converts a parameter.
     fn take<T>(
         &mut self,
         name: &str,
@@ -320,7 +321,7 @@ impl Given {
         self.take(name, "a number", number)
     }
 
-    /// Refuses what is left, unless it may be for other nodes.
+    /// Refuses the remaining parameters, unless they may be for other nodes.
     fn all_known(self, known: &[(&str, &str)]) -> Result<(), StartError> {
         let known = known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
         for name in self.own.keys() {
@@ -335,24 +336,23 @@ impl Given {
     }
 }
 
-/// Poses that are older say nothing of where a robot is.
+/// Range of the maximum pose age; older poses are useless.
 const MAX_POSE_AGE: &str = "a positive number, at most 5";
 
 fn is_pose_age(age_s: &f64) -> bool {
     *age_s > 0.0 && *age_s <= 5.0
 }
 
-/// A number that is finite.
+/// A finite number.
 fn number(value: &Value) -> Option<f64> {
     let whole = value.as_integer().map(|whole| whole as f64);
     whole.or(value.as_float()).filter(|number| number.is_finite())
 }
 
-/// The name under which a file has parameters for all nodes.
+/// The name for parameters of all nodes in a file.
 const ALL: &str = "/**";
 
-/// True if the parameters of a file under this name are for this node alone: its name, or its name
-/// with its namespace.
+/// True if a name in a file refers to this node alone: its name, with or without its namespace.
 fn is_for(name: &str, arguments: &Arguments) -> bool {
     let node = arguments.node_name();
     let full = crate::arguments::full_name(node, arguments.namespace());
@@ -440,7 +440,7 @@ mod tests {
         let settings = read(&with_size, &[]).unwrap();
         let robot = settings.stack.robot();
         assert_eq!((robot.limits.v_max_mps, robot.cycle_s), (0.3, 0.1));
-        // What is given to this node itself counts more.
+        // Parameters given to this node have priority.
         let given = [("robot", "jackal"), ("controller_frequency", "20")];
         let settings = read(&with_size, &given).unwrap();
         let robot = settings.stack.robot();
@@ -460,7 +460,8 @@ mod tests {
         let settings = Settings::of(&arguments, Some("jazzy")).unwrap();
         assert_eq!(settings.odom_topic, "odometry");
         assert!(!settings.is_cmd_vel_stamped);
-        // What is given to all may be for others; what is given to this node is not.
+        // Parameters for all nodes may be for other nodes; parameters for this node must be
+        // known.
         let with = |name: &str| format!("{text}{name}:\n  ros__parameters:\n    speed: 1\n");
         std::fs::write(file.path(), with("/**/keyway")).unwrap();
         assert!(Settings::of(&arguments, None).is_err());

@@ -1,5 +1,4 @@
-//! Parameters of Nav2's nodes, as far as they have a meaning here: so that its files say what a
-//! robot is.
+//! Parameters of Nav2 nodes, as far as they apply here: Nav2 files can describe the robot.
 
 use super::Parameters;
 use keyway::files::RobotFile;
@@ -8,33 +7,33 @@ use keyway::robot::Footprint;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::{Table, Value};
 
-/// The parameters of a file of Nav2 that say something here.
+/// The applicable parameters of a Nav2 file.
 #[derive(Debug, Default)]
 pub(super) struct Nav2 {
-    /// The robot, as far as it is described.
+    /// The robot, as far as the file describes it.
     pub(super) robot: RobotFile,
     pub(super) goal_tolerance_m: Option<f64>,
     pub(super) goal_yaw_tolerance_rad: Option<f64>,
-    /// Parameters of this node that follow from others.
+    /// Parameters of this node, derived from those of others.
     pub(super) own: Parameters,
-    /// The reason why the robot cannot be what the file says.
+    /// The reason why the described robot is invalid.
     pub(super) fault: Option<String>,
-    /// Names that were taken, and all there are, each after its node.
+    /// Names of used parameters, and of all parameters, each after its node.
     taken: BTreeSet<String>,
     all: BTreeSet<String>,
-    /// Those that were taken for the robot.
+    /// The used parameters that describe the robot.
     of_robot: BTreeSet<String>,
 }
 
-/// Nodes by their names, as a file has them.
+/// Nodes of a file, by name.
 struct Nodes<'a> {
     parameters: BTreeMap<&'a str, &'a Table>,
     taken: BTreeSet<String>,
 }
 
 impl Nav2 {
-    /// Of the nodes of a file that are in a namespace, or in none; nothing where none of them is
-    /// Nav2's.
+    /// Reads the Nav2 nodes of a file that are in a namespace, or in none. The result is empty
+    /// without any of them.
     pub(super) fn of(file: &Table, namespace: &str) -> Self {
         let mut nodes = Nodes::of(file, namespace);
         let mut found = Self { all: nodes.names(), ..Self::default() };
@@ -48,18 +47,18 @@ impl Nav2 {
         found
     }
 
-    /// The robot is described elsewhere.
+    /// Ignores the robot, as it is described elsewhere.
     pub(super) fn forget_robot(&mut self) {
         self.taken.retain(|name| !self.of_robot.contains(name));
     }
 
-    /// True if it says nothing.
+    /// True if nothing was used.
     pub(super) fn is_empty(&self) -> bool {
         self.taken.is_empty()
     }
 
-    /// The names that were taken, and those that were not, for the one who starts the node; empty
-    /// without a file of Nav2.
+    /// Report of used and unused parameters, for the user who starts the node; empty without a
+    /// Nav2 file.
     pub(super) fn report(&self) -> Vec<String> {
         if self.is_empty() {
             return Vec::new();
@@ -86,7 +85,7 @@ impl Nav2 {
                 self.fault = Some(format!("{costmap}: footprint: must be {expected}, got {other}"));
                 return;
             }
-            // Without corners it is the radius that counts, as in Nav2.
+            // Without corners, the radius is used, as in Nav2.
             let text = given.and_then(Value::as_str);
             if let Some(text) = text.filter(|text| text.contains(char::is_numeric)) {
                 match polygon(text) {
@@ -106,8 +105,8 @@ impl Nav2 {
         }
     }
 
-    /// The limits of the first controller, whichever it is, and of the smoother of velocities: the
-    /// lower one of both counts.
+    /// Limits of the first controller, of any type, and of the velocity smoother. The lower one
+    /// of both has priority.
     fn take_limits(&mut self, nodes: &mut Nodes<'_>) {
         const CONTROLLER: &str = "controller_server";
         const SMOOTHER: &str = "velocity_smoother";
@@ -117,7 +116,7 @@ impl Nav2 {
             let mut number = |name: &&str| nodes.number(CONTROLLER, &format!("{plugin}.{name}"));
             names.iter().find_map(&mut number)
         };
-        // DWB, MPPI, regulated pure pursuit, the graceful controller.
+        // DWB, MPPI, regulated pure pursuit, graceful controller.
         let speed = of_controller(&[
             "max_vel_x",
             "vx_max",
@@ -156,7 +155,8 @@ impl Nav2 {
         };
         self.robot.v_max_mps = lower(speed, top);
         let limits = &mut self.robot.limits;
-        // The smoother says what the base can, a controller what it likes.
+        // The reverse speed is that of the controller if it has one, otherwise that of the
+        // smoother.
         limits.v_min_mps = slowest.filter(|&v_mps| v_mps < 0.0).or(back.map(|back_mps| -back_mps));
         limits.omega_max_radps = lower(turn, top_turn);
         limits.acceleration_mps2 = lower(faster, gain);
@@ -175,8 +175,8 @@ impl Nav2 {
             nodes.number(server, &format!("{checker}.yaw_goal_tolerance"));
     }
 
-    /// The names of frames and topics, and the frequency. Whether time is simulated is for the
-    /// launch file to say: Nav2's own overrides what stands here.
+    /// Names of frames and topics, and the frequency. Simulated time is left to the launch file,
+    /// as Nav2's launch files override this value.
     fn take_names(&mut self, nodes: &mut Nodes<'_>) {
         for (own, places) in [
             ("controller_frequency", &["controller_server"][..]),
@@ -190,7 +190,7 @@ impl Nav2 {
         }
     }
 
-    /// The topics of lidars and of clouds, of the costmap around the robot.
+    /// Topics of the lidars and point clouds in the local costmap.
     fn take_sources(&mut self, nodes: &mut Nodes<'_>) {
         let costmap = "local_costmap";
         let (mut scans, mut clouds) = (Vec::new(), Vec::new());
@@ -211,7 +211,7 @@ impl Nav2 {
                 }
                 let mut of = |name: &str| nodes.take(costmap, &format!("{layer}.{source}.{name}"));
                 let kind = of("data_type").and_then(Value::as_str).unwrap_or("LaserScan");
-                // Sonars and others have messages of their own, which nobody reads here.
+                // Sonars and others have other message types, which are not supported.
                 if !["LaserScan", "PointCloud2"].contains(&kind) {
                     continue;
                 }
@@ -235,7 +235,7 @@ impl Nav2 {
 }
 
 impl<'a> Nodes<'a> {
-    /// Nodes that Nav2 has.
+    /// Names of Nav2 nodes.
     const NAMES: [&'static str; 12] = [
         "amcl",
         "behavior_server",
@@ -257,14 +257,14 @@ impl<'a> Nodes<'a> {
             let full = format!("/{}", path.trim_start_matches('/'));
             let inside = full.strip_prefix(namespace).or_else(|| full.strip_prefix("/**"));
             let path = inside.unwrap_or(&full).trim_start_matches('/');
-            // Nodes of costmaps stand in a namespace that is called as they are.
+            // Costmap nodes are in a namespace with their own name.
             let is_it = |name: &&str| path == *name || path == format!("{name}/{name}");
             parameters.extend(Self::NAMES.into_iter().find(is_it).map(|name| (name, of_node)));
         }
         Self { parameters, taken: BTreeSet::new() }
     }
 
-    /// The names of all parameters, each after its node.
+    /// Names of all parameters, each after its node.
     fn names(&self) -> BTreeSet<String> {
         let mut names = BTreeSet::new();
         for (node, parameters) in &self.parameters {
@@ -273,7 +273,8 @@ impl<'a> Nodes<'a> {
         names
     }
 
-    /// A parameter by its name with dots, which a file may have as tables or as it is.
+    /// Takes a parameter by its dotted name, which a file may have as nested tables or as one
+    /// key.
     fn take(&mut self, node: &str, name: &str) -> Option<&'a Value> {
         let parameters = *self.parameters.get(node)?;
         let nested = || {
@@ -318,8 +319,8 @@ fn add_names(names: &mut BTreeSet<String>, before: &str, parameters: &Table) {
     }
 }
 
-/// A footprint as Nav2 writes it: a text such as `[[0.2, 0.1], [-0.2, 0.1], [0.0, -0.1]]`. The first
-/// corner may stand at the end once more.
+/// A footprint in Nav2's format: a text such as `[[0.2, 0.1], [-0.2, 0.1], [0.0, -0.1]]`. The
+/// first corner may be repeated at the end.
 fn polygon(text: &str) -> Result<Footprint, String> {
     let corners: Vec<[f64; 2]> = serde_saphyr::from_str(text).map_err(|error| error.to_string())?;
     let mut corners: Vec<Point> = corners.into_iter().map(Point::from).collect();
@@ -337,7 +338,7 @@ mod tests {
         Nav2::of(&serde_saphyr::from_str(text).unwrap(), "/")
     }
 
-    /// As Nav2's own files are laid out, with MPPI.
+    /// Layout of Nav2's own files, with MPPI.
     const MPPI: &str = r#"
 amcl:
   ros__parameters:
@@ -425,7 +426,7 @@ velocity_smoother:
         assert!(of("keyway:\n  ros__parameters:\n    robot: jackal\n").report().is_empty());
     }
 
-    /// A robot must not be made smaller by a slip of the pen.
+    /// A typing error must not make a robot smaller.
     #[test]
     fn a_footprint_that_cannot_be_is_no_footprint() {
         let with = |footprint: &str| {
@@ -458,7 +459,7 @@ velocity_smoother:
             let fault = of(&text).fault.unwrap();
             assert!(fault.contains(named), "{fault}");
         }
-        // Sonars are not read.
+        // Sonars are ignored.
         let sonar = of(&MPPI.replace("LaserScan", "Range"));
         assert!(!sonar.own.contains_key("scan_topics") && sonar.own.contains_key("cloud_topics"));
     }

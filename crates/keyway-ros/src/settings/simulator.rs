@@ -5,18 +5,18 @@ use crate::arguments::Arguments;
 use crate::error::StartError;
 use crate::served::Distribution;
 
-/// Everything that the simulator is told at its start.
+/// All settings at the start of the simulator.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SimulatorSettings {
-    /// So many times faster than a clock.
+    /// Factor of the simulation speed relative to real time.
     pub(crate) rate: f64,
-    /// Stamps begin at 0; otherwise they are those of the machine.
+    /// Stamps start at 0; otherwise they are system time.
     pub(crate) use_sim_time: bool,
-    /// Commands have a stamp.
+    /// True if commands are stamped.
     pub(crate) is_cmd_vel_stamped: bool,
 }
 
-/// A parameter, and what it is for; the default is what stands in [`SimulatorSettings::of`].
+/// Parameters and their descriptions; defaults are set in [`SimulatorSettings::of`].
 pub(super) const PARAMETERS: [(&str, &str); 4] = [
     ("rate", "so many times faster than a clock; 1"),
     ("use_sim_time", "stamps begin at 0, and /clock tells of them; false"),
@@ -25,7 +25,7 @@ pub(super) const PARAMETERS: [(&str, &str); 4] = [
 ];
 
 impl SimulatorSettings {
-    /// The settings by the arguments, and by `ROS_DISTRO`.
+    /// Derives the settings from the arguments and `ROS_DISTRO`.
     pub(crate) fn of(arguments: &Arguments, distro: Option<&str>) -> Result<Self, StartError> {
         let mut given = Given::read(arguments)?;
         let distribution = distribution_of(&mut given, distro)?;

@@ -1,7 +1,7 @@
-//! Places of frames: the transforms of `/tf` and `/tf_static`, by their times.
+//! Poses of frames: the transforms of `/tf` and `/tf_static`, by time.
 //!
-//! Each frame is in one other frame, its parent. A transform that was not told is between two that
-//! were, in proportion; beyond the last one nothing is known.
+//! Each frame has one parent. Between two received transforms the pose is interpolated linearly;
+//! beyond the last one it is unknown.
 
 mod placement;
 
@@ -10,7 +10,7 @@ pub(crate) use placement::Placement;
 use std::collections::{HashMap, VecDeque};
 use thiserror::Error;
 
-/// The reason why nobody knows where a frame is.
+/// The reason why the pose of a frame is unknown.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum TransformError {
     #[error(
@@ -31,13 +31,13 @@ pub(crate) struct Transforms {
     edges: HashMap<String, Edge>,
 }
 
-/// A frame in its parent.
+/// The transforms from a frame to its parent.
 #[derive(Clone, Debug)]
 struct Edge {
     parent: String,
-    /// Never moves.
+    /// True for a static transform.
     is_fixed: bool,
-    /// By their times \[s\], the oldest first; never empty.
+    /// Received transforms by their stamps \[s\], the oldest first; never empty.
     told: VecDeque<(f64, Placement)>,
 }
 
@@ -50,7 +50,7 @@ impl Edge {
         self.told.back().copied().unwrap_or_default()
     }
 
-    /// At a time \[s\]; the reach of what was told, where that is outside of it.
+    /// The transform at a time \[s\]; outside the received interval, an error with that interval.
     fn at(&self, at_s: f64) -> Result<Placement, [f64; 2]> {
         let ((from_s, _), (to_s, last)) = (self.first(), self.last());
         if self.is_fixed || at_s == to_s {
@@ -67,14 +67,15 @@ impl Edge {
 }
 
 impl Transforms {
-    /// The time for which a transform is kept \[s\].
+    /// Time for which a transform is kept \[s\].
     const KEPT_S: f64 = 10.0;
 
-    /// More frames than this are one in a circle.
+    /// Maximum depth: longer chains of frames are cycles.
     const DEEPEST: usize = 64;
 
-    /// Takes in where a frame is in its parent at a time \[s\], or always. What is older than the
-    /// last by more than is kept begins anew: the clock was set back.
+    /// Stores the transform of a frame at a time \[s\], or a static one. If the stamp is older
+    /// than the last one by more than the kept time, the history is cleared: the clock was set
+    /// back.
     pub(crate) fn insert(
         &mut self,
         [parent, child]: [&str; 2],
@@ -106,12 +107,12 @@ impl Transforms {
         }
     }
 
-    /// Forgets all that move: the clock begins anew.
+    /// Clears all moving transforms, as the clock restarts.
     pub(crate) fn restart_clock(&mut self) {
         self.edges.retain(|_, edge| edge.is_fixed);
     }
 
-    /// The place of a frame in another one at a time \[s\].
+    /// The pose of a frame in another one at a time \[s\].
     pub(crate) fn at(
         &self,
         frame: &str,
@@ -131,8 +132,8 @@ impl Transforms {
         Ok(along(&outer)?.inverse().compose(&along(&inner)?))
     }
 
-    /// The latest time at which it is known where a frame is in another one \[s\]; infinite where
-    /// all between them never move.
+    /// The latest time at which the pose of a frame in another one is known \[s\]; infinite if
+    /// all transforms between them are static.
     pub(crate) fn latest_s(&self, frame: &str, child: &str) -> Result<f64, TransformError> {
         let chains = self.chains(frame, child)?;
         let moving = chains.iter().flatten().map(|&name| &self.edges[name]);
@@ -140,7 +141,7 @@ impl Transforms {
         Ok(latest_s.fold(f64::INFINITY, f64::min))
     }
 
-    /// The frames that lead from each of two to the first one that both are in, without that.
+    /// The chains of two frames up to their first common ancestor, without that.
     fn chains<'a>(
         &'a self,
         frame: &'a str,
@@ -178,7 +179,7 @@ impl Transforms {
     }
 }
 
-/// Names of frames began with a slash once.
+/// Frame names used to begin with a slash.
 fn without_slash(name: &str) -> &str {
     name.strip_prefix('/').unwrap_or(name)
 }
@@ -218,7 +219,8 @@ mod tests {
         assert_eq!((child.as_str(), from_s, to_s), ("base_link", 1.0, 2.0));
     }
 
-    /// By hand: odom stands at (10, 0) and looks along y; the robot stands 2 m along its x axis.
+    /// By hand: odom is at (10, 0) and its x axis points along y; the robot is 2 m along the x
+    /// axis of odom.
     #[test]
     fn chains_lead_up_and_down() {
         let transforms = robot();
@@ -254,7 +256,8 @@ mod tests {
         assert!(transforms.at("a", "b", 0.0).is_ok());
     }
 
-    /// A clock that is set back begins anew, a transform that is a little late is put in its place.
+    /// A clock that is set back clears the history; a slightly late transform is inserted in
+    /// order.
     #[test]
     fn times_may_come_late_and_begin_anew() {
         let mut transforms = robot();

@@ -1,8 +1,8 @@
-//! The place of a frame in another one.
+//! Placement of a frame in another one.
 
 use keyway::geometry::Pose;
 
-/// The place of a frame in another one, in space.
+/// The 3-D pose of a frame in another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Placement {
     /// Its origin \[m\].
@@ -12,15 +12,15 @@ pub(crate) struct Placement {
 }
 
 impl Default for Placement {
-    /// The same place.
+    /// The identity.
     fn default() -> Self {
         Self { at: [0.0; 3], turn: [0.0, 0.0, 0.0, 1.0] }
     }
 }
 
 impl Placement {
-    /// With a quaternion (x, y, z, w), whose length may be a little off; `None` where it is no
-    /// rotation, such as four zeros, or the place is not finite.
+    /// Creates a placement from a quaternion (x, y, z, w), whose length may be slightly off.
+    /// `None` for an invalid rotation, such as four zeros, or a position that is not finite.
     pub(crate) fn new(at: [f64; 3], turn: [f64; 4]) -> Option<Self> {
         const LEAST_NORM: f64 = 0.5;
         let norm = dot(turn, turn).sqrt();
@@ -28,33 +28,34 @@ impl Placement {
         is_usable.then(|| Self { at, turn: turn.map(|part| part / norm) })
     }
 
-    /// On the ground, upright.
+    /// An upright placement on the ground.
     #[cfg(test)]
     pub(crate) fn upright(pose: Pose) -> Self {
         let (z, w) = (0.5 * pose.theta).sin_cos();
         Self { at: [pose.x, pose.y, 0.0], turn: [0.0, 0.0, z, w] }
     }
 
-    /// As seen from above: its place, and where its x axis points, as ROS computes yaw.
+    /// The projection to the ground: its position, and the heading of its x axis, as ROS computes
+    /// yaw.
     pub(crate) fn on_ground(&self) -> Pose {
         let [x, y, z, w] = self.turn;
         let heading_rad = (2.0 * (w * z + x * y)).atan2(w * w + x * x - y * y - z * z);
         Pose::new(self.at[0], self.at[1], heading_rad)
     }
 
-    /// True if what is up in the one frame is down in the other.
+    /// True if up in one frame is down in the other.
     pub(crate) fn is_upside_down(&self) -> bool {
         let [x, y, z, w] = self.turn;
         w * w - x * x - y * y + z * z < 0.0
     }
 
-    /// A point of this frame in the other one \[m\].
+    /// Transforms a point of this frame to the other one \[m\].
     pub(crate) fn point(&self, point: [f64; 3]) -> [f64; 3] {
         let turned = turned(self.turn, point);
         [0, 1, 2].map(|axis| self.at[axis] + turned[axis])
     }
 
-    /// The placement of a frame that is there in this one.
+    /// The placement of a frame that is placed in this one.
     #[must_use]
     pub(super) fn compose(&self, inner: &Self) -> Self {
         Self { at: self.point(inner.at), turn: product(self.turn, inner.turn) }
@@ -68,10 +69,11 @@ impl Placement {
         Self { at: turned(turn, self.at).map(|along| -along), turn }
     }
 
-    /// The one a share of the way to another, which turns evenly and the shorter way around.
+    /// Interpolates towards another placement by a share, with a uniform rotation along the
+    /// shorter arc.
     #[must_use]
     pub(super) fn lerp(&self, to: &Self, share: f64) -> Self {
-        /// Nearly the same rotations are mixed as they are: there is nothing to divide by.
+        /// Cosine above which rotations are mixed linearly, to avoid a division by zero.
         const SAME: f64 = 1.0 - 1e-12;
         let at = [0, 1, 2].map(|axis| self.at[axis] + share * (to.at[axis] - self.at[axis]));
         let cos = dot(self.turn, to.turn);
@@ -97,7 +99,7 @@ fn cross([ax, ay, az]: [f64; 3], [bx, by, bz]: [f64; 3]) -> [f64; 3] {
     [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
 }
 
-/// Of quaternions (x, y, z, w).
+/// Product of quaternions (x, y, z, w).
 fn product([ax, ay, az, aw]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
     let across = cross([ax, ay, az], [bx, by, bz]);
     [
@@ -108,7 +110,7 @@ fn product([ax, ay, az, aw]: [f64; 4], [bx, by, bz, bw]: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// A vector turned by a quaternion (x, y, z, w) of length 1.
+/// Rotates a vector by a quaternion (x, y, z, w) of length 1.
 fn turned([x, y, z, w]: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
     let twice = cross([x, y, z], vector).map(|part| 2.0 * part);
     let across = cross([x, y, z], twice);
@@ -126,7 +128,7 @@ mod tests {
         found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9)
     }
 
-    /// The frame of a camera's pictures: z ahead, x to the right, y down.
+    /// The optical frame of a camera: z ahead, x to the right, y down.
     #[test]
     fn what_a_camera_sees_ahead_is_ahead() {
         let optical = Placement::new([0.2, 0.0, 0.5], [-0.5, 0.5, -0.5, 0.5]).unwrap();
@@ -137,7 +139,7 @@ mod tests {
         assert!(is_at(turned.point([0.0, 0.0, 2.0]), [1.0, 3.2, 0.5]));
     }
 
-    /// A lidar that hangs upside down, turned by a quarter: what it has to its left is ahead.
+    /// A lidar mounted upside down and turned by a quarter: its left is ahead.
     #[test]
     fn upside_down_left_is_right() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -176,7 +178,7 @@ mod tests {
             prop_assert!(is_at(back.point(point), inner.point(point)), "{:?}", back);
         }
 
-        /// On the ground it turns evenly, the shorter way around.
+        /// On the ground it turns uniformly along the shorter arc.
         #[test]
         fn between_two_headings_are_those_in_between(
             from in -3.1..3.1f64, by in -3.0..3.0f64, share in 0.0..1.0f64,

@@ -1,4 +1,4 @@
-//! Servers of actions: goals that are asked for, given up, and come to an end.
+//! Action servers: goals that are requested, cancelled, and finished.
 
 use super::{Delivery, Wire, fault};
 use crate::error::StartError;
@@ -17,10 +17,10 @@ use ros2_client::{
 use serde::Deserialize;
 use std::collections::VecDeque;
 
-/// A goal, by the number that its client gave it.
+/// Id of a goal, given by its client.
 pub(crate) type GoalId = action::GoalId;
 
-/// The end of a goal.
+/// The final status of a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GoalStatus {
     Succeeded,
@@ -28,12 +28,12 @@ pub(crate) enum GoalStatus {
     Aborted,
 }
 
-/// A wish of a client.
+/// A request of a client.
 #[derive(Clone, Debug)]
 pub(crate) enum GoalEvent<G> {
-    /// A goal, which was accepted.
+    /// An accepted goal.
     Begin(GoalId, G),
-    /// To give a goal up, which was granted.
+    /// An accepted cancellation of a goal.
     Cancel(GoalId),
 }
 
@@ -48,20 +48,20 @@ impl<A> Wired for A where A: Action<Goal: Message, Outcome: Message + Default, F
 /// A server of an action.
 pub(crate) struct ActionServer<A: Wired> {
     server: ros2_client::ActionServer<A::Goal, A::Outcome, A::Feedback>,
-    /// The oldest first.
+    /// Accepted goals, the oldest first.
     goals: VecDeque<GoalRecord<A::Outcome>>,
 }
 
-/// A goal that was accepted.
+/// An accepted goal.
 struct GoalRecord<R> {
     info: GoalInfo,
     status: GoalStatusEnum,
     outcome: Option<R>,
-    /// Requests that wait for the outcome.
+    /// Pending requests for the outcome.
     asked: Vec<RmwRequestId>,
 }
 
-/// `action_msgs/srv/CancelGoal`, the request: its fields are hidden.
+/// Request of `action_msgs/srv/CancelGoal`, whose fields are private.
 #[derive(Deserialize)]
 struct CancelRequest {
     id: [u8; 16],
@@ -74,8 +74,8 @@ impl CancelRequest {
         Some(cdr_encoding::from_bytes::<_, byteorder::LittleEndian>(&bytes).ok()?.0)
     }
 
-    /// True for the goals that are meant: one by its number, and those that were accepted until a
-    /// time; without both, all.
+    /// True for the requested goals: one by its id, and those accepted until a time; without
+    /// both, all goals.
     fn means(&self, info: &GoalInfo) -> bool {
         let (any_id, any_time) = (self.id == [0; 16], self.stamp == Time::default());
         let is_it = !any_id && *info.goal_id.uuid.as_bytes() == self.id;
@@ -85,7 +85,7 @@ impl CancelRequest {
 }
 
 impl Wire {
-    /// A server of an action.
+    /// Creates a server of an action.
     pub(crate) fn action<A: Wired>(&mut self, name: &str) -> Result<ActionServer<A>, StartError> {
         let service = Delivery::Reliable.qos(10);
         let qos = ActionServerQosPolicies {
@@ -110,14 +110,14 @@ impl Wire {
 }
 
 impl<A: Wired> ActionServer<A> {
-    /// Outcomes that are kept for who asks late.
+    /// Number of outcomes kept for late requests.
     const KEPT: usize = 32;
 
-    /// Everything that clients want since the last call.
+    /// All requests since the last call.
     pub(crate) fn events(&mut self, now: Time) -> Vec<GoalEvent<A::Goal>> {
         let mut events = Vec::new();
         while let Ok(Some((request, asked))) = self.server.receive_goal() {
-            // A number is for one goal alone.
+            // Ids are unique.
             let accepted = !self.goals.iter().any(|goal| goal.info.goal_id == asked.goal_id);
             let stamp = builtin_interfaces::Time::new(now.sec, now.nanosec);
             if accepted {
@@ -152,7 +152,7 @@ impl<A: Wired> ActionServer<A> {
         events
     }
 
-    /// Refuses all goals that clients have since the last call.
+    /// Refuses all goals since the last call.
     pub(crate) fn refuse_all(&mut self) {
         while let Ok(Some((request, _))) = self.server.receive_goal() {
             let (accepted, stamp) = (false, builtin_interfaces::Time::new(0, 0));
@@ -160,7 +160,7 @@ impl<A: Wired> ActionServer<A> {
         }
     }
 
-    /// The goals that a request gives up, and the answer to it.
+    /// The goals that a request cancels, and the response to it.
     fn cancel(&mut self, request: &CancelGoalRequest) -> (CancelGoalResponse, Vec<GoalId>) {
         let refused = |return_code| {
             (CancelGoalResponse { return_code, goals_canceling: Vec::new() }, Vec::new())
@@ -190,7 +190,7 @@ impl<A: Wired> ActionServer<A> {
         (CancelGoalResponse { return_code, goals_canceling: given_up }, ids)
     }
 
-    /// A goal has come to its end.
+    /// Finishes a goal.
     pub(crate) fn finish(&mut self, id: GoalId, status: GoalStatus, outcome: A::Outcome) {
         let Some(goal) = self.goals.iter_mut().find(|goal| goal.info.goal_id == id) else { return };
         goal.status = match status {
@@ -209,7 +209,7 @@ impl<A: Wired> ActionServer<A> {
         }
     }
 
-    /// Tells the client of a goal how far it is.
+    /// Sends feedback to the client of a goal.
     pub(crate) fn publish_feedback(&self, id: GoalId, feedback: A::Feedback) {
         drop(self.server.send_feedback(id, feedback));
     }

@@ -1,15 +1,15 @@
-//! Halts of the whole process, as when a machine is suspended, or somebody sends SIGSTOP; and
-//! threads of the network that panic, after which nothing comes any more, and nothing goes out.
+//! Detection of halts of the process, such as a suspended machine or SIGSTOP, and of panics in
+//! network threads, after which no messages are received or sent.
 
 use ros2_client::dds::rustdds::mio1;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Some thread of the process has panicked.
+/// True once a thread of the process has panicked.
 static HAS_PANICKED: AtomicBool = AtomicBool::new(false);
 
-/// From now on threads that panic are noticed; what they say is printed as before.
+/// Starts to record panics of threads; their messages are printed as before.
 pub(crate) fn notice_panics() {
     let before = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -23,13 +23,13 @@ pub(super) fn has_panicked() -> bool {
     HAS_PANICKED.load(Ordering::Relaxed)
 }
 
-/// A thread that waits for nothing: a halt interrupts it.
+/// A thread that blocks without events: a halt interrupts it.
 pub(super) struct Halts {
     happened: Arc<AtomicBool>,
 }
 
 impl Halts {
-    /// Starts it. When it is interrupted it wakes who waits.
+    /// Starts the thread. An interruption wakes the node.
     pub(super) fn watch(wakes: mio1::Waker) -> io::Result<Self> {
         let happened = Arc::new(AtomicBool::new(false));
         let tells = Arc::clone(&happened);
@@ -45,7 +45,7 @@ impl Halts {
         Ok(Self { happened })
     }
 
-    /// True if there was one since the last call.
+    /// True if there was a halt since the last call.
     pub(super) fn take(&self) -> bool {
         self.happened.swap(false, Ordering::Relaxed)
     }

@@ -1,12 +1,12 @@
-//! Nodes on the topics of this one that it cannot hear, or that cannot hear it: the network itself
-//! is silent about them.
+//! Detection of incompatible nodes on the topics of this one: the network itself does not report
+//! them.
 
 use super::Named;
 use ros2_client::dds::rustdds::{DomainParticipant, QosPolicies};
 use ros2_client::{MessageTypeName, QosProfile};
 use std::collections::BTreeSet;
 
-/// The topics of this node, and what was said of others on them.
+/// The topics of this node, and the reported incompatibilities.
 pub(super) struct Misfits {
     participant: DomainParticipant,
     topics: Vec<Topic>,
@@ -17,7 +17,7 @@ pub(super) struct Misfits {
 struct Topic {
     /// With its namespace.
     name: String,
-    /// The kind of message, as the network calls it.
+    /// The message type, as named by the network.
     kind: String,
     way: Way,
     qos: QosPolicies,
@@ -34,14 +34,14 @@ impl Misfits {
         Self { participant, topics: Vec::new(), said: BTreeSet::new() }
     }
 
-    /// This node uses a topic.
+    /// Adds a topic of this node.
     pub(super) fn add<M: Named>(&mut self, name: String, way: Way, qos: QosProfile) {
         let (package, kind) = M::NAME;
         let kind = MessageTypeName::new(package, kind).dds_msg_type();
         self.topics.push(Topic { name, kind, way, qos: qos.into() });
     }
 
-    /// The reasons why others on the topics of this node do not fit, as they are now.
+    /// The current incompatibilities of other nodes on the topics of this one.
     pub(super) fn now(&self) -> BTreeSet<String> {
         let readers = self.participant.discovered_readers();
         let writers = self.participant.discovered_writers();
@@ -62,17 +62,17 @@ impl Misfits {
         found
     }
 
-    /// Those of them that it has not told of.
+    /// Those that are not reported yet.
     pub(super) fn untold(&mut self, now: &BTreeSet<String>) -> Vec<String> {
         let untold: Vec<String> = now.difference(&self.said).cloned().collect();
-        // One that went away, and comes back, is told of again.
+        // One that disappears and returns is reported again.
         self.said.clone_from(now);
         untold
     }
 }
 
 impl Topic {
-    /// The reason why another node, with its kind of message and quality of service, does not fit.
+    /// The reason why another node is incompatible, from its message type and quality of service.
     fn misfit(&self, kind: &str, qos: &QosPolicies) -> Option<String> {
         let name = &self.name;
         let [theirs, ours] = match self.way {
@@ -99,7 +99,7 @@ impl Topic {
     }
 }
 
-/// A kind of message by the name that users know.
+/// A message type by the name that users know.
 fn in_words(kind: &str) -> String {
     kind.replace("::dds_::", "/").replace("::", "/").trim_end_matches('_').to_owned()
 }

@@ -1,6 +1,6 @@
 //! The network: the only module that knows `ros2-client`.
 //!
-//! Nothing here waits but [`Wire::wait`]: inboxes are emptied whenever something has come.
+//! Only [`Wire::wait`] blocks: inboxes are emptied whenever a message has arrived.
 
 mod action;
 mod halts;
@@ -93,18 +93,18 @@ pub(crate) struct Wire {
 
 impl Drop for Wire {
     fn drop(&mut self) {
-        // It holds the network.
+        // The spinner holds the network.
         self.node.stop_spinner();
     }
 }
 
-/// The delivery of a topic.
+/// Delivery policy of a topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Delivery {
-    /// A lost message stays lost: for sensors.
+    /// Lost messages are not sent again: for sensors.
     BestEffort,
     Reliable,
-    /// A late reader gets the last message, too: for maps, and for transforms that never change.
+    /// Late subscribers get the last message: for maps and static transforms.
     Latched,
 }
 
@@ -152,14 +152,14 @@ impl Wire {
             .map_err(|error| fault("start discovery", error))?;
         let poll = mio1::Poll::new().map_err(|error| fault("wait for messages", error))?;
         let events = mio1::Events::with_capacity(64);
-        // Sources have higher numbers.
+        // Other sources have higher tokens.
         let halts = mio1::Waker::new(poll.registry(), mio1::Token(0)).and_then(Halts::watch);
         let halts = halts.map_err(|error| fault("watch for halts", error))?;
         let arguments = arguments.clone();
         Ok(Self { node, arguments, poll, events, sources: 0, halts, changed, misfits })
     }
 
-    /// Messages of a topic, as many as are kept.
+    /// Subscribes to a topic, with a queue of `depth` messages.
     pub(crate) fn inbox<M: Named>(
         &mut self,
         topic: &str,
@@ -177,7 +177,7 @@ impl Wire {
         Ok(Inbox { subscription })
     }
 
-    /// A topic to publish on.
+    /// Creates a publisher.
     pub(crate) fn outbox<M: Named>(
         &mut self,
         topic: &str,
@@ -205,7 +205,7 @@ impl Wire {
             .map_err(|error| fault(format_args!("make the topic {topic}"), error))
     }
 
-    /// The name that something has by the rules of the command line.
+    /// The name after the remapping rules of the command line.
     fn name(&self, name: &str) -> Result<Name, StartError> {
         let name = self.arguments.remapped(name);
         Name::parse(&name).map_err(|error| fault(format_args!("use the name {name}"), error))
@@ -219,7 +219,7 @@ impl Wire {
             .map_err(|error| fault("wait for messages", error))
     }
 
-    /// The parameters that others have set since the last call.
+    /// Parameters set by other nodes since the last call.
     pub(crate) fn changes(&self) -> impl Iterator<Item = Change> + '_ {
         self.changed.try_iter()
     }
@@ -229,8 +229,11 @@ impl Wire {
         self.halts.take()
     }
 
+    /// Checks the network threads.
+    ///
     /// # Errors
-    /// When one of its threads has panicked: nothing may come any more, nor go out.
+    /// Returns [`StartError`] if a thread has panicked: messages may no longer be received or
+    /// sent.
     pub(crate) fn check() -> Result<(), StartError> {
         if halts::has_panicked() {
             return Err(fault("go on", "a thread of the network has panicked"));
@@ -238,18 +241,18 @@ impl Wire {
         Ok(())
     }
 
-    /// True if somebody has subscribed to a topic.
+    /// True if a topic has a subscriber.
     pub(crate) fn is_heard<M: Named>(&self, outbox: &Outbox<M>) -> bool {
         outbox.publisher.get_subscription_count(&self.node) > 0
     }
 
-    /// Says something to whoever has started the program, and to those who read /rosout.
+    /// Logs a message to the standard error and /rosout.
     pub(crate) fn say(&self, what: &str) {
         crate::say(what);
         rosout!(self.node, LogLevel::Warn, "{what}");
     }
 
-    /// The reasons why others on the topics of this node do not fit. New ones are said.
+    /// The current incompatibilities on the topics of this node. New ones are logged.
     pub(crate) fn misfits(&mut self) -> BTreeSet<String> {
         let now = self.misfits.now();
         for misfit in self.misfits.untold(&now) {
@@ -258,23 +261,23 @@ impl Wire {
         now
     }
 
-    /// Waits until something comes, but no longer than this.
+    /// Waits for a message, but no longer than this.
     pub(crate) fn wait(&mut self, longest: Duration) {
-        // Interrupted by a signal, it returns early: that is as if something had come.
+        // A signal makes it return early, which is harmless.
         let _ = self.poll.poll(&mut self.events, Some(longest));
     }
 }
 
-/// Messages of a topic.
+/// Received messages of a topic.
 pub(crate) struct Inbox<M> {
     subscription: Subscription<M>,
 }
 
 impl<M: Named> Inbox<M> {
-    /// All that have come, in their order. One that cannot be decoded is left out.
+    /// All messages received so far, in order. Undecodable ones are dropped.
     pub(crate) fn take_all(&self) -> Vec<M> {
         let mut taken = Vec::new();
-        // An error takes its message with it; more in a row than this are no messages.
+        // An error consumes its message; the loop stops after this many in a row.
         let mut errors = 0;
         while errors < 16 {
             match self.subscription.take() {
@@ -287,13 +290,13 @@ impl<M: Named> Inbox<M> {
     }
 }
 
-/// A topic to publish on.
+/// A publisher of a topic.
 pub(crate) struct Outbox<M: serde::Serialize> {
     publisher: Publisher<M>,
 }
 
 impl<M: Named> Outbox<M> {
-    /// Publishes a message; one for which there is no room is lost.
+    /// Publishes a message; it is lost if the queue is full.
     pub(crate) fn publish(&self, message: M) {
         drop(self.publisher.publish(message));
     }

@@ -1,4 +1,4 @@
-//! Parameters, as other nodes see and set them.
+//! Parameters, as other nodes read and set them.
 
 use crate::settings::Change;
 use ros2_client::NodeOptions;
@@ -6,14 +6,14 @@ use ros2_client::parameters::ParameterValue;
 use std::sync::mpsc::{Receiver, channel};
 use toml::Value;
 
-/// The options of a node that has these parameters, and what others change of them.
+/// The options of a node with these parameters, and the channel of their changes.
 pub(super) fn with_parameters(declared: &[(&str, Value)]) -> (NodeOptions, Receiver<Change>) {
     let (changes, changed) = channel();
     let mut options = NodeOptions::new().enable_rosout(true);
     for (name, value) in declared {
         options = options.declare_parameter(name, sent(value));
     }
-    // Values are checked and set at the start, too.
+    // Values are also checked and set at the start.
     let first: Vec<(String, Value)> =
         declared.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect();
     let is_first = move |name: &str, value: &Value| {
@@ -26,7 +26,7 @@ pub(super) fn with_parameters(declared: &[(&str, Value)]) -> (NodeOptions, Recei
         }))
         .parameter_set_action(Box::new(move |name, value| {
             if let Ok(change) = Change::of(name, &received(value)) {
-                // Nobody receives it while the node ends.
+                // During shutdown, nobody receives it.
                 drop(changes.send(change));
             }
             Ok(())
@@ -57,7 +57,7 @@ fn received(value: &ParameterValue) -> Value {
         ParameterValue::StringArray(texts) => {
             Value::Array(texts.iter().cloned().map(Value::String).collect())
         }
-        // No parameter has such a value.
+        // No parameter has a value of this type.
         _ => Value::Array(Vec::new()),
     }
 }

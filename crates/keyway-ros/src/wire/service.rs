@@ -1,4 +1,4 @@
-//! Servers of services.
+//! Service servers.
 
 use super::{Delivery, Wire, fault};
 use crate::error::StartError;
@@ -16,7 +16,7 @@ pub(crate) struct ServiceServer<S: WiredService> {
 }
 
 impl Wire {
-    /// A server of a service.
+    /// Creates a server of a service.
     pub(crate) fn service<S: WiredService>(
         &mut self,
         name: &str,

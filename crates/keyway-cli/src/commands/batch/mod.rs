@@ -1,4 +1,4 @@
-//! `keyway batch`: many scenes, stacks and seeds, and what came out of them.
+//! `keyway batch`: drives many scenes, stacks and seeds, and reports the results.
 
 mod plots;
 mod refused;
@@ -18,12 +18,12 @@ pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
     let report = match (&args.command, &args.run) {
         (Some(BatchCommand::Merge(args)), _) => merge_request(args).merge(&BatchPlots, &bar),
         (None, Some(args)) => request(args).drive(&BatchPlots, &bar),
-        // The parser of the arguments asks for one of them.
+        // The argument parser requires one of them.
         (None, None) => {
             return Err(CliError::new(Kind::Usage, "there are no scenes").field("SCENE.toml"));
         }
     };
-    // The terminal is clean before anything is printed.
+    // Clears the terminal before anything is printed.
     drop(bar);
     show(&report?, args.format())?;
     Ok(Done::Success)

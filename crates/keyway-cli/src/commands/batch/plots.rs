@@ -1,4 +1,4 @@
-//! Plots of what the runs of a batch say together.
+//! Plots of the combined results of a batch.
 
 use crate::pictures::PNG_SCALE;
 use keyway_draw::{
@@ -54,7 +54,7 @@ fn runs_of<'a>(records: &'a [Record], stack: &str) -> Vec<&'a Row> {
     records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
 }
 
-/// Of a file's path the end that no other stack has, without `.toml`; other names as they are.
+/// Shortest unique tails of stack file paths, without `.toml`; other names are unchanged.
 fn short_names(stacks: &[&str]) -> Vec<String> {
     let tail = |name: &str, parts: usize| {
         let Some(path) = name.strip_suffix(".toml") else { return name.to_owned() };
@@ -71,9 +71,9 @@ fn short_names(stacks: &[&str]) -> Vec<String> {
     stacks.iter().map(short).collect()
 }
 
-/// All runs, by their stacks.
+/// All runs, grouped by stack.
 struct Runs<'a> {
-    /// Of the stacks.
+    /// Names of the stacks.
     names: Vec<String>,
     by_stack: Vec<Vec<&'a Row>>,
     count: usize,
@@ -110,7 +110,7 @@ impl Runs<'_> {
         Some(box_plot(&BoxPlot { title: "", label, groups: &groups, caption: &caption }))
     }
 
-    /// Nothing where all worlds are equally full.
+    /// Plot of success rates; `None` if all worlds are equally cluttered.
     fn success(&self) -> Option<Svg> {
         let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
         let per_stack = self.count / self.names.len().max(1);
@@ -169,22 +169,23 @@ fn reached<'a>(runs: &[&'a Row]) -> impl Iterator<Item = &'a Row> {
     runs.iter().copied().filter(|run| run.outcome == EpisodeOutcome::Reached)
 }
 
-/// Runs in worlds of similar clutter.
+/// Groups of runs in worlds of similar clutter.
 struct Groups {
-    /// Each group but the last one ends with this share.
+    /// Upper bound of the occupied share of each group but the last one.
     ends: Vec<f64>,
-    /// The median of each.
+    /// Median of each group.
     middles: Vec<f64>,
 }
 
 impl Groups {
-    /// At most.
+    /// Maximum number of groups.
     const MOST: usize = 6;
-    /// With fewer runs of a stack in a group its interval says little.
+    /// Runs of a stack per group below which the interval is too wide to be informative.
     const FEWEST_RUNS: usize = 10;
 
-    /// As many runs in each as equal shares allow; each share by itself where there are few.
-    /// `per_stack` is the number of runs of a stack. `None` where there is only one.
+    /// Groups the shares into bins of similar size without splitting equal shares; few distinct
+    /// shares get one bin each. `per_stack` is the number of runs of a stack. `None` if there is
+    /// only one bin.
     fn of(shares: Vec<f64>, per_stack: usize) -> Option<Self> {
         let most = (per_stack / Self::FEWEST_RUNS).clamp(2, Self::MOST);
         let sample = Sample::new(shares).ok()?;
@@ -210,7 +211,7 @@ impl Groups {
         (middles.len() > 1).then_some(Self { ends, middles })
     }
 
-    /// The runs of a stack in a group.
+    /// Runs of a stack that belong to a group.
     fn own<'a>(&self, runs: &[&'a Row], group: usize) -> impl Iterator<Item = &'a Row> {
         let is_own = move |run: &&Row| {
             let share = run.occupied_share;
@@ -219,7 +220,7 @@ impl Groups {
         runs.iter().copied().filter(is_own)
     }
 
-    /// How many runs of a stack a group has, for people: `10`, or `8 to 12`.
+    /// Number of runs of a stack in a group, as text: `10`, or `8 to 12`.
     fn sizes(&self, by_stack: &[Vec<&Row>]) -> String {
         let groups = 0..self.middles.len();
         let of_group = |group| by_stack.iter().map(move |runs| self.own(runs, group).count());
@@ -231,7 +232,7 @@ impl Groups {
         }
     }
 
-    /// The rates of a stack.
+    /// Success rates of a stack.
     fn points(&self, runs: &[&Row]) -> Vec<ChartPoint> {
         let point = |(group, &middle): (usize, &f64)| {
             let own = self.own(runs, group);
@@ -269,7 +270,7 @@ mod tests {
         let shares: Vec<f64> = (1..=12).map(f64::from).collect();
         let ends = vec![2.0, 4.0, 6.0, 8.0, 10.0];
         assert_eq!(of(&shares), Some((ends, vec![1.5, 3.5, 5.5, 7.5, 9.5, 11.5])));
-        // With few runs two groups, whatever there is.
+        // Few runs give two groups, whatever the number of shares.
         let few = Groups::of(vec![0.1, 0.2, 0.3, 0.4], 4).unwrap();
         assert_eq!((few.ends, few.middles.len()), (vec![0.2], 2));
         // Most worlds are empty.

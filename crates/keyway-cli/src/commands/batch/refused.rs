@@ -1,4 +1,4 @@
-//! Errors of batches, in the words of the command line.
+//! Errors of batches, in the terms of the command line.
 
 use crate::error::{CliError, Kind};
 use crate::inputs::{bad_file, map_error};
@@ -31,7 +31,7 @@ impl From<BatchError> for CliError {
     }
 }
 
-/// The argument that gives a field of a request.
+/// Returns the argument for a field of a request.
 fn argument(field: &str) -> String {
     match field {
         "scenes" => "SCENE.toml".to_owned(),

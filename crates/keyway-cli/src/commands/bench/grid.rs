@@ -1,4 +1,4 @@
-//! `keyway bench grid`: scenario files -> a table of times and mistakes.
+//! `keyway bench grid`: answers scenario files and tabulates times and mistakes.
 
 use super::grid_file::bench_file;
 use crate::args::{BenchGridArgs, Format, GRID_TERMS};
@@ -19,9 +19,9 @@ use serde::Serialize;
 struct GridReport {
     schema: &'static str,
     rows: Vec<GridRow>,
-    /// One for each planner over all files, where there are several.
+    /// Totals over all files for each planner, if there are several files.
     totals: Vec<GridRow>,
-    /// The answers that are counted as mismatches or illegal paths.
+    /// The answers that count as mismatches or illegal paths.
     mistakes: Vec<Mistake>,
     repeat: u64,
     every: u64,
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &BenchGridArgs) -> Result<Done, CliError> {
     Ok(Done::when(report.rows.iter().all(GridRow::is_sound)))
 }
 
-/// The parameters of every planner that was named.
+/// The stack of every named planner.
 fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
     let stack = |planner: Option<&String>| {
         let planner = FieldValue::if_given("planner", "planner.name", planner.cloned());

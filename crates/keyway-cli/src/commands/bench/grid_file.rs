@@ -1,4 +1,4 @@
-//! A scenario file and its map, from their paths to the answers of every planner.
+//! Benchmark of one scenario file: reads the file and its map, and runs every planner.
 
 use super::unusable_map;
 use crate::args::BenchGridArgs;

@@ -16,7 +16,7 @@ pub(crate) fn run(command: &BenchCommand) -> Result<Done, CliError> {
     }
 }
 
-/// Layers that cannot be made.
+/// Error of layers that cannot be computed.
 fn unusable_map(error: ConfigError) -> CliError {
     let error = error.within("map");
     CliError::new(Kind::Config, &error).field(error.path.as_str())

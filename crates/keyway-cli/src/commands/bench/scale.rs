@@ -1,4 +1,5 @@
-//! `keyway bench scale`: one map, tiled to larger and larger ones -> time and memory of planners.
+//! `keyway bench scale`: tiles a map to increasing sizes and measures time and memory of
+//! planners.
 
 use crate::args::{BenchScaleArgs, Format, SCALE_TERMS};
 use crate::commands::{Done, THROUGH_UNKNOWN, print, unusable_planner};
@@ -20,7 +21,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-/// The files that `--out` leaves.
+/// Files written to `--out`.
 const FILES: [&str; 3] = ["report.json", "scale.svg", "scale.png"];
 
 pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
@@ -87,7 +88,7 @@ fn measure_alone(args: &BenchScaleArgs, task: ScaleTask) -> Result<ScaleRow, Cli
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut words: Vec<OsString> = vec!["bench".into(), "scale".into(), args.map.clone().into()];
     words.extend(["--sides".into(), side.to_string().into()]);
-    // The first planner is measured; the others are named so that their parameters are accepted.
+    // The first planner is measured; the others are passed so that their parameters are accepted.
     let others = args.planner.iter().map(String::as_str).filter(|name| *name != planner);
     for name in std::iter::once(planner).chain(others) {
         words.extend(["--planner".into(), name.into()]);
@@ -99,7 +100,7 @@ fn measure_alone(args: &BenchScaleArgs, task: ScaleTask) -> Result<ScaleRow, Cli
     let output =
         Command::new(program).args(words).output().map_err(|error| failed(error.to_string()))?;
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
-    // An error that the process reports is about the same argument here.
+    // An error reported by the process blames the same argument here.
     if let Ok(error) = CliError::from_report(&answer) {
         let message = format!("{planner} on {side} x {side} cells: {}", error.message);
         return Err(CliError { message, ..error });

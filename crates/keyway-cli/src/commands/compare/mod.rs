@@ -1,4 +1,4 @@
-//! `keyway compare`: maps, planners and smoothers -> a table of how good their paths are.
+//! `keyway compare`: compares the paths of planners and smoothers on maps.
 
 mod picture;
 mod request;
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Done, CliError> {
     Ok(Done::when(maps.iter().all(|map| map.counts.contains(&true))))
 }
 
-/// Writes the tables, and the picture of each map on which something was compared.
+/// Writes the tables, and a picture of each map with a compared query.
 fn write(
     report: &CompareReport,
     (comparison, maps): (&Comparison, &[Compared]),

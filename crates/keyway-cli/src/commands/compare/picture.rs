@@ -1,4 +1,4 @@
-//! One query with the paths of all planners and smoothers.
+//! Picture of one query with the paths of all planners and smoothers.
 
 use keyway::geometry::Polyline;
 use keyway::route::CHORD_CELLS;
@@ -6,25 +6,27 @@ use keyway_draw::layers::{CellTint, GoalMark, Layer, PathLine, StartMark};
 use keyway_draw::{LineStyle, MapPanels, MapPicture, Rgb, SERIES, Svg};
 use keyway_lab::compare::{Compared, ContestEntry};
 
-/// The last colour of the series is that of the shortest line.
+/// Number of colours for paths; the last colour of the series is that of the shortest line.
 const COLORS: usize = SERIES.len() - 1;
-/// Narrowest line, how much wider the pair of lines behind is at most, and the widest line \[px\].
+/// Width of the narrowest line, largest step in width from one pair of lines to the next, and
+/// width of the widest line \[px\].
 const NARROWEST_PX: f64 = 1.6;
 const STEP_PX: f64 = 1.8;
 const WIDEST_PX: f64 = 7.0;
-/// How much wider than the next one a line in a panel is \[px\].
+/// Step in width from one line in a panel to the next \[px\].
 const PANEL_STEP_PX: f64 = 0.9;
-/// Two paths are drawn as one when no point of one is farther from that of the other \[m\].
+/// Two paths are drawn as one if no point of one is farther than this from the other \[m\].
 const SAME_M: f64 = 1e-6;
 const SHORTEST: LineStyle = LineStyle { color: SERIES[COLORS], width_px: 0.8, dashes: "1.5 2" };
-/// More paths than these cannot be told apart in one picture, or in one panel.
+/// Maximum number of paths that can be told apart in one picture, or in one panel.
 const MAX_LINES: usize = 6;
-/// Free cells too close for the robot.
+/// Colour of free cells with too little clearance for the robot.
 const TOO_CLOSE: Rgb = Rgb(0xea, 0xe8, 0xe4);
 
-/// Paths on top of each other are all seen: in pairs, the second of a pair dashed over the first,
-/// and each pair narrower than the one behind it. Neighbours differ in colour; once all colours are
-/// used, they change from solid to dashed lines and back, then the dashes differ.
+/// Line style that keeps overlapping paths visible: they come in pairs, the second of a pair
+/// dashed over the first, and each pair narrower than the one behind it. Neighbours differ in
+/// colour; once all colours are used, solid and dashed lines change roles, then the dashes
+/// differ.
 fn style(index: usize, count: usize) -> LineStyle {
     let (pair, last_pair) = (index / 2, count.saturating_sub(1) / 2);
     let step_px = ((WIDEST_PX - NARROWEST_PX) / last_pair.max(1) as f64).min(STEP_PX);
@@ -41,22 +43,22 @@ fn style(index: usize, count: usize) -> LineStyle {
     }
 }
 
-/// The same in a panel, in which a path has the colour of what found it, as in all panels: each
-/// line is narrower than the one behind it.
+/// Line style in a panel. A path has the colour of its method in all panels, and each line is
+/// narrower than the one behind it.
 fn panel_style(found_by: usize, index: usize, count: usize) -> LineStyle {
     let width_px = NARROWEST_PX + PANEL_STEP_PX * (count - 1 - index) as f64;
     LineStyle { width_px, ..style(found_by, MAX_LINES) }
 }
 
-/// A path, and all that found it.
+/// A path, and all methods that found it.
 struct Line {
     labels: Vec<String>,
     points: Polyline,
-    /// The first that found it.
+    /// Index of the first method that found it.
     found_by: usize,
 }
 
-/// Each path once, in the order in which it was first found.
+/// Distinct paths, in the order in which they were first found.
 fn distinct(found: impl IntoIterator<Item = (usize, String, Polyline)>) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for (found_by, label, points) in found {
@@ -73,8 +75,8 @@ fn is_same(a: &Polyline, b: &Polyline) -> bool {
     a.points().len() == b.points().len() && pairs.all(|(a, b)| a.distance(*b) <= SAME_M)
 }
 
-/// The paths of one query, and the shortest line under the corner rule of the first planner. More
-/// paths than can be told apart in one picture have panels.
+/// Picture of the paths of one query, and of the shortest line under the corner rule of the first
+/// planner. If there are too many paths for one picture, it has panels.
 pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let entries: Vec<&ContestEntry> = map.contest.entries.iter().collect();
     let title = format!("{}, query {} of {}", map.name, query + 1, map.queries.len());
@@ -87,7 +89,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     let Groups { shared, panels, inner } = groups(&entries);
     let title =
         format!("{title}{}", shared.as_ref().map_or(String::new(), |one| format!(", {one}")));
-    // What is the same everywhere goes into the title.
+    // Names shared by all panels go into the title.
     let name = |entry: &ContestEntry| shared.is_none().then(|| inner(entry).to_owned());
     let lines = |panel: &Panel<'_>| lines(map, query, &panel.entries, name);
     let lines: Vec<Vec<Line>> = panels.iter().map(lines).collect();
@@ -99,7 +101,7 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     picture.svg()
 }
 
-/// What is drawn under the paths.
+/// The layers below the paths.
 fn common(map: &Compared, query: usize) -> MapPicture<'_> {
     let ends = map.queries[query];
     let picture = MapPicture::new(&map.grid)
@@ -115,7 +117,7 @@ fn common(map: &Compared, query: usize) -> MapPicture<'_> {
     }
 }
 
-/// The paths that were found, each once.
+/// The distinct paths that were found.
 fn lines(
     map: &Compared,
     query: usize,
@@ -132,8 +134,8 @@ fn lines(
     distinct(found)
 }
 
-/// Paths, each with an entry of the legend for all that found it. A style depends on the line, its
-/// place and the number of lines.
+/// Layers of the paths, each with a legend entry for all methods that found it. The style depends
+/// on the line, its index and the number of lines.
 fn layers(
     lines: &[Line],
     style: impl Fn(&Line, usize, usize) -> LineStyle,
@@ -145,16 +147,16 @@ fn layers(
     })
 }
 
-/// Paths in panels: those of a planner in each, or of a smoother.
+/// Paths grouped into panels, by planner or by smoother.
 struct Groups<'a> {
-    /// What is the same in all panels.
+    /// The name that all panels share.
     shared: Option<String>,
     panels: Vec<Panel<'a>>,
-    /// What differs within a panel.
+    /// The name that differs within a panel.
     inner: Name,
 }
 
-/// Of a planner or of a smoother.
+/// Accessor of the planner's or the smoother's name.
 type Name = fn(&ContestEntry) -> &'static str;
 
 struct Panel<'a> {
@@ -162,8 +164,8 @@ struct Panel<'a> {
     entries: Vec<&'a ContestEntry>,
 }
 
-/// As few paths in a panel as possible: planners side by side when there are more of them than
-/// smoothers.
+/// Groups the paths into panels with as few paths as possible: planners are side by side if there
+/// are more planners than smoothers.
 fn groups<'a>(entries: &[&'a ContestEntry]) -> Groups<'a> {
     let planner: Name = |entry| entry.planner;
     let smoother: Name = |entry| entry.smoother;
@@ -208,7 +210,7 @@ mod tests {
             let styles: Vec<LineStyle> = (0..count).map(|i| style(i, count)).collect();
             for pair in styles.windows(2) {
                 assert_ne!(pair[0].color, pair[1].color);
-                // What is behind shows at its rim, or through the gaps.
+                // A line behind another shows at its rim, or through the gaps.
                 let wider_px = pair[0].width_px - pair[1].width_px;
                 assert!(wider_px > 0.4 || (wider_px == 0.0 && !pair[1].dashes.is_empty()));
             }
@@ -233,7 +235,7 @@ mod tests {
         ContestEntry { planner, smoother, corners, preparation: None, answers: Vec::new() }
     }
 
-    /// Titles of the panels and what is in each.
+    /// Titles of the panels and their labels.
     fn panels(planners: &[&'static str], smoothers: &[&'static str]) -> Vec<(String, Vec<String>)> {
         let pairs = planners.iter().flat_map(|p| smoothers.iter().map(|s| entry(p, s)));
         let entries: Vec<ContestEntry> = pairs.collect();

@@ -1,4 +1,5 @@
-//! Arguments of `keyway compare` -> a request; its errors in the words of the command line.
+//! Converts the arguments of `keyway compare` into a request, and its errors into those of the
+//! command line.
 
 use crate::args::CompareArgs;
 use crate::commands::{unusable_planner, why};
@@ -12,7 +13,7 @@ use keyway_lab::compare::{
     QueryError,
 };
 
-/// The request that the arguments stand for.
+/// Returns the request for the arguments.
 pub(super) fn request(args: &CompareArgs) -> Result<CompareRequest, CliError> {
     let count = args.queries;
     let queries = match (&args.pairs, &args.scen) {

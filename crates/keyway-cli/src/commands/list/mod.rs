@@ -1,4 +1,4 @@
-//! `keyway list`: what there is to choose from, and the parameters of each choice.
+//! `keyway list`: lists the available choices, and the parameters of each.
 
 use super::{Done, print};
 use crate::args::{Format, ListArgs};
@@ -27,13 +27,13 @@ struct Listed<'a> {
     kind: EntryKind,
     name: &'static str,
     summary: &'a str,
-    /// `None` where they were not asked for.
+    /// `None` if they were not requested.
     parameters: Option<&'a [Parameter]>,
-    /// Its uses in the papers; `None` where they were not asked for.
+    /// Its uses in the papers; `None` if they were not requested.
     published: Option<Vec<Published>>,
 }
 
-/// A method of a paper, as options to paste.
+/// A method of a paper, as options of the command line.
 #[derive(Serialize)]
 struct Published {
     source: &'static str,
@@ -135,7 +135,7 @@ fn show_parameters(entry: &CatalogueEntry, robot: &str) -> Result<(), CliError> 
     ))
 }
 
-/// The methods of the papers, each as a line of options to paste.
+/// Prints the methods of the papers, each as a line of options.
 fn show_published(entry: &CatalogueEntry) -> Result<(), CliError> {
     if entry.published.is_empty() {
         return Ok(());

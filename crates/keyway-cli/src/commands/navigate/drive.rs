@@ -1,4 +1,4 @@
-//! The run of an episode, and what is wrong when it cannot be made.
+//! Runs an episode, and converts the errors of one that cannot be run.
 
 use super::watch::{Moment, Wanted, Watcher};
 use crate::commands::{THROUGH_UNKNOWN, end_flag, remedy};
@@ -12,28 +12,28 @@ use keyway_lab::measure::wall_clock;
 use keyway_sim::episode::{Episode, RobotReport, RunError, RunOptions, watch_episode};
 use keyway_sim::sim::MovingObstacle;
 
-/// What came of an episode.
+/// Result of an episode.
 pub(crate) struct Driven {
     pub(crate) report: RobotReport,
-    /// What moves, as it did.
+    /// Moving obstacles, as they moved in the run.
     pub(crate) movers: Vec<MovingObstacle>,
-    /// `None` when there was no route to drive.
+    /// `None` if there was no route.
     pub(crate) drive: Option<Drive>,
 }
 
-/// What the robot knew, and what else was wanted of the run.
+/// The robot's knowledge in a run, and the other requested data.
 pub(crate) struct Drive {
     /// The route at the start.
     pub(crate) route: Route,
-    /// What it had sensed at the end.
+    /// Cells sensed by the end.
     pub(crate) sensed: BitGrid,
     /// A line of JSON for every cycle.
     pub(crate) explanations: String,
-    /// The moment whose candidates are shown; `None` when the run ended before.
+    /// The moment of the candidate picture; `None` if the run ended before it.
     pub(crate) fan: Option<Moment>,
-    /// What it went around.
+    /// Obstacles that the robot detoured around.
     pub(crate) walked: Vec<Disc>,
-    /// For an animation.
+    /// Moments of an animation.
     pub(crate) moments: Vec<Moment>,
     /// An MCAP file.
     pub(crate) recording: Option<Vec<u8>>,
@@ -94,7 +94,8 @@ fn no_start(error: &NavigateError) -> CliError {
     CliError { kind, message: error.to_string() + &help(error), field }
 }
 
-/// What helps; discs without clearance around the ends, which would, are not for robots.
+/// Remedy for a failed start. Freeing discs around start and goal would help, but is not offered
+/// for robots.
 fn help(error: &NavigateError) -> String {
     match error {
         NavigateError::NoRoom { why: Hindrance::Unknown { .. }, .. } => {

@@ -1,4 +1,4 @@
-//! The episode that arguments or a scene file describe.
+//! The episode described by the arguments or by a scene file.
 
 use super::drive::bad_input;
 use crate::args::{DiscArg, MovingArg, NavigateArgs, PoseArg, PositionArg, StackArgs};
@@ -18,20 +18,20 @@ use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, r
 use keyway_sim::sim::{Disturbances, MovingObstacle};
 use std::path::{Path, PathBuf};
 
-/// An episode, and the files from which it was read.
+/// An episode, and the files it was read from.
 pub(crate) struct Given {
     pub(crate) episode: Episode,
     pub(crate) sources: Vec<PathBuf>,
 }
 
-/// Of the scene that is to be driven.
+/// Blames the scene.
 impl From<SceneError> for CliError {
     fn from(error: SceneError) -> Self {
         Self::new(Kind::Input, error).field("--scene")
     }
 }
 
-/// Refuses, beside a scene, what only its file can say.
+/// Refuses arguments that only a scene file may set.
 fn refuse_ends_beside_a_scene(args: &NavigateArgs) -> Result<(), CliError> {
     let given = [
         (args.map.is_some(), "[MAP]", "map = \"FILE\""),
@@ -47,7 +47,7 @@ fn refuse_ends_beside_a_scene(args: &NavigateArgs) -> Result<(), CliError> {
     Err(CliError::new(Kind::Usage, message).field(argument))
 }
 
-/// The scene file, if there is one, with the seed that was asked for.
+/// Reads the scene file, if there is one, and applies the requested seed.
 pub(crate) fn given_scene(args: &NavigateArgs) -> Result<Option<SceneFile>, CliError> {
     refuse_ends_beside_a_scene(args)?;
     let blame = |error: SceneFileError| CliError::new(Kind::Input, error).field("--scene");
@@ -58,8 +58,8 @@ pub(crate) fn given_scene(args: &NavigateArgs) -> Result<Option<SceneFile>, CliE
     Ok(scene)
 }
 
-/// The run of a scene, or of the arguments. What the arguments say of the robot and its stack holds
-/// for each robot of a scene.
+/// Builds the episode of a scene or of the arguments. Arguments about the robot and its stack
+/// apply to each robot of a scene.
 pub(crate) fn given(args: &NavigateArgs, scene: Option<&SceneFile>) -> Result<Given, CliError> {
     let folder = scene_folder(args);
     let time_limit_s = check_time_limit(args.time_limit)?;
@@ -101,7 +101,7 @@ pub(crate) fn given(args: &NavigateArgs, scene: Option<&SceneFile>) -> Result<Gi
     Ok(Given { episode, sources: sources(args, map_files) })
 }
 
-/// Drives to the nearest places that can be reached, and says so.
+/// Replaces unreachable goals by the nearest reachable positions, with a warning.
 fn reach_nearest(episode: &mut Episode) -> Result<(), CliError> {
     let replaced = episode.reach_nearest().map_err(|error| bad_input(&error.why))?;
     for NearestGoal { asked, goal, .. } in replaced {
@@ -117,7 +117,7 @@ fn scene_folder(args: &NavigateArgs) -> &Path {
     args.scene.as_deref().and_then(Path::parent).unwrap_or(Path::new(""))
 }
 
-/// All files that are read.
+/// All input files.
 fn sources(args: &NavigateArgs, map_files: Vec<PathBuf>) -> Vec<PathBuf> {
     let named = args.scene.iter().chain(&args.config.config).chain(&args.disturbances).cloned();
     let files = map_files.into_iter().chain(named);
@@ -142,7 +142,7 @@ fn added_movers(args: &NavigateArgs, frame: &GridFrame) -> Result<Vec<MovingObst
     args.moving.iter().map(added).collect()
 }
 
-/// Those of the scene, or of the file that is named.
+/// The disturbances of the scene, or of the named file.
 fn given_disturbances(
     args: &NavigateArgs,
     of_scene: &Disturbances,
@@ -152,8 +152,8 @@ fn given_disturbances(
     Ok(Disturbances { seed, ..given.unwrap_or_else(|| of_scene.clone()) })
 }
 
-/// The map, and the files that it was read from. That of a scene lies in the scene's folder, or is
-/// made from its seed.
+/// The map, and the files it was read from. The map of a scene is in the scene's folder, or is
+/// generated from its seed.
 fn given_map(
     args: &NavigateArgs,
     scene: Option<&SceneFile>,
@@ -169,15 +169,15 @@ fn given_map(
         return Ok((map, Vec::new()));
     }
     let in_scene = scene.and_then(|scene| scene.map.as_ref()).map(|map| folder.join(map));
-    // Without a scene, the parser of the arguments refuses a run without a map.
+    // Without a scene, the argument parser requires a map.
     let path = in_scene.or_else(|| args.map.clone()).unwrap_or_default();
     let loaded = load_map(&path, &args.place.reader())?;
     let source = source_of(&loaded, placement);
     Ok((SceneMap { grid: loaded.grid, source }, loaded.sources))
 }
 
-/// The robot, which a scene may name, with the radius that was asked for. Robots that are named on
-/// the command line are files of the current folder.
+/// The robot, which a scene may name, with the requested radius. Robot files named on the command
+/// line are relative to the current folder.
 fn given_robot(
     args: &NavigateArgs,
     in_scene: Option<&str>,
@@ -217,8 +217,8 @@ fn named_robot(
     }
 }
 
-/// The stack with all that was changed of it, and its name in reports. Stacks that are named on the
-/// command line are files of the current folder.
+/// The stack with all changes applied, and its name in reports. Stack files named on the command
+/// line are relative to the current folder.
 fn given_stack(
     args: &NavigateArgs,
     (in_scene, safe_in_scene): (Option<&str>, bool),

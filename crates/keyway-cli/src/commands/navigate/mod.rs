@@ -1,4 +1,4 @@
-//! `keyway navigate`: a map, a robot and a goal -> a drive.
+//! `keyway navigate`: drives a robot to a goal on a map.
 
 mod drive;
 mod episode;
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     }
     let Given { episode, sources } = given(args, scene.as_ref())?;
     warn_of_those_left_out(episode.random);
-    // Before the run, which may take long, not after it.
+    // Checked before the run, which may take long.
     let out = prepared(&args.files, &sources)?;
     let driven = drive(&episode, wanted(&args.files))?;
     let files = write_all(&args.files, &episode, &driven, out)?;
@@ -42,7 +42,8 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))
 }
 
-/// A world with fewer random obstacles than were asked for is another one.
+/// Warns that fewer random obstacles were placed than requested: the world is then a different
+/// one.
 fn warn_of_those_left_out(random: Option<Placed>) {
     if let Some(left_out) = random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
         let message =
@@ -51,7 +52,7 @@ fn warn_of_those_left_out(random: Option<Placed>) {
     }
 }
 
-/// The run for people.
+/// The run as a table.
 pub(super) fn table(episode: &Episode, driven: &Driven) -> String {
     let targets = driven.drive.as_ref().map(|drive| {
         let (clearance_m, cell_m) = (drive.route.clearance_m, episode.known.frame().resolution_m());

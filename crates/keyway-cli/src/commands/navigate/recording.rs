@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 type Recorder = FlightRecorder<Cursor<Vec<u8>>>;
 
-/// A recording, or the reason why there is none.
+/// A recording, or the error that ended it.
 pub(super) struct Recording(Result<Recorder, RecordingError>);
 
 impl Default for Recording {
@@ -15,7 +15,7 @@ impl Default for Recording {
 }
 
 impl Recording {
-    /// Notes something, until that fails once.
+    /// Records something; after the first error, all calls are ignored.
     pub(super) fn note(&mut self, note: impl FnOnce(&mut Recorder) -> Result<(), RecordingError>) {
         if let Ok(recorder) = &mut self.0
             && let Err(error) = note(recorder)
@@ -24,7 +24,7 @@ impl Recording {
         }
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     pub(super) fn finish(self) -> Result<Vec<u8>, RecordingError> {
         Ok(self.0?.finish()?.into_inner())
     }

@@ -1,4 +1,4 @@
-//! The files that a run leaves.
+//! The output files of a run.
 
 use super::Wanted;
 use super::drive::{Drive, Driven};
@@ -32,7 +32,7 @@ pub(crate) const FILES: [&str; 8] = [
     "fan.png",
 ];
 
-/// Of a row of a trajectory.
+/// Columns of a trajectory.
 pub(super) const COLUMNS: &str = "t_s,x_m,y_m,yaw_rad,v_mps,omega_radps";
 
 /// Names of the files that [`write_files`] will write.
@@ -45,7 +45,7 @@ pub(crate) fn written(driven: &Driven) -> Vec<&'static str> {
     FILES[..count].to_vec()
 }
 
-/// What of a run is to be kept for the files that were asked for.
+/// The data of a run needed for the requested files.
 pub(crate) const fn wanted(args: &DriveFileArgs) -> Wanted {
     Wanted {
         explanations: args.explain.is_some(),
@@ -55,8 +55,8 @@ pub(crate) const fn wanted(args: &DriveFileArgs) -> Wanted {
     }
 }
 
-/// The folder of results, if one was asked for. Refuses outputs that would replace a file that is
-/// read, or cannot be written.
+/// Prepares the result folder, if one was requested. Refuses outputs that would replace an input
+/// file or cannot be written.
 pub(crate) fn prepared(
     args: &DriveFileArgs,
     sources: &[PathBuf],
@@ -66,7 +66,7 @@ pub(crate) fn prepared(
     let record = args.record.as_ref().map(|path| (path, RECORD));
     for (path, field) in explain.into_iter().chain(animate).chain(record) {
         refuse_to_replace_a_source(sources, path, field)?;
-        // The folder of results, and those that it lies in, may be made by this run.
+        // The result folder and its parents may be created by this run.
         let folder = path.parent().filter(|folder| !folder.exists());
         let is_made = |folder| args.out.iter().any(|out| out.ancestors().any(|it| it == folder));
         if !folder.is_some_and(is_made) {
@@ -76,7 +76,7 @@ pub(crate) fn prepared(
     args.out.as_ref().map(|folder| prepare(folder, &FILES)).transpose()
 }
 
-/// Writes everything that was asked for; gives the paths of the files.
+/// Writes all requested files and returns their paths.
 pub(crate) fn write_all(
     args: &DriveFileArgs,
     episode: &Episode,
@@ -99,7 +99,7 @@ pub(crate) fn write_all(
     Ok(files)
 }
 
-/// Nobody knows before the run how long it will be.
+/// Warns if the run ended before the requested time of the candidate picture.
 fn warn_without_a_fan(args: &DriveFileArgs, driven: &Driven) {
     if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
         let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
@@ -116,8 +116,8 @@ fn own_files(args: &DriveFileArgs, driven: &Driven) -> Vec<String> {
     files.map(|path| path.display().to_string()).collect()
 }
 
-/// The files with names of their own. Without a run there is nothing to write; those of an earlier
-/// one stay as they are.
+/// Writes the files with names of their own. Without a run nothing is written; files of an
+/// earlier run are kept.
 fn write_own_files(
     args: &DriveFileArgs,
     episode: &Episode,
@@ -161,8 +161,8 @@ fn points(driven: &Driven) -> Vec<TrajectoryPoint> {
     driven.report.trajectory.iter().flatten().map(trajectory_point).collect()
 }
 
-/// Without a run: the report, and the map with start and goal. `files` are the paths of all of
-/// them.
+/// Writes the result files. Without a run, these are the report and the map with start and goal.
+/// `files` are the paths of all of them.
 pub(crate) fn write_files(
     episode: &Episode,
     driven: &Driven,

@@ -42,7 +42,7 @@ pub(super) fn run(args: &NavigateArgs, scene: &SceneFile) -> Result<Done, CliErr
     Ok(Done::when(report.outcomes.iter().all(is_reached)))
 }
 
-/// Writes the files that were asked for; gives their paths.
+/// Writes the requested files and returns their paths.
 pub(crate) fn write_all(
     args: &DriveFileArgs,
     team: &Episode,
@@ -68,7 +68,7 @@ pub(crate) fn write_all(
     Ok(files)
 }
 
-/// What shows the decisions of one robot.
+/// Refuses outputs that show the decisions of a single robot.
 pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliError> {
     let given = [
         ("--fan", args.fan.is_some()),
@@ -103,14 +103,14 @@ pub(crate) fn drive(team: &Episode) -> Result<EpisodeReport, CliError> {
     Ok(report)
 }
 
-/// What moves, as it did until the last run had ended.
+/// Moving obstacles, as they moved until the last run ended.
 fn moved(team: &Episode, report: &EpisodeReport) -> Vec<MovingObstacle> {
     let runs = report.robots.iter().filter_map(|robot| robot.run.as_ref());
     let last = runs.max_by_key(|run| run.cycles);
     last.map_or_else(|| team.movers.clone(), |run| run.movers(&team.movers))
 }
 
-/// An error of one robot names its table in the scene.
+/// Converts an error; that of a single robot names its table in the scene.
 fn blame(error: &EpisodeError) -> CliError {
     let CliError { kind, message, field } = bad_input(&error.why);
     let Some(index) = error.robot else { return CliError { kind, message, field } };

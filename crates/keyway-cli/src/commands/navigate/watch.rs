@@ -1,4 +1,4 @@
-//! What is kept of a run while it is driven: for pictures, animations and explanations.
+//! Data kept during a run for pictures, animations and explanations.
 
 use super::recording::Recording;
 use crate::commands::why;
@@ -13,16 +13,16 @@ use keyway_sim::episode::{Cycle, CycleReport, EpisodeObserver};
 use keyway_sim::sim::Run;
 use std::sync::Arc;
 
-/// What somebody wants to see of a run beyond its report.
+/// Requested data of a run beyond its report.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
-    /// A line about every cycle.
+    /// An explanation of every cycle.
     pub(crate) explanations: bool,
     /// The candidates at this time \[s\].
     pub(crate) fan_s: Option<f64>,
-    /// Moments for an animation.
+    /// Moments of an animation.
     pub(crate) film: bool,
-    /// Everything that was observed and decided.
+    /// A recording of all observations and decisions.
     pub(crate) recording: bool,
 }
 
@@ -33,19 +33,19 @@ pub(crate) struct Moment {
     pub(crate) pose: Pose,
     pub(crate) velocity: Velocity,
     pub(crate) guide: Point,
-    /// Where the scan met something.
+    /// Hit points of the scan.
     pub(crate) hits: Vec<Point>,
-    /// What was sensed so far, in ascending order.
+    /// Cells sensed so far, in ascending order.
     pub(crate) sensed: Vec<Cell>,
     pub(crate) route: Arc<Polyline>,
-    /// What moves, as it was estimated.
+    /// Moving obstacles, as estimated by the robot.
     pub(crate) movers: Vec<Mover>,
-    /// What it goes around.
+    /// Obstacles that the robot detours around.
     pub(crate) walked: Vec<Disc>,
     pub(crate) explanation: Explanation,
 }
 
-/// Keeps what pictures show and reports do not, and what helps where there is no route.
+/// Keeps data for pictures that reports lack, and the remedy if there is no route.
 #[derive(Default)]
 pub(crate) struct Watcher {
     wanted: Wanted,
@@ -56,31 +56,30 @@ pub(crate) struct Watcher {
     pub(crate) explanations: String,
     pub(crate) fan: Option<Moment>,
     pub(crate) film: Film,
-    /// All that was gone around at some time.
+    /// All obstacles that were detoured around at some time.
     pub(crate) walked: Vec<Disc>,
     recording: Option<Recording>,
-    /// The route of this number as a line: it is the same for many moments.
+    /// The route with this number as a line, shared by many moments.
     path: Option<(u32, Arc<Polyline>)>,
 }
 
-/// Moments at equal intervals, not too many of them, although nobody knows how long the run will
-/// be.
+/// Moments at equal intervals, bounded in number although the duration of the run is unknown.
 #[derive(Default)]
 pub(crate) struct Film {
     pub(crate) moments: Vec<Moment>,
-    /// Cycles from one moment to the next are two to this power.
+    /// Number of times the interval was doubled: it is two to this power, in cycles.
     halvings: u32,
 }
 
 impl Film {
-    /// Moments, at most.
+    /// Maximum number of moments.
     const MOST: usize = 120;
 
     const fn is_due(&self, cycle: u64) -> bool {
         cycle.is_multiple_of(1 << self.halvings)
     }
 
-    /// Adds a moment; where there are too many, every other one is left out.
+    /// Adds a moment. If there are too many, every other one is dropped.
     fn push(&mut self, cycle: u64, moment: Moment) {
         if self.moments.len() == Self::MOST {
             self.halvings += 1;
@@ -102,10 +101,10 @@ impl Watcher {
         Self { wanted, recording, ..Self::default() }
     }
 
-    /// The recording as a file, if one was wanted.
+    /// Returns the recording as a file, if one was requested.
     ///
     /// # Errors
-    /// When it could not be made.
+    /// Returns [`RecordingError`] if it could not be written.
     pub(crate) fn recorded(&mut self) -> Result<Option<Vec<u8>>, RecordingError> {
         self.recording.take().map(Recording::finish).transpose()
     }
@@ -168,7 +167,7 @@ impl EpisodeObserver for Watcher {
         let is_fan_due =
             self.fan.is_none() && self.wanted.fan_s.is_some_and(|fan_s| cycle.t_s >= fan_s - 1e-9);
         let is_frame_due = self.wanted.film && self.film.is_due(cycle.index);
-        // It costs more than the decision.
+        // The explanation costs more than the decision: compute it only if needed.
         if !(self.wanted.explanations || is_fan_due || is_frame_due) {
             return;
         }

@@ -1,4 +1,4 @@
-//! The path sampled by arc length, with the fastest speeds along it, as a table for other programs.
+//! The path sampled by arc length, with the fastest speeds along it, as a table.
 
 use crate::args::{CurveFormat, PlanArgs};
 use crate::error::{CliError, Kind};
@@ -9,7 +9,7 @@ use keyway_sim::report::{CurveReport, Inputs};
 
 pub(super) const CURVE: &str = "--curve";
 
-/// What is to be written.
+/// Settings of the requested curve.
 pub(super) struct Curve {
     format: CurveFormat,
     robot: Robot,
@@ -17,8 +17,8 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Within the limits of the robot that is named, or else the usual one. `None` where no curve
-    /// is wanted.
+    /// Uses the limits of the named robot, or else of the default robot. `None` if no curve is
+    /// requested.
     pub(super) fn from_args(args: &PlanArgs, robot: Option<&Robot>) -> Option<Self> {
         let file = args.curve.as_ref()?;
         let usual = SpeedProfileConfig::default();
@@ -30,7 +30,7 @@ impl Curve {
         })
     }
 
-    /// The content of the file.
+    /// Returns the content of the file.
     pub(super) fn bytes(&self, path: &Path, inputs: &Inputs) -> Result<Vec<u8>, CliError> {
         let checked = self.config.check_spacing(path);
         let profile = checked

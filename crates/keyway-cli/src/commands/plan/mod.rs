@@ -1,4 +1,4 @@
-//! `keyway plan`: a map and two positions -> a path.
+//! `keyway plan`: plans a path between two positions on a map.
 
 mod curve;
 mod result_files;
@@ -102,7 +102,7 @@ fn driven_path(route: &Route, is_smoothed: bool) -> Path {
     if is_smoothed {
         route.smoothing.path.clone()
     } else {
-        // A joint at every cell would not be a joint of the path.
+        // Merges straight segments: a joint at every cell is not a corner of the path.
         Path::from(&route.line.polyline().merged())
     }
 }
@@ -121,7 +121,7 @@ fn resolve_stack(args: &PlanArgs, size: &RobotSize) -> Result<Stack, CliError> {
     Ok(size.plan_stack(values, &given_parameters(&args.config, options)?, &[])?)
 }
 
-/// Positions in metres; at least one goal.
+/// Start and goals in metres; at least one goal.
 struct Ends {
     start: Point,
     goals: Vec<Point>,
@@ -139,7 +139,7 @@ fn ends(args: &PlanArgs, map: &SearchMap) -> Result<Ends, CliError> {
     })
 }
 
-/// The planner; a prepared map where there is a file of it.
+/// Builds the planner, from a prepared map if a file of it is given.
 fn planner(
     map: &SearchMap,
     stack: &Stack,
@@ -151,7 +151,7 @@ fn planner(
     Ok(Box::new(prepared))
 }
 
-/// What to add to the command line, or to change there, for a path that may cut corners.
+/// Advice on the option that allows cutting corners.
 fn corner_setting(planner: &PlannerConfig) -> String {
     let has_rule = Table::try_from(planner).is_ok_and(|fields| fields.contains_key("corners"));
     if has_rule {
@@ -161,7 +161,7 @@ fn corner_setting(planner: &PlannerConfig) -> String {
     }
 }
 
-/// The same with what helps, as it can be put into the command line, where there is no route.
+/// Adds a remedy, in options of the command line, if there is no route.
 fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
     let why = match &answer.failure {
         Some(RouteFailure::Plan(error)) => why(error),
@@ -182,8 +182,8 @@ fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
     RouteAnswer { plan, ..answer }
 }
 
-/// Searches again, watched this time: the search is the same, and the time of the first one is that
-/// of a search without an observer. The result is already known, even where there is none.
+/// Repeats the search with an observer, so that the measured time of the first one is free of its
+/// overhead. The search and its result are the same.
 fn record(request: &RouteRequest<'_>, goal: usize, workspace: &mut Workspace) -> Recording {
     let (mut search, mut plan) = (Recording::default(), Plan::default());
     let RouteRequest { map, planner, goals, .. } = *request;
@@ -193,7 +193,8 @@ fn record(request: &RouteRequest<'_>, goal: usize, workspace: &mut Workspace) ->
     search
 }
 
-/// The positions, not only the cells, of an end in an obstacle or outside the map.
+/// Error of a start or goal in an obstacle or outside the map, with its position and not only its
+/// cell.
 fn no_room(map: &SearchMap, error: &PlanError, ends: &Ends) -> CliError {
     let (PlanError::OutsideMap { end, .. }
     | PlanError::Blocked { end, .. }

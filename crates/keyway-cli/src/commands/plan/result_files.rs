@@ -1,4 +1,4 @@
-//! The files of a plan: picture and animation of the search, and the path as a table.
+//! The output files of a plan: picture and animation of the search, and the path as a table.
 
 use super::curve::CURVE;
 use crate::args::{AnimationFile, PictureFile, PlanArgs};
@@ -13,8 +13,8 @@ use std::path::PathBuf;
 const PICTURE: &str = "--picture";
 const ANIMATE: &str = "--animate";
 
-/// Refuses outputs that would replace a file that is read, or cannot be written: before the search,
-/// so that no result is lost.
+/// Refuses outputs that would replace an input file or cannot be written. It is called before the
+/// search, so that no result is lost.
 pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     let picture = args.picture.as_ref().map(|file| (&file.path, PICTURE));
     let animation = args.animate.as_ref().map(|file| (&file.path, ANIMATE));
@@ -29,13 +29,13 @@ pub(super) fn check(args: &PlanArgs, map: &LoadedMap) -> Result<(), CliError> {
     Ok(())
 }
 
-/// True if somebody wants to see the search.
+/// True if an output that shows the search is requested.
 pub(super) const fn show_search(args: &PlanArgs) -> bool {
     args.picture.is_some() || args.animate.is_some()
 }
 
-/// Gives the paths of the files that were written. Without a path there is no curve; a file of an
-/// earlier one stays as it is.
+/// Writes the files and returns their paths. Without a path there is no curve; the file of an
+/// earlier one is kept.
 pub(super) fn write(
     args: &PlanArgs,
     picture: &PlanPicture<'_>,

@@ -1,4 +1,4 @@
-//! Recordings of flights -> the same decisions, made again.
+//! Replay of recordings: recomputes the decisions and compares them.
 
 use super::gap;
 use crate::args::{DriveFileArgs, Format, ReplayArgs};
@@ -12,18 +12,17 @@ use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;
 
-/// A recording of which every decision was the same again.
+/// Replay of a recording in which every decision was identical.
 #[derive(Serialize)]
 pub(super) struct Redecided {
     /// Path of the recording.
     record: String,
     flight: Flight,
-    /// Files that were written.
+    /// The written files.
     files: Vec<String>,
 }
 
-/// Makes the decisions of a recording again; what is to be said of it is printed, or given for the
-/// report.
+/// Recomputes the decisions of a recording. The result is printed, or returned for the report.
 pub(super) fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     let explain = args.files.explain.as_ref();
     refuse_pictures(&args.files)?;
@@ -41,7 +40,7 @@ pub(super) fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, Cl
         }
     };
     let flight = decide_again(path, &mut watch);
-    // They are wanted most where a decision differs.
+    // The explanations are most useful if a decision differs.
     if let Some(explain) = explain {
         write_file(explain, explanations.as_bytes(), "--explain")?;
     }

@@ -1,4 +1,4 @@
-//! `keyway replay`: records of runs -> the same runs, made again, as `keyway navigate` shows them.
+//! `keyway replay`: recomputes recorded runs and shows them as `keyway navigate` does.
 
 mod flight;
 mod refused;
@@ -23,7 +23,7 @@ struct ReplayReport {
     runs: Vec<Value>,
 }
 
-/// A run that was the same again.
+/// A run that was reproduced identically.
 #[derive(Serialize)]
 struct Replayed<'a, R> {
     /// Path of its record.
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &ReplayArgs) -> Result<Done, CliError> {
     Ok(Done::Success)
 }
 
-/// Makes a run again; what is to be said of it is printed, or given for the report.
+/// Recomputes a run. The result is printed, or returned for the report.
 fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     let request = ReplayRequest {
         record: path.to_owned(),
@@ -76,7 +76,7 @@ fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, CliError> {
     shown(args, path, shown_report, || table(episode, &driven))
 }
 
-/// What is to be said of a run that was the same again.
+/// Output for a run that was reproduced identically.
 fn shown<R: Serialize>(
     args: &ReplayArgs,
     path: &Path,

@@ -1,4 +1,4 @@
-//! Errors of records, in the words of the command line.
+//! Errors of records, in the terms of the command line.
 
 use crate::error::{CliError, Kind};
 use crate::inputs::map_error;

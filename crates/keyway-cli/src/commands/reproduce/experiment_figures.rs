@@ -1,4 +1,4 @@
-//! Pictures of experiments: the methods on one map, and the spread of values over all maps.
+//! Pictures of experiments: the methods on one map, and the distribution of values over all maps.
 
 use super::figures::made;
 use super::stage::Stage;
@@ -8,13 +8,13 @@ use keyway_lab::claims::{How, MapRow, Method, MethodResult, Part, RunFigures};
 use keyway_lab::reproduce::{Measured, PageFigure, ReproduceRequest};
 use keyway_sim::metrics::statistics::Sample;
 
-/// The names of all pictures that there may be of an experiment.
+/// The names of all possible pictures of an experiment.
 pub(super) fn names_of_experiment(name: &str) -> [String; 6] {
     ["paths", "search", "speeds", "expanded", "time", "mean_speed"]
         .map(|kind| format!("figures/{name}.{kind}.svg"))
 }
 
-/// `claim` is one that the experiment measures.
+/// Draws the pictures of an experiment. `claim` is a claim that the experiment measures.
 pub(super) fn of_experiment(
     measured: &Measured,
     claim: &str,
@@ -45,11 +45,11 @@ pub(super) fn of_experiment(
 
 const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";
 
-/// A value that is spread over the maps.
+/// A quantity whose distribution over the maps is drawn.
 struct Spread {
     label: &'static str,
     what: &'static str,
-    /// True if a method may have it.
+    /// True if the quantity applies to a method.
     is_of: fn(&Method) -> bool,
     value: fn(&MethodResult) -> Option<f64>,
 }
@@ -66,7 +66,7 @@ const TIME: Spread = Spread {
     is_of: |method| part(method) == Some(Part::Whole),
     value: |outcome| arrived(outcome).map(|run| run.time_s),
 };
-/// Parts of a run take the same time: they are the same run.
+/// Mean speeds of the parts of a run. There is no time for parts: they belong to the same run.
 const MEAN_SPEED: Spread = Spread {
     label: "mean speed [m/s]",
     what: "Mean speed in a part of a run",
@@ -86,7 +86,7 @@ fn arrived(outcome: &MethodResult) -> Option<&RunFigures> {
 }
 
 impl Spread {
-    /// Nothing without values; a method without any among others has an empty row.
+    /// Box plot; `None` without values. A method without values among others has an empty row.
     fn boxes(&self, (methods, rows): (&[Method], &[MapRow]), caption: &str) -> Option<Svg> {
         let own = methods.iter().enumerate().filter(|(_, method)| (self.is_of)(method));
         let sample = |(i, method): (usize, &Method)| {

@@ -8,7 +8,8 @@ use keyway_lab::reproduce::{
 };
 use keyway_sim::report::Inputs;
 
-/// The version and the command that make a picture again; `what` are the words that it measures.
+/// The version and the command that reproduce a picture. `what` is the claim argument of the
+/// command.
 pub(super) fn made(request: &ReproduceRequest, what: &str) -> String {
     let ReproduceRequest { maps, seed, has_times, .. } = request;
     let times = if *has_times { "" } else { " --no-times" };
@@ -18,14 +19,14 @@ pub(super) fn made(request: &ReproduceRequest, what: &str) -> String {
     )
 }
 
-/// Quantity along one axis.
+/// The quantity along an axis.
 #[derive(Clone, Copy, PartialEq)]
 enum Axis {
     /// Relative changes.
     Change,
     /// Differences of a quantity, in its unit.
     Difference(Measure),
-    /// Share of the maps on which something is so.
+    /// Share of the maps on which a condition holds.
     Kept,
 }
 
@@ -71,13 +72,13 @@ impl Axis {
     }
 }
 
-/// Such as `clearance [m]`.
+/// Quantity with its unit, such as `clearance [m]`.
 pub(super) fn with_unit(measure: Measure) -> String {
     let unit = if measure.unit().is_empty() { "1" } else { measure.unit() };
     format!("{} [{unit}]", measure_name(measure))
 }
 
-/// Each once, in their order.
+/// Distinct axes, in order.
 fn distinct(axes: impl Iterator<Item = Axis>) -> Vec<Axis> {
     let mut all = Vec::new();
     axes.for_each(|axis| {
@@ -88,13 +89,13 @@ fn distinct(axes: impl Iterator<Item = Axis>) -> Vec<Axis> {
     all
 }
 
-/// The names of all pictures that there may be of a claim.
+/// The names of all possible pictures of a claim.
 pub(super) fn names_of_claim(claim: &Claim) -> impl Iterator<Item = String> + use<> {
     let (id, axes) = (claim.id, distinct(claim.figures.iter().map(Axis::of_claim)));
     axes.into_iter().map(move |axis| axis.file(id))
 }
 
-/// A picture for each axis; none where nothing was measured.
+/// Draws a picture for each axis; none if nothing was measured.
 pub(super) fn of_claim(claim: &ClaimReport, request: &ReproduceRequest) -> Vec<PageFigure> {
     let figure = |axis: Axis| {
         let all = claim.family.figures.iter();
@@ -135,7 +136,8 @@ fn chart(
     draw(&bars, ends, &axis.label(), &caption)
 }
 
-/// The published change, if there is one, and the number of maps, unless the bar says it.
+/// Note with the published change, if there is one, and the number of maps, unless the bar shows
+/// it.
 fn note(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     let maps = format!("n = {}", figure.pairs);
     match published_of(claim, figure) {
@@ -145,13 +147,13 @@ fn note(claim: &ClaimReport, figure: &FamilyFigure) -> String {
     }
 }
 
-/// A figure in a chart.
+/// One bar of a chart.
 pub(super) struct Bar<'a> {
     pub(super) figure: &'a FamilyFigure,
     pub(super) name: String,
     /// The published change, on the scale of the figure.
     pub(super) reference: Option<f64>,
-    /// Text below its numbers.
+    /// Text below the numbers of the bar.
     pub(super) note: String,
 }
 
@@ -169,7 +171,7 @@ impl Bar<'_> {
     }
 }
 
-/// Bars with their numbers beside them. Shares and relative changes are in percent.
+/// Draws bars with their numbers beside them. Shares and relative changes are in percent.
 pub(super) fn draw(bars: &[Bar<'_>], ends: Option<(f64, f64)>, label: &str, caption: &str) -> Svg {
     let note = |Bar { figure, note, .. }: &Bar<'_>| {
         format!("{}\n{note}", measured_text(figure)).replace('-', "\u{2212}")
@@ -180,7 +182,7 @@ pub(super) fn draw(bars: &[Bar<'_>], ends: Option<(f64, f64)>, label: &str, capt
     interval_chart(&IntervalChart { label, ends, rows: &rows, caption })
 }
 
-/// From what a figure has to the numbers along its axis.
+/// Factor from the value of a figure to the numbers along its axis.
 pub(super) fn axis_scale(figure: &FamilyFigure) -> f64 {
     if figure.than.is_none() || figure.scale == Scale::Relative { 100.0 } else { 1.0 }
 }

@@ -1,5 +1,5 @@
-//! `keyway reproduce`: claims of the papers -> what they come to over families of maps, and a
-//! verdict on each.
+//! `keyway reproduce`: measures the papers' claims over families of maps, and gives a verdict on
+//! each.
 
 mod experiment_figures;
 mod figures;
@@ -53,7 +53,7 @@ fn request(args: &ReproduceArgs) -> ReproduceRequest {
     }
 }
 
-/// The names of all pictures that there may be.
+/// The names of all possible pictures.
 fn figure_names(reproduction: &Reproduction) -> impl Iterator<Item = String> {
     let of_claims = reproduction.claims().iter().flat_map(|claim| figures::names_of_claim(claim));
     let experiments = reproduction.experiments().into_iter();
@@ -62,7 +62,7 @@ fn figure_names(reproduction: &Reproduction) -> impl Iterator<Item = String> {
     of_claims.chain(of_experiments).chain(of_ablations)
 }
 
-/// Writes all files; what they say is the report.
+/// Writes all files; their content is that of the report.
 fn write(
     reproduction: &Reproduction,
     measurements: &Measurements,

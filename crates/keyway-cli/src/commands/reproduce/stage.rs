@@ -1,4 +1,4 @@
-//! The results of all methods of an experiment on one map, as pictures.
+//! Pictures of the results of all methods of an experiment on one map.
 
 use keyway::geometry::{Polyline, Velocity};
 use keyway_draw::layers::{
@@ -11,29 +11,29 @@ use keyway_draw::{
 use keyway_lab::claims::{Experiment, How, Place, Shown};
 use keyway_sim::sim::{Outcome, TrajectoryPoint};
 
-/// A run of which parts are compared, below these parts.
+/// Line style of a whole run, drawn below the compared parts.
 const WAY: LineStyle = LineStyle { color: Rgb(0x88, 0x88, 0x88), width_px: 1.0, dashes: "" };
-/// Width of the parts \[px\].
+/// Line width of the parts \[px\].
 const PART_PX: f64 = 2.6;
 
-/// A map, with the texts about it.
+/// A map, with its captions.
 pub(super) struct Stage<'a> {
     experiment: &'a Experiment,
     place: &'a Place,
     /// Name of the map.
     on: &'a str,
-    /// The command that makes the pictures again.
+    /// The command that reproduces the pictures.
     made: &'a str,
     actors: Vec<Actor<'a>>,
 }
 
-/// The part of a method in a picture.
+/// A method in a picture.
 struct Actor<'a> {
     name: &'static str,
     shown: &'a Shown,
-    /// The run; nothing of a path.
+    /// The trajectory of the run; empty for a path.
     points: Vec<TrajectoryPoint>,
-    /// The stretches of the part of the run that is compared; none where that is all of it.
+    /// The stretches of the run that are compared; empty if the whole run is.
     stretches: Vec<Polyline>,
 }
 
@@ -50,9 +50,9 @@ impl<'a> Stage<'a> {
         Self { experiment, place, on, made, actors }
     }
 
-    /// Paths and ways; nothing without any.
+    /// Picture of the paths and trajectories; `None` if there are none.
     pub(super) fn paths(&self) -> Option<Svg> {
-        // Methods that compare parts have the same run.
+        // Methods that compare parts of a run share that run.
         let (parts, others): (Vec<_>, Vec<_>) =
             self.actors.iter().partition(|actor| actor.shown.part.is_some());
         let mut panels: Vec<_> =
@@ -71,7 +71,7 @@ impl<'a> Stage<'a> {
         self.panels(&self.caption("Paths and ways driven", |_| true), panels)
     }
 
-    /// Searches; nothing without any.
+    /// Picture of the searches; `None` if there are none.
     pub(super) fn searches(&self) -> Option<Svg> {
         let actors = self.actors.iter();
         let panels = actors.filter_map(|actor| Some((actor.title(), actor.search_layers()?)));
@@ -79,7 +79,7 @@ impl<'a> Stage<'a> {
         self.panels(&caption, panels.collect())
     }
 
-    /// Nothing without a panel.
+    /// Arranges panels; `None` if there are none.
     fn panels(
         &self,
         caption: &str,
@@ -97,7 +97,7 @@ impl<'a> Stage<'a> {
         Some(all.svg())
     }
 
-    /// Nothing without a run.
+    /// Chart of speeds and turn rates; `None` without a run.
     pub(super) fn speed_curves(&self) -> Option<Svg> {
         let runs: Vec<(&str, Vec<TrajectoryPoint>)> = self
             .actors
@@ -118,7 +118,8 @@ impl<'a> Stage<'a> {
         Some(speed_curve(&series, &options))
     }
 
-    /// Says also which methods are missing of those that such a picture is of.
+    /// The caption. It also lists the methods without a result among those that belong in the
+    /// picture.
     fn caption(&self, what: &str, is_of: fn(&How) -> bool) -> String {
         let missing = self.experiment.methods.iter().zip(&self.place.shown);
         let missing = missing.filter(|(method, shown)| is_of(&method.how) && shown.is_none());
@@ -146,7 +147,7 @@ impl<'a> Actor<'a> {
         actor
     }
 
-    /// The run with gaps where it does not belong to the part that is compared.
+    /// The trajectory, with gaps outside the compared part.
     fn compared(&self) -> Vec<TrajectoryPoint> {
         let gap = Velocity::new(f64::NAN, f64::NAN);
         let mut points = self.points.clone();
@@ -159,7 +160,7 @@ impl<'a> Actor<'a> {
         self.ending(self.name)
     }
 
-    /// A name with the length of the path or way, and the end of a run that missed its goal.
+    /// A name with the path length, and the outcome of a run that missed its goal.
     fn ending(&self, name: &str) -> String {
         let end = match self.shown.run.as_ref().map(|run| run.outcome) {
             None | Some(Outcome::Reached) => "",
@@ -182,7 +183,7 @@ impl<'a> Actor<'a> {
         ]
     }
 
-    /// `None` of a run.
+    /// Layers of the search; `None` for a run.
     fn search_layers(&self) -> Option<Vec<Box<dyn Layer + '_>>> {
         let trace = SearchTrace::new(self.shown.search.as_ref()?);
         Some(vec![

@@ -1,11 +1,11 @@
-//! Pictures of ablations: bars where parts are left out, curves where a parameter has other values.
+//! Pictures of ablations: bars for omitted parts, curves for swept parameters.
 
 use super::figures::{Bar, axis_scale, draw, made, with_unit};
 use keyway_draw::{ChartPoint, PointPanels, PointSeries, Svg, point_panels};
 use keyway_lab::claims::{Ablation, AblationReport, Claim, FamilyFigure, Measure, Scale};
 use keyway_lab::reproduce::{PageFigure, ReproduceRequest, measure_name};
 
-/// The names of all pictures that there may be of it.
+/// The names of all possible pictures of an ablation.
 pub(super) fn names(ablation: &Ablation) -> Vec<String> {
     ablation.measures.iter().map(|&measure| file(ablation.experiment.name, measure)).collect()
 }
@@ -14,7 +14,7 @@ fn file(experiment: &str, measure: Measure) -> String {
     format!("figures/{experiment}.{}.svg", measure_name(measure).replace(' ', "_"))
 }
 
-/// A picture of each measure.
+/// Draws a picture of each measure.
 pub(super) fn figures(report: &AblationReport, request: &ReproduceRequest) -> Vec<PageFigure> {
     report.measures().into_iter().map(|measure| figure(report, measure, request)).collect()
 }
@@ -22,7 +22,7 @@ pub(super) fn figures(report: &AblationReport, request: &ReproduceRequest) -> Ve
 fn figure(report: &AblationReport, measure: Measure, request: &ReproduceRequest) -> PageFigure {
     let own: Vec<&FamilyFigure> =
         report.figures.iter().filter(|figure| figure.measure == measure).collect();
-    // Ablations are asked for with the claims of their paper.
+    // Ablations are requested together with the claims of their paper.
     let claim = Claim::all().find(|claim| claim.paper == report.paper).map_or("", |claim| claim.id);
     let caption = format!(
         "{}: {}, change from \"{}\": mean over those of {} maps on which both have it, and its 95 % interval. {}",
@@ -56,7 +56,7 @@ fn bars(figures: &[&FamilyFigure], label: &str, caption: &str) -> Svg {
     draw(&bars, None, label, caption)
 }
 
-/// The base is a point without a change.
+/// Curve over a parameter. The base is a point with zero change.
 fn curve(
     report: &AblationReport,
     (figures, parameter): (&[&FamilyFigure], &str),

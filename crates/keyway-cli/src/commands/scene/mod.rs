@@ -1,5 +1,5 @@
-//! `keyway scene`: scene files of the field's benchmarks, of tables of starts and goals, of the
-//! papers' maps and of narrow places, and the schema of scene files.
+//! `keyway scene`: generates scene files from benchmarks, from tables of starts and goals, on the
+//! papers' maps and in narrow environments; and prints their schema.
 
 use super::{Done, print};
 use crate::args::{Format, SceneCommand};
@@ -17,7 +17,7 @@ use std::path::Path;
 #[derive(Serialize)]
 struct SceneReport {
     schema: &'static str,
-    /// Paths of the scenes that were written.
+    /// Paths of the written scenes.
     files: Vec<String>,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
     }
 }
 
-/// Writes all scenes, or none where one of them may not be written.
+/// Writes all scenes, or none if one of them may not be written.
 fn write(folder: &Path, scenes: &[NamedScene], format: Format) -> Result<Done, CliError> {
     let names: Vec<&str> = scenes.iter().map(|named| named.file.as_str()).collect();
     let mut out = prepare(folder, &names)?;
@@ -92,7 +92,7 @@ impl From<ScenesError> for CliError {
     }
 }
 
-/// The argument that fills a field of a request.
+/// Returns the argument for a field of a request.
 fn argument(field: &'static str) -> &'static str {
     match field {
         "cylinders" => "CYLINDERS.csv",

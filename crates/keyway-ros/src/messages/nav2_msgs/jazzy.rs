@@ -1,4 +1,4 @@
-//! `nav2_msgs` of Jazzy, where Kilted has others.
+//! `nav2_msgs` of Jazzy, as far as Kilted differs.
 
 use super::{
     Action, ComputedPath, Distance, Empty, NavigateToPoseFeedback, Outcome, Target, TimedOutcome,
@@ -9,7 +9,7 @@ use crate::messages::geometry_msgs::PoseStamped;
 use serde::{Deserialize, Serialize};
 
 action! {
-    /// To turn on the spot.
+    /// Turns on the spot.
     Spin: SpinGoal => TimedOutcome, Distance
 }
 
@@ -20,12 +20,12 @@ pub(crate) struct SpinGoal {
 }
 
 action! {
-    /// To drive straight back.
+    /// Drives straight back.
     BackUp: DriveGoal => TimedOutcome, Distance
 }
 
 action! {
-    /// To drive straight ahead.
+    /// Drives straight ahead.
     DriveOnHeading: DriveGoal => TimedOutcome, Distance
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct DriveGoal {
 }
 
 action! {
-    /// To drive to a pose by way of others.
+    /// Drives to a pose via others.
     NavigateThroughPoses: NavigateThroughPosesGoal => Outcome, NavigateThroughPosesFeedback
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct NavigateThroughPosesFeedback {
 }
 
 action! {
-    /// A way to a pose by way of others.
+    /// Computes a path to a pose via others.
     ComputePathThroughPoses: ComputePathThroughPosesGoal => ComputedPath, Empty
 }
 
@@ -67,7 +67,7 @@ pub(crate) struct ComputePathThroughPosesGoal {
 }
 
 action! {
-    /// To stop at several poses.
+    /// Stops at several poses.
     FollowWaypoints: FollowWaypointsGoal => FollowWaypointsOutcome, FollowWaypointsFeedback
 }
 

@@ -1,4 +1,4 @@
-//! `nav2_msgs` of Kilted, where Jazzy has others.
+//! `nav2_msgs` of Kilted, as far as Jazzy differs.
 
 use super::jazzy::{FollowWaypointsFeedback, FollowWaypointsGoal};
 use super::{
@@ -10,7 +10,7 @@ use crate::messages::nav_msgs::Goals;
 use serde::{Deserialize, Serialize};
 
 action! {
-    /// To turn on the spot.
+    /// Turns on the spot.
     Spin: SpinGoal => TimedOutcome, Distance
 }
 
@@ -22,12 +22,12 @@ pub(crate) struct SpinGoal {
 }
 
 action! {
-    /// To drive straight back.
+    /// Drives straight back.
     BackUp: DriveGoal => TimedOutcome, Distance
 }
 
 action! {
-    /// To drive straight ahead.
+    /// Drives straight ahead.
     DriveOnHeading: DriveGoal => TimedOutcome, Distance
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct DriveGoal {
 }
 
 action! {
-    /// To drive to a pose by way of others.
+    /// Drives to a pose via others.
     NavigateThroughPoses: NavigateThroughPosesGoal
         => NavigateThroughPosesOutcome, NavigateThroughPosesFeedback
 }
@@ -65,10 +65,10 @@ pub(crate) struct NavigateThroughPosesFeedback {
     pub(crate) waypoint_statuses: Vec<WaypointStatus>,
 }
 
-/// The state of a pose on the way.
+/// The state of a waypoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WaypointStatus {
-    /// [`Self::FAILED`] is the only one that is told of.
+    /// [`Self::FAILED`] is the only one that is reported.
     pub(crate) status: u8,
     pub(crate) waypoint_index: u32,
     pub(crate) waypoint_pose: PoseStamped,
@@ -81,7 +81,7 @@ impl WaypointStatus {
 }
 
 action! {
-    /// A way to a pose by way of others.
+    /// Computes a path to a pose via others.
     ComputePathThroughPoses: ComputePathThroughPosesGoal => ComputedPath, Empty
 }
 
@@ -94,7 +94,7 @@ pub(crate) struct ComputePathThroughPosesGoal {
 }
 
 action! {
-    /// To stop at several poses.
+    /// Stops at several poses.
     FollowWaypoints: FollowWaypointsGoal => FollowWaypointsOutcome, FollowWaypointsFeedback
 }
 

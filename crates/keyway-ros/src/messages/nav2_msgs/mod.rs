@@ -1,4 +1,4 @@
-//! `nav2_msgs`: the definitions that Jazzy and Kilted share; the others are in files of their own.
+//! `nav2_msgs`: the definitions that Jazzy and Kilted share. The others are in separate files.
 
 pub(crate) mod jazzy;
 pub(crate) mod kilted;
@@ -17,7 +17,7 @@ use super::std_msgs::Header;
 use super::{Action, Empty, Named};
 use serde::{Deserialize, Serialize};
 
-/// Makes an action of its parts.
+/// Defines an action from its parts.
 macro_rules! action {
     ($(#[$doc:meta])* $action:ident: $goal:ty => $outcome:ty, $feedback:ty) => {
         $(#[$doc])*
@@ -33,11 +33,11 @@ macro_rules! action {
 }
 use action;
 
-/// The speed that is not to be exceeded; 0: there is none.
+/// A speed limit; 0 removes it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SpeedLimit {
     pub(crate) header: Header,
-    /// Of the robot's full speed; otherwise in metres per second.
+    /// True if the limit is a percentage of the full speed; otherwise it is in metres per second.
     pub(crate) percentage: bool,
     /// `speed_limit` in the definition.
     pub(crate) most: f64,
@@ -47,7 +47,7 @@ impl Named for SpeedLimit {
     const NAME: (&'static str, &'static str) = ("nav2_msgs", "SpeedLimit");
 }
 
-/// A mask of ground, and how its values are meant.
+/// Metadata of a costmap filter: its mask, and the interpretation of the mask's values.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CostmapFilterInfo {
     pub(crate) header: Header,
@@ -64,20 +64,20 @@ impl Named for CostmapFilterInfo {
 
 impl CostmapFilterInfo {
     pub(crate) const KEEP_OUT: u8 = 0;
-    /// Values are parts of the full speed in percent: base + multiplier times the value.
+    /// Values are speed limits in percent of the full speed: base + multiplier times the value.
     pub(crate) const SPEED_PERCENT: u8 = 1;
     /// The same in metres per second.
     pub(crate) const SPEED: u8 = 2;
 }
 
-/// The outcome of an action that has no other.
+/// The outcome of an action without further fields.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Outcome {
     pub(crate) error_code: u16,
     pub(crate) error_msg: String,
 }
 
-/// The outcome of an action that takes its time.
+/// The outcome of an action with its elapsed time.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct TimedOutcome {
     pub(crate) total_elapsed_time: Duration,
@@ -85,7 +85,7 @@ pub(crate) struct TimedOutcome {
     pub(crate) error_msg: String,
 }
 
-/// A path, and the time that its making took.
+/// A path, and the planning time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ComputedPath {
     pub(crate) path: Path,
@@ -94,14 +94,14 @@ pub(crate) struct ComputedPath {
     pub(crate) error_msg: String,
 }
 
-/// A number that tells how far an action is.
+/// Feedback with a travelled distance or angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Distance {
     pub(crate) distance: f32,
 }
 
 action! {
-    /// To drive to a pose.
+    /// Drives to a pose.
     NavigateToPose: NavigateToPoseGoal => Outcome, NavigateToPoseFeedback
 }
 
@@ -121,7 +121,7 @@ pub(crate) struct NavigateToPoseFeedback {
 }
 
 action! {
-    /// A way to a pose.
+    /// Computes a path to a pose.
     ComputePathToPose: ComputePathToPoseGoal => ComputedPath, Empty
 }
 
@@ -134,7 +134,7 @@ pub(crate) struct ComputePathToPoseGoal {
 }
 
 action! {
-    /// To drive along a path.
+    /// Follows a path.
     FollowPath: FollowPathGoal => FollowPathOutcome, FollowPathFeedback
 }
 
@@ -160,7 +160,7 @@ pub(crate) struct FollowPathFeedback {
 }
 
 action! {
-    /// To make a path smooth.
+    /// Smooths a path.
     SmoothPath: SmoothPathGoal => SmoothPathOutcome, Empty
 }
 
@@ -182,7 +182,7 @@ pub(crate) struct SmoothPathOutcome {
 }
 
 action! {
-    /// To stand for a time.
+    /// Waits in place for a time.
     Wait: WaitGoal => TimedOutcome, WaitFeedback
 }
 

@@ -1,9 +1,9 @@
-//! Actions of which this node knows no more than their names.
+//! Actions that this node knows by name only.
 
 use crate::messages::Action;
 use serde::{Deserialize, Serialize};
 
-/// A message whose fields are left unread.
+/// A message whose fields are not decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Unread;
 

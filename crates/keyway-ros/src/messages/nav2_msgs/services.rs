@@ -1,4 +1,4 @@
-//! Services of `nav2_msgs`, which are the same in Jazzy and Kilted.
+//! Services of `nav2_msgs` that are the same in Jazzy and Kilted.
 
 use crate::messages::builtin_interfaces::Time;
 use crate::messages::geometry_msgs::Pose;
@@ -8,17 +8,17 @@ use crate::messages::{Empty, Service, service};
 use serde::{Deserialize, Serialize};
 
 service! {
-    /// To forget what was sensed.
+    /// Clears all sensed obstacles.
     "nav2_msgs", ClearEntireCostmap: Empty => Empty
 }
 
 service! {
-    /// The same outside of a square around the robot.
+    /// Clears them outside a square around the robot.
     "nav2_msgs", ClearCostmapExceptRegion: ResetDistance => Empty
 }
 
 service! {
-    /// The same inside of it.
+    /// Clears them inside a square around the robot.
     "nav2_msgs", ClearCostmapAroundRobot: ResetDistance => Empty
 }
 
@@ -28,11 +28,11 @@ pub(crate) struct ResetDistance {
 }
 
 service! {
-    /// The costs of cells.
+    /// Returns the global costmap.
     "nav2_msgs", GetCostmap: CostmapMetaData => Costmap
 }
 
-/// The same of those around the robot.
+/// Returns the local costmap.
 pub(crate) struct GetLocalCostmap;
 
 impl Service for GetLocalCostmap {
@@ -60,7 +60,7 @@ pub(crate) struct Costmap {
 }
 
 service! {
-    /// To drive on the map of a file.
+    /// Loads a map from a file.
     "nav2_msgs", LoadMap: MapUrl => LoadedMap
 }
 
@@ -82,7 +82,7 @@ impl LoadedMap {
 }
 
 service! {
-    /// To start or stop all nodes.
+    /// Starts or stops all nodes.
     "nav2_msgs", ManageLifecycleNodes: Command => Success
 }
 
@@ -92,14 +92,14 @@ pub(crate) struct Command {
 }
 
 impl Command {
-    /// The node is to work after it.
+    /// True if the node is active after it.
     pub(crate) const fn starts(self) -> bool {
         const STARTUP: u8 = 0;
         const RESUME: u8 = 2;
         matches!(self.command, STARTUP | RESUME)
     }
 
-    /// It is one that exists.
+    /// True for a defined command.
     pub(crate) const fn is_known(self) -> bool {
         const LAST: u8 = 6;
         self.command <= LAST

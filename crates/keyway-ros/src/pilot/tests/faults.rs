@@ -1,4 +1,4 @@
-//! Sensors that fail, and goals that ask for too much.
+//! Tests of sensor failures, and of excessive goals.
 
 use super::ground::cloud;
 use super::{Act, Ended, Fault, MapError, Motion, ODOM, Robot, Wanted, goal, room, to};
@@ -11,7 +11,7 @@ use crate::pilot::Waits;
 use crate::transforms::Placement;
 use keyway::geometry::{Pose, Velocity};
 
-/// One that has set out across the room.
+/// A robot that is driving across the room.
 fn under_way(parameters: &[(&str, &str)]) -> Robot {
     let mut robot = Robot::with(parameters);
     robot.tell(robot.now_s);
@@ -19,7 +19,7 @@ fn under_way(parameters: &[(&str, &str)]) -> Robot {
     robot
 }
 
-/// Transforms and scans go on, odometry does not.
+/// Transforms and scans continue, odometry does not.
 #[test]
 fn a_velocity_from_before_is_none() {
     let mut robot = under_way(&[]);
@@ -45,7 +45,7 @@ fn a_velocity_from_before_is_none() {
     assert!(robot.pilot.cycle(robot.now_s).waits.is_some(), "that is no velocity");
 }
 
-/// The likeliest first mistake is a wrong topic or frame.
+/// The most likely initial mistake is a wrong topic or frame.
 #[test]
 fn who_is_not_told_enough_says_what_is_missing() {
     let mut lost = Robot::with(&[("robot_base_frame", "base")]);
@@ -68,7 +68,7 @@ fn who_is_not_told_enough_says_what_is_missing() {
     assert!(why.to_string().ends_with("(topics: front)"), "{why}");
 }
 
-/// Its drivers have a computer of their own.
+/// The drivers run on a computer with another clock.
 #[test]
 fn who_has_another_clock_stands() {
     for (off_s, may_drive) in [(0.1, true), (0.5, false), (100.0, false), (-0.5, false)] {
@@ -83,7 +83,7 @@ fn who_has_another_clock_stands() {
     }
 }
 
-/// Transforms are missing again and again: the robot stands, and its motors are not blamed.
+/// Transforms are missing repeatedly: the robot stops, and the motors are not blamed.
 #[test]
 fn standing_in_doubt_teaches_nothing_about_the_motors() {
     let mut robot = under_way(&[("robot", "small"), ("max_pose_age", "0.05")]);
@@ -111,7 +111,7 @@ fn a_scan_whose_bearings_cannot_be_stops_the_robot() {
         };
         robot.tell(robot.now_s);
         robot.pilot.sensing.take_scan(0, broken);
-        // A good one before it changes nothing.
+        // A good scan before it does not help.
         let cycle = robot.pilot.cycle(robot.now_s);
         assert!(matches!(cycle.waits, Some(Waits::Scan(_))), "{:?}", cycle.waits);
         robot.now_s += 0.1;
@@ -131,7 +131,7 @@ fn a_camera_that_is_silent_or_nowhere_stops_the_robot() {
     let waits: Vec<_> = (0..40).map(|_| silent.cycle().waits).collect();
     assert!(matches!(waits.last(), Some(Some(Waits::Silent { .. }))), "{waits:?}");
 
-    // Clouds come in every other cycle.
+    // Clouds arrive in every other cycle.
     let mut nowhere = under_way(&[("cloud_topics", "[camera]")]);
     for cycle in 0..10 {
         if cycle % 2 == 0 {
@@ -178,7 +178,7 @@ fn rounds_without_an_end_take_no_memory_and_end_where_nothing_can_be_reached() {
     assert!(matches!(outcome, Err(Ended::Failed { .. })), "{outcome:?}");
 }
 
-/// Beside the map nothing moves, but time passes.
+/// Outside the map nothing moves, but time passes.
 #[test]
 fn a_motion_that_cannot_begin_ends() {
     let mut robot = Robot::new();
@@ -195,7 +195,7 @@ fn a_motion_that_cannot_begin_ends() {
     assert!(matches!(outcome, Err(Ended::Failed { fault: Fault::InvalidInput, .. })));
 }
 
-/// A limit for all leaves that of a motion.
+/// A general speed limit does not override that of a motion.
 #[test]
 fn a_slow_motion_stays_slow() {
     let mut robot = Robot::new();

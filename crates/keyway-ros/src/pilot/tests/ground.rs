@@ -1,4 +1,4 @@
-//! Updates, masks and clouds of the ground, and pictures of it.
+//! Tests of map updates, masks and clouds, and of pictures.
 
 use super::{MapError, Robot, room, settings, to};
 use crate::messages::map_msgs::OccupancyGridUpdate;
@@ -12,7 +12,7 @@ use crate::transforms::Placement;
 use keyway::geometry::{Point, Pose};
 use keyway::map::{Cell, CellState};
 
-/// Cells of the map that an update makes occupied are so, and what is outside of it is nothing.
+/// Updated cells of the map become occupied; cells of the update outside the map are ignored.
 #[test]
 fn parts_of_the_map_change() {
     let mut robot = Robot::new();
@@ -73,7 +73,7 @@ fn it_keeps_out_of_what_a_mask_closes() {
     assert!(matches!(robot.pilot.take_mask(&other, &mask(0)), Err(MapError::Frame(_))));
 }
 
-/// In percent of the full speed, and in metres per second by Nav2's usual formula for that.
+/// The limits are in percent of the full speed, and in metres per second by Nav2's formula.
 #[test]
 fn it_is_slow_where_a_mask_says_so() {
     let full_mps = settings().stack.robot().limits.v_max_mps;
@@ -88,7 +88,7 @@ fn it_is_slow_where_a_mask_says_so() {
         for _ in 0..500 {
             let v = robot.cycle().command.v;
             let x = robot.pilot.pose.unwrap().x;
-            // Half a cell is left out at both ends.
+            // Half a cell is excluded at both ends.
             if (2.55..2.95).contains(&x) {
                 inside_mps = inside_mps.max(v);
             }
@@ -122,7 +122,7 @@ pub(super) fn cloud(stamp_s: f64, points: &[[f32; 3]]) -> PointCloud2 {
     }
 }
 
-/// Lidars see nothing of a low thing ahead, a camera does.
+/// Lidars do not see a low obstacle ahead, a camera does.
 #[test]
 fn it_does_not_touch_what_a_camera_sees() {
     let mut robot = Robot::with(&[("cloud_topics", "[camera]")]);
@@ -135,7 +135,7 @@ fn it_does_not_touch_what_a_camera_sees() {
     for _ in 0..500 {
         let seen = robot.in_map().compose(Pose::new(0.1, 0.0, 0.0)).body_from_world(thing);
         let ahead = seen.x > 0.0 && seen.norm() < 2.5 && seen.heading().abs() < 0.8;
-        // The ground at both edges of what it sees, and the thing.
+        // The ground at both edges of the field of view, and the obstacle.
         let mut points = vec![[2.2, 1.4, 0.0], [2.2, -1.4, 0.0], [0.4, 0.0, 0.0]];
         points.extend(ahead.then_some([seen.x as f32, seen.y as f32, 0.1]));
         robot.pilot.sensing.take_cloud(0, cloud(robot.now_s, &points));

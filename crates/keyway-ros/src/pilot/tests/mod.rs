@@ -1,4 +1,4 @@
-//! The pilot with a robot that obeys at once, in a room that its map shows.
+//! Tests of the pilot with a robot that follows commands at once, in a mapped room.
 
 mod faults;
 mod ground;
@@ -16,11 +16,11 @@ use keyway::geometry::Point;
 /// A robot, and the frames and messages of its drivers.
 pub(crate) struct Robot {
     pub(crate) pilot: Pilot,
-    /// In the frame `odom`, which stands 1 m to the right of the map's origin.
+    /// In the frame `odom`, whose origin is 1 m to the right of the map's origin.
     pub(crate) pose: Pose,
     velocity: Velocity,
     pub(crate) now_s: f64,
-    /// Its wheels turn on the spot.
+    /// True if the wheels slip.
     pub(crate) slips: bool,
 }
 
@@ -51,7 +51,7 @@ impl Robot {
         Self::with(&[])
     }
 
-    /// With these parameters.
+    /// Creates a robot with these parameters.
     pub(crate) fn with(parameters: &[(&str, &str)]) -> Self {
         let mut robot = Self::without_map(parameters);
         robot.pilot.take_map(&room()).unwrap();
@@ -71,7 +71,7 @@ impl Robot {
         ODOM.compose(self.pose)
     }
 
-    /// Its drivers tell all that they know, by this stamp.
+    /// Publishes all inputs of the drivers with this stamp.
     pub(crate) fn tell(&mut self, stamp_s: f64) {
         for (names, pose) in [(["map", "odom"], ODOM), (["odom", "base_link"], self.pose)] {
             self.pilot.transforms.insert(names, (stamp_s, Placement::upright(pose)), false);
@@ -91,13 +91,13 @@ impl Robot {
         self.pilot.sensing.take_scan(0, scan);
     }
 
-    /// One cycle, whose command it obeys.
+    /// Runs one cycle and executes its command.
     pub(crate) fn cycle(&mut self) -> Cycle {
         self.tell(self.now_s);
         self.cycle_untold()
     }
 
-    /// The same without a word of its drivers.
+    /// The same without inputs.
     fn cycle_untold(&mut self) -> Cycle {
         let cycle = self.pilot.cycle(self.now_s);
         let cycle_s = self.pilot.settings.stack.robot().cycle_s;
@@ -108,7 +108,7 @@ impl Robot {
         cycle
     }
 
-    /// Drives until the errand ends, for a minute at most.
+    /// Drives until the task ends, for a minute at most.
     fn drive(&mut self) -> Option<Ended> {
         (0..600).find_map(|_| self.cycle().ended).map(|(ended, _)| ended)
     }
@@ -118,7 +118,7 @@ pub(crate) fn goal(frame: &str, pose: Pose) -> PoseStamped {
     PoseStamped { header: Header::new(0.0, frame), pose: pose.into() }
 }
 
-/// To drive to a pose.
+/// A task to drive to a pose.
 fn to(frame: &str, pose: Pose) -> Wanted {
     Wanted::Poses(vec![goal(frame, pose)])
 }
@@ -139,7 +139,7 @@ fn it_drives_to_a_pose() {
     assert!(robot.now_s - began_s < 40.0 && robot.cycle().command == Velocity::ZERO);
 }
 
-/// A goal in the frame of the odometry, and one in that of the robot, are where they say.
+/// Goals in the frames of the odometry and of the robot are converted.
 #[test]
 fn goals_have_frames() {
     for (frame, pose) in
@@ -174,7 +174,7 @@ fn it_drives_along_a_path() {
     assert!((2.6..3.2).contains(&highest_m), "{highest_m}");
 }
 
-/// Whatever is missing, the robot stands, and says what.
+/// If any input is missing, the robot stops and reports it.
 #[test]
 fn without_something_it_stands() {
     let mut pilot = Pilot::new(settings());
@@ -195,7 +195,7 @@ fn without_something_it_stands() {
     assert!(why.contains("camera"), "{why}");
 }
 
-/// A pose that is older than it may be stops the robot, in the first cycle in which it is.
+/// A pose older than allowed stops the robot, in the first cycle in which it is.
 #[test]
 fn an_old_pose_is_none() {
     let mut robot = Robot::new();
@@ -286,7 +286,7 @@ fn maps_that_cannot_be_used_change_nothing() {
     assert_eq!(robot.pilot.begin(wanted, robot.now_s), Ok(()));
 }
 
-/// By way of a pose, and with stops, of which one cannot be reached, from there on and once more.
+/// Via a pose, and with stops, of which one cannot be reached, from there on and once more.
 #[test]
 fn it_drives_to_several_poses() {
     let poses = [Pose::new(3.0, 3.2, 0.0), Pose::new(9.0, 2.0, 0.0), Pose::new(4.0, 1.0, 0.0)];
@@ -319,7 +319,7 @@ fn it_drives_to_several_poses() {
     }
 }
 
-/// Turns, drives, waits; and one that a wall does not let through.
+/// Turns, drives, waits; and a drive that a wall blocks.
 #[test]
 fn it_does_single_motions() {
     let act = |motion, allowance_s| {
@@ -371,7 +371,7 @@ fn a_path_is_made_smooth() {
     assert!(matches!(nothing, Err(Ended::Failed { fault: Fault::InvalidPath, .. })));
 }
 
-/// An errand ends when the node is stopped, and nothing is begun until it is started.
+/// A task ends when the node is deactivated, and no task starts until it is activated.
 #[test]
 fn a_node_that_is_stopped_does_not_drive() {
     let mut robot = Robot::new();
@@ -390,7 +390,7 @@ fn a_node_that_is_stopped_does_not_drive() {
     assert_eq!(robot.drive(), Some(Ended::Succeeded));
 }
 
-/// 254 is a wall, 253 where the middle of the robot touches one, 0 far from all.
+/// 254 is a wall, 253 a cell where the robot's centre is in contact, 0 far from all obstacles.
 #[test]
 fn costs_are_those_of_nav2() {
     let robot = Robot::new();
