@@ -33,14 +33,14 @@ pub(crate) struct Comparison {
 
 #[pymethods]
 impl Comparison {
-    /// The rows as dictionaries, with the names of the columns of `table.csv` in `docs/reference/json.md`.
+    /// The rows as dictionaries. Their keys are the columns of `table.csv`.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<JsonRows> {
         Ok(JsonRows(pythonize::pythonize(py, &self.report["rows"])?.unbind()))
     }
 
-    /// The whole report, `keyway.compare/1` of `docs/reference/json.md`. It also has every query, and the
-    /// tests of each row against the first.
+    /// The whole report: `keyway.compare/1` of `docs/reference/json.md`. It also has every query,
+    /// and the tests of each row against the first.
     #[getter]
     fn report(&self, py: Python<'_>) -> PyResult<Json> {
         json(py, &self.report)

@@ -65,8 +65,8 @@ impl Run {
         Floats2(of_points(py, smoothed.map_or(&[], Polyline::points)))
     }
 
-    /// Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`,
-    /// `min_clearance_m` and more. It is empty if there was no route.
+    /// Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`,
+    /// `length_m`, `min_clearance_m` and more. It is empty if there was no route.
     #[getter]
     fn metrics(&self, py: Python<'_>) -> PyResult<Json> {
         match &self.report.run {

@@ -1,6 +1,6 @@
 """Starts keyway-ros: ros2 launch keyway.launch.py robot:=waffle, or params_file:=nav2_params.yaml.
 
-The program must be on the PATH, or be given as program:=/where/it/is/keyway-ros."""
+If the program is not on the PATH, give its path as program:=/path/to/keyway-ros."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
@@ -24,7 +24,7 @@ def start(context):
         arguments += ["-p", f"robot:={given['robot']}"]
     if given["namespace"]:
         arguments += ["-r", f"__ns:={given['namespace']}"]
-    # After an end that nobody asked for it begins again.
+    # Restarts after an unexpected end.
     return [ExecuteProcess(cmd=[given["program"], "--ros-args", *arguments], output="screen", respawn=True, respawn_delay=1.0, respawn_max_retries=10)]
 
 

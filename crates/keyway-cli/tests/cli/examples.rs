@@ -1,9 +1,9 @@
-//! Tests that every example in a help text or in the README works.
+//! Every example in a help text or in the README works.
 
 use crate::support::keyway;
 use std::path::Path;
 
-/// All commands; the test below fails if one is missing.
+/// All commands; the test below finds out when one is missing.
 pub(crate) const COMMANDS: [&str; 25] = [
     "",
     "demo",
@@ -36,13 +36,25 @@ fn help(folder: &Path, command: &str) -> String {
     keyway(folder, &format!("{command} --help")).expect_code(0).out
 }
 
-/// Runs a line like a shell that supports `> FILE`.
+/// Runs a line as a shell would that knows `> FILE`.
 fn run(folder: &Path, line: &str) {
     let (line, file) = line.split_once(" > ").map_or((line, None), |(line, to)| (line, Some(to)));
     let answer = keyway(folder, line);
     assert_eq!(answer.code, 0, "keyway {line}\n{}{}", answer.out, answer.err);
     if let Some(file) = file {
         std::fs::write(folder.join(file.trim()), answer.out).unwrap();
+    }
+}
+
+/// A file that examples name, as small as it can be.
+fn example_file(name: &str) -> &'static str {
+    match name {
+        "pairs.csv" => {
+            "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
+             keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n"
+        }
+        "noise.toml" => "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n",
+        _ => unreachable!("{name}"),
     }
 }
 
@@ -64,7 +76,7 @@ fn every_command_is_known_here() {
 fn every_help_text_has_examples_that_work() {
     let folder = tempfile::tempdir().unwrap();
     keyway(folder.path(), "demo").expect_code(0);
-    // Tables of a benchmark, of minimal size.
+    // The tables of a benchmark, as small as they can be.
     let cylinders = "world,x,y,radius\n0,-2.0,8.0,0.075\n1,-2.5,9.0,0.075\n";
     std::fs::write(folder.path().join("barn_cylinders.csv"), cylinders).unwrap();
     let summary = "world,optimal_time_s\n0,5\n1,5\n";
@@ -73,11 +85,9 @@ fn every_help_text_has_examples_that_work() {
     std::fs::write(folder.path().join("dynabarn_keyframes.csv"), frames).unwrap();
     let worlds = "world,plugin,radius\n0,a,0.5\n";
     std::fs::write(folder.path().join("dynabarn_worlds.csv"), worlds).unwrap();
-    let pairs = "map,start_x_m,start_y_m,goal_x_m,goal_y_m\n\
-                 keyway-demo/small_house.yaml,-8.175,-2.825,-4,-2.6\n";
-    std::fs::write(folder.path().join("pairs.csv"), pairs).unwrap();
-    let noise = "[actuation]\nv_relative = 0.05\nomega_relative = 0.05\n";
-    std::fs::write(folder.path().join("noise.toml"), noise).unwrap();
+    for name in ["pairs.csv", "noise.toml"] {
+        std::fs::write(folder.path().join(name), example_file(name)).unwrap();
+    }
     for command in COMMANDS {
         let text = help(folder.path(), command);
         let (_, examples) = text.split_once("Examples:\n").unwrap_or_else(|| panic!("{text}"));
@@ -90,42 +100,54 @@ fn every_help_text_has_examples_that_work() {
     }
 }
 
-/// Commands in backticks in the text of a page; a flag or a name alone does not count.
+/// The pages whose commands run here; the others are about ROS, records or files of a reader.
+const PAGES: [&str; 8] = [
+    "README.md",
+    "docs/choosing.md",
+    "docs/compare.md",
+    "docs/getting-started.md",
+    "docs/recipes.md",
+    "docs/safety.md",
+    "docs/stack.md",
+    "docs/your-robot.md",
+];
+
+/// The commands of a page's code blocks.
+fn fenced_commands(text: &str) -> Vec<String> {
+    let blocks = text.split("```").skip(1).step_by(2);
+    let lines = blocks.filter_map(|block| block.strip_prefix("sh\n")).flat_map(str::lines);
+    let commands = lines.filter_map(|line| line.trim().strip_prefix("keyway "));
+    // Text after a `#` is for people.
+    commands.map(|line| line.split(" #").next().unwrap().to_owned()).collect()
+}
+
+/// The whole commands in the text of a page, between backticks: those with options and without a
+/// name to fill in.
 fn inline_commands(text: &str) -> Vec<String> {
-    let text = text.replace('\n', " ");
-    let spans = text.split('`').skip(1).step_by(2);
-    let commands =
-        spans.filter_map(|span| span.strip_prefix("keyway ")).filter(|line| !line.contains("NAME"));
+    let text = text.split("```").step_by(2).collect::<Vec<_>>().join("\n").replace('\n', " ");
+    let commands = text.split('`').skip(1).step_by(2).filter_map(|it| it.strip_prefix("keyway "));
+    let is_whole = |line: &&str| {
+        line.contains(" --")
+            && !["NAME", "FILE", "COMMAND", "..."].iter().any(|open| line.contains(open))
+    };
+    let commands = commands.filter(is_whole);
     commands.map(|line| line.split(" >").next().unwrap().to_owned()).collect()
 }
 
 #[test]
-fn every_command_on_the_page_of_the_stack_works() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/stack.md");
-    let Ok(text) = std::fs::read_to_string(page) else { return };
-    let folder = tempfile::tempdir().unwrap();
-    keyway(folder.path(), "demo").expect_code(0);
-    let commands = inline_commands(&text);
-    assert!(commands.len() >= 2, "{commands:?}");
-    for line in commands.iter().filter(|line| *line != "batch") {
-        run(folder.path(), line);
-    }
-}
-
-#[test]
-fn every_command_in_the_readme_works() {
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
-    // The published crate has no README of the repository.
-    let Ok(text) = std::fs::read_to_string(readme) else { return };
-    let folder = tempfile::tempdir().unwrap();
-    keyway(folder.path(), "demo").expect_code(0);
-    let mut is_fenced = false;
-    for line in text.lines() {
-        is_fenced ^= line.starts_with("```");
-        let line = line.trim().trim_start_matches("$ ");
-        if let Some(line) = line.strip_prefix("keyway ").filter(|_| is_fenced) {
-            // Text after a `#` is a comment for readers.
-            let line = line.split(" #").next().unwrap();
+fn every_command_of_the_pages_works() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for page in PAGES {
+        // The crate on its own has none.
+        let Ok(text) = std::fs::read_to_string(root.join(page)) else { return };
+        let folder = tempfile::tempdir().unwrap();
+        keyway(folder.path(), "demo").expect_code(0);
+        for name in ["pairs.csv", "noise.toml"] {
+            std::fs::write(folder.path().join(name), example_file(name)).unwrap();
+        }
+        let (fenced, inline) = (fenced_commands(&text), inline_commands(&text));
+        assert!(!fenced.is_empty() || !inline.is_empty(), "{page}");
+        for line in fenced.iter().chain(&inline) {
             run(folder.path(), line);
         }
     }

@@ -21,7 +21,7 @@ fn pages() -> Vec<PathBuf> {
                 ["target", "third-party", "node_modules", "dist"].contains(&name.as_str());
             if path.is_dir() && !is_foreign && !name.starts_with('.') {
                 folders.push(path);
-            } else if name.ends_with(".md") {
+            } else if path.extension().is_some_and(|end| end == "md") {
                 pages.push(path);
             }
         }

@@ -7,14 +7,14 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// All texts with possible citations: sources and documentation, without `PAPERS.md` itself.
+/// All texts with possible citations: sources and documentation, without `docs/papers.md` itself.
 fn texts() -> Vec<(PathBuf, String)> {
     let mut folders = ["crates", "docs", "scenes"].map(|folder| root().join(folder)).to_vec();
     let mut texts = Vec::new();
     let mut read = |path: PathBuf| {
         let is_text =
             path.extension().is_some_and(|extension| extension == "rs" || extension == "md");
-        if is_text && !path.ends_with("PAPERS.md") {
+        if is_text && !path.ends_with("docs/papers.md") {
             texts.push((path.clone(), std::fs::read_to_string(path).unwrap()));
         }
     };
@@ -78,7 +78,7 @@ fn every_citation_is_defined_and_every_definition_is_cited() {
     );
 }
 
-/// Titles appear in `PAPERS.md` alone, so that they cannot differ.
+/// Titles appear in `docs/papers.md` alone, so that they cannot differ.
 #[test]
 fn no_source_is_cited_by_its_title() {
     let plain = |text: &str| -> String {

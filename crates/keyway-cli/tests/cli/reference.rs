@@ -60,7 +60,8 @@ fn table(entry: &Value) -> String {
     for parameter in entry["parameters"].as_array().unwrap() {
         let description = parameter["description"].as_str().unwrap_or_default();
         let choices = parameter["choices"].as_array().map_or(String::new(), |choices| {
-            let names: Vec<String> = choices.iter().map(|it| format!("`{}`", text_of(it))).collect();
+            let names: Vec<String> =
+                choices.iter().map(|it| format!("`{}`", text_of(it))).collect();
             format!(" One of {}.", names.join(", "))
         });
         writeln!(
@@ -108,6 +109,7 @@ fn the_page_of_parameters_is_that_of_the_program() {
     }
     let stack = list("keyway");
     let stack = &stack["entries"][0];
-    write!(text, "\n## The stack `keyway`\n\n{}\n\n{}", text_of(&stack["summary"]), table(stack)).unwrap();
+    write!(text, "\n## The stack `keyway`\n\n{}\n\n{}", text_of(&stack["summary"]), table(stack))
+        .unwrap();
     expect_page("parameters.md", &text);
 }

@@ -228,8 +228,7 @@ fn movers_pass_through_nothing() {
     assert_eq!(movers, 6);
 }
 
-/// The documented outcome of a scene in docs/lab/findings.md, with the default stack and the robot of
-/// the scene.
+/// The outcome of a scene in `docs/lab/findings.md`, with the default stack and the scene's robot.
 fn documented(scene: &str) -> EpisodeOutcome {
     let path = folder().join("../docs/lab/findings.md");
     let text = std::fs::read_to_string(path).unwrap();

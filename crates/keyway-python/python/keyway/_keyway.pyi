@@ -31,13 +31,13 @@ class Comparison:
     @property
     def report(self, /) -> dict[str, Any]:
         """
-        The whole report, `keyway.compare/1` of `docs/reference/json.md`. It also has every query, and the
-        tests of each row against the first.
+        The whole report: `keyway.compare/1` of `docs/reference/json.md`. It also has every query,
+        and the tests of each row against the first.
         """
     @property
     def rows(self, /) -> list[dict[str, Any]]:
         """
-        The rows as dictionaries, with the names of the columns of `table.csv` in `docs/reference/json.md`.
+        The rows as dictionaries. Their keys are the columns of `table.csv`.
         """
     def to_latex(self, /) -> str:
         """
@@ -714,8 +714,8 @@ class Run:
     @property
     def metrics(self, /) -> dict[str, Any]:
         """
-        Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`, `length_m`,
-        `min_clearance_m` and more. It is empty if there was no route.
+        Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`,
+        `length_m`, `min_clearance_m` and more. It is empty if there was no route.
         """
     @property
     def outcome(self, /) -> str:

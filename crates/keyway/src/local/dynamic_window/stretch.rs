@@ -20,8 +20,9 @@ impl Stretch {
     ///
     /// In the time T a curve is nowhere farther from its chord than T² / 8 times the largest
     /// second derivative across the chord. That of a vertex is at most
-    /// dv/dt| + swing |d omega/dt| + (|v| + swing |omega|) |omega|. The centre alone moves along its
-    /// chord except for the angle turned, unless it reverses, so of dv/dt only that part counts.
+    /// `|dv/dt| + swing |d omega/dt| + (|v| + swing |omega|) |omega|`. The centre alone moves
+    /// along its chord except for the angle turned, unless it reverses, so of dv/dt only that part
+    /// counts.
     pub(super) fn new(timing: &Timing, number: usize, candidate: Velocity, swing_m: f64) -> Self {
         if !(number == 0 && timing.has_ramp()) {
             let driven_m = candidate.v.abs() * timing.step_s;
