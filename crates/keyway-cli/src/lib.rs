@@ -52,6 +52,7 @@ pub fn run(argv: &[OsString]) -> u8 {
         Command::List(args) => commands::list::run(&args),
         #[cfg(feature = "ros")]
         Command::Ros { arguments } => commands::ros::run(arguments),
+        Command::Man(args) => commands::man::run(&args),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     match done {

@@ -1,5 +1,5 @@
 //! Times of one scan and of one command: the tracker of movers, the sensed layer beside it, and the
-//! stop rule. `cargo bench -p keyway --bench sense`.
+//! stop rule. `cargo bench -p keyway-sim --bench sense`.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 

@@ -23,7 +23,11 @@ pub mod scene_files;
 pub mod sim;
 pub mod worlds;
 
-/// The library example of the repository's README runs as a test.
+/// The examples of the repository's pages run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-mod readme {}
+mod pages {
+    #[doc = include_str!("../../../README.md")]
+    mod readme {}
+    #[doc = include_str!("../../../docs/rust.md")]
+    mod rust {}
+}

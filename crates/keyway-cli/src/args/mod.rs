@@ -90,6 +90,8 @@ pub(crate) enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Writes manual pages of all commands
+    Man(ManArgs),
     /// Prints shell completions
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -119,6 +121,16 @@ pub(crate) struct DemoArgs {
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway man --out man")]
+pub(crate) struct ManArgs {
+    /// Folder for the pages
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
 }
 
 const PLAN_EXAMPLES: &str = "\

@@ -6,6 +6,7 @@ pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod list;
+pub(crate) mod man;
 pub(crate) mod map;
 pub(crate) mod navigate;
 pub(crate) mod plan;

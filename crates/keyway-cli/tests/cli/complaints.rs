@@ -347,7 +347,7 @@ fn the_page_lists_scenes_and_tests() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         let is_scene = path.extension().is_some_and(|end| end == "toml") && name != "long.toml";
-        assert!(!is_scene || page.contains(&format!("(../scenes/complaints/{name})")), "{name}");
+        assert!(!is_scene || page.contains(&format!("(../../scenes/complaints/{name})")), "{name}");
     }
     let here = include_str!("complaints.rs");
     let rows: Vec<&str> =

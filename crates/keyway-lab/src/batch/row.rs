@@ -63,7 +63,7 @@ pub struct Row {
     pub routes_planned: Option<u32>,
     /// Recoveries of all kinds.
     pub recoveries: Option<u32>,
-    /// Commands that the stop rule refused.
+    /// Commands that the stop rule changed.
     pub unsafe_commands: Option<u32>,
     /// Total variation of the speed \[m/s\].
     pub v_variation_mps: Option<f64>,
@@ -77,7 +77,7 @@ pub struct Row {
     pub path_smoothness_m2: Option<f64>,
     /// Smoothness of the velocity \[m/s²\].
     pub velocity_smoothness_mps2: Option<f64>,
-    /// Time of the fastest route at top speed \[s\].
+    /// `rules.reference_time_s` of the scene \[s\].
     pub reference_time_s: Option<f64>,
     /// Score: success times reference time over time, with the time clamped to two to eight times
     /// the reference; at most 0.5.
@@ -112,7 +112,7 @@ impl Row {
 pub(super) struct World {
     /// Occupied share of the map.
     pub occupied_share: Option<f64>,
-    /// Time of the fastest route at top speed \[s\].
+    /// `rules.reference_time_s` of the scene \[s\].
     pub reference_time_s: Option<f64>,
 }
 

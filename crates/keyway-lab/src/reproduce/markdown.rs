@@ -92,7 +92,7 @@ fn in_short(claims: &[ClaimReport]) -> Vec<Vec<String>> {
             format!("{}: {kept}{}", measure_name(figure.measure), measured(figure))
         });
         let published = figure.map_or(NONE.to_owned(), |figure| published(claim, figure));
-        let id = format!("[{}](papers/{}.md)", claim.id, claim.paper.to_lowercase());
+        let id = format!("[{}](../papers/{}.md)", claim.id, claim.paper.to_lowercase());
         vec![id, claim.statement.to_owned(), published, measured, verdict_with_counts(claim)]
     };
     claims.iter().map(row).collect()
