@@ -2,9 +2,10 @@
 
 use super::Compared;
 use super::figures::{
-    CLEARANCE_M, EXCESS, Figure, LENGTH_M, NON_SMOOTH_TURNS, Summary, TURNING_ANGLE_DEG, TURNS,
+    CLEARANCE_M, EXCESS, EXPANDED, Figure, GENERATED, LENGTH_M, NON_SMOOTH_TURNS, Summary,
+    TURNING_ANGLE_DEG, TURNS,
 };
-use super::row::CompareRow;
+use super::row::{ALL_MAPS, CompareRow};
 use crate::table::{latex_table, number, percent, range, rows};
 use keyway::files::did_you_mean;
 use keyway::search::CornerRule;
@@ -16,10 +17,10 @@ use thiserror::Error;
 struct Column {
     /// Name of the column in a request.
     id: &'static str,
-    /// Header in LaTeX, which has all columns.
+    /// Header in LaTeX.
     name: &'static str,
     /// Header in the terminal, in two lines if it is longer than its numbers; `None` if the
-    /// terminal shows the column only on request.
+    /// column is shown only on request.
     heading: Option<&'static str>,
     cell: Cell,
     is_needed: fn(&[CompareRow]) -> bool,
@@ -42,7 +43,7 @@ const SMOOTHER: Column = always("smoother", "smoother", None, |row| row.smoother
 
 /// Columns of means have the range of most queries; the worst excess, the least clearance and the
 /// median times have none.
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 16] = [
     always(CORNERS, "corners", None, |row| corners(row).to_owned()),
     always("solved", "solved", Some("solved"), |row| format!("{}/{}", row.solved, row.queries)),
     always("missed", "missed", None, |row| row.missed.to_string()),
@@ -69,6 +70,8 @@ const COLUMNS: [Column; 14] = [
         // Shown only if a path falls short of the requested clearance.
         is_needed: |rows| rows.iter().any(|row| row.shortfalls > 0),
     },
+    column("expanded", "expanded", None, Cell::Mean(&EXPANDED, number, [1, 0])),
+    column("generated", "generated", None, Cell::Mean(&GENERATED, number, [1, 0])),
     always(TIMES[0], "plan us", Some("plan\nus"), |row| number(row.median_plan_us, 1)),
     always(TIMES[1], "smooth us", Some("smooth\nus"), |row| number(row.median_smooth_us, 1)),
 ];
@@ -158,10 +161,11 @@ impl ChosenColumns {
         Ok(Self { asked: Some(asked).filter(|all| !all.is_empty()), has_times })
     }
 
-    /// Columns after the names, for all rows.
-    fn of(&self, rows: &[CompareRow], is_usual: fn(&Column) -> bool) -> Vec<&'static Column> {
+    /// Columns after the names, for all rows. Without requested ones, those that fit the width of
+    /// a terminal and of a page.
+    fn of(&self, rows: &[CompareRow]) -> Vec<&'static Column> {
         let is_shown = |column: &&Column| {
-            is_usual(column)
+            column.heading.is_some()
                 && (column.is_needed)(rows)
                 && (self.has_times || !TIMES.contains(&column.id))
         };
@@ -170,12 +174,17 @@ impl ChosenColumns {
 
     /// Header and rows for LaTeX, and the number of text columns, which come first.
     pub fn table(&self, rows: &[CompareRow]) -> (Vec<&'static str>, Vec<Vec<String>>, usize) {
-        let mut columns = vec![&MAP, &PLANNER, &SMOOTHER];
-        columns.extend(self.of(rows, |_| true));
+        let names = [&MAP, &PLANNER, &SMOOTHER];
+        // A page has no room for a column that says the same in every row.
+        let has_maps = rows.iter().any(|row| row.map != rows[0].map);
+        let mut columns = names[usize::from(!has_maps)..].to_vec();
+        let first = columns.len();
+        columns.extend(self.of(rows));
         let cells =
             |row| columns.iter().map(|column| column.with_range(row, [" (", ")"])).collect();
         let lines = rows.iter().map(cells).collect();
-        let words = 3 + columns[3..].iter().take_while(|column| column.id == CORNERS).count();
+        let words =
+            first + columns[first..].iter().take_while(|column| column.id == CORNERS).count();
         (columns.iter().map(|column| column.name).collect(), lines, words)
     }
 
@@ -185,19 +194,29 @@ impl ChosenColumns {
         latex_table(&header, &lines, words)
     }
 
-    /// Returns the table of a map. Without requested columns, it has only those that fit the
-    /// width of a terminal.
+    /// Returns the table of a map.
     pub fn terminal_table(&self, map: &Compared, all: &[CompareRow]) -> String {
+        let own: Vec<CompareRow> = all.iter().filter(|row| row.map == map.name).cloned().collect();
+        format!("{}\n\n{}", title(map, &own), self.of_rows(&own, all))
+    }
+
+    /// Returns the table of all maps together; `None` for a single map.
+    pub fn pooled_table(&self, all: &[CompareRow]) -> Option<String> {
+        let own: Vec<CompareRow> = all.iter().filter(|row| row.is_pooled()).cloned().collect();
+        let CompareRow { queries, .. } = own.first()?;
+        Some(format!("{ALL_MAPS}: {queries} queries\n\n{}", self.of_rows(&own, all)))
+    }
+
+    /// Returns the table of some rows, with the columns for all of them.
+    fn of_rows(&self, own: &[CompareRow], all: &[CompareRow]) -> String {
         let mut columns = vec![&PLANNER, &SMOOTHER];
-        columns.extend(self.of(all, |column| column.heading.is_some()));
+        columns.extend(self.of(all));
         let header: Vec<&str> =
             columns.iter().map(|column| column.heading.unwrap_or(column.name)).collect();
-        let own: Vec<CompareRow> = all.iter().filter(|row| row.map == map.name).cloned().collect();
         let cells = |row: &CompareRow| {
             columns.iter().map(|column| column.with_range(row, ["\n", ""])).collect()
         };
-        let lines = own.iter().map(cells).collect();
-        format!("{}\n\n{}", title(map, &own), rows(&header, lines, 2))
+        rows(&header, own.iter().map(cells).collect(), 2)
     }
 }
 

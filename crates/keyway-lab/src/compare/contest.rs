@@ -58,6 +58,10 @@ pub struct Found {
     pub metrics: PathMetrics,
     /// Length of the shortest line between the same start and goal \[m\].
     pub shortest_m: Option<f64>,
+    /// Nodes that the search expanded.
+    pub expanded: u64,
+    /// Nodes that the search generated.
+    pub generated: u64,
 }
 
 impl Found {
@@ -155,6 +159,8 @@ struct Planned {
     reason: Option<String>,
     times: Option<Times>,
     note: Option<PlanNote>,
+    expanded: u64,
+    generated: u64,
     line: Option<PlannedLine>,
 }
 
@@ -210,7 +216,10 @@ impl Contender {
                 };
                 let reason = result.err().map(|error| why(&error));
                 let note = self.plan.note;
-                self.planned.push(Planned { outcome, reason, times, note, line });
+                let [expanded, generated] =
+                    [self.plan.statistics.expanded(), self.plan.statistics.generated()];
+                let planned = Planned { outcome, reason, times, note, expanded, generated, line };
+                self.planned.push(planned);
             }
             if progress.answered().is_break() {
                 return Err(CompareError::Stopped);
@@ -287,6 +296,8 @@ impl Planned {
             metrics: PathMetrics::of_path(&done.path, map.clearance()),
             done: done.clone(),
             shortest_m,
+            expanded: self.expanded,
+            generated: self.generated,
         });
         let (outcome, reason) = (self.outcome, self.reason.clone());
         Answer { outcome, reason, plan: self.times, note: self.note, found }

@@ -37,9 +37,20 @@ pub(super) const CLEARANCE_M: Figure = Figure {
     worst: Some(("min_clearance_m", |a, b| b.total_cmp(a))),
 };
 
+pub(super) const EXPANDED: Figure = usual("expanded", |found| Some(found.expanded as f64));
+pub(super) const GENERATED: Figure = usual("generated", |found| Some(found.generated as f64));
+
 /// All metrics, in the order of reports.
-const FIGURES: [&Figure; 6] =
-    [&LENGTH_M, &EXCESS, &TURNS, &TURNING_ANGLE_DEG, &NON_SMOOTH_TURNS, &CLEARANCE_M];
+const FIGURES: [&Figure; 8] = [
+    &LENGTH_M,
+    &EXCESS,
+    &TURNS,
+    &TURNING_ANGLE_DEG,
+    &NON_SMOOTH_TURNS,
+    &CLEARANCE_M,
+    &EXPANDED,
+    &GENERATED,
+];
 
 const fn usual(name: &'static str, of: fn(&Found) -> Option<f64>) -> Figure {
     Figure { name, of, worst: None }

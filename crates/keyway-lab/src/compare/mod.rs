@@ -15,6 +15,7 @@ mod left_out;
 mod lowered;
 mod map_names;
 mod pairs;
+mod pooled;
 mod queries;
 mod report;
 mod request;
@@ -194,7 +195,7 @@ impl Comparison {
 impl Compared {
     /// The rows of the table.
     pub fn rows(&self) -> impl Iterator<Item = CompareRow> + '_ {
-        self.contest.entries.iter().map(|entry| row(&self.name, entry, &self.counts))
+        self.contest.entries.iter().map(|entry| row(&self.name, &[(entry, &self.counts)]))
     }
 
     /// Returns the query whose paths differ most in length; `None` if none counts.

@@ -3,6 +3,7 @@
 use super::against_first::{AgainstFirst, against_first};
 use super::contest::{Answer, ContestEntry, Found, Oracle};
 use super::left_out::LeftOut;
+use super::pooled::pooled;
 use super::row::CompareRow;
 use super::unsolved::{Unsolved, unsolved};
 use super::{Compared, Comparison};
@@ -21,7 +22,7 @@ pub const SCHEMA: &str = "keyway.compare/1";
 pub struct CompareReport {
     schema: &'static str,
     version: &'static str,
-    /// A row for each map, planner and smoother.
+    /// A row for each map, planner and smoother, then those over all maps.
     pub rows: Vec<CompareRow>,
     /// Comparison of each row with the first row of its map.
     pub against_first: Vec<AgainstFirst>,
@@ -97,7 +98,7 @@ impl CompareReport {
         Self {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
-            rows: maps.iter().flat_map(Compared::rows).collect(),
+            rows: maps.iter().flat_map(Compared::rows).chain(pooled(maps)).collect(),
             against_first: maps.iter().flat_map(against_first).collect(),
             maps: paths.zip(maps).map(map_part).collect(),
             queries: comparison.queries.source(),
@@ -152,6 +153,8 @@ pub struct QueryRow<'a> {
     non_smooth_turns: Option<usize>,
     min_clearance_m: Option<f64>,
     shortfall_m: Option<f64>,
+    expanded: Option<u64>,
+    generated: Option<u64>,
     plan_us: Option<f64>,
     plan_cpu_us: Option<f64>,
     smooth_us: Option<f64>,
@@ -190,6 +193,8 @@ fn query_row<'a>(map: &'a Compared, entry: &'a ContestEntry, query: usize) -> Qu
         non_smooth_turns: found.map(|found| found.metrics.non_smooth_turns),
         min_clearance_m: found.and_then(|found| found.metrics.min_clearance_m),
         shortfall_m: found.and_then(|found| found.done.shortfall_m),
+        expanded: found.map(|found| found.expanded),
+        generated: found.map(|found| found.generated),
         plan_us: plan.map(|plan| plan.wall_us()),
         plan_cpu_us: plan.and_then(|plan| plan.cpu_us()),
         smooth_us: found.and_then(|found| Some(found.smooth?.wall_us())),

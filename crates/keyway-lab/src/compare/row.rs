@@ -8,6 +8,8 @@ use keyway_sim::metrics::statistics::{Confidence, Rate};
 use keyway_sim::report::PlanOutcome;
 use serde::Serialize;
 
+/// Name in place of a map's in the rows over all maps.
+pub(super) const ALL_MAPS: &str = "all maps";
 /// Lengths that differ by less are equal \[m\].
 pub(super) const SAME_M: f64 = 1e-6;
 
@@ -33,6 +35,13 @@ pub struct CompareRow {
     pub(super) median_smooth_us: Option<f64>,
     pub(super) mean_smooth_cpu_us: Option<f64>,
     pub(super) preparation_ms: Option<f64>,
+}
+
+impl CompareRow {
+    /// True for a row over all maps.
+    pub(super) fn is_pooled(&self) -> bool {
+        self.map == ALL_MAPS
+    }
 }
 
 /// Returns true for each query that is compared: solved by every planner that solved any query.
@@ -61,34 +70,37 @@ pub(super) fn most_different(entries: &[ContestEntry], compared: &[bool]) -> Opt
     counting.rev().max_by(|&a, &b| spread_m(a).total_cmp(&spread_m(b)))
 }
 
-/// Counts over all queries, and means over the compared ones.
-pub(super) fn row(map: &str, entry: &ContestEntry, compared: &[bool]) -> CompareRow {
+/// Counts over all queries, and means over the compared ones, of one planner and smoother on one
+/// map or on several: the answers on each, and whether each query is compared.
+pub(super) fn row(map: &str, parts: &[(&ContestEntry, &[bool])]) -> CompareRow {
+    let entry = parts[0].0;
+    let all = || parts.iter().flat_map(|(entry, _)| &entry.answers);
     // If a planner solved nothing, the others were compared without it.
     let is_found =
         |(answer, is_compared): &(&Answer, &bool)| **is_compared && answer.found.is_some();
-    let compared = entry.answers.iter().zip(compared).filter(is_found);
-    let answers: Vec<&Answer> = compared.map(|(answer, _)| answer).collect();
+    let compared = parts.iter().flat_map(|(entry, compared)| entry.answers.iter().zip(*compared));
+    let answers: Vec<&Answer> = compared.filter(is_found).map(|(answer, _)| answer).collect();
     let found: Vec<&Found> = answers.iter().filter_map(|answer| answer.found.as_ref()).collect();
     let smooth_us = found.iter().filter_map(|found| Some(found.smooth?.wall_us())).collect();
     let plan_us = answers.iter().filter_map(|answer| Some(answer.plan?.wall_us())).collect();
     let plan_cpu_us: Option<Vec<f64>> = answers.iter().map(|a| a.plan?.cpu_us()).collect();
     let smooth_cpu_us: Option<Vec<f64>> = found.iter().map(|f| f.smooth?.cpu_us()).collect();
-    let count = |is: fn(&Answer) -> bool| entry.answers.iter().filter(|one| is(one)).count();
+    let count = |is: fn(&Answer) -> bool| all().filter(|one| is(one)).count();
     let (solved, missed) =
         (count(|one| one.found.is_some()), count(|one| one.outcome == PlanOutcome::Missed));
-    let solved_share = Rate::of(entry.answers.iter().map(|one| one.found.is_some()));
+    let solved_share = Rate::of(all().map(|one| one.found.is_some()));
     let solved_share = solved_share.interval(Confidence::USUAL);
     CompareRow {
         map: map.to_owned(),
         planner: entry.planner,
         smoother: entry.smoother,
         corners: entry.corners,
-        queries: entry.answers.len(),
+        queries: all().count(),
         solved,
         ci_low_solved: solved_share.map(|interval| interval.low),
         ci_high_solved: solved_share.map(|interval| interval.high),
         missed,
-        without_path: entry.answers.len() - solved - missed,
+        without_path: all().count() - solved - missed,
         compared: found.len(),
         figures: Summaries::of(&found),
         shortfalls: found.iter().filter(|found| found.done.shortfall_m.is_some()).count(),
@@ -96,7 +108,11 @@ pub(super) fn row(map: &str, entry: &ContestEntry, compared: &[bool]) -> Compare
         mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
         median_smooth_us: quantile(smooth_us, 0.5),
         mean_smooth_cpu_us: smooth_cpu_us.and_then(|all| mean(&all)),
-        preparation_ms: entry.preparation.map(|times| times.wall_us() / 1e3),
+        // Each map has a preparation of its own.
+        preparation_ms: entry
+            .preparation
+            .filter(|_| parts.len() == 1)
+            .map(|times| times.wall_us() / 1e3),
     }
 }
 
@@ -126,7 +142,14 @@ mod tests {
             min_clearance_m: Some(clearance_m),
         };
         let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
-        let found = Found { smooth: Some(micros(7)), done, metrics, shortest_m: Some(10.0) };
+        let found = Found {
+            smooth: Some(micros(7)),
+            done,
+            metrics,
+            shortest_m: Some(10.0),
+            expanded: 3,
+            generated: 5,
+        };
         let plan = Some(micros(turns as u64));
         Answer { outcome: PlanOutcome::Found, reason: None, plan, note: None, found: Some(found) }
     }
@@ -161,7 +184,7 @@ mod tests {
         let entries = [first, second, unable];
         let compared = compared(&entries);
         assert_eq!(compared, [true, true, false, false]);
-        let row_of = |i: usize| row("m", &entries[i], &compared);
+        let row_of = |i: usize| row("m", &[(&entries[i], &compared[..])]);
         let row = row_of(0);
         assert_eq!((row.queries, row.solved, row.missed), (4, 3, 0));
         assert_eq!((row.without_path, row.compared, row.shortfalls), (1, 2, 2));
@@ -195,6 +218,19 @@ mod tests {
         let none = (Summary::default(), Summary::default(), None);
         let of = |figure: &Figure| row.figures.get(figure);
         assert_eq!((of(&LENGTH_M), of(&CLEARANCE_M), row.median_plan_us), none);
+    }
+
+    #[test]
+    fn a_row_over_all_maps_counts_every_query_once() {
+        let first = entry(vec![found(10.0, 2, 0.5), without(PlanOutcome::NoPath)]);
+        let second = entry(vec![found(13.0, 4, 0.1), found(16.0, 6, 0.3), found(99.0, 9, 0.0)]);
+        let parts = [(&first, &[true, false][..]), (&second, &[true, true, false][..])];
+        let row = row(ALL_MAPS, &parts);
+        assert!(row.is_pooled());
+        assert_eq!((row.queries, row.solved, row.compared, row.without_path), (5, 4, 3, 1));
+        let length = row.figures.get(&LENGTH_M);
+        assert_eq!((length.mean, row.figures.get(&CLEARANCE_M).worst), (Some(13.0), Some(0.1)));
+        assert_eq!((row.median_plan_us, row.preparation_ms), (Some(4.0), None));
     }
 
     #[test]

@@ -88,7 +88,8 @@ fn print_tables(
         let table = comparison.columns().terminal_table(map, &report.rows);
         [Some(table), against_first_note(map, &report.against_first)]
     };
-    let tables: Vec<String> = maps.iter().flat_map(of_map).flatten().collect();
+    let pooled = comparison.columns().pooled_table(&report.rows);
+    let tables: Vec<String> = maps.iter().flat_map(of_map).chain([pooled]).flatten().collect();
     print(&format!("{}\n\n{COMPARE_TERMS}", tables.join("\n\n")))?;
     let elsewhere = "`--format json` and queries.csv of `--out` have them all";
     let unsolved = unsolved_note(maps, comparison.query_file(), elsewhere);
