@@ -65,7 +65,7 @@ test("a drive is that of the program", async () => {
     await inBrowser({}, async (address, context) => {
         const page = await open(context, address);
         await page.getByRole("tab", { name: "Drive" }).click();
-        await page.getByLabel("Delay of the motors [s]").fill("0.1");
+        await page.getByLabel("Actuation delay [s]").fill("0.1");
         await page.getByLabel("Noise of the lidar [m]").fill("0.02");
         await page.getByLabel("Noise of the lidar [m]").blur();
         await page.getByRole("button", { name: "Drive", exact: true }).click();

@@ -22,7 +22,7 @@ test("four searches side by side", async () => {
         await page.getByRole("tab", { name: "Search" }).click();
         await choose(page, "Planner", "astar");
         await choose(page, "Fourth picture", "rrt");
-        await choose(page, "Beside it", "jps");
+        await choose(page, "Second picture", "jps");
         await choose(page, "Third picture", "bidirectional-optimal");
         await status(page, /astar: .*368\.65.*jps: .*368\.65.*bidirectional.*368\.65.*rrt/);
         assert.deepEqual((await row(page, "Expanded so far")).slice(0, 2), ["3584", "7"]);
@@ -219,7 +219,7 @@ test("a claim is shown and measured", async () => {
         assert.deepEqual((await row(page, "astar")).slice(0, 1), ["29.21"]);
         await fill(page, "Maps to measure", "6");
         await status(page, /S0-1 on/);
-        await press(page, "Measure it again");
+        await press(page, "Measure again");
         await status(page, /measured on 6 maps/);
         assert.match(await page.locator("#wide").textContent(), /Verdict: .*Published/);
         await shot(page, "papers");

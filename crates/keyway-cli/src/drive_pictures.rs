@@ -123,7 +123,8 @@ impl<'a> Stage<'a> {
             .map(|&pose| TrajectoryPoint { pose, ..shown.robot[0] })
             .into_iter()
             .collect();
-        let end = Footprints::new(&after, &self.robot.footprint).looking("robot at its end", AFTER);
+        let end = Footprints::new(&after, &self.robot.footprint)
+            .looking("robot after the chosen candidate", AFTER);
         let mut picture = self.picture(&shown);
         if is_seen(self.goal, self.tolerance_m) {
             picture = picture.with(self.goal_layer());
@@ -229,7 +230,7 @@ fn corners(points: impl Iterator<Item = Point>) -> (Point, Point) {
 fn fan_title(moment: &Moment) -> String {
     let candidates = &moment.explanation.candidates;
     if candidates.is_empty() {
-        return format!("{:.1} s: no candidates to choose from", moment.t_s);
+        return format!("{:.1} s: no candidates", moment.t_s);
     }
     let admissible = candidates.iter().filter(|one| one.score().is_some()).count();
     let all = candidates.len();
@@ -280,7 +281,7 @@ fn fan_table(explanation: &Explanation) -> TextTable {
     }
     if !explanation.remedies.is_empty() {
         table = table
-            .row([Cow::Borrowed("Something is in the way of every candidate; tried in turn:")]);
+            .row([Cow::Borrowed("Every candidate is blocked; remedies tried, in this order:")]);
     }
     for remedy in &explanation.remedies {
         table = table.row([Cow::Owned(remedy.to_string())]);

@@ -89,7 +89,7 @@ pub(crate) fn published_stack(name: &str) -> Result<Stack, CliError> {
         let is_published = |name: &&str| Stack::published_by_name(name).is_some();
         let published: Vec<&str> = Stack::NAMES.into_iter().filter(is_published).collect();
         let message = format!(
-            "nobody has published the stack `{name}`; with --as-published it must be one of {}{}",
+            "the stack `{name}` has no published parameters; with --as-published it must be one of {}{}",
             published.join(", "),
             did_you_mean(name, published.iter().copied())
         );
@@ -118,10 +118,8 @@ pub(crate) fn refuse_to_replace_a_source(
     if !sources.iter().any(is_out) {
         return Ok(());
     }
-    let message = format!(
-        "{} is a file that is read here, and would be replaced; choose another name",
-        out.display()
-    );
+    let message =
+        format!("{} is an input file and would be replaced; choose another name", out.display());
     Err(CliError::new(Kind::Output, message).field(field))
 }
 
@@ -133,7 +131,7 @@ pub(crate) fn refuse_unwritable(out: &Path, field: &str) -> Result<(), CliError>
     if let Some(folder) = folder.filter(|folder| !folder.exists()) {
         let (out, folder) = (out.display(), folder.display());
         return Err(blame(format!(
-            "cannot write {out}: there is no folder {folder}; make it first"
+            "cannot write {out}: the folder {folder} does not exist; create it first"
         )));
     }
     check_writable(out).map_err(|error| blame(error.to_string()))
@@ -207,7 +205,7 @@ pub(crate) fn position(
             let what = format!("cell {number} is outside the map of {width} x {height} cells");
             (Kind::Position, what)
         } else {
-            (Kind::Usage, format!("cells are whole numbers, got {number:?}"))
+            (Kind::Usage, format!("the coordinates of cells are whole numbers, got {number:?}"))
         };
         Err(CliError::new(kind, format!("{field}: {what}")).field(field))
     };

@@ -16,7 +16,7 @@ pub(crate) fn prepare(folder: &Path, planned: &[impl AsRef<str>]) -> Result<OutD
 /// Warns that the folder cannot be locked against other programs.
 pub(crate) fn warn_of_others(path: &Path) {
     crate::stdout::warn(format!(
-        "{}: files cannot be locked here; see to it that nobody else writes there",
+        "{}: files cannot be locked here; make sure that no other program writes here",
         path.display()
     ));
 }

@@ -21,7 +21,7 @@ const GRID_PX: f64 = 0.8;
 /// Ratio to the reach of all other rows from which on a bar is broken: they would have less than
 /// a twenty-fifth of the axis.
 const DWARFING: f64 = 25.0;
-const BROKEN: &str = "What has a break goes on beyond the axis; its numbers stand beside it.";
+const BROKEN: &str = "A bar with a break continues beyond the axis; its values are beside it.";
 /// Light enough for the marks over the bar, and for grey print.
 const BAR: Rgb = Rgb(0xcf, 0xdf, 0xee);
 

@@ -27,7 +27,7 @@ pub enum DrawError {
     #[error("picture is not valid SVG: {0}")]
     Svg(String),
     /// A side would have no pixel, or there is not enough memory for the pixels.
-    #[error("cannot make a picture of {width} x {height} pixels")]
+    #[error("cannot render a picture of {width} x {height} pixels")]
     Size {
         /// Requested width \[px\].
         width: u32,

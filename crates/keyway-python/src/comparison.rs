@@ -154,7 +154,7 @@ fn compared(grid: OccupancyGrid, request: CompareRequest, watch: &Watch) -> PyRe
     let map = checked.queried(0, grid).map_err(bad_value)?;
     let map = checked.on(map, watch).map_err(|error| match error {
         CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {
-            bad_value(format!("{error}; planners=[\"all\"] leaves such planners out"))
+            bad_value(format!("{error}; planners=[\"all\"] omits such planners"))
         }
         error => bad_value(error),
     })?;

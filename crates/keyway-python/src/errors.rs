@@ -32,7 +32,7 @@ pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
 pub(crate) fn check_memory(bytes: u64) -> PyResult<()> {
     let missing = || {
         let gib = bytes as f64 / (1_u64 << 30) as f64;
-        PyMemoryError::new_err(format!("{gib:.1} GiB of memory are needed for a map of this size"))
+        PyMemoryError::new_err(format!("a map of this size needs {gib:.1} GiB of memory"))
     };
     let bytes = usize::try_from(bytes).map_err(|_| missing())?;
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| missing())

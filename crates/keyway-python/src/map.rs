@@ -142,7 +142,7 @@ impl Map {
     /// ([[False, True, False, False]], [[False, False, True, True]])
     /// >>> keyway.Map.from_array(np.eye(2, dtype=np.int8), resolution=0.5)
     /// Traceback (most recent call last):
-    /// ValueError: the largest occupancy is 1 of 100, so that every cell would be free: a mask of what is occupied must be of type bool
+    /// ValueError: the largest occupancy is 1 of 100, so every cell would be free; pass an occupancy mask as type bool
     #[staticmethod]
     #[pyo3(signature = (occupied, resolution, origin=None, occupied_threshold=65, free_threshold=25))]
     fn from_array(

@@ -64,12 +64,12 @@ impl Points {
             (Some((from_rad, to_rad)), Some((range_min_m, range_max_m))) => {
                 Some(FieldOfView { from_rad, to_rad, range_min_m, range_max_m })
             }
-            _ => return Err(bad_value("bearings and ranges: expected both of them, or none")),
+            _ => return Err(bad_value("bearings and ranges: expected both or neither")),
         };
         if clears.is_some_and(|view| !view.is_usable()) {
             return Err(bad_value(
-                "bearings and ranges: expected those of the right and the left edge, which is at most a turn beyond it, and the \
-                 nearest and the farthest, all finite",
+                "bearings and ranges: expected the bearings of the right and the left edge, at most one turn apart, and the \
+                 smallest and the largest range, all finite",
             ));
         }
         let positions = positions.0.iter().map(|&[x, y]| Point::new(x, y)).collect();

@@ -144,8 +144,8 @@ impl<'py> FromPyObject<'_, 'py> for LaserScan {
         let expected = |_: PyErr| {
             let got = described(&object);
             PyTypeError::new_err(format!(
-                "expected a keyway.Scan, or a message such as sensor_msgs/LaserScan, got {got}: ranges alone do not say where \
-                 their beams look"
+                "expected a keyway.Scan, or a message such as sensor_msgs/LaserScan, got {got}: ranges alone do not contain \
+                 the bearings of the beams"
             ))
         };
         let ranges: Ranges<'_> = object.getattr("ranges").map_err(expected)?.extract()?;

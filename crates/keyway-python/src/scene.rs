@@ -118,7 +118,7 @@ impl Scene {
             ("goal", place(&goal, "goal")?),
         ] {
             if table.insert(name.to_owned(), value).is_some() {
-                return Err(bad_value(format!("`{name}` cannot be given beside a map in memory")));
+                return Err(bad_value(format!("`{name}` cannot be combined with a map in memory")));
             }
         }
         let text = toml::to_string(&table).map_err(bad_value)?;

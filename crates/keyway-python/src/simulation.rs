@@ -181,7 +181,7 @@ impl Simulation {
 
     fn __repr__(&self) -> String {
         let (x, y, _) = self.pose();
-        let outcome = self.outcome().unwrap_or("under way");
+        let outcome = self.outcome().unwrap_or("running");
         format!("<keyway.Simulation {outcome} at ({x:.3}, {y:.3})>")
     }
 }

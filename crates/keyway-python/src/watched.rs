@@ -78,7 +78,7 @@ impl Watch {
                 }
                 // The work has panicked, and its thread has printed the message.
                 Err(RecvTimeoutError::Disconnected) => {
-                    return Err(PyRuntimeError::new_err("the work has ended without a result"));
+                    return Err(PyRuntimeError::new_err("the work ended without a result"));
                 }
             }
         }

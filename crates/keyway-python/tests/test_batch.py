@@ -117,12 +117,12 @@ def test_names_of_files_stay_as_they_are(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match="cannot read .*a--seeds-b.toml: "):
         keyway.batch([tmp_path / "a--seeds-b.toml"], tmp_path / "out")
     for wrong in ("jps", 3, [3]):
-        with pytest.raises(TypeError, match="expected a list of texts, got "):
+        with pytest.raises(TypeError, match="expected a list of strings, got "):
             keyway.compare(keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0), planners=wrong)  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:
-    with pytest.raises(ValueError, match="planners: jps is named twice"):
+    with pytest.raises(ValueError, match="planners: jps is given twice"):
         keyway.compare(rooms, planners=["jps", "jps"])
     with pytest.raises(ValueError, match="no_planner|there is no field"):
         keyway.compare(rooms, parameters={"no_planner": {"a": 1}})

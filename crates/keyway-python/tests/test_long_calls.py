@@ -132,7 +132,7 @@ def test_a_batch_that_is_stopped_has_ended(tmp_path: pathlib.Path) -> None:
 def test_what_is_usually_a_mistake_is_a_warning(tmp_path: pathlib.Path, capfd: pytest.CaptureFixture[str]) -> None:
     keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=1.0).write(tmp_path / "map.map")
     (tmp_path / "scene.toml").write_text('version = 2\nmap = "map.map"\nstart = [5.5, 5.5]\ngoal = [6.5, 6.5]\n')
-    with pytest.warns(UserWarning, match="scene: nothing in it is random; every seed is the same run"):
+    with pytest.warns(UserWarning, match="scene: nothing in the scene is random, so every seed gives the same run"):
         keyway.batch([tmp_path / "scene.toml"], tmp_path / "out", seeds=2)
     assert capfd.readouterr().err == ""
 

@@ -86,7 +86,7 @@ def test_files_are_read_and_written(house: keyway.Map, tmp_path: pathlib.Path) -
     (tmp_path / "folder.yaml").mkdir()
     with pytest.raises(OSError, match="it is a folder"):
         keyway.Map.read(tmp_path / "folder.yaml")
-    with pytest.raises(ValueError, match="expected no placement"):
+    with pytest.raises(ValueError, match="already contains the map's resolution"):
         keyway.Map.read(SCENES / "small_house.yaml", resolution=0.1)
     rooms = keyway.Map.read(SCENES / "rooms.map", resolution=0.5, origin=(1, 2))
     assert (rooms.resolution, rooms.origin) == (0.5, (1.0, 2.0, 0.0))

@@ -85,7 +85,7 @@ def test_goals_come_and_go() -> None:
 
 def test_a_goal_needs_a_place() -> None:
     navigator = keyway.Navigator(keyway.Map.from_array(wall(4), resolution=0.1))
-    with pytest.raises(ValueError, match="where the robot is is unknown") as refused:
+    with pytest.raises(ValueError, match="the pose of the robot is unknown") as refused:
         navigator.set_goal((2, 2))
     assert refused.value.kind == 210  # type: ignore[attr-defined]
     step = navigator.step()
@@ -325,9 +325,9 @@ def test_points_mark_and_their_sensor_clears() -> None:
     ("arguments", "message"),
     [
         ({"sensor": 8}, "sensor: expected a number from 0 to 7, got 8"),
-        ({"bearings": (0.0, 1.0)}, "expected both of them, or none"),
+        ({"bearings": (0.0, 1.0)}, "expected both or neither"),
         ({"bearings": (1.0, 0.0), "ranges": (0.1, 2.0)}, "the right and the left edge"),
-        ({"bearings": (0.0, 1.0), "ranges": (2.0, 1.0)}, "the nearest and the farthest"),
+        ({"bearings": (0.0, 1.0), "ranges": (2.0, 1.0)}, "the smallest and the largest range"),
         ({"mount": (0.0, math.nan, 0.0)}, "mount: expected three finite numbers"),
         ({"mount": (0.0, 1.0)}, "mount: expected \\(x, y, theta\\), got 2 numbers"),
     ],

@@ -196,7 +196,7 @@ def test_why_there_is_no_plan() -> None:
     grid = keyway.Map.from_array(occupied, resolution=0.1)
     ends = (0.5, 0.5), (3.5, 0.5)
     assert keyway.plan(grid, *ends, radius=0.1).expanded > 0
-    with pytest.raises(keyway.NoPath, match="for a radius of 0.3 m; the largest radius with one is 0.15 m") as raised:
+    with pytest.raises(keyway.NoPath, match="for a radius of 0.3 m; the largest feasible radius is 0.15 m") as raised:
         keyway.plan(grid, *ends, radius=0.3)
     assert isinstance(raised.value, keyway.KeywayError)
     with pytest.raises(keyway.NoRoom, match=r"start \(2.050, 0.500\), cell \(20, 5\), is inside an obstacle; the nearest free position is \(1.950, 0.550\)"):

@@ -7,9 +7,9 @@ from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 
 ARGUMENTS = {
-    "program": ("keyway-ros", "the program"),
-    "robot": ("", "name of a bundled robot, or its file"),
-    "params_file": ("", "file of parameters, of this node or of Nav2"),
+    "program": ("keyway-ros", "path of the program"),
+    "robot": ("", "name of a bundled robot, or a robot file"),
+    "params_file": ("", "parameter file, of this node or of Nav2"),
     "namespace": ("", "namespace, with its slash"),
     "use_sim_time": ("false", "take the time from /clock"),
 }

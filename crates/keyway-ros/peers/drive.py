@@ -231,8 +231,8 @@ class Drive(Checks):
         # Of another kind, and with less than the node asks for.
         senders = [self.robot.create_publisher(Twist, "speed_limit", 1), self.robot.create_publisher(PoseStamped, "goal_pose", qos_profile_sensor_data)]
         faults = [
-            "/goal_pose: another node sends with less reliability than the receiver asks for",
-            "/speed_limit: another node sends geometry_msgs/msg/Twist, and this one takes nav2_msgs/msg/SpeedLimit",
+            "/goal_pose: another node sends with less reliability than the receiver requests",
+            "/speed_limit: another node sends geometry_msgs/msg/Twist, but this node expects nav2_msgs/msg/SpeedLimit",
         ]
         shown = lambda: [pair.value for pair in told["keyway: topics"].values] if told else None
         assert wait(lambda: shown() == faults, 10), told

@@ -17,31 +17,31 @@ pub enum StartError {
     #[error("`{0}` needs a value after it")]
     ArgumentWithoutValue(String),
     /// A value that is not of the form `a:=b`.
-    #[error("`{0}` is no rule of the form `name:=value`")]
+    #[error("`{0}` is not a rule of the form `name:=value`")]
     NoRule(String),
     /// An invalid namespace.
     #[error(
-        "`{0}` is no namespace: it is `/`, or names with a slash before each, such as `/robot1/base`; names are letters, digits and \
-         underscores, and begin with no digit"
+        "`{0}` is not a namespace; expected `/`, or names with a slash before each, such as `/robot1/base`; names have letters, digits \
+         and underscores, and do not begin with a digit"
     )]
     Namespace(String),
     /// An invalid node name.
     #[error(
-        "`{0}` is no name of a node: it is letters, digits and underscores, and begins with no digit; \
-         `__ns` gives a namespace"
+        "`{0}` is not the name of a node; names have letters, digits and underscores, and do not begin \
+         with a digit; a namespace is set with `__ns`"
     )]
     Node(String),
     /// An invalid name of a topic, a service or an action.
     #[error(
-        "`{0}` is no name of a topic: it is names with a slash between them, such as `front/scan`, perhaps \
-         after `/` or `~/`; names are letters, digits and underscores, and begin with no digit"
+        "`{0}` is not the name of a topic; expected names with slashes between them, such as `front/scan`, \
+         optionally after `/` or `~/`; names have letters, digits and underscores, and do not begin with a digit"
     )]
     Topic(String),
     /// The help, or the version, cannot be printed.
     #[error("cannot print: {0}")]
     Output(String),
     /// An environment variable with an invalid value.
-    #[error("the variable {name} of the environment is `{value}`, and must be {expected}")]
+    #[error("the environment variable {name} must be {expected}, got `{value}`")]
     Variable {
         /// Its name.
         name: &'static str,

@@ -71,7 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = String>) -> Result<(), StartError
         // Under `nohup` the end of the terminal is ignored.
         if !is_ignored(signal) {
             signal_hook::flag::register(signal, Arc::clone(&is_over)).map_err(|error| {
-                StartError::Network { what: "listen to signals".to_owned(), why: error.to_string() }
+                StartError::Network { what: "handle signals".to_owned(), why: error.to_string() }
             })?;
         }
     }
@@ -116,11 +116,11 @@ fn variable(name: &str) -> Option<String> {
 fn help() -> String {
     let [parameters, of_simulator] = settings::help();
     format!(
-        "Keyway as a node of ROS 2: drives a robot to goals, by the names that Nav2 gives to topics and actions\n\n\
+        "Keyway as a ROS 2 node: drives a robot to goals, with the topics and actions of Nav2\n\n\
          Usage: keyway-ros --ros-args -p robot:=NAME|FILE [ARGUMENTS OF ROS]\n       \
          keyway-ros sim SCENE.toml [--ros-args ARGUMENTS OF ROS]: a robot in a simulated world\n\n\
          Arguments of ROS, after --ros-args:\n  \
-         -r, --remap FROM:=TO    another name; __node and __ns for those of the node\n  \
+         -r, --remap FROM:=TO    rename a topic or an action; __node and __ns set the node's name and namespace\n  \
          -p, --param NAME:=VALUE a parameter\n  \
          --params-file FILE      parameters from a file (YAML)\n\n\
          Parameters, and their defaults:\n{parameters}\n\n\

@@ -175,7 +175,7 @@ impl Simulator {
             self.wire.misfits();
         }
         if matches!(outcome, Some(Outcome::Collided { .. })) {
-            self.wire.say("the robot touched something; it is put back to its start");
+            self.wire.say("the robot had a contact; it is reset to its start");
             self.run = stepper(&self.episode).map_err(fault)?;
             // Time continues.
             self.began_s += cycle_s * self.cycles as f64 - self.run.told().stamp_s;

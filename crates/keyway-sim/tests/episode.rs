@@ -143,7 +143,7 @@ fn no_route_is_a_report() {
     );
     assert_eq!((counts.started, counts.ended), (0, 0));
     assert_eq!(report.reason, counts.no_route.map(|why| why.to_string()));
-    assert!(report.reason.unwrap().contains("different parts of the map"));
+    assert!(report.reason.unwrap().contains("separate parts of the map"));
     assert!(report.run.is_none() && report.trajectory.is_none());
 }
 

@@ -208,9 +208,9 @@ fn says_that_something_stands_on_the_goal() {
         _ => None,
     };
     let text = steps.iter().find_map(no_route).unwrap();
-    let expected = "goal (2, 1) leaves no room for a radius of 0.18 m: ";
+    let expected = "goal (2, 1) has too little clearance for a radius of 0.18 m: ";
     assert!(text.starts_with(expected), "{text}");
-    assert!(text.contains("nearest position with room is ("), "{text}");
+    assert!(text.contains("nearest position with enough clearance is ("), "{text}");
 }
 
 /// If the guide required less clearance than the robot needs to turn, it would lead the robot
@@ -297,7 +297,7 @@ fn stops_when_it_cannot_know_where_it_is() {
     assert_eq!(why, Blocked::BadInput("velocity.v"));
     assert_eq!(
         why.to_string(),
-        "velocity.v cannot be true: it is not finite, or far beyond the robot's limits"
+        "velocity.v is implausible: not finite, or far beyond the robot's limits"
     );
     let nonsense = Scan {
         angle_min_rad: f64::NAN,

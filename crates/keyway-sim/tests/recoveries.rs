@@ -93,7 +93,7 @@ fn where_both_corridors_are_closed_the_run_ends_soon_and_says_why() {
     assert_eq!(report.outcome, EpisodeOutcome::Stuck);
     assert!(clearance_m(&report) > 0.0);
     let reason = report.reason.as_ref().unwrap();
-    assert!(reason.contains("what the robot has seen leaves no path to the goal"), "{reason}");
+    assert!(reason.contains("with the sensed obstacles, no path to the goal exists"), "{reason}");
     // Twice through a corridor of 6 m at 0.5 m/s, plus 20 s without progress.
     let time_s = report.run.as_ref().unwrap().time_s;
     assert!(time_s < 80.0, "{time_s}");
@@ -323,7 +323,7 @@ fn a_goal_without_room_for_its_heading_is_not_reached() {
     let report = run_episode(&Episode { hidden_cells, ..facing(episode, start) }).unwrap().first();
     assert_eq!(report.outcome, EpisodeOutcome::Stuck, "{:?}", end(&report));
     let reason = report.reason.unwrap();
-    assert!(reason.contains("no room at the goal to turn"), "{reason}");
+    assert!(reason.contains("no space at the goal to turn"), "{reason}");
 }
 
 /// If the footprint does not fit on the map with the heading at the goal, the goal is refused.
@@ -343,7 +343,7 @@ fn a_goal_at_whose_heading_the_footprint_does_not_fit_is_refused() {
     let text = refused.to_string();
     assert!(text.starts_with("at the goal (0.35, 0.5) the robot ("), "{text}");
     assert!(
-        text.contains("does not fit with a yaw of 0 deg; there it fits with one of -"),
+        text.contains("does not fit with a yaw of 0 deg; it fits there with a yaw of -"),
         "{text}"
     );
     // The reported range fits, and headings beyond it do not.
@@ -376,7 +376,7 @@ fn way_points_are_passed_in_their_order() {
     let inside = across(vec![]).with_each_robot(|robot| robot.via = inside.clone());
     let error = run_episode(&inside).unwrap_err();
     let text = error.to_string();
-    assert!(text.starts_with("way-point 2: goal (5, 2) leaves no room"), "{text}");
+    assert!(text.starts_with("way-point 2: goal (5, 2) has too little clearance"), "{text}");
     let keyway_sim::episode::RunError::Navigate(error) = error.why else { panic!("{text}") };
     assert!(matches!(error, NavigateError::WayPoint { number: 2, .. }));
 }

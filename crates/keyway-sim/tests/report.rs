@@ -59,7 +59,7 @@ fn no_path_says_what_separates_the_ends() {
     let through_unknown = answer(&[Point::new(5.5, 0.5)]).unwrap();
     assert_eq!((through_unknown.plan.outcome, through_unknown.route), (PlanOutcome::NoPath, None));
     let why = through_unknown.plan.why.unwrap();
-    assert!(why.contains("different parts of the map") && why.contains("unknown space"), "{why}");
+    assert!(why.contains("separate parts of the map") && why.contains("unknown space"), "{why}");
     let closed = answer(&[Point::new(7.5, 1.5)]).unwrap();
     let Some(RouteFailure::Separated(why)) = closed.failure else { panic!("no separation") };
     assert!(!why.is_joined_through_unknown);

@@ -177,7 +177,7 @@ fn a_robot_drives_with_what_is_left_of_its_sensors() {
     assert_eq!(without(&[1]).outcome, EpisodeOutcome::Reached);
     let blind = without(&[0, 1]);
     assert_eq!(blind.outcome, EpisodeOutcome::Stuck);
-    assert!(blind.reason.unwrap().contains("no beam of a sensor has said anything yet"));
+    assert!(blind.reason.unwrap().contains("no sensor has had a valid beam yet"));
     assert_eq!(blind.run.unwrap().length_m, 0.0);
 }
 

@@ -246,8 +246,8 @@ fn messages_that_help() {
             "ROS map",
             "image",
             "---\nimage: a\n---\nimage",
-            "line 4, column 1: a second document begins here, expected one; remove the line `---` and what \
-             is not the map's",
+            "line 4, column 1: a second document begins here, expected one; remove the line `---` and \
+             everything that does not belong to the map",
         ),
         (
             "ROS map",

@@ -81,7 +81,7 @@ pub(crate) struct Opened {
 impl Opened {
     /// Error of a question about a map if none is open.
     pub(crate) fn none() -> PageError {
-        PageError::new(Kind::Usage, "no map is open, expected `open_map` before").field("ask")
+        PageError::new(Kind::Usage, "no map is open; call `open_map` first").field("ask")
     }
 }
 

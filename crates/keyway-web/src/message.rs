@@ -25,7 +25,7 @@ pub struct MessageError {
 
 impl fmt::Display for MessageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the message is cut off, or no UTF-8 text, at byte {}", self.at)
+        write!(f, "the message is truncated, or not UTF-8, at byte {}", self.at)
     }
 }
 

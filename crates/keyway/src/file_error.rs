@@ -27,7 +27,7 @@ pub enum ReadError {
     },
     /// More than such a file can sensibly hold, or an endless device.
     #[error(
-        "cannot read {}: it holds more than {}, the most that is read here",
+        "cannot read {}: it is larger than the limit of {}",
         path.display(),
         size_text(*limit_bytes)
     )]
@@ -67,7 +67,7 @@ pub fn system_error_in_words(error: &io::Error) -> String {
         ErrorKind::StorageFull => "the disk is full",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         ErrorKind::OutOfMemory => "there is not enough memory",
-        ErrorKind::InvalidFilename => "the name is too long, or cannot be that of a file",
+        ErrorKind::InvalidFilename => "the name is too long, or not a valid file name",
         _ => {
             let text = error.to_string();
             return text.split(" (os error").next().unwrap_or(&text).to_lowercase();
@@ -105,7 +105,7 @@ mod tests {
         let name = Path::new("a.toml");
         assert!(check_length(name, &[7; 1024], 1024).is_ok());
         let text = check_length(name, &[7; 1025], 1024).unwrap_err().to_string();
-        let expected = "cannot read a.toml: it holds more than 1 KiB, the most that is read here";
+        let expected = "cannot read a.toml: it is larger than the limit of 1 KiB";
         assert_eq!(text, expected);
     }
 }

@@ -26,7 +26,7 @@ fn starts_and_goals_that_are_no_places() {
     let start = ask(nowhere, GOAL);
     assert!(matches!(start, NavigateError::NotFinite { end: PathEnd::Start, .. }), "{start}");
     let text = start.to_string();
-    assert!(text.starts_with("start (NaN, 1) is no place on a map: "), "{text}");
+    assert!(text.starts_with("start (NaN, 1) is not a valid position: "), "{text}");
     let goal = ask(START, nowhere);
     assert!(matches!(goal, NavigateError::NotFinite { end: PathEnd::Goal, .. }), "{goal}");
     // The wall ends at 0.5 m: the robot of 0.18 m touches it.
@@ -52,7 +52,7 @@ fn a_stack_must_leave_room_for_its_robot() {
     let error = stack.fit(&robot).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "map.clearance_m must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, \
+        "map.clearance_m must be at least 0.18, the inscribed radius of the robot (radius 0.18 m): a route must leave space for it, \
          got 0.1"
     );
     let mut tight = Stack::key_point_fusion(&robot);
@@ -73,11 +73,17 @@ fn refuses_what_cannot_be_driven() {
     let nearest = nearest.unwrap();
     assert!(nearest.distance(Point::new(0.75, 1.0)) < 0.15, "{nearest:?}");
     let text = in_wall.to_string();
-    assert!(text.contains(": it is inside an obstacle; the nearest position with room"), "{text}");
+    assert!(
+        text.contains(": it is inside an obstacle; the nearest position with enough clearance"),
+        "{text}"
+    );
     let solid = blocks(&["###", "###"]);
     let nowhere = bound_for(&solid, &stack.fit(&robot).unwrap(), Point::new(0.5, 0.5), GOAL);
     let text = nowhere.err().unwrap().to_string();
-    assert!(text.ends_with("; no other place on this map has room either"), "{text}");
+    assert!(
+        text.ends_with("; no other position on this map has enough clearance either"),
+        "{text}"
+    );
     // Beside a wall, nearer than the radius.
     let tight = ask(START, Point::new(6.5, 0.6));
     assert!(matches!(tight, NavigateError::NoRoom { end: PathEnd::Goal, .. }));
@@ -97,7 +103,7 @@ fn refuses_what_cannot_be_driven() {
     assert!((widest_m - 0.45).abs() < 1e-9, "an even number of cells has none in its middle");
     let statistics = keyway::search::SearchStatistics::default();
     let on_the_way = Blocked::NoRoute(PlanError::NoPath { statistics }.into()).to_string();
-    assert_eq!(on_the_way, "what the robot has seen leaves no path to the goal");
+    assert_eq!(on_the_way, "with the sensed obstacles, no path to the goal exists");
 }
 
 /// For every invalid value, the error gives its whole path in the stack.
@@ -126,7 +132,7 @@ fn errors_name_the_whole_path_of_a_field() {
         (
             "map.clearance_m",
             json!(-1.0),
-            "must be at least 0.18, the radius of the robot (radius 0.18 m): a route must leave room for it, got -1",
+            "must be at least 0.18, the inscribed radius of the robot (radius 0.18 m): a route must leave space for it, got -1",
         ),
         ("map.free_ends_m", json!(0.5), "got 0.5"),
         (
@@ -144,7 +150,7 @@ fn errors_name_the_whole_path_of_a_field() {
         (
             "local.window.horizon_s",
             json!(0.2),
-            "must be at least 1.1, for a cycle and the way to stop, got 0.2",
+            "must be at least 1.1, for a cycle and the time to stop, got 0.2",
         ),
         (
             "local.weights.heading",

@@ -221,8 +221,8 @@ fn prepared_maps() {
     let other = SearchMap::new(&OccupancyGrid::from_ascii(&["..."]), LayerConfig::default());
     assert_eq!(
         text(Prepared::from_bytes(&bytes, &other.unwrap())),
-        "the preparation belongs to another map, or to another clearance or treatment of unknown \
-         cells; prepare this map in this way"
+        "the preparation was made for another map, clearance or treatment of unknown cells; \
+         prepare this map with these settings"
     );
 }
 
@@ -231,7 +231,7 @@ fn prepared_maps() {
 fn limits() {
     let (name, robot) = (Path::new("big.toml"), Robot::small());
     let mut content = b" ".repeat(MAX_TOML_BYTES as usize + 1);
-    let expected = "cannot read big.toml: it holds more than 16 MiB, the most that is read here";
+    let expected = "cannot read big.toml: it is larger than the limit of 16 MiB";
     assert_eq!(text(robot_from_bytes(name, &content)), expected);
     assert_eq!(text(stack_from_bytes(name, &content, &robot)), expected);
     assert_eq!(text(parameters_from_bytes(name, &content)), expected);
@@ -244,7 +244,7 @@ fn limits() {
     yaml.push('#');
     assert_eq!(
         text(read(OFFICE, &yaml)),
-        "cannot read maps/office.yaml: it holds more than 1 MiB, the most that is read here"
+        "cannot read maps/office.yaml: it is larger than the limit of 1 MiB"
     );
 
     let reader = MapReader { max_cells: 5, ..MapReader::default() };
@@ -255,8 +255,8 @@ fn limits() {
     ] {
         let error = reader.from_bytes(Path::new(name), content, image).unwrap_err();
         assert_eq!(error.too_many_cells().map(TooManyCells::needed), Some(6));
-        let expected = "a map of 3 x 2 cells is larger than the limit of 5 cells; if it is meant to be \
-                        so large, raise the limit";
+        let expected = "a map of 3 x 2 cells is larger than the limit of 5 cells; if this size is \
+                        intended, raise the limit";
         assert_eq!(error.to_string(), format!("{blamed}: {expected}"));
     }
 }

@@ -142,7 +142,7 @@ fn errors_name_the_cell_and_the_nearest_free_one() {
     let free = Cell::new(0, 0);
     assert_eq!(
         ask(free, Cell::new(2, 0)),
-        "goal (2, 0) is inside an obstacle; nearest free cell is (1, 0)"
+        "goal (2, 0) is inside an obstacle; the nearest free cell is (1, 0)"
     );
     assert_eq!(ask(Cell::new(-1, 0), free), "start (-1, 0) is outside the map of 3 x 1 cells");
 }

@@ -47,14 +47,14 @@ impl BatchCli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum BatchCommand {
-    /// Merges results computed elsewhere, such as the parts of one batch (`--shard`)
+    /// Merges result folders, such as those of the parts of one batch (`--shard`)
     Merge(MergeArgs),
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The parts of a batch must all be there; other batches follow each other in the order in which they are given. The scenes are not
-needed, and nothing is driven.
+All parts of a batch must be given. The results of several batches are concatenated in the given order. Scenes are not needed,
+and no run is repeated.
 
 Examples:
   keyway batch merge part-1 part-2 --out merged")]
@@ -74,20 +74,20 @@ pub(crate) struct BatchArgs {
     /// Scene files, or folders with scene files in them or in their subfolders
     #[arg(value_name = "SCENE.toml|DIR", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Stacks to drive each scene with, for all its robots (see `keyway list`), or stack files;
-    /// or `all` [default: that of the scene]
+    /// Stacks (see `keyway list`) or stack files to drive each scene with, for all its robots; or
+    /// `all` [default: that of the scene]
     #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
-    /// Robot to drive each scene with, in place of all its robots (see `keyway list`), or a robot
-    /// file [default: that of the scene]
+    /// Robot (see `keyway list`) or robot file that replaces all robots of each scene [default:
+    /// those of the scene]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// Change one value of all robots, such as `robot.cycle_s=0.2`, or one parameter of all
     /// stacks, such as `controller.blocked_s=5`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
-    /// Issue only commands after which the robot can still stop before a contact, overriding its
-    /// stack; in all scenes, even without `safe = true`
+    /// Issue only commands after which the robot can still stop before a contact, in all scenes
+    /// and whatever the stack says (`controller.safe`)
     #[arg(long)]
     pub(crate) safe: bool,
     /// Disturbances of actuation, sensing and localisation: a TOML file with the fields of
@@ -98,12 +98,12 @@ pub(crate) struct BatchArgs {
     /// scene says, or truth]
     #[arg(long, value_enum, value_name = "POSE")]
     pub(crate) reached_by: Option<ReachedByArg>,
-    /// Number of seeds for each scene: its own and those that follow it
+    /// Number of seeds for each scene, counted up from its own
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, LEAST_SEEDS, MOST_SEEDS>)]
     pub(crate) seeds: u64,
-    /// Number of parallel runs [default: as many as there are processors]
+    /// Number of parallel runs [default: one per processor]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
     pub(crate) jobs: Option<usize>,
@@ -113,7 +113,7 @@ pub(crate) struct BatchArgs {
     /// Compute only the I-th of N parts of the runs; `keyway batch merge` merges the parts
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
-    /// Runs to store a full record of, for `keyway replay`, in the folder `records` of --out
+    /// Runs to record in full, for `keyway replay`, in the folder `records` of --out
     #[arg(long, value_enum, default_value_t)]
     pub(crate) keep: Keep,
     /// Maximum number of cells of a map; larger maps are refused before memory is allocated
@@ -142,9 +142,7 @@ pub(crate) enum SceneCommand {
     /// Generates a scene for each BARN world: 10 m among cylinders that are not on the map
     Barn(BarnArgs),
     // This help text is an attribute: as a doc comment, the name would need backticks.
-    #[command(
-        about = "Makes a scene of each world of DynaBARN: a course of 20 m among cylinders that move"
-    )]
+    #[command(about = "Generates a scene for each DynaBARN world: 20 m among moving cylinders")]
     Dynabarn(DynabarnArgs),
     /// Generates a scene for each row of a table of starts and goals, with random obstacles near
     /// the path
@@ -175,8 +173,8 @@ pub(crate) struct BarnArgs {
     /// Optimal times: CSV with the columns `world` and `optimal_time_s`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) summary: Option<PathBuf>,
-    /// Put the cylinders on the map; the obstacles of the world are then exactly the 5 cm cells
-    /// whose centres lie in a cylinder
+    /// Put the cylinders on the map; the obstacles are then exactly the 5 cm cells whose centres
+    /// lie in a cylinder
     #[arg(long)]
     pub(crate) known: bool,
     /// Folder for the scenes
@@ -195,7 +193,7 @@ pub(crate) struct PapersArgs {
     /// Reconstructions, such as you2021 [default: all of them]
     #[arg(value_name = "NAME")]
     pub(crate) names: Vec<String>,
-    /// Number of scenes of each: the first maps that fit, by their seeds from 1 on
+    /// Number of scenes of each reconstruction: the first maps that fit, with seeds from 1
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 30, value_parser = whole::<usize, 1, 1000>)]
     pub(crate) count: usize,
@@ -216,7 +214,7 @@ pub(crate) struct NarrowArgs {
     /// Kinds: tunnel, door, bay, corner, lane, room, wall [default: all of them]
     #[arg(value_name = "KIND")]
     pub(crate) names: Vec<String>,
-    /// Seed of the first scene of each kind; the others have the seeds that follow
+    /// Seed of the first scene of each kind; the others have the following seeds
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Number of scenes of each kind
@@ -268,8 +266,8 @@ pub(crate) struct PairsArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) unknown: u32,
-    /// Number of obstacles that move to and fro across the path, of 0.2 to 0.35 m radius at 0.3
-    /// to 1 m/s, different for each seed
+    /// Number of moving obstacles that cross the path back and forth, of 0.2 to 0.35 m radius, at
+    /// 0.3 to 1 m/s, different for each seed
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) moving: u32,

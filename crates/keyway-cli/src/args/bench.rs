@@ -80,12 +80,12 @@ pub(crate) struct BenchGridArgs {
     #[arg(value_name = "K", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1_000_000>)]
     pub(crate) every: u64,
-    /// Number of files processed in parallel; more than one disturbs the times
+    /// Number of files processed in parallel; values above 1 distort the times
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, 1024>)]
     pub(crate) jobs: u64,
-    /// Folder of the maps, in place of that of the scenario file
+    /// Folder of the maps [default: that of the scenario file]
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
     #[command(flatten)]

@@ -16,9 +16,9 @@ pub(crate) struct ConfigArgs {
     /// File with parameters of any part of a stack
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) config: Option<PathBuf>,
-    /// Change one parameter, such as map.unknown=free, or one of a planner or smoother by its
-    /// name: `hsta.if_no_path=fail`; `navigate` also accepts those of the robot:
-    /// `robot.limits.v_max_mps=0.3`; may be repeated
+    /// Change one parameter, such as `map.unknown=free`, or a parameter of one planner or
+    /// smoother, such as `hsta.if_no_path=fail`; `navigate` also accepts values of the robot, such
+    /// as `robot.limits.v_max_mps=0.3`; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
     pub(crate) set: Vec<Assignment>,
     /// Handling of unknown cells [default: blocked]
@@ -73,8 +73,8 @@ pub(crate) struct StackArgs {
     /// keyway]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) stack: Option<String>,
-    /// Use the stack with the parameters of its paper, on the paper's robot, a point named
-    /// `paper`; for maps with cells of 1 m
+    /// Use the parameters of the stack's paper and the paper's robot, a point (`paper`); for maps
+    /// with cells of 1 m
     #[arg(long, conflicts_with = "radius")]
     pub(crate) as_published: bool,
     /// Replace the planner of the stack (see `keyway list`)
@@ -98,8 +98,8 @@ pub(crate) struct SizeArgs {
     /// smoothers are derived from it (see `keyway list`) [default: none, a point]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
-    /// Clearance of paths to every obstacle, in place of the robot's radius; without a robot,
-    /// also the safe distance of smoothers that have one [m] [default: 0]
+    /// Clearance of paths to every obstacle, overriding the robot's radius; without a robot, also
+    /// the safe distance of smoothers that have one [m] [default: 0]
     #[arg(long, value_name = "M", allow_hyphen_values = true, value_parser = radius)]
     pub(crate) radius: Option<f64>,
 }
@@ -172,7 +172,7 @@ impl MapLimitArgs {
 pub(crate) enum ReachedByArg {
     /// The true pose
     Truth,
-    /// The pose estimated by the robot, for use with disturbed localisation
+    /// The pose estimated by the robot; differs from the true one if localisation is disturbed
     Belief,
 }
 

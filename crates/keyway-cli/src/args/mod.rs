@@ -49,7 +49,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     /// Plans a path on a map
     Plan(PlanArgs),
-    /// Prepares a static map, so that paths on it are found in microseconds
+    /// Prepares a static map, on which paths are then found in microseconds
     Prepare(PrepareArgs),
     /// Plans a path and drives it among obstacles that are not on the map
     Navigate(NavigateArgs),
@@ -59,7 +59,7 @@ pub(crate) enum Command {
     Replay(ReplayArgs),
     /// Reproduces the papers' claims and reports a verdict on each
     Reproduce(ReproduceArgs),
-    /// Compares the paths of planners and smoothers with each other and with the shortest line
+    /// Compares the paths of planners and smoothers with each other and with shortest lines
     Compare(CompareArgs),
     /// Benchmarks planners
     #[command(after_help = BENCH_EXAMPLES)]
@@ -173,8 +173,8 @@ pub(crate) struct PlanArgs {
     /// Smoother (see `keyway list`) [default: none]
     #[arg(long, value_name = "NAME")]
     pub(crate) smoother: Option<String>,
-    /// Use the parameters of the papers for planners and smoothers, whatever the robot; for maps
-    /// with cells of 1 m
+    /// Use the parameters of the papers for planners and smoothers, regardless of the robot; for
+    /// maps with cells of 1 m
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]
@@ -183,7 +183,7 @@ pub(crate) struct PlanArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "NODES", value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) budget: Option<u64>,
-    /// Report how much longer the path is than the shortest one of straight and diagonal steps
+    /// Report the path's excess cost over a shortest path of straight and diagonal steps
     #[arg(long)]
     pub(crate) excess: bool,
     #[command(flatten)]
@@ -193,13 +193,12 @@ pub(crate) struct PlanArgs {
     /// Draw the map, the search and the path into this file
     #[arg(long, value_name = "FILE.svg|.png")]
     pub(crate) picture: Option<PictureFile>,
-    /// Animate the search in this file, then show the path
+    /// Write an animation of the search into this file; it ends with the path
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
     /// Write the (smoothed) path into this file, sampled by arc length: positions, headings,
-    /// curvatures, and the highest speeds within the limits of --robot on speed, turn rate and
-    /// acceleration (without --robot, of the robot `small`); angular acceleration along curves is
-    /// not limited
+    /// curvatures, and the highest speeds within the speed, turn rate and acceleration limits of
+    /// --robot [default: small]; angular acceleration along curves is not limited
     #[arg(long, value_name = "FILE.csv|.json")]
     pub(crate) curve: Option<CurveFile>,
     /// Distance between two samples of --curve [m] [default: 0.01]
@@ -304,19 +303,19 @@ pub(crate) struct NavigateArgs {
     #[arg(long, value_name = "X,Y,RADIUS,VX,VY | X,Y,RADIUS,SPEED:X,Y[:X,Y...]")]
     #[arg(allow_hyphen_values = true)]
     pub(crate) moving: Vec<MovingArg>,
-    /// Issue only commands after which the robot can still stop before a contact, overriding the
-    /// local planner (`controller.safe`)
+    /// Issue only commands after which the robot can still stop before a contact, whatever the
+    /// stack says (`controller.safe`)
     #[arg(long)]
     pub(crate) safe: bool,
     /// Disturbances of actuation, sensing and localisation: a TOML file with the fields of
-    /// `[disturbances]` of a scene, in place of those of the scene
+    /// `[disturbances]` of a scene [default: those of the scene]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) disturbances: Option<PathBuf>,
     /// Pose that counts as reaching the goal: the true one or the estimated one [default: as the
     /// scene says, or truth]
     #[arg(long, value_enum, value_name = "POSE")]
     pub(crate) reached_by: Option<ReachedByArg>,
-    /// Seed of all random values, in place of the scene's seed [default: 0]
+    /// Seed of all random values [default: that of the scene, or 0]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     #[arg(value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: Option<u64>,
@@ -350,25 +349,25 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
     /// Planners (see `keyway list`), or `all` for all that support the map [default:
-    /// jps,theta-star; only jps with --smoothers, that of the file with --config]
+    /// jps,theta-star; with --smoothers only jps; with --config the one in the file]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
     /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:
-    /// none,taut,continuous-curvature; only none with --planners, that of the file with
-    /// --config]. A parameter of one smoother is set by its name,
-    /// `--set hierarchical.safe_distance_m=0.2`, one of all smoothers by
+    /// none,taut,continuous-curvature; with --planners only none; with --config the one in the
+    /// file]. A parameter is set for one smoother by its name, such as
+    /// `--set hierarchical.safe_distance_m=0.2`, and for all smoothers by
     /// `--set smoother.safe_distance_m=0.2`; the same holds for planners (`planner...`)
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], or in the order of a
-    /// header with these names; with a column `map`, each line applies to that map only
+    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], or in the order given by a
+    /// header with these names; with a column `map`, each line applies only to that map
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file
     #[arg(long, value_name = "FILE.scen")]
     pub(crate) scen: Option<PathBuf>,
-    /// Number of queries on each map, evenly spread over those of a scenario file, or else random
-    /// ones between connected cells [default: 10, or all of a file]
+    /// Number of queries on each map: spread evenly over the scenario file of --scen, otherwise
+    /// random between connected cells [default: 10; with --scen all]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", conflicts_with = "pairs")]
     #[arg(value_parser = whole::<usize, 1, { CompareRequest::MOST_QUERIES as u64 }>)]
@@ -384,17 +383,17 @@ pub(crate) struct CompareArgs {
     #[arg(value_name = "N", default_value_t = 1)]
     #[arg(value_parser = whole::<u64, 1, { CompareRequest::MOST_REPEATS }>)]
     pub(crate) repeat: u64,
-    /// Use the parameters of the papers for planners and smoothers, whatever the robot; for maps
-    /// with cells of 1 m
+    /// Use the parameters of the papers for planners and smoothers, regardless of the robot; for
+    /// maps with cells of 1 m
     #[arg(long)]
     pub(crate) as_published: bool,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     #[command(flatten)]
     pub(crate) config: ConfigArgs,
-    /// Columns of the table in the terminal and in LaTeX, in this order, after the names: corners,
-    /// solved, missed, compared, length, excess, worst, turns, angle, non-smooth, clearance,
-    /// shortfalls, plan, smooth [default: most of them; in LaTeX all]
+    /// Columns of the table in the terminal and in LaTeX, in the given order, after the names:
+    /// corners, solved, missed, compared, length, excess, worst, turns, angle, non-smooth,
+    /// clearance, shortfalls, plan, smooth [default: most of them; in LaTeX all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Vec<String>,
     /// Omit all times; the output is then deterministic
@@ -435,8 +434,8 @@ Examples:
 pub(crate) struct MapConvertArgs {
     #[command(flatten)]
     pub(crate) map: MapFileArgs,
-    /// Output file; its extension selects the format (.yaml with an image .pgm beside it, .map,
-    /// .png, .pgm). Information that the format does not keep is reported
+    /// Output file; its extension selects the format (.yaml with a .pgm image beside it, .map,
+    /// .png, .pgm). Information that the format cannot store is reported
     #[arg(value_name = "OUT")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
@@ -451,11 +450,11 @@ Examples:
   keyway list keyway --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this entry; for a stack or a robot, as a file for `--stack` or
-    /// `--robot`
+    /// Print the parameters of this entry; those of a stack or a robot in the form of a file for
+    /// `--stack` or `--robot`
     #[arg(value_name = "NAME")]
     pub(crate) name: Option<String>,
-    /// Robot that defaults are derived for [default: small]
+    /// Robot from which defaults are derived [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(crate) robot: Option<String>,
     /// Print a stack with the parameters of its paper

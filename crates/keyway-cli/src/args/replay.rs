@@ -11,20 +11,20 @@ pub(crate) struct DriveFileArgs {
     /// Folder for report, pictures and trajectory
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Draw, into the folder of --out, the candidate velocities of the local planner at this
-    /// simulated time, and their evaluation [s]
+    /// Draw the candidate velocities of the local planner at this simulated time, and their
+    /// evaluation, into the folder of --out [s]
     #[arg(long, value_name = "S", requires = "out", allow_hyphen_values = true)]
     #[arg(value_parser = seconds)]
     pub(crate) fan: Option<f64>,
-    /// Write the reasons for each chosen velocity into this file, and remedies for a robot that
-    /// cannot drive: JSON, a line for every cycle
+    /// Write the reasons for each chosen velocity into this file, and what to change if the robot
+    /// cannot drive: one line of JSON per cycle
     #[arg(long, value_name = "FILE.jsonl")]
     pub(crate) explain: Option<PathBuf>,
-    /// Animate the drive in this file: the robot, its scans and its candidates
+    /// Write an animation of the drive into this file: the robot, its scans and its candidates
     #[arg(long, value_name = "FILE.gif|.apng")]
     pub(crate) animate: Option<AnimationFile>,
-    /// Record all observations and decisions of the robot into this file; Foxglove, Lichtblick
-    /// and rosbag2 can open it, and `keyway replay` recomputes the decisions
+    /// Record all observations and decisions of the robot in this file; Foxglove, Lichtblick and
+    /// rosbag2 can open it, and `keyway replay` recomputes the decisions
     #[arg(long, value_name = "FILE.mcap", value_parser = recording)]
     pub(crate) record: Option<PathBuf>,
 }
@@ -33,14 +33,14 @@ pub(crate) struct DriveFileArgs {
 fn recording(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_one = ReplayArgs::is_recording(&path);
-    if is_one { Ok(path) } else { Err("expected the name of a file that ends in .mcap".to_owned()) }
+    if is_one { Ok(path) } else { Err("expected a file name that ends in .mcap".to_owned()) }
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Each run is made again and compared with its record: outcome and trajectory must be the same. With --out, each has a folder
-of its own in DIR, named like its record. Of a recording that `keyway navigate --record` or a robot made, every decision is
-made again from what was observed, and must be the same.
+Each run is recomputed and compared with its record: outcome and trajectory must be the same. With --out, each run gets a
+folder in DIR, named like its record. Of a recording, made by `keyway navigate --record` or by a robot, every decision is
+recomputed from the recorded observations, and must be the same.
 
 Examples:
   keyway batch keyway-demo/small_house.toml --keep all --out recorded
@@ -52,7 +52,7 @@ pub(crate) struct ReplayArgs {
     /// Records stored by `keyway batch --keep`, or recordings
     #[arg(value_name = "RECORD.json|.mcap", required = true)]
     pub(crate) records: Vec<PathBuf>,
-    /// Folder of the maps, in place of their folders at the time of recording
+    /// Folder of the maps [default: their folders at the time of recording]
     #[arg(long, value_name = "DIR")]
     pub(crate) map_dir: Option<PathBuf>,
     #[command(flatten)]

@@ -6,12 +6,12 @@ use clap::Args;
 use std::path::PathBuf;
 
 const REPRODUCE_TERMS: &str = "\
-A figure holds when the 95 % interval of its mean change over the maps lies on the side that the paper says, and the mean
-is at least half of the published change, if there is one. It does not hold when the interval lies on the other side, or
-below that half. Otherwise it is undecided. What is to be so always has to be so on more than nine maps in ten, with
-certainty. Times are reported and not judged. A claim holds when all of its judged figures do, and does not hold when none
-does and some do not; otherwise it is mixed. Only maps count on which all methods of a comparison find a path. A claim that
-does not hold is an answer: the exit code is 0.";
+A figure is a value that a claim is about, such as the length of a path. It holds if the 95 % interval of its mean change over
+the maps lies on the side that the paper states, and the mean is at least half of the published change, if there is one. It
+does not hold if the interval lies on the other side, or below that half. Otherwise it is undecided. A property claimed to
+hold always must hold on significantly more than nine maps in ten. Times are reported, but not judged. A claim holds if all of
+its judged figures hold, and does not hold if none holds and some do not; otherwise it is mixed. Only maps count on which all
+methods of a comparison find a path. A claim that does not hold is a result, not an error: the exit code is 0.";
 
 const REPRODUCE_EXAMPLES: &str = "\
 Examples:
@@ -29,22 +29,22 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 100, value_parser = whole::<usize, 2, 100_000>)]
     pub(crate) maps: usize,
-    /// Seed of the first map; the others have the seeds that follow
+    /// Seed of the first map; the others have the following seeds
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 1, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub(crate) seed: u64,
-    /// Number of maps processed in parallel [default: as many as there are processors]
+    /// Number of maps processed in parallel [default: one per processor]
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
     pub(crate) jobs: Option<usize>,
-    /// Also run ablations of the parts of the methods, and sweeps of their parameters
+    /// Also run ablations of the methods and sweeps of their parameters
     #[arg(long)]
     pub(crate) ablations: bool,
-    /// Omit all times, and the figures of claims that are times; the output is then deterministic
+    /// Omit all times, also the figures of claims that are times; the output is then deterministic
     #[arg(long)]
     pub(crate) no_times: bool,
-    /// Folder for the report (JSON, a page, tables, pictures) and the measurements on each map;
-    /// an interrupted reproduction is resumed
+    /// Folder for the report (JSON, HTML, tables, pictures) and the measurements on each map; an
+    /// interrupted reproduction is resumed
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]

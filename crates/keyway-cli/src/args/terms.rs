@@ -2,54 +2,54 @@
 
 /// Columns of `keyway compare`.
 pub(crate) const COMPARE_TERMS: &str = "\
-Columns (means are over the compared queries, those solved by every planner that solved any at all; below a
-mean: between what the queries lie, without the lowest and the highest 5 %):
+Columns (means are over the compared queries: those that every planner solved, except planners that solved none;
+below a mean: 5th to 95th percentile of the queries):
   solved      queries for which the planner found a path
   length      length of the smoothed path
-  excess      how much longer it is than the shortest line around all blocked cells; a smoothed path keeps
-              its distance from the obstacles themselves and may be a little shorter
-  turns       points at which the heading changes; of a curve, each stretch that bends to one side
-  non-smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
-  clearance   the least distance from a path to an obstacle
-  shortfalls  paths that keep less distance than was asked for (left out where there are none)
+  excess      by how much it is longer than the shortest line around all blocked cells; a smoothed path keeps
+              its clearance from the obstacles, not from blocked cells, and can be slightly shorter
+  turns       points at which the heading changes; on a curve, each stretch that bends to one side
+  non-smooth  heading jumps: each turn of a polyline; on a curve, changes of more than 5 degrees within 1 cm
+  clearance   smallest distance from a path to an obstacle
+  shortfalls  paths with less clearance than requested (omitted if there are none)
   plan        median time of a query
-  smooth      median time of smoothing its path; none for the smoother `none`, which leaves it as it is
+  smooth      median time to smooth its path; empty for the smoother `none`, which leaves the path unchanged
 Each row against the first one, on the same queries:
   equal       queries on which both paths have the same length
-  difference  of the lengths, this less the first: median, and between what it lies with 95 % confidence
-  effect      from -1, this path is always shorter, to 1, always longer (rank-biserial correlation)
-  p           how likely such differences would be by chance: of lengths by Wilcoxon's signed-rank test, of
-              solved queries by McNemar's exact test, both corrected for several rows by Holm's method
+  difference  length difference to the first row: median and 95 % confidence interval
+  effect      rank-biserial correlation, from -1 (the path is always shorter) to 1 (always longer)
+  p           probability of such differences by chance: of lengths by Wilcoxon's signed-rank test, of solved
+              queries by McNemar's exact test, both corrected for the number of rows by Holm's method
 CSV, LaTeX and JSON have more columns: `--out DIR`, `--format json`.";
 
 /// Columns of `keyway bench grid`.
 pub(crate) const GRID_TERMS: &str = "\
-Columns (below a mean: between what the queries lie, without the lowest and the highest 5 %):
+Columns (below a mean: 5th to 95th percentile of the queries):
   solved      queries answered with a path, out of all
   mismatches  answers that contradict the scenario file: a path longer than the shortest one (for
-              planners that promise shortest ones), one shorter than possible, or a wrong answer
-              about whether there is one
-  illegal     paths through an obstacle or around a corner that may not be cut, or with wrong ends
-  missed      queries for which the planner says that there is a path that it did not find
-  median, p99 wall clock of a query; cpu: mean of its thread's CPU time
+              planners that guarantee shortest paths), a path shorter than possible, or a wrong
+              answer to the question whether a path exists
+  illegal     paths through an obstacle, across a corner that must not be cut, or with a wrong start or goal
+  missed      queries for which the planner reports that it missed an existing path
+  median, p99 wall-clock time of a query; cpu: mean CPU time of its thread
   expanded    nodes taken from the open list, mean over the queries
-  excess      how much longer paths are than the shortest ones, mean over the queries
-  prep        time of preparing the map; MB: memory of map layers and search";
+  excess      by how much paths are longer than shortest ones, mean over the queries
+  prep        time to prepare the map; MB: memory of map layers and search";
 
 /// Columns of `keyway bench scale`.
 pub(crate) const SCALE_TERMS: &str = "\
 Columns (each row is one query):
-  prep        time of deriving the map's layers and its components; wall, cpu: of the query
+  prep        time to derive the map's layers and components; wall, cpu: times of the query
   expanded    nodes taken from the open list
   map         memory of the map's layers and components
-  search      memory that the search reserved; jps counts only what it used
-  peak        the most memory of the process in use at once; it may be less than what the search reserved, as
-              memory that is reserved and never touched is not in use";
+  search      memory reserved by the search; for jps, memory used
+  peak        peak memory of the process; it can be less than the memory reserved by the search, as reserved
+              memory that is never touched does not count";
 
 /// Rows of `keyway plan`.
 pub(crate) const PLAN_TERMS: &str = "\
 Terms:
   expanded    nodes taken from the open list; generated: nodes put there, or improved there
-  turns       points at which the heading changes; of a curve, each stretch that bends to one side
-  not smooth  heading jumps: each turn of a line, on a curve changes of more than 5 degrees within 1 cm
-  excess      how much more the path costs than the cheapest one of straight and diagonal steps";
+  turns       points at which the heading changes; on a curve, each stretch that bends to one side
+  not smooth  heading jumps: each turn of a polyline; on a curve, changes of more than 5 degrees within 1 cm
+  excess      by how much the path costs more than a cheapest path of straight and diagonal steps";

@@ -42,7 +42,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
             print("A robot crosses a house, around an obstacle that is not on its map.\n")?;
             print(&table(&episode, &driven))?;
             print_files(&files)?;
-            print(&format!("\nOpen {} to see the run.", open.display()))?;
+            print(&format!("\nOpen {} to see the trajectory.", open.display()))?;
         }
     }
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))

@@ -160,7 +160,7 @@ fn refuse_to_replace_an_image(
         return Ok(());
     }
     let message = format!(
-        "{} is in the way: the image of {} would replace it; choose another name, or move it away",
+        "{} exists and would be replaced by the image of {}; choose another name, or move the file",
         image.display(),
         yaml.display()
     );

@@ -152,11 +152,11 @@ impl Estimate {
             _ => format!("{time_s:.0} s"),
         };
         let costs = format!(
-            "the preparation takes about {time} and {kept:.1} MB of memory, {peak:.1} MB meanwhile"
+            "the preparation takes about {time} and {kept:.1} MB of memory (peak: {peak:.1} MB)"
         );
         match self.estimate.jps_s.zip(self.pays_from_paths) {
             Some((jps_s, paths)) => format!(
-                "{costs}; jps finds a path in {:.3} ms: it cannot pay for fewer than {paths:.0} paths",
+                "{costs}; jps finds a path in {:.3} ms, so the preparation cannot pay for fewer than {paths:.0} paths",
                 jps_s * 1e3,
             ),
             None => costs,

@@ -229,10 +229,10 @@ fn two_batches_at_once_need_two_folders() {
     let error = refused.expect_code(2).json();
     assert_eq!((&error["kind"], &error["field"]), (&json!("output"), &json!("--out")));
     let message = error["message"].as_str().unwrap();
-    let expected = "both: another `keyway` is at work in this folder; wait until";
+    let expected = "both: another `keyway` is writing to this folder; wait until";
     assert!(message.starts_with(expected), "{message}");
     merged.expect_code(0);
-    assert!(merge.expect_code(2).err.contains("at work in this folder"));
+    assert!(merge.expect_code(2).err.contains("writing to this folder"));
     // Once killed, it no longer blocks others.
     child.kill().unwrap();
     child.wait().unwrap();
@@ -289,19 +289,16 @@ fn results_that_are_damaged_are_named_by_file_and_line() {
     for (of, expected) in [
         (
             "10000",
-            "2/10000, 3/10000, 4/10000, 5/10000, 6/10000, 7/10000, 8/10000, 9/10000, 10/10000, 11/10000 and 9989 more is not among",
+            "missing: 2/10000, 3/10000, 4/10000, 5/10000, 6/10000, 7/10000, 8/10000, 9/10000, 10/10000, 11/10000 and 9989 more; give",
         ),
-        (
-            "10001",
-            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
-        ),
+        ("10001", "part.json: it does not contain a valid part of a batch, of at most 10000 parts"),
         (
             "1000000000",
-            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
+            "part.json: it does not contain a valid part of a batch, of at most 10000 parts",
         ),
         (
             "18446744073709551615",
-            "part.json: it does not say which part of a batch this is, of at most 10000 parts",
+            "part.json: it does not contain a valid part of a batch, of at most 10000 parts",
         ),
     ] {
         write(&folder, "part/part.json", &part.replace("\"of\": 2", &format!("\"of\": {of}")));
@@ -323,7 +320,7 @@ fn results_that_are_damaged_are_named_by_file_and_line() {
         }
         std::fs::File::create(&path).unwrap().set_len((4 << 30) + 1).unwrap();
         let error = merge();
-        let expected = format!("part/{name}: it holds more than 4 GiB, the most that is read here");
+        let expected = format!("part/{name}: it is larger than the limit of 4 GiB");
         assert!(error.contains(&expected), "{error}");
         write(&folder, &format!("part/{name}"), &text);
     }
@@ -349,24 +346,31 @@ fn parts_are_put_together_when_all_are_there() {
         error["message"].as_str().unwrap().to_owned()
     };
     let message = refused("part-3 part-1 --out no");
-    assert!(message.contains("of which part-3 is a part, 2/3 is not among"), "{message}");
+    assert!(
+        message.contains("part-3: other parts of the same batch are missing: 2/3;"),
+        "{message}"
+    );
     let message = refused("part-1 part-2 part-3 one --out no");
     assert!(
         message.contains("with key-point-fusion and seed 5 is in both part-1 and one"),
         "{message}"
     );
-    assert!(refused("one --out one").contains("is one of the folders that are read"));
+    assert!(refused("one --out one").contains("is one of the folders to merge"));
     let message = refused("scenes --out no");
     assert!(
-        message.contains("there is no such file or folder; it is written when a batch has ended")
+        message
+            .contains("there is no such file or folder; it is written when a batch has finished")
     );
     write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 9").replace("5.3", "5.2"));
     run(&part(3).replace("part-3", "late")).expect_code(0);
     let message = refused("part-1 part-2 late --out no");
-    assert!(message.contains("of which part-1 is a part, 3/3 is not"), "{message}");
+    assert!(
+        message.contains("part-1: other parts of the same batch are missing: 3/3;"),
+        "{message}"
+    );
     run("batch scenes/more.toml --stacks rrt-follow --out late").expect_code(0);
     let message = refused("other late --out no");
-    assert!(message.contains("was made of different inputs in other and late"), "{message}");
+    assert!(message.contains("has different inputs in other and late"), "{message}");
     assert!(!folder.path().join("no").exists());
     std::fs::remove_dir_all(folder.path().join("scenes")).unwrap();
     run("batch merge part-3 part-1 part-2 --out whole").expect_code(0);
@@ -384,19 +388,19 @@ fn parts_are_put_together_when_all_are_there() {
     assert_eq!(all, both.concat());
     // A part that is still running.
     write(&folder, "part-2/journal.jsonl", "");
-    assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not ended"));
+    assert!(refused("part-3 part-1 part-2 --out no").contains("the batch has not finished"));
     std::fs::remove_file(folder.path().join("part-2/journal.jsonl")).unwrap();
     let line = read(&folder, "part-2/runs.jsonl").lines().next().unwrap().to_owned();
     write(&folder, "part-2/runs.jsonl", &line);
     let times = read(&folder, "part-2/times.jsonl");
-    assert!(refused("part-3 part-1 part-2 --out no").contains("not as many lines"));
+    assert!(refused("part-3 part-1 part-2 --out no").contains("differs from that of runs.jsonl"));
     write(&folder, "part-2/times.jsonl", times.lines().next().unwrap());
     write(&folder, "part-2/runs.jsonl", &line.replace("\"seed\":", "\"grain\":"));
     let message = refused("part-3 part-1 part-2 --out no");
     assert!(message.contains("part-2/runs.jsonl: line 1: it is not from a batch"), "{message}");
     write(&folder, "part-2/runs.jsonl", &line);
     let message = refused("part-3 part-1 part-2 --out no");
-    assert!(message.contains("not those that the batch was divided into"), "{message}");
+    assert!(message.contains("do not match the division of the batch"), "{message}");
 }
 
 /// Two tables with intervals; file names may contain special characters of TeX.

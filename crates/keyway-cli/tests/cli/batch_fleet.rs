@@ -186,7 +186,7 @@ fn killed_or_in_parts_it_is_the_same() {
     assert!(one == other);
     write(&folder, "part-2/robots.jsonl", "");
     let refused = keyway(folder.path(), "batch merge part-1 part-2 --out no").expect_code(2).err;
-    assert!(refused.contains("robots.jsonl lack what belongs to it"), "{refused}");
+    assert!(refused.contains("robots.jsonl have no entries for this run"), "{refused}");
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_record_of_several_robots_is_replayed() {
     let line = format!("replay {path} --out shown --animate drive.gif");
     let shown = keyway(folder.path(), &line).expect_code(0).out;
     for text in [
-        "the same run again",
+        "run reproduced",
         "reached                   0 of 2",
         "wrote shown/crossing.s4-guided.0/map.svg",
     ] {
@@ -226,7 +226,7 @@ fn a_record_of_several_robots_is_replayed() {
     };
     let text = refused(&|it| it["report"]["robots"][1]["trajectory"][9][1] = json!(0), "");
     assert!(
-        text.contains("makes another run of it: robot 1: row 9 of its trajectory was ["),
+        text.contains("run differs from the record: robot 1: row 9 of its trajectory was ["),
         "{text}"
     );
     let text = refused(&|it| it["robots"][1]["robot"]["cycle_s"] = json!(-1), "");
@@ -237,12 +237,12 @@ fn a_record_of_several_robots_is_replayed() {
     ] {
         let text = refused(change, "");
         assert!(
-            text.contains("it must say who drove: `robots`, as many as the scene has, 2, and"),
+            text.contains("it must contain `robots`, one for each robot of the scene (2), and"),
             "{text}"
         );
     }
     let text = refused(&|_| (), "--fan 1 --out out2");
-    assert!(text.contains("--fan shows the decisions of one robot"), "{text}");
+    assert!(text.contains("--fan shows the decisions of a single robot"), "{text}");
     // A scene with a single `[[robots]]` table.
     let (one, _) = PAIR.rsplit_once("[[robots]]").unwrap();
     write(&folder, "one.toml", one);

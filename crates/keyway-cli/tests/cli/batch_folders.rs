@@ -79,7 +79,7 @@ fn what_is_no_scene_is_refused_unless_something_refers_to_it() {
     );
     // Only a scene in another folder refers to it.
     let error = refused("batch scenes/robots");
-    assert!(error.contains("robots/mine.toml: this is no scene"), "{error}");
+    assert!(error.contains("robots/mine.toml: this is not a scene"), "{error}");
     let error = refused("batch scenes/robots --robot scenes/robots/mine.toml");
     assert!(error.contains("there is no scene (*.toml) in this folder and its"), "{error}");
     write(&folder, "scenes/b/broken.toml", &HALL.replace("version = 2", ""));

@@ -155,7 +155,11 @@ fn parameters_of_one_and_of_all() {
     let line = format!("{names} --set smoother.safe_distance_m=1");
     refused(&line, ["none: ", "no field `smoother.safe"], "smoother.safe_distance_m");
     let line = format!("{names} --set key-points.safe_distance_m=1");
-    refused(&line, ["not compared here", "none, hierarchical"], "key-points.safe_distance_m");
+    refused(
+        &line,
+        ["this part is not compared", "none, hierarchical"],
+        "key-points.safe_distance_m",
+    );
     let line = "--planners jps,ratio-astar --set ratio-astar.x=0";
     refused(line, ["ratio-astar: ", "planner.x must be"], "ratio-astar.x");
     for path in ["smoother.name", "planner.name", "hierarchical.name"] {
@@ -232,7 +236,7 @@ fn queries_without_a_path_are_reported_with_the_reason() {
     let start =
         "closed.map, query 2 (line 3 of q.csv), not compared: jps, astar: start (3, 0) is inside";
     assert!(blocked.starts_with(start), "{blocked}");
-    let all = "closed.map, query 3 (line 4 of q.csv), not compared: jps, astar: there is no path from \
+    let all = "closed.map, query 3 (line 4 of q.csv), not compared: jps, astar: no path exists from \
                the start to the goal";
     assert_eq!(apart, all);
     let report: Value = read(&folder, "out/report.json").parse().unwrap();
@@ -250,7 +254,7 @@ fn queries_without_a_path_are_reported_with_the_reason() {
     let csv = read(&folder, "out/queries.csv");
     let ends: Vec<&str> = csv.lines().map(|line| line.rsplit_once(',').unwrap().1).collect();
     assert_eq!(ends[..4], ["line", "2", "3", "4"]);
-    assert!(csv.lines().nth(3).unwrap().ends_with("there is no path from the start to the goal,4"));
+    assert!(csv.lines().nth(3).unwrap().ends_with("no path exists from the start to the goal,4"));
     // Only the first of many are listed, and nothing if there are none.
     write(&folder, "q.csv", &wall.repeat(7));
     let many = keyway(folder.path(), "compare closed.map --pairs q.csv").expect_code(1).out;
@@ -292,10 +296,10 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --pairs none.csv", "none.csv"),
         ("compare walled.map --scen rooms.map.scen", "line 2"),
         ("compare twin.map --scen rooms.map.scen", "for the map rooms.map, not for twin.map"),
-        ("compare walled.map --scen empty.scen", "there is no scenario"),
-        ("compare walled.map --pairs empty.csv", "there is no pair"),
-        ("compare walled.map --planners jps,astar,jps", "--planners: jps is named twice"),
-        ("compare walled.map --smoothers none,none", "--smoothers: none is named twice"),
+        ("compare walled.map --scen empty.scen", "it has no scenarios"),
+        ("compare walled.map --pairs empty.csv", "there are no pairs"),
+        ("compare walled.map --planners jps,astar,jps", "--planners: jps is given twice"),
+        ("compare walled.map --smoothers none,none", "--smoothers: none is given twice"),
         ("compare walled.map --scen rooms.map.scen --pairs q.csv", "--pairs"),
         ("compare walled.map --pairs q.csv --seed 1", "cannot be used with '--seed <N>'"),
         ("compare walled.map --pairs q.csv --queries 1", "cannot be used with '--queries <N>'"),
@@ -304,10 +308,10 @@ fn bad_input_is_exit_code_2() {
         ("compare walled.map --repeat 0", "--repeat"),
         ("compare walled.map --radius -1", "a length of at least 0"),
         ("compare walled.map --planners jps --unknown penalised", "one cost"),
-        ("compare rooms.map full.map", "full.map has no two free cells that are connected\n"),
+        ("compare rooms.map full.map", "full.map has no two connected free cells\n"),
         (
             "compare walled.map rooms.map --radius 2.2",
-            "walled.map has no two free cells that are connected; the clearance of 2.2 m may be too large",
+            "walled.map has no two connected free cells; the clearance of 2.2 m may be too large",
         ),
         (
             "compare rooms.map walled.map --radius 3",
@@ -397,7 +401,7 @@ fn the_same_map_twice_is_refused() {
     for other in others {
         let line = format!("compare walled.map rooms.map {other} --queries 1");
         let refused = keyway(folder.path(), &line).expect_code(2).err;
-        let message = format!("walled.map and {other} are the same map; name it once");
+        let message = format!("walled.map and {other} are the same map; give it once");
         assert!(refused.contains(&message), "{refused}");
     }
 }

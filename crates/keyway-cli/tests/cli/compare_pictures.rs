@@ -82,7 +82,7 @@ fn the_map_itself_is_not_replaced_by_its_picture() {
     let before = map();
     let line = "compare keyway-demo/small_house.yaml --queries 1 --out keyway-demo";
     let refused = keyway(folder.path(), line).expect_code(2);
-    assert!(refused.err.contains("small_house.png is a file that is read here"), "{}", refused.err);
+    assert!(refused.err.contains("small_house.png is an input file"), "{}", refused.err);
     assert_eq!(map(), before);
 }
 

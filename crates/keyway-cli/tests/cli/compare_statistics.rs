@@ -119,15 +119,16 @@ fn columns_are_chosen() {
     // The help names the same columns.
     let line = "compare walled.map --columns weight";
     let refused = keyway(folder.path(), line).expect_code(2).err;
-    let (_, ids) = refused.trim().split_once("`weight` is no column; there are ").unwrap();
+    let (_, ids) =
+        refused.trim().split_once("there is no column `weight`; expected one of ").unwrap();
     let help = keyway(folder.path(), "compare --help").expect_code(0).out;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(help.contains(&format!("after the names: {ids} [default")), "{ids}: {help}");
     for (columns, part) in [
-        ("length,weight", "`weight` is no column; there are corners, solved,"),
-        ("length,length", "length is named twice"),
+        ("length,weight", "there is no column `weight`; expected one of corners, solved,"),
+        ("length,length", "length is given twice"),
         ("length,", "a name is missing"),
-        ("plan --no-times", "plan is a time, which --no-times leaves out"),
+        ("plan --no-times", "plan is a time, which --no-times omits"),
     ] {
         let line = format!("compare walled.map --columns {columns}");
         let refused = keyway(folder.path(), &line).expect_code(2).err;

@@ -121,7 +121,7 @@ fn no_valid_trajectory_says_which_rule_and_what_would_free_the_robot() {
     assert_eq!(ends.outcome, EpisodeOutcome::Stuck);
     assert!(ends.run.unwrap().time_s < 30.0);
     let why = ends.reason.unwrap();
-    assert!(why.contains("velocities none lets the robot drive ("), "{why}");
+    assert!(why.contains("candidate velocities moves the robot ("), "{why}");
 }
 
 #[test]

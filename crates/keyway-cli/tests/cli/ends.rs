@@ -105,7 +105,7 @@ fn no_path_says_which_radius_has_one() {
     let why = closed["why"].as_str().unwrap();
     assert!(
         why.contains(
-            "for a radius of 0.6 m; the largest radius with one is 0.45 m, which the centre"
+            "for a radius of 0.6 m; the largest feasible radius is 0.45 m, limited by the clearance at"
         ),
         "{why}"
     );
@@ -129,18 +129,16 @@ fn no_path_says_in_which_parts_the_ends_lie() {
     };
     let apart = plan("").expect_code(1).json();
     let why = apart["why"].as_str().unwrap();
-    assert!(why.contains("whatever the radius") && why.contains("of 174 and 45 cells"), "{why}");
-    assert!(
-        why.ends_with(
-            "with --unknown free, paths may lead through unknown space, and there is one"
-        )
-    );
+    assert!(why.contains("for any radius") && why.contains("of 174 and 45 cells"), "{why}");
+    assert!(why.ends_with(
+        "with --unknown free, paths may lead through unknown space, and such a path exists"
+    ));
     assert_eq!(apart["largest_clearance_m"], Value::Null);
     plan("--unknown free").expect_code(0);
     let closed = "plan closed.map --start 1.5,0.5 --goal 5.5,0.5 --format json";
     let closed = keyway(folder.path(), closed).expect_code(1).json();
     let why = closed["why"].as_str().unwrap();
-    assert!(why.contains("whatever the radius") && !why.contains("unknown"), "{why}");
+    assert!(why.contains("for any radius") && !why.contains("unknown"), "{why}");
 }
 
 /// Two rooms that touch at a corner of their cells; in the second map they do not.
@@ -167,15 +165,20 @@ fn no_path_says_where_only_a_corner_has_to_be_cut() {
     ] {
         let report = plan("corner.map", more, 1);
         let why = report["why"].as_str().unwrap();
-        assert!(why.contains("there is no path that cuts no corners"), "{why}");
-        assert!(why.contains("of 4 and 12 cells, which meet only at corners of cells; "), "{why}");
+        assert!(
+            why.contains(
+                "no path exists from the start to the goal for any radius without cutting corners"
+            ),
+            "{why}"
+        );
+        assert!(why.contains("of 4 and 12 cells, which touch only at corners of cells; "), "{why}");
         assert!(why.ends_with(advice), "{why}");
         let options = advice.split_once("--").unwrap().1;
         let followed = format!("{} --{options}", if advice.starts_with("add") { more } else { "" });
         assert_eq!(plan("corner.map", &followed, 0)["outcome"], "found");
     }
     let why = plan("wall.map", "", 1)["why"].to_string();
-    assert!(why.contains("whatever the radius") && !why.contains("corner"), "{why}");
+    assert!(why.contains("for any radius") && !why.contains("corner"), "{why}");
 }
 
 #[test]
@@ -216,12 +219,12 @@ fn a_robot_that_is_too_wide_says_what_would_fit() {
     assert_eq!(report["outcome"], "no_path");
     let reason = report["reason"].as_str().unwrap();
     assert!(
-        reason.starts_with("with the safety margin around the robot, there is no path"),
+        reason.starts_with("with the safety margin around the robot, no path exists"),
         "{reason}"
     );
-    assert!(reason.contains("the largest radius with one is 0.45 m, which the centre"), "{reason}");
+    assert!(reason.contains("the largest feasible radius is 0.45 m, limited by"), "{reason}");
     assert_eq!(report["plan"]["why"], report["reason"]);
     let apart = line.replace("4.65,1.35", "7,1.35").replace("0.5", "0.2");
     let report = keyway(folder.path(), &apart).expect_code(1).json();
-    assert!(report["reason"].as_str().unwrap().contains("whatever the radius"), "{report}");
+    assert!(report["reason"].as_str().unwrap().contains("for any radius"), "{report}");
 }

@@ -41,7 +41,7 @@ fn maps() {
     write(&folder, "bad.map", "type octile\nheight 2\nwidth 3\nmap\n...\n.x\n");
     refused(&folder, "map info bad.map", &["bad.map: line 6"], "input", Some("MAP"));
     let placed = "map info small_house.yaml --resolution 2";
-    refused(&folder, placed, &["YAML file says"], "input", Some("MAP"));
+    refused(&folder, placed, &["YAML file already contains"], "input", Some("MAP"));
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn outputs_do_not_replace_what_is_read() {
     keyway(folder.path(), "prepare walled.map --out p.csv").expect_code(0);
     let before = fs::read(folder.path().join("p.csv")).unwrap();
     let line = format!("{PLAN} --prepared p.csv --curve ./p.csv");
-    refused(&folder, &line, &["read here", "choose another name"], "output", Some("--curve"));
+    refused(&folder, &line, &["input file", "choose another name"], "output", Some("--curve"));
     assert_eq!(fs::read(folder.path().join("p.csv")).unwrap(), before);
 }
 
@@ -197,15 +197,15 @@ fn positions() {
     let parts = ["goal (9.000, -3.000)", "outside the map", "(6.500, 0.500)"];
     refused(&folder, &outside, &parts, "position", Some("--goal"));
     let tight = format!("{PLAN} --radius 0.6");
-    let parts = ["no room for a radius of 0.6 m", "(1.500, 1.500)"];
+    let parts = ["too little clearance for a radius of 0.6 m", "(1.500, 1.500)"];
     refused(&folder, &tight, &parts, "position", Some("--start"));
     let wall = format!("{wall} --radius 0.2");
     let parts = ["start (3.500, 1.500)", "inside an obstacle"];
     refused(&folder, &wall, &parts, "position", Some("--start"));
     let robot = "navigate walled.map --start 2.9,2 --goal 5.5,2.5";
     let parts = [
-        "start (2.9, 2) leaves no room for a radius of 0.18 m: an obstacle is 0.100 m away",
-        "nearest position with room is (",
+        "start (2.9, 2) has too little clearance for a radius of 0.18 m: an obstacle is 0.100 m away",
+        "nearest position with enough clearance is (",
     ];
     refused(&folder, robot, &parts, "position", Some("--start"));
     let border = "navigate walled.map --start 1.5,2 --goal 6.875,2.5";

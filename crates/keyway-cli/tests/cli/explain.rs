@@ -121,7 +121,11 @@ fn the_fan_of_a_moment_is_drawn_beside_the_other_pictures() {
     // A run that ends before has no such picture; an earlier one is removed, as it would seem to
     // belong to it.
     let late = keyway(folder.path(), &format!("{SHORT} --out run --fan 1000")).expect_code(0);
-    assert!(late.err.contains("--fan 1000: the run ended after"), "{}", late.err);
+    assert!(
+        late.err.contains("--fan 1000: no candidates were drawn, because the run ended after"),
+        "{}",
+        late.err
+    );
     assert!(!folder.path().join("run/fan.svg").exists());
 }
 

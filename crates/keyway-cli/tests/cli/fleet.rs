@@ -204,7 +204,7 @@ fn what_cannot_be_driven_is_refused_with_the_robot_and_its_field() {
     };
     for option in ["--fan 1 --out out", "--explain why.jsonl"] {
         let (field, message) = refused(&format!("navigate --scene crossing.toml {option}"));
-        assert!(option.starts_with(&field) && message.contains("of one robot"), "{message}");
+        assert!(option.starts_with(&field) && message.contains("of a single robot"), "{message}");
     }
     let crossing = read(&folder, "crossing.toml");
     let with = |from: &str, to: &str| {
@@ -266,7 +266,7 @@ fn random_obstacles_are_those_of_the_seed() {
         &read(&folder, "crossing.toml").replacen("[[robots]]", &crowded, 1),
     );
     let warned = keyway(folder.path(), "navigate --scene crowded.toml --time-limit 0.1").err;
-    assert!(warned.contains("3 of the random obstacles found no place"), "{warned}");
+    assert!(warned.contains("for 3 of the random obstacles"), "{warned}");
 }
 
 /// A hall with a walker that moves to and fro across the robot's path.

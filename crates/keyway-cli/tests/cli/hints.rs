@@ -105,9 +105,9 @@ fn a_folder_of_scenes_with_another_file_says_what_it_is() {
     std::fs::create_dir(folder.path().join("mixed")).unwrap();
     let stack = keyway(folder.path(), "list keyway").expect_code(0).out;
     write(&folder, "mixed/mine.toml", &stack);
-    let parts = ["mine.toml: this is no scene", "move it to another folder"];
+    let parts = ["mine.toml: this is not a scene", "move the file to another folder"];
     refused(&folder, "batch mixed --out batch", &parts, "SCENE.toml");
-    let parts = ["mine.toml: this is no scene"];
+    let parts = ["mine.toml: this is not a scene"];
     refused(&folder, "navigate --scene mixed/mine.toml", &parts, "--scene");
     write(&folder, "old.toml", "map = \"rooms.map\"\nstart = [1, 1]\ngoal = [9, 9]\n");
     let parts = ["missing field `version`", "`version = 2`"];

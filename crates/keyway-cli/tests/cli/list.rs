@@ -26,7 +26,7 @@ fn everything_has_a_kind_and_a_summary() {
         table.lines().next().unwrap().split("  ").filter(|n| !n.is_empty()).collect();
     assert_eq!(
         header.iter().map(|name| name.trim()).collect::<Vec<_>>(),
-        ["kind", "name", "what it is"]
+        ["kind", "name", "description"]
     );
     let one = keyway(folder().path(), "list density-astar").expect_code(0).out;
     assert!(one.lines().all(|line| line.chars().count() <= 120), "{one}");

@@ -141,7 +141,9 @@ fn likely_mistakes_are_said() {
     let folder = folder();
     let info = |line: &str| keyway(folder.path(), &format!("map info {line}")).expect_code(0).err;
     assert_eq!(info("small_house.yaml"), "");
-    assert!(info("small_house.png").starts_with("warning: small_house.png: an image does not say"));
+    assert!(
+        info("small_house.png").starts_with("warning: small_house.png: an image does not contain")
+    );
     assert_eq!(info("small_house.png --resolution 0.05"), "");
     let yaml = read(&folder, "small_house.yaml");
     write(&folder, "a.yaml", &yaml.replace("occupied_thresh: 0.65", "occupied_thresh: 0.1"));

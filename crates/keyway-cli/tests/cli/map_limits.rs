@@ -27,8 +27,8 @@ fn every_command_that_reads_maps_has_the_limit() {
         "bench scale walled.map --sides 7 --out s",
     ] {
         let refused = keyway(folder.path(), &format!("{line} --max-cells 34")).expect_code(2).err;
-        let expected = "walled.map: a map of 7 x 5 cells is larger than the limit of 34 cells; if it is meant to be \
-                        so large, raise the limit with --max-cells 35\n";
+        let expected = "walled.map: a map of 7 x 5 cells is larger than the limit of 34 cells; if this size is \
+                        intended, raise the limit with --max-cells 35\n";
         assert!(refused.ends_with(expected), "{line}: {refused}");
         keyway(folder.path(), &format!("{line} --max-cells 35")).expect_code(0);
     }

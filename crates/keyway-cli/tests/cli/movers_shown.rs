@@ -26,6 +26,6 @@ fn what_moves_is_called_so() {
 
 #[test]
 fn what_is_gone_around_is_shown_while_it_is() {
-    let label = "ground that is gone around";
+    let label = "area avoided by the route";
     assert!(!fan_says("1", label) && fan_says("4", label));
 }

@@ -278,7 +278,7 @@ fn a_robot_is_a_few_lines_and_values_are_set() {
     );
     assert!(
         refused("--as-published --set robot.cycle_s=0.2")
-            .contains("--as-published is for the robot `paper`")
+            .contains("--as-published needs the robot `paper`")
     );
 }
 

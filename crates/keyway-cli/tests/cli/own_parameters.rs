@@ -21,7 +21,7 @@ fn by_default_hsta_lowers_its_constraint_and_says_so() {
     let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0).json();
     assert_eq!(report["relaxed"], json!({"asked_m": 2.0, "used_m": 1.0}));
     let table = keyway(folder.path(), line).expect_code(0).out;
-    let text = "lowered from 2.000 m to 1.000 m, the largest that leaves a path";
+    let text = "lowered from 2.000 m to 1.000 m, the largest value with a path";
     assert!(table.contains(text), "{table}");
     let kept = format!("{line} --set hsta.l1_constraint=1 --format json");
     assert_eq!(keyway(folder.path(), &kept).expect_code(0).json()["relaxed"], Value::Null);
@@ -48,7 +48,7 @@ fn what_is_advised_works_where_it_is_advised() {
     let table = keyway(folder.path(), &format!("{compare} --set {}", advice(&table)));
     let table = table.expect_code(0).out;
     assert!(!table.contains("Not solved"), "{table}");
-    let lowered = "walled.map: hsta in 1 of 1 queries, from 2.000 m to no less than 1.000 m";
+    let lowered = "walled.map: hsta in 1 of 1 queries, from 2.000 m to at least 1.000 m";
     assert!(table.contains(lowered), "{table}");
     for bench in ["bench grid rooms.map.scen --every 100", "bench scale walled.map --sides 20"] {
         let line = format!("{bench} --planner jps --planner hsta --set {setting}");
@@ -85,7 +85,7 @@ fn in_files() {
     assert_eq!(report["config"]["planners"][1]["if_no_path"], "relax");
     let alone = "plan walled.map --start 0.5,0.5 --goal 5.5,0.5 --smoother taut --config own.toml";
     let lost = keyway(folder.path(), alone).expect_code(2).err;
-    assert!(lost.contains("own.toml: hsta: hsta is not used here; jps is"), "{lost}");
+    assert!(lost.contains("own.toml: hsta: hsta is not in use; the stack uses jps"), "{lost}");
     keyway(folder.path(), &format!("{alone} --planner hsta")).expect_code(2);
     write(&folder, "own.toml", "[hsta]\nl1 = 3.0\n");
     let wrong = keyway(folder.path(), &format!("{alone} --planner hsta")).expect_code(2).err;

@@ -394,7 +394,7 @@ fn what_a_smoother_could_not_give_is_named() {
     let bend = "plan walled.map --start 1.5,0.5 --goal 5.5,0.5 --smoother hierarchical \
                 --set smoother.safe_distance_m=0 --set smoother.control_distance_m=0.001";
     let bend = keyway(folder.path(), bend).expect_code(0).out;
-    assert!(bend.contains("a bend would turn more than 5 degrees per centimetre"), "{bend}");
+    assert!(bend.contains("a curve would turn more than 5 degrees per centimetre"), "{bend}");
 }
 
 /// The jump points reach the smoother in every command that smooths.

@@ -115,7 +115,7 @@ fn every_kind_of_file_is_named_with_its_line() {
             "a.yaml",
             " ".repeat((1 << 20) + 1),
             "map info a.yaml",
-            &["a.yaml: it holds more than 1 MiB"],
+            &["a.yaml: it is larger than the limit of 1 MiB"],
         ),
         ("a.png", "P5 1 1".into(), "map info a.png", &["a.png: line 1: the largest value"]),
         (
@@ -217,7 +217,7 @@ fn no_reader_reads_without_end() {
     for name in ["zero.png", "zero.map", "zero.yaml", "zero.scen"] {
         symlink("/dev/zero", folder.path().join(name)).unwrap();
     }
-    let least = "it holds more than";
+    let least = "it is larger than the limit of";
     for (line, limit) in [
         (format!("{PLAN} --config /dev/zero"), "16 MiB"),
         (format!("{PLAN} --prepared /dev/zero"), "256 MiB"),

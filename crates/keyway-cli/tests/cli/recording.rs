@@ -48,7 +48,7 @@ fn every_decision_of_a_recording_is_made_again() {
         }
     }
     let text = keyway(folder.path(), "replay run.mcap").expect_code(0).out;
-    assert_eq!(text, format!("run.mcap: {cycles} decisions, all the same again\n"));
+    assert_eq!(text, format!("run.mcap: {cycles} decisions, all reproduced\n"));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_decision_that_is_another_one_is_said() {
     let error = keyway(folder.path(), "replay other.mcap --format json").expect_code(2).json();
     let text = error["message"].as_str().unwrap();
     assert!(
-        text.starts_with("other.mcap: at 1.900 s (cycle 19) it decided otherwise: drive with"),
+        text.starts_with("other.mcap: at 1.900 s (cycle 19) the decision differs: drive with"),
         "{text}"
     );
 }
@@ -113,9 +113,9 @@ fn what_is_no_recording_is_refused() {
     };
     write(&folder, "diary.mcap", "dear diary");
     for (line, field, text) in [
-        ("replay diary.mcap", "RECORD.mcap", "diary.mcap: this is no MCAP file: "),
+        ("replay diary.mcap", "RECORD.mcap", "diary.mcap: this is not an MCAP file: "),
         ("replay nowhere.mcap", "RECORD.mcap", "nowhere.mcap: there is no such file"),
-        ("replay run.mcap --out shown", "--out", "opens in Foxglove or Lichtblick"),
+        ("replay run.mcap --out shown", "--out", "open it in Foxglove or Lichtblick"),
         ("replay run.mcap --explain run.mcap", "--explain", "run.mcap"),
         ("navigate --scene scenes/post.toml --record run.json", "--record", "ends in .mcap"),
     ] {
@@ -126,5 +126,5 @@ fn what_is_no_recording_is_refused() {
     mcap::WriteOptions::new().create(&mut out).unwrap().finish().unwrap();
     fs::write(folder.path().join("empty.mcap"), out.into_inner()).unwrap();
     let (_, why) = message("replay empty.mcap");
-    assert!(why.contains("there is no navigator in it"), "{why}");
+    assert!(why.contains("it contains no navigator"), "{why}");
 }

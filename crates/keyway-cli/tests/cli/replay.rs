@@ -83,7 +83,7 @@ fn the_records_are_those_of_the_runs_that_failed_however_often_it_was_killed() {
     write(&folder, &format!("killed/records/{}", FAILED[0]), "dear diary");
     let again = format!("{BATCH} --keep all --out killed --format json");
     let error = keyway(folder.path(), &again).expect_code(2).json();
-    assert!(error["message"].as_str().unwrap().contains("no record of a run"), "{error}");
+    assert!(error["message"].as_str().unwrap().contains("not a record of a run"), "{error}");
     assert_eq!(read(&folder, &format!("killed/records/{}", FAILED[0])), "dear diary");
 }
 
@@ -113,7 +113,7 @@ fn a_replay_is_the_run_as_navigate_shows_it() {
     let alone = ["why.jsonl", "drive.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
     assert!(own == alone);
     let text = run(&format!("replay {record}")).expect_code(0).out;
-    assert!(text.contains("the same run again") && text.contains("timeout"), "{text}");
+    assert!(text.contains("run reproduced") && text.contains("timeout"), "{text}");
 }
 
 /// All files but the report, which contains measured times.
@@ -173,14 +173,17 @@ fn what_is_no_longer_the_same_is_said() {
         record["report"]["trajectory"].as_array_mut().unwrap().pop();
     });
     assert!(text.contains("its trajectory had 30 rows and has 31 now"), "{text}");
-    assert!(text.contains("recorded by keyway 0.0.7, this is keyway "), "{text}");
+    assert!(text.contains("recorded by keyway 0.0.7 and replayed by keyway "), "{text}");
     // The program would drive differently: here because the robot is a different one.
     let text = changed(&|record| record["robot"]["limits"]["v_max_mps"] = json!(0.4));
     assert!(text.contains("of its trajectory was ["), "{text}");
     let text = changed(&|record| record["robot"]["cycle_s"] = json!(-1));
     assert!(text.contains("`robot.cycle_s` must be"), "{text}");
     let text = changed(&|record| drop(record.as_object_mut().unwrap().remove("config")));
-    assert!(text.contains("who drove: `robot` and `config`, as the scene has one robot"), "{text}");
+    assert!(
+        text.contains("it must contain `robot` and `config`, because the scene has one robot"),
+        "{text}"
+    );
     let text = changed(&|record| record["scene_file"]["goal"] = json!("there"));
     assert!(text.contains("this is not a record of a run"), "{text}");
     let text = changed(&|record| {
@@ -190,7 +193,7 @@ fn what_is_no_longer_the_same_is_said() {
     });
     // The scene has `[[robots]]`, although only one, and the record is that of a single robot.
     assert!(
-        text.contains("it must say who drove: `robots`, as many as the scene has, 1, and"),
+        text.contains("it must contain `robots`, one for each robot of the scene (1), and"),
         "{text}"
     );
     let text = changed(&|record| record["schema"] = json!("keyway.record/2"));

@@ -395,7 +395,7 @@ fn the_documentation_has_the_tables_that_are_written() {
     let (findings, readme) = (document("docs/lab/findings.md"), document("README.md"));
     for (text, header, columns) in [
         (&findings, "| claim | figure |", 3),
-        (&findings, "| claim | what it says |", 3),
+        (&findings, "| claim | statement |", 3),
         (&findings, "| experiment | maps tried", 1),
     ] {
         let first = |text: &str| -> Vec<Vec<String>> {
@@ -412,7 +412,7 @@ fn the_documentation_has_the_tables_that_are_written() {
         claim.push(row[5].trim_matches('*').to_owned());
     }
     of_claims.push(claim);
-    let in_short = cells_of(&findings, "| claim | what it says |");
+    let in_short = cells_of(&findings, "| claim | statement |");
     assert_eq!((of_claims.len(), in_short.len()), (31, 31));
     let count = |of: &[String], verdict: &str| of.iter().filter(|it| *it == verdict).count();
     for (figures, row) in of_claims.iter().zip(&in_short) {

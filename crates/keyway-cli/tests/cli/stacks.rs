@@ -31,7 +31,7 @@ fn what_list_prints_is_a_stack() {
     let ablation = keyway(folder.path(), &format!("{SHORT} --stack my.toml")).expect_code(0).json();
     assert_eq!(config(&ablation)["guide"]["spacing_m"], 11.05);
     let taken = keyway(folder.path(), &format!("{SHORT} --stack my.toml --explain my.toml"));
-    assert!(taken.expect_code(2).json()["message"].as_str().unwrap().contains("is a file that is"));
+    assert!(taken.expect_code(2).json()["message"].as_str().unwrap().contains("is an input file"));
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn who_comes_second_is_refused_and_changes_nothing() {
         lock.lock().unwrap();
         let refused = keyway(folder.path(), line).expect_code(2).err;
         let expected = format!(
-            "error: {}: another `keyway` is at work in this folder; wait until it has ended, or choose another \
+            "error: {}: another `keyway` is writing to this folder; wait until it has finished, or choose another \
              folder\n",
             if line.starts_with("replay") { "./small_house.keyway.0" } else { name }
         );

@@ -73,7 +73,7 @@ impl Layer for ElusiveObstacles<'_> {
             }
         }
         if self.shown().next().is_some() {
-            let label = "obstacle for a time, or hard to see";
+            let label = "temporary or hard-to-detect obstacle";
             canvas.explain(LegendEntry::new(label, LegendMark::HatchedDisc(Self::COLOR)));
         }
     }
@@ -104,7 +104,7 @@ mod tests {
         let marks = |layer: ElusiveObstacles<'_>| {
             let svg = MapPicture::new(&map).with(layer).svg().as_str().to_owned();
             let drawn = svg.matches(&format!("fill=\"{color}\"")).count();
-            (drawn, svg.contains("obstacle for a time, or hard to see"))
+            (drawn, svg.contains("temporary or hard-to-detect obstacle"))
         };
         assert_eq!(marks(ElusiveObstacles::new(&all)), (3, true));
         assert_eq!(marks(ElusiveObstacles::at(&all, 1.0)), (2, true));

@@ -52,7 +52,7 @@ impl Layer for EstimatedMovers<'_> {
         }
         if !is_empty {
             canvas.explain(LegendEntry::new(
-                "mover as tracked, to 1 s on",
+                "tracked moving obstacle, up to 1 s ahead",
                 LegendMark::Line(Self::STYLE),
             ));
         }

@@ -106,9 +106,9 @@ impl Layer for Movers<'_> {
         if !self.all.is_empty() {
             canvas.explain(LegendEntry::new("moving obstacle", LegendMark::HatchedDisc(OBSTACLE)));
             if self.end_s() > 0.0 {
-                canvas.explain(LegendEntry::new("its way", LegendMark::Line(Self::WAY)));
+                canvas.explain(LegendEntry::new("its path", LegendMark::Line(Self::WAY)));
                 canvas.explain(LegendEntry::new(
-                    "where it is at a time [s]",
+                    "its position at a time [s]",
                     LegendMark::Time(OBSTACLE),
                 ));
             }

@@ -40,7 +40,7 @@ impl Layer for WalkedGround<'_> {
         }
         canvas.writer().close();
         canvas.explain(LegendEntry::new(
-            "ground that is gone around",
+            "area avoided by the route",
             LegendMark::Area(Self::ON_FREE),
         ));
     }

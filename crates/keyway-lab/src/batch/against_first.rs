@@ -121,5 +121,5 @@ pub fn against_first_latex(all: &[AgainstFirst]) -> Option<String> {
     Some(about + &latex_table(&WITH_UNITS, &lines, 1))
 }
 
-const ABOUT: &str = "reached alone: runs that it alone and that the first alone brought to the goal; time: median of the differences [s] and\n\
-                     its 95 % interval, where both did; p: McNemar's exact test, Wilcoxon's signed ranks, both corrected (Holm).";
+const ABOUT: &str = "reached alone: runs in which only this stack : only the first one reached the goal; time: median of the differences [s]\n\
+                     and its 95 % interval, if both did; p: McNemar's exact test, Wilcoxon's signed-rank test, both corrected (Holm).";

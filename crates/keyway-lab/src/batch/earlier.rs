@@ -97,7 +97,7 @@ fn read_part(folder: &Path) -> Result<Option<Part>, PartsError> {
 
 /// Reads the lines of a file of results.
 fn read_entries<E: DeserializeOwned>(folder: &Path, name: &str) -> Result<Vec<E>, PartsError> {
-    const NOT_ONE: &str = "it is not from a batch of this version; make the batch again";
+    const NOT_ONE: &str = "it is not from a batch of this version of Keyway; run the batch again";
     let path = folder.join(name);
     let lines = |text: Vec<u8>| -> Result<Vec<E>, LinesError> { entries(&path, &text, NOT_ONE) };
     read_lines(&path).and_then(lines).map_err(PartsError::Lines)

@@ -43,7 +43,7 @@ pub enum BatchError {
     },
     /// Two of the `scenes` have the same name.
     #[error(
-        "two scenes are named `{scene}`, {} and {}; name each file or folder once, and files of one name by a folder that holds both",
+        "two scenes are named `{scene}`, {} and {}; give each file or folder once, and files of the same name through a folder that contains both",
         paths[0].display(),
         paths[1].display()
     )]
@@ -62,7 +62,7 @@ pub enum BatchError {
         reason: io::Error,
     },
     /// A folder of `scenes` and its subfolders hold no scene.
-    #[error("{}: there is no scene (*.toml) in this folder and its subfolders; name a scene file, or a folder that holds some", path.display())]
+    #[error("{}: there is no scene (*.toml) in this folder and its subfolders; give a scene file or a folder with scene files", path.display())]
     EmptyFolder {
         /// The folder.
         path: PathBuf,
@@ -71,7 +71,7 @@ pub enum BatchError {
     #[error(transparent)]
     Scene(SceneFileError),
     /// A folder of `scenes` holds another file, such as a stack, to which no scene refers.
-    #[error("{0}; move it to another folder, or name the scenes one by one")]
+    #[error("{0}; move the file to another folder, or give the scenes one by one")]
     OtherFile(#[source] SceneFileError),
     /// `disturbances` cannot be used.
     #[error(transparent)]
@@ -112,13 +112,13 @@ pub enum BatchError {
         reason: EpisodeError,
     },
     /// A file that is no record has the name of a record that is to be written to `out`.
-    #[error("{}: it is in the way, and no record of a run; move it away", path.display())]
+    #[error("{}: this file is not a record of a run and is not overwritten; move it away", path.display())]
     RecordInTheWay {
         /// The file.
         path: PathBuf,
     },
     /// `out` is one of the `parts`.
-    #[error("{} is one of the folders that are read; choose another", out.display())]
+    #[error("{} is one of the folders to merge; choose another one", out.display())]
     OutIsPart {
         /// The folder.
         out: PathBuf,

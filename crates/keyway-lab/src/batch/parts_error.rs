@@ -12,7 +12,7 @@ use thiserror::Error;
 pub enum PartsError {
     /// The batch of a folder has not ended.
     #[error(
-        "{}: the batch has not ended; start it again, and it goes on where it was",
+        "{}: the batch has not finished; start it again to resume it",
         journal.display()
     )]
     NotEnded {
@@ -23,14 +23,14 @@ pub enum PartsError {
     #[error("{0}{advice}", advice = advice(.0))]
     Lines(#[source] LinesError),
     /// The times are not those of the runs.
-    #[error("{}: it has not as many lines as runs.jsonl; make the batch again", times.display())]
+    #[error("{}: its number of lines differs from that of runs.jsonl; run the batch again", times.display())]
     Times {
         /// The file of times.
         times: PathBuf,
     },
     /// The times or the robots of a run are missing.
     #[error(
-        "{}: line {line}: times.jsonl or robots.jsonl lack what belongs to it; make the batch \
+        "{}: line {line}: times.jsonl or robots.jsonl have no entries for this run; run the batch \
          again",
         runs.display()
     )]
@@ -45,7 +45,7 @@ pub enum PartsError {
     File(#[from] TextFileError),
     /// The description of a part is invalid.
     #[error(
-        "{}: it does not say which part of a batch this is, of at most {} parts",
+        "{}: it does not contain a valid part of a batch, of at most {} parts",
         path.display(),
         Shard::MOST
     )]
@@ -56,7 +56,7 @@ pub enum PartsError {
     /// Two folders hold the same run: a scene of one name with the same stack and seed.
     #[error(
         "the run of {scene} with {stack} and seed {seed} {} {} and {}",
-        if *is_same { "is in both" } else { "was made of different inputs in" },
+        if *is_same { "is in both" } else { "has different inputs in" },
         folders[0].display(),
         folders[1].display()
     )]
@@ -74,8 +74,8 @@ pub enum PartsError {
     },
     /// The folders do not hold all parts of a batch.
     #[error(
-        "of the batch of which {} is a part, {} is not among the folders; parts that were made \
-         with other scenes, stacks or seeds are of another batch",
+        "{}: other parts of the same batch are missing: {}; give the folders of all parts, run with the \
+         same scenes, stacks and seeds",
         folder.display(),
         shown(missing, *of)
     )]
@@ -89,7 +89,7 @@ pub enum PartsError {
     },
     /// The parts of a batch were changed.
     #[error(
-        "{}: the parts are not those that the batch was divided into; make them again",
+        "{}: the parts do not match the division of the batch; run them again",
         folder.display()
     )]
     OtherParts {
@@ -100,7 +100,7 @@ pub enum PartsError {
 
 const fn advice(error: &LinesError) -> &'static str {
     match error {
-        LinesError::Read(_) => "; it is written when a batch has ended",
+        LinesError::Read(_) => "; it is written when a batch has finished",
         _ => "",
     }
 }

@@ -65,7 +65,6 @@ impl Record {
 }
 
 impl JournalEntry for Record {
-    const NOT_ONE: &'static str =
-        "it is not the journal of a batch of this version; move it away, or choose another folder";
+    const NOT_ONE: &'static str = "it is not the journal of a batch of this version of Keyway; move it away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"run\":{";
 }

@@ -51,7 +51,7 @@ impl StackCycles {
 pub fn cycles_line(cycles: &[StackCycles]) -> Option<String> {
     let of = |one: &StackCycles| format!("{} {}", one.stack, number(one.mean_cycle_us, 0));
     let all: Vec<String> = cycles.iter().map(of).collect();
-    let text = format!("by the clock, a decision took [us]: {}", all.join(", "));
+    let text = format!("wall-clock time per decision [us]: {}", all.join(", "));
     (cycles.len() > 1).then(|| paragraph(&text))
 }
 

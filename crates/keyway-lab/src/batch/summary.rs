@@ -204,9 +204,9 @@ pub(super) fn markdown_table(header: &[&str], lines: impl Iterator<Item = Vec<St
     head + &line + &lines.map(row).collect::<String>()
 }
 
-const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while the robot drove + while it stood; stuck: also time limits, and\n\
-                     where there was no path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached\n\
-                     the goal, the score is that of all runs; in brackets 95 % intervals of the means.";
+const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while driving + while stationary; stuck: includes timeouts and runs\n\
+                     without a path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached the goal,\n\
+                     the score is the mean of all runs; in brackets: 95 % intervals of the means.";
 
-const ABOUT_ROBOTS: &str = "Where several robots drive, a run has reached the goal when all of them have: its time is that of the last one, its\n\
-                            length that of all together, its clearance the smallest. robots [%]: robots that reached their own goals.";
+const ABOUT_ROBOTS: &str = "With several robots, a run reaches the goal if all robots do: its time is that of the last robot, its length the sum,\n\
+                            its clearance the smallest. robots [%]: robots that reached their own goals.";

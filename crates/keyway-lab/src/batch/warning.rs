@@ -8,14 +8,14 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum BatchWarning {
     /// A scene has several seeds but no randomness.
-    #[error("{scene}: nothing in it is random; every seed is the same run")]
+    #[error("{scene}: nothing in the scene is random, so every seed gives the same run")]
     NotRandom {
         /// The scene.
         scene: String,
     },
     /// The system cannot prevent other programs from writing results at the same time.
     #[error(
-        "{}: files cannot be locked here; see to it that nobody else writes there",
+        "{}: files cannot be locked here; make sure that no other program writes here",
         folder.display()
     )]
     Unguarded {

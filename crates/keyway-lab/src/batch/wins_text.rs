@@ -137,9 +137,9 @@ impl Contest<'_> {
 }
 
 const ABOUT: &str = "reached: all runs; the other measures: runs in which both reached the goal. time, length: less is better; clearance: the\n\
-                     least of a run, more is better; path, speed: smoothness by MRPB (f_ps, f_vs), less is better. equal: within 1 %.";
+                     smallest of a run, more is better; path, speed: smoothness by MRPB (f_ps, f_vs), less is better. equal: within 1 %.";
 
-const ABOUT_SCENES: &str = "In brackets: the best of the stacks that are better, its value, and how many are better. time [s], length [m],\n\
+const ABOUT_SCENES: &str = "In brackets: the best of the better stacks, its value, and the number of better stacks. time [s], length [m],\n\
                             clearance [m], path [m²], speed [m/s²].";
 
 #[cfg(test)]

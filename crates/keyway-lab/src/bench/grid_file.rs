@@ -31,7 +31,7 @@ pub enum GridFileError {
     #[error(transparent)]
     Scenarios(MapFileError),
     /// No map is beside the scenario file, or in the folder of maps.
-    #[error("{}: there is no map, expected {}", path.display(), searched(expected))]
+    #[error("{}: its map was not found, expected {}", path.display(), searched(expected))]
     NoMap {
         /// The scenario file.
         path: PathBuf,

@@ -39,7 +39,7 @@ pub(crate) enum Got {
 pub fn mistakes_note(mistakes: &[Mistake]) -> Option<String> {
     let mut lines: Vec<String> = mistakes.iter().take(LINES).map(line).collect();
     if let Some(more) = mistakes.len().checked_sub(LINES).filter(|&more| more > 0) {
-        lines.push(format!("and {more} more; `--format json` has them all"));
+        lines.push(format!("and {more} more; `--format json` lists all of them"));
     }
     let head = "\nWrong answers (cells are counted from the lower left):";
     (!lines.is_empty()).then(|| format!("{head}\n  {}", lines.join("\n  ")))
@@ -57,7 +57,7 @@ fn line(mistake: &Mistake) -> String {
         Got::Path => format!("one{}", cells(mistake.got_cells)),
         Got::IllegalPath => "an illegal one".to_owned(),
         Got::NoPath => "none".to_owned(),
-        Got::Missed => "a path that it missed".to_owned(),
+        Got::Missed => "a report that it missed the path".to_owned(),
     };
     format!(
         "{scenarios}, line {line}: {planner}, {start} to {goal}: expected {expected}, got {got}"

@@ -171,7 +171,7 @@ static HALF_ENCLOSED: Experiment = Experiment {
         ends: HALF_ENCLOSED_ENDS,
         map: include_str!("maps/s1_half_enclosed.map"),
     }),
-    reconstruction: Err("nothing is published of its map but that it encloses"),
+    reconstruction: Err("only the enclosure of its map is published"),
 };
 const HALF_ENCLOSED_ENDS: [Cell; 2] = [Cell::new(2, 14), Cell::new(27, 14)];
 
@@ -328,7 +328,7 @@ pub(super) static CLAIMS: [Claim; 8] = [
     Claim {
         id: "S1-8",
         paper: PAPER,
-        statement: "Without and with random obstacles the way of the fused robot is shorter, and its speed steadier, than with the \
+        statement: "Without and with random obstacles the trajectory of the fused robot is shorter, and its speed steadier, than with the \
                     paper's reference 14",
         figures: &[
             Figure::lower(Measure::DrivenLength, FUSED, REF14, None),

@@ -136,7 +136,7 @@ pub(super) static CLAIMS: [Claim; 6] = [
     Claim {
         id: "S2-1",
         paper: PAPER,
-        statement: "With the accumulated cost in the place of the straight line planning takes less time, and the path is \
+        statement: "With the accumulated cost instead of the straight-line distance, planning takes less time, and the path is \
                     better",
         figures: &[
             Figure::lower(Measure::PlanningTime, ACCUMULATED, TRADITIONAL, None),

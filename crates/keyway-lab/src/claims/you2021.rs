@@ -157,7 +157,7 @@ pub(super) static CLAIMS: [Claim; 7] = [
     Claim {
         id: "S0-3",
         paper: PAPER,
-        statement: "The fused planner arrives sooner than the classic DWA, on a shorter way and at a higher mean speed",
+        statement: "The fused planner arrives sooner than the classic DWA, on a shorter trajectory and at a higher mean speed",
         figures: &[
             Figure::lower(Measure::RunTime, FUSED, TO_GOAL, Some([47.90, 41.39])),
             Figure::lower(Measure::DrivenLength, FUSED, TO_GOAL, Some([29.843, 28.723])),

@@ -204,7 +204,7 @@ pub(super) static CLAIMS: [Claim; 10] = [
     Claim {
         id: "S4-2",
         paper: PAPER,
-        statement: "In a turning roadway with unknown obstacles the way is shorter than those of RRT and 4-neighbour A*, has \
+        statement: "In a turning roadway with unknown obstacles the path is shorter than those of RRT and 4-neighbour A*, has \
                     no heading jumps and keeps its distance",
         figures: &of_roadway([38.0, 51.0], [66.78, 77.0, 60.09], 1.11),
         experiment: &TURNING_ROADWAY,
@@ -212,7 +212,7 @@ pub(super) static CLAIMS: [Claim; 10] = [
     Claim {
         id: "S4-3",
         paper: PAPER,
-        statement: "In a coal mine the way is shorter than those of A*, Dijkstra and the paper's reference 20, takes less time \
+        statement: "In a coal mine the path is shorter than those of A*, Dijkstra and the paper's reference 20, takes less time \
                     to search, and keeps its distance",
         figures: &[
             Figure::lower(Measure::WayLength, GUIDED, PATH_OF_ASTAR, Some([86.31, 73.68])),
@@ -285,7 +285,7 @@ pub(super) static CLAIMS: [Claim; 10] = [
     Claim {
         id: "S4-9",
         paper: PAPER,
-        statement: "In a roadway with consecutive turns and unknown obstacles the way is shorter than those of RRT and \
+        statement: "In a roadway with consecutive turns and unknown obstacles the path is shorter than those of RRT and \
                     4-neighbour A*, has no heading jumps and keeps its distance",
         figures: &of_roadway([46.0, 5.0], [77.99, 80.0, 69.72], 1.17),
         experiment: &CONSECUTIVE_TURNS,
@@ -293,7 +293,7 @@ pub(super) static CLAIMS: [Claim; 10] = [
     Claim {
         id: "S4-10",
         paper: PAPER,
-        statement: "From one roadway into another, past unknown obstacles, the way is shorter than those of RRT and \
+        statement: "From one roadway into another, past unknown obstacles, the path is shorter than those of RRT and \
                     4-neighbour A*, has no heading jumps and keeps its distance",
         figures: &of_roadway([61.0, 7.0], [90.39, 88.0, 80.94], 1.09),
         experiment: &ROADWAY_TO_ROADWAY,

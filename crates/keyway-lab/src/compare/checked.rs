@@ -100,7 +100,7 @@ mod tests {
             (
                 request(|it| it.planners = names(&["jps", "jps"])),
                 "planners",
-                "planners: jps is named twice",
+                "planners: jps is given twice",
             ),
             (
                 request(|it| it.smoothers = names(&["none", "all"])),
@@ -146,7 +146,7 @@ mod tests {
             (
                 request(|it| set(it, "hsta.l1_constraint=1")),
                 "parameters",
-                "hsta.l1_constraint: not compared here; the planners are jps, theta-star, ",
+                "hsta.l1_constraint: this part is not compared; the planners are jps, theta-star, ",
             ),
             (
                 request(|it| {
@@ -161,7 +161,7 @@ mod tests {
                     it.columns = names(&["plan"]);
                 }),
                 "columns",
-                "columns: plan is a time, and times are left out",
+                "columns: plan is a time, but times are omitted",
             ),
         ] {
             let error = request.check().unwrap_err();

@@ -119,7 +119,7 @@ impl Column {
 pub enum ColumnError {
     /// No column has this name.
     #[error(
-        "`{name}` is no column; there are {}{}",
+        "there is no column `{name}`; expected one of {}{}",
         COLUMNS.map(|column| column.id).join(", "),
         did_you_mean(name, COLUMNS.map(|column| column.id))
     )]
@@ -128,7 +128,7 @@ pub enum ColumnError {
         name: String,
     },
     /// The column shows times, which were not measured.
-    #[error("{name} is a time, and times are left out")]
+    #[error("{name} is a time, but times are omitted")]
     Time {
         /// Name of the column.
         name: String,

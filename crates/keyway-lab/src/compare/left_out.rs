@@ -21,7 +21,7 @@ impl LeftOut {
         let reason = match error {
             // The text is the same for every such planner.
             PlanError::NeedsUniformCost { .. } => {
-                "needs one cost for all cells, so unknown cells blocked or free".to_owned()
+                "needs one cost for all cells; treat unknown cells as blocked or free".to_owned()
             }
             error => error.to_string(),
         };

@@ -7,7 +7,7 @@ use keyway::plan::{PlanNote, Relaxed};
 /// Text below the table; `None` if every constraint was kept.
 pub fn lowered_note(maps: &[Compared]) -> Option<String> {
     let lines: Vec<String> = maps.iter().flat_map(of_map).collect();
-    let title = "\nConstraints lowered as far as was needed to leave a path:";
+    let title = "\nConstraints lowered until a path existed:";
     (!lines.is_empty()).then(|| format!("{title}\n  {}", lines.join("\n  ")))
 }
 
@@ -38,6 +38,6 @@ fn line(map: &str, entry: &ContestEntry) -> Option<String> {
     let least_m = lowered.iter().map(|one| one.used_m).fold(f64::INFINITY, f64::min);
     let (count, all, planner) = (lowered.len(), entry.answers.len(), entry.planner);
     Some(format!(
-        "{map}: {planner} in {count} of {all} queries, from {asked_m:.3} m to no less than {least_m:.3} m"
+        "{map}: {planner} in {count} of {all} queries, from {asked_m:.3} m to at least {least_m:.3} m"
     ))
 }

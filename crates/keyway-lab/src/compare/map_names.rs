@@ -19,7 +19,7 @@ struct MapName {
 
 /// Two paths of one map.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{} and {} are the same map; name it once", first.display(), second.display())]
+#[error("{} and {} are the same map; give it once", first.display(), second.display())]
 pub struct SameMap {
     /// First path.
     pub first: PathBuf,

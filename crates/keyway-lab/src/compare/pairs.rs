@@ -76,13 +76,13 @@ pub enum PairsFault {
     #[error(transparent)]
     Ambiguous(#[from] AmbiguousMap),
     /// No line is for the map.
-    #[error("the column `map` names {map} in no line")]
+    #[error("no line has {map} in the column `map`")]
     NoneOfMap {
         /// Name of the map.
         map: String,
     },
     /// The file has no pair.
-    #[error("there is no pair, {EXPECTED}")]
+    #[error("there are no pairs, {EXPECTED}")]
     Empty,
 }
 

@@ -75,14 +75,14 @@ pub enum QueryError {
         map: PathBuf,
     },
     /// The scenario file is empty.
-    #[error("{}: there is no scenario", path.display())]
+    #[error("{}: it has no scenarios", path.display())]
     NoScenario {
         /// The scenario file.
         path: PathBuf,
     },
     /// The map has no positions for random queries.
     #[error(
-        "{} has no two free cells that are connected{}",
+        "{} has no two connected free cells{}",
         map.display(),
         clearance_text(*clearance_m)
     )]
@@ -96,7 +96,7 @@ pub enum QueryError {
 
 fn clearance_text(clearance_m: f64) -> String {
     if clearance_m > 0.0 {
-        format!("; the clearance of {clearance_m} m may be too large for it")
+        format!("; the clearance of {clearance_m} m may be too large for this map")
     } else {
         String::new()
     }

@@ -57,7 +57,7 @@ pub enum CompareRequestError {
     },
     /// A parameter belongs to a part that is not compared.
     #[error(
-        "{path}: not compared here; the planners are {}, the smoothers {}",
+        "{path}: this part is not compared; the planners are {}, the smoothers {}",
         planners.join(", "), smoothers.join(", ")
     )]
     NotCompared {
@@ -70,8 +70,8 @@ pub enum CompareRequestError {
     },
     /// A parameter renames a compared part.
     #[error(
-        "parameters: `{path}` cannot be set in a comparison; planners and smoothers name what is \
-         compared"
+        "parameters: `{path}` cannot be set in a comparison; use planners and smoothers to select \
+         what is compared"
     )]
     Renamed {
         /// Path of the parameter.
@@ -99,7 +99,7 @@ pub enum NamesError {
         all: &'static str,
     },
     /// A name is repeated.
-    #[error("{name} is named twice")]
+    #[error("{name} is given twice")]
     Repeated {
         /// The name.
         name: String,

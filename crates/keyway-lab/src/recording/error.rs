@@ -25,7 +25,7 @@ pub enum RecordingError {
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The file is no MCAP file.
-    #[error("{}: this is no MCAP file: {reason}", path.display())]
+    #[error("{}: this is not an MCAP file: {reason}", path.display())]
     NoMcap {
         /// The file.
         path: PathBuf,
@@ -34,7 +34,7 @@ pub enum RecordingError {
     },
     /// The file holds no flight.
     #[error(
-        "{}: there is no navigator in it (topic {}); `keyway navigate --record` makes recordings that can be decided again",
+        "{}: it contains no navigator (topic {}); make recordings for replay with `keyway navigate --record`",
         path.display(), super::flight::SNAPSHOT
     )]
     NoFlight {
@@ -54,7 +54,7 @@ pub enum RecordingError {
         reason: String,
     },
     /// The navigator cannot be restored.
-    #[error("{}: its navigator cannot be taken up again: {reason}", path.display())]
+    #[error("{}: its navigator cannot be restored: {reason}", path.display())]
     Restore {
         /// The file.
         path: PathBuf,
@@ -63,7 +63,7 @@ pub enum RecordingError {
     },
     /// A decision differs from the recorded one.
     #[error(
-        "{}: at {stamp_s:.3} s (cycle {cycle}) it decided otherwise: {recorded} in the recording, {made} now",
+        "{}: at {stamp_s:.3} s (cycle {cycle}) the decision differs: {recorded} in the recording, {made} now",
         path.display()
     )]
     Differs {

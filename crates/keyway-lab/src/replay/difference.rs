@@ -17,9 +17,7 @@ pub enum Difference {
         made: String,
     },
     /// One run is longer than the other.
-    #[error(
-        "its trajectory had {recorded} rows and has {made} now; those that both have are the same"
-    )]
+    #[error("its trajectory had {recorded} rows and has {made} now; the common rows are the same")]
     Length {
         /// Rows in the record.
         recorded: usize,

@@ -17,7 +17,7 @@ pub enum ReplayError {
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The file is not a record.
-    #[error("{}: this is not a record of a run, as a batch stores it: {reason}", path.display())]
+    #[error("{}: this is not a record of a run, as written by a batch: {reason}", path.display())]
     Content {
         /// The file.
         path: PathBuf,
@@ -49,7 +49,7 @@ pub enum ReplayError {
         reason: ConfigError,
     },
     /// The record does not have the robots of its scene.
-    #[error("{}: it must say who drove: {}", path.display(), drivers(*robots))]
+    #[error("{}: it must contain {}", path.display(), drivers(*robots))]
     Drivers {
         /// The record.
         path: PathBuf,
@@ -57,7 +57,7 @@ pub enum ReplayError {
         robots: usize,
     },
     /// The record has neither a map file nor a generated map.
-    #[error("{}: it does not say where its map is", path.display())]
+    #[error("{}: it contains neither the path of its map nor a generated map", path.display())]
     NoMap {
         /// The record.
         path: PathBuf,
@@ -83,8 +83,8 @@ pub enum ReplayError {
     },
     /// The run differs from the recorded one.
     #[error(
-        "{}: this program makes another run of it: {}{difference}; it was recorded by keyway \
-         {recorded_by}, this is keyway {}",
+        "{}: the replayed run differs from the record: {}{difference}; it was recorded by keyway \
+         {recorded_by} and replayed by keyway {}",
         path.display(),
         robot.map_or_else(String::new, |index| format!("robot {index}: ")),
         Inputs::VERSION
@@ -104,7 +104,9 @@ pub enum ReplayError {
 /// Returns the fields that list the robots and their stacks.
 fn drivers(robots: usize) -> String {
     if robots == 0 {
-        return "`robot` and `config`, as the scene has one robot".to_owned();
+        return "`robot` and `config`, because the scene has one robot".to_owned();
     }
-    format!("`robots`, as many as the scene has, {robots}, and neither `robot` nor `config`")
+    format!(
+        "`robots`, one for each robot of the scene ({robots}), and neither `robot` nor `config`"
+    )
 }

@@ -12,8 +12,8 @@ use thiserror::Error;
 pub enum ReproduceError {
     /// There is no claim of this name.
     #[error(
-        "there is no claim `{name}`; expected one such as S0-1, or s0, s1, s2, s4 or all; all of \
-         them: {}",
+        "there is no claim `{name}`; expected a claim such as S0-1, a paper (s0, s1, s2, s4) or all; the \
+         claims are {}",
         Claim::all().map(|claim| claim.id).collect::<Vec<_>>().join(", ")
     )]
     NoClaim {

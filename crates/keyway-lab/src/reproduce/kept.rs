@@ -35,8 +35,8 @@ pub enum MapGroup {
 }
 
 impl JournalEntry for MapLine {
-    const NOT_ONE: &'static str = "it is not the journal of a reproduction of this version; move it \
-                                   away, or choose another folder";
+    const NOT_ONE: &'static str = "it is not the journal of a reproduction of this version of Keyway; \
+                                   move it away, or choose another folder";
     const BEGIN: &'static [u8] = b"{\"experiment\":";
 }
 

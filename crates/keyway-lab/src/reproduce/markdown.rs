@@ -15,11 +15,8 @@ use std::ops::Range;
 pub(super) fn markdown(report: &ReproduceReport) -> String {
     let ReproduceReport { claims, experiments, ablations, .. } = report;
     let mut text = format!("# Tables\n\n{}\n\n", counted(claims));
-    let in_short = table(
-        &["claim", "what it says", "published", "measured", "verdict"],
-        2..4,
-        in_short(claims),
-    );
+    let in_short =
+        table(&["claim", "statement", "published", "measured", "verdict"], 2..4, in_short(claims));
     let figures = table(
         &["claim", "figure", "published", "measured", "on maps that fit", "verdict"],
         2..5,
@@ -64,7 +61,7 @@ fn counted(claims: &[ClaimReport]) -> String {
     let counts = FigureCounts::of(figures.filter_map(|figure| figure.verdict));
     let judged = counts.holds + counts.does_not_hold + counts.undecided;
     format!(
-        "Of {} claims {}. Of their {judged} figures that need no clock: {counts}.",
+        "Of {} claims {}. Of their {judged} figures that are not times: {counts}.",
         claims.len(),
         kinds.join(", ")
     )

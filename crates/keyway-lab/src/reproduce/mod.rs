@@ -207,8 +207,8 @@ mod tests {
         assert_eq!(with_parts.ablations.len(), 2);
         assert!(both.check().unwrap().ablations.is_empty());
         let error = request(&["S0-1", "S9"]).check().unwrap_err();
-        let text = "there is no claim `S9`; expected one such as S0-1, or s0, s1, s2, s4 or all; \
-                    all of them: S0-1, S0-2";
+        let text = "there is no claim `S9`; expected a claim such as S0-1, a paper (s0, s1, s2, s4) or all; \
+                    the claims are S0-1, S0-2";
         assert!(error.to_string().starts_with(text), "{error}");
         assert_eq!(error.field(), Some("claims"));
         let few = ReproduceRequest { maps: 1, ..request(&["S0-1"]) }.check().unwrap_err();

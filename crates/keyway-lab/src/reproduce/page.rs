@@ -65,14 +65,14 @@ pub(super) fn page(report: &ReproduceReport, parts: &PageParts) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width";
-                title { "Claims of the papers, measured again" }
+                title { "Reproduction of the papers' claims" }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                h1 { "Claims of the papers, measured again" }
+                h1 { "Reproduction of the papers' claims" }
                 p {
                     "Keyway " (Inputs::VERSION) ", " (report.maps) " maps each from seed "
-                    (report.seed) " on, " (times) "."
+                    (report.seed) ", " (times) "."
                 }
                 p { (VERDICT_RULE) }
                 (headline(&report.claims))
@@ -129,7 +129,7 @@ fn claim_section(
             p {
                 "Judged " @match claim.published {
                     Some(_) => "against published figures",
-                    None => "by the sign alone",
+                    None => "by the sign of the change alone",
                 }
                 ". Experiment " a href={ "#" (experiment) } { (experiment) } ", "
                 (claim.family.maps) " maps, " (claim.family.left_out) " left out. Code: "
@@ -167,8 +167,8 @@ fn reconstruction(id: &str, found: &ReconstructedReport) -> Markup {
     let said = |baseline: &Baseline| format!("{}: {}", baseline.name, baseline.published);
     html! {
         p {
-            "Maps that fit what is published of the baselines (" (found.name) "): "
-            (found.seeds.len()) " of " (found.tried) " tried, of which " (found.maps) " count. "
+            "Maps that fit the published figures of the baselines (" (found.name) "): "
+            (found.seeds.len()) " of " (found.tried) " tried; " (found.maps) " of them count. "
             (baselines.iter().map(said).collect::<Vec<_>>().join("; ")) "."
         }
     }
@@ -191,7 +191,7 @@ fn experiment_section(experiment: &ExperimentReport, figures: &[PageFigure]) -> 
     html! {
         section {
             h2 id=(name) { "Experiment " (name) }
-            p { (about) ". " (maps) " maps count, " (left_out) " were left out." }
+            p { (about) ". " (maps) " maps count; " (left_out) " were left out." }
             table {
                 thead { tr {
                     th { "method" } th { "succeeded" } th { "expanded" } th { "length [m]" }

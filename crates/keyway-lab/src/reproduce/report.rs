@@ -6,12 +6,12 @@ use crate::claims::{AblationReport, Claim, ClaimReport, ExperimentReport};
 use serde::Serialize;
 
 /// Rule of the verdicts, in words; it accompanies every list of verdicts.
-pub(super) const VERDICT_RULE: &str = "A figure holds when the 95 % interval of its mean change over \
-    the maps lies on the side that the paper says, and the mean is at least half of the published \
-    change, if there is one; it does not hold when the interval lies on the other side, or below \
-    that half; otherwise it is undecided. What is to be so always has to be so on more than nine \
-    maps in ten, with certainty. Times are reported and not judged. A claim holds when all of its \
-    judged figures do, and does not hold when none does and some do not; otherwise it is mixed.";
+pub(super) const VERDICT_RULE: &str = "A figure holds if the 95 % interval of its mean change over \
+    the maps lies on the side that the paper states, and the mean is at least half of the published \
+    change, if there is one; it does not hold if the interval lies on the other side, or below that \
+    half; otherwise it is undecided. A statement about all maps holds if it is true on significantly \
+    more than nine maps in ten. Times are reported, but not judged. A claim holds if all of its \
+    judged figures hold, and does not hold if none holds and some do not; otherwise it is mixed.";
 
 /// Report `keyway.reproduce/2`.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -28,8 +28,8 @@ fn lines(claim: &ClaimReport) -> Vec<Vec<String>> {
 /// Texts below the table: the number of maps of each experiment, and claims that are not measured.
 pub fn claims_notes(report: &ReproduceReport) -> Vec<String> {
     let mut notes = vec![paragraph(
-        "\nMeasured: mean over the maps of the change on each, and its 95 % interval. Maps, and how \
-         many more were left out because a method found no path, or did not reach its goal:",
+        "\nMeasured: mean change over the maps, and its 95 % interval. Number of maps, and of others that \
+         were left out because a method found no path or did not reach its goal:",
     )];
     notes.extend(report.experiments.iter().map(|one| {
         let ExperimentReport { experiment, about, maps, left_out, .. } = one;

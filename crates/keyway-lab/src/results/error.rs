@@ -11,8 +11,8 @@ use thiserror::Error;
 pub enum ResultsError {
     /// A file that Keyway did not write has the name of a result.
     #[error(
-        "{} is in the way: Keyway did not write it, or it has been changed since; it is not \
-         overwritten; delete it or move it away, or choose another folder",
+        "{} is in the way: Keyway did not write it, or it was changed since, so it is not overwritten; \
+         delete it or move it away, or choose another folder",
         path.display()
     )]
     InTheWay {
@@ -26,14 +26,14 @@ pub enum ResultsError {
         path: PathBuf,
     },
     /// The path of the journal is not a file.
-    #[error("{}: it is no file; move it away, or choose another folder", path.display())]
+    #[error("{}: it is not a file; move it away, or choose another folder", path.display())]
     NoFile {
         /// The path.
         path: PathBuf,
     },
     /// Another program writes into the folder.
     #[error(
-        "{}: another `keyway` is at work in this folder; wait until it has ended, or choose another \
+        "{}: another `keyway` is writing to this folder; wait until it has finished, or choose another \
          folder",
         path.display()
     )]
@@ -43,7 +43,7 @@ pub enum ResultsError {
     },
     /// Another program writes the file.
     #[error(
-        "{}: another `keyway` is writing this file; wait until it has ended, or choose another name",
+        "{}: another `keyway` is writing this file; wait until it has finished, or choose another name",
         path.display()
     )]
     FileBusy {

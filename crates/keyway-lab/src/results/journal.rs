@@ -135,7 +135,10 @@ mod tests {
         let path = folder.path().join(JOURNAL_NAME);
         let first = open(folder.path()).unwrap();
         let Err(refused) = open(folder.path()) else { panic!("it is open twice") };
-        assert!(refused.to_string().contains("another `keyway` is at work"), "{refused:?}");
+        assert!(
+            refused.to_string().contains("another `keyway` is writing to this folder"),
+            "{refused:?}"
+        );
         assert!(path.exists());
         drop(first);
         assert!(!path.exists());

@@ -20,7 +20,7 @@ pub enum LinesError {
     Read(#[from] ReadError),
     /// A line is too long.
     #[error(
-        "{}: line {line} holds {bytes} bytes, more than the {} MiB that a line may have",
+        "{}: line {line} has {bytes} bytes, more than the limit of {} MiB",
         path.display(),
         MAX_LINE_BYTES >> 20
     )]
@@ -95,15 +95,11 @@ mod tests {
         assert_eq!(read_lines(&path).unwrap().len(), longest.len() + 4);
         fs::write(&path, format!("a\n{longest}x\nb")).unwrap();
         let error = read_lines(&path).unwrap_err().to_string();
-        let expected =
-            "a.jsonl: line 2 holds 16777217 bytes, more than the 16 MiB that a line may have";
+        let expected = "a.jsonl: line 2 has 16777217 bytes, more than the limit of 16 MiB";
         assert!(error.ends_with(expected), "{error}");
         File::options().write(true).open(&path).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
         let error = read_lines(&path).unwrap_err().to_string();
-        assert!(
-            error.ends_with("a.jsonl: it holds more than 4 GiB, the most that is read here"),
-            "{error}"
-        );
+        assert!(error.ends_with("a.jsonl: it is larger than the limit of 4 GiB"), "{error}");
     }
 
     #[test]

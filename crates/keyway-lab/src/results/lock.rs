@@ -149,8 +149,8 @@ mod tests {
         let path = folder.path().join("a/b");
         let first = OutputLock::of_folder(&path).unwrap();
         let refused = OutputLock::of_folder(&path).unwrap_err();
-        let expected = "another `keyway` is at work in this folder; wait until it has ended, or choose \
-                        another folder";
+        let expected = "another `keyway` is writing to this folder; wait until it has finished, or \
+                        choose another folder";
         assert!(refused.to_string().ends_with(expected), "{refused}");
         assert!(path.join(OutputLock::NAME).exists(), "the one that was refused removed nothing");
         drop(first);

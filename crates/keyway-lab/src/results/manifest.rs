@@ -47,8 +47,8 @@ pub enum ManifestError {
     },
 }
 
-const ADVICE: &str = "this is the list of the files that Keyway wrote; if it is damaged, remove it, as there \
-                      is a copy beside it; without one remove the results, too, or choose another folder";
+const ADVICE: &str = "this file lists the files that Keyway wrote; if it is damaged, delete it: Keyway uses the \
+                      copy beside it; without a copy delete the results, too, or choose another folder";
 
 impl Manifest {
     /// Names of the list and its copy.
@@ -230,7 +230,7 @@ mod tests {
         let text = refused(b"\xff");
         assert!(
             text.contains(".keyway-files: line 1 is not UTF-8")
-                && text.contains("damaged, remove it")
+                && text.contains("damaged, delete it")
         );
         fs::remove_file(folder.path().join(Manifest::NAMES[0])).unwrap();
         assert_eq!(Manifest::read(folder.path()).unwrap().text(), "");

@@ -16,7 +16,8 @@ pub fn episode_table(report: &RobotReport, targets: Option<SmoothingTargets>) ->
     rows.push(("stack", inputs.stack.clone().unwrap_or_default()));
     if let Some(via) = &inputs.via {
         let legs = via.len() + 1;
-        let text = format!("in {legs} legs; plan and smoothed path are those of the first");
+        let text =
+            format!("in {legs} legs; the plan and the smoothed path are those of the first one");
         rows.push(("route", text));
     }
     rows.push(("planned length", quantity(report.plan.length_m, 3, "m")));
@@ -29,7 +30,7 @@ pub fn episode_table(report: &RobotReport, targets: Option<SmoothingTargets>) ->
     rows.extend(noticed.map(|doubt| ("noticed", doubt.clone())));
     if let Some(run) = &report.run {
         rows.extend(run_facts(run));
-        rows.extend(run.way_points.as_ref().map(|it| ("way-points passed", passed(it))));
+        rows.extend(run.way_points.as_ref().map(|it| ("waypoints passed", passed(it))));
     }
     facts(rows)
 }
@@ -43,7 +44,7 @@ fn run_facts(run: &RunPart) -> Vec<(&'static str, String)> {
         ("clearance of the robot", quantity(run.min_clearance_m, 3, "m")),
     ];
     if let Some(clearance_m) = run.min_mover_clearance_m {
-        rows.push(("clearance from movers", quantity(Some(clearance_m), 3, "m")));
+        rows.push(("clearance from moving obstacles", quantity(Some(clearance_m), 3, "m")));
     }
     rows.extend([
         ("routes planned", run.routes_planned.to_string()),
@@ -66,8 +67,8 @@ fn recoveries(counts: RecoveryCounts) -> String {
         (manoeuvre, "manoeuvre"),
         (back_up, "back-up"),
         (wait, "wait"),
-        (go_around, "way around movers"),
-        (make_way, "way made for movers"),
+        (go_around, "detour around moving obstacles"),
+        (make_way, "making way for moving obstacles"),
     ];
     counted(&kinds)
 }
@@ -76,10 +77,10 @@ fn recoveries(counts: RecoveryCounts) -> String {
 fn refusals(counts: RefusalCounts) -> String {
     let RefusalCounts { standing, mover, unseen, out_of_sight, covered, not_a_number } = counts;
     counted(&[
-        (standing, "before something standing"),
-        (mover, "before a mover"),
-        (unseen, "where it does not look"),
-        (out_of_sight, "where it has not seen yet"),
+        (standing, "near a static obstacle"),
+        (mover, "near a moving obstacle"),
+        (unseen, "outside the field of view"),
+        (out_of_sight, "in unobserved space"),
         (covered, "inside an obstacle"),
         (not_a_number, "not a number"),
     ])

@@ -12,7 +12,7 @@ use std::fmt::Display;
 pub(super) fn lowered(plan: &PlanPart) -> Option<(&'static str, String)> {
     plan.relaxed.map(|Relaxed { asked_m, used_m, .. }| {
         let text =
-            format!("lowered from {asked_m:.3} m to {used_m:.3} m, the largest that leaves a path");
+            format!("lowered from {asked_m:.3} m to {used_m:.3} m, the largest value with a path");
         ("constraint", text)
     })
 }

@@ -26,12 +26,12 @@ impl SmoothingTargets {
     /// Text of the reason why a corner stayed sharp.
     pub(super) const fn why_sharp(&self, why: WhySharp) -> &'static str {
         match why {
-            WhySharp::Clearance => "bends come too near to an obstacle",
-            WhySharp::Reversal => "the path turns back",
+            WhySharp::Clearance => "a curve would come too close to an obstacle",
+            WhySharp::Reversal => "the path reverses",
             WhySharp::TurningRadius if self.has_turning_limit => {
-                "no room for a bend within the turning limit"
+                "no space for a curve within the turning limit"
             }
-            WhySharp::TurningRadius => "a bend would turn more than 5 degrees per centimetre",
+            WhySharp::TurningRadius => "a curve would turn more than 5 degrees per centimetre",
             _ => "not rounded",
         }
     }

@@ -21,7 +21,7 @@ pub fn team_table(report: &EpisodeReport) -> String {
     let reached = report.outcomes.iter().filter(|&&one| one == EpisodeOutcome::Reached).count();
     let of_all = facts([
         ("reached", format!("{reached} of {}", report.outcomes.len())),
-        ("all after", quantity(report.makespan_s, 1, "s")),
+        ("all reached after", quantity(report.makespan_s, 1, "s")),
         ("clearance between robots", quantity(report.min_robot_clearance_m, 3, "m")),
     ]);
     let of_each = report.robots.iter().enumerate().map(|(index, robot)| row(index, robot));

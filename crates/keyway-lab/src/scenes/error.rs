@@ -79,7 +79,7 @@ pub enum ScenesError {
         reason: io::Error,
     },
     /// The path of a file is no text, so a scene cannot hold it.
-    #[error("{}: a scene cannot name this file", path.display())]
+    #[error("{}: the path is not UTF-8, so a scene cannot refer to this file", path.display())]
     Unnameable {
         /// The file.
         path: PathBuf,
@@ -106,7 +106,7 @@ pub enum ScenesError {
     #[error(transparent)]
     Narrow(SceneError),
     /// Fewer maps fit a paper than were requested.
-    #[error("{name}: only {found} of {tried} maps fit; ask for as many")]
+    #[error("{name}: only {found} of {tried} maps fit; request at most {found}")]
     TooFew {
         /// The reconstruction.
         name: &'static str,

@@ -26,7 +26,7 @@ pub enum TableError {
         reason: String,
     },
     /// The table has only a header.
-    #[error("{}: there is no line below the header", path.display())]
+    #[error("{}: it has no lines below the header", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
@@ -102,7 +102,7 @@ mod tests {
         for (text, expected) in [
             (&b"world,y\n7,1\n"[..], "/a.csv: line 2: missing field `x`"),
             (b"world,x\n7,1\n8,wide\n", "/a.csv: line 3: field 1: invalid float literal"),
-            (b"world,x\n", "/a.csv: there is no line below the header"),
+            (b"world,x\n", "/a.csv: it has no lines below the header"),
             (b"world,x\n7,\xff\n", "/a.csv: line 2 is not UTF-8 text (byte 3 of the line is 0xff)"),
         ] {
             let error = read(text).unwrap_err();

@@ -7,7 +7,7 @@ from keyway import program
 
 
 def main() -> int:
-    """Does what the command line says; gives the exit code."""
+    """Runs the command line and returns the exit code."""
     # Python would only remember Ctrl-C until the program has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return program(sys.argv[1:])

@@ -1,10 +1,10 @@
-"""What can go wrong. A value that cannot be used is a ``ValueError``, a file that cannot be read an ``OSError``."""
+"""Exceptions. Invalid values raise a ``ValueError``, unreadable files an ``OSError``."""
 
 __all__ = ["BudgetExhausted", "KeywayError", "Missed", "NoPath", "NoRoom"]
 
 
 class KeywayError(Exception):
-    """There is no plan, or a robot cannot be sent to its goal.
+    """Base class: no plan was found, or a navigator refused its goal.
 
     >>> import keyway
     >>> issubclass(keyway.NoPath, keyway.KeywayError)
@@ -13,7 +13,7 @@ class KeywayError(Exception):
 
 
 class NoPath(KeywayError):
-    """No path joins start and goal; the message says what parts them.
+    """No path exists from start to goal; the message says what separates them.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.array([[False, True, False]]), resolution=1.0)
@@ -39,7 +39,7 @@ class NoRoom(KeywayError):
 
 
 class Missed(KeywayError):
-    """There is a path, and the planner did not find it; the message says why, and what helps.
+    """A path exists, but the planner did not find it; the message gives the reason and a remedy.
 
     >>> import keyway
     >>> issubclass(keyway.Missed, keyway.NoPath)

@@ -1,7 +1,7 @@
-"""An environment of gymnasium, which has to be installed to use this.
+"""A gymnasium environment; gymnasium must be installed.
 
-A robot is to drive to the goal of a scene: it sees a laser scan and gives velocities. Two environments of the same scene and seed
-are the same.
+A robot drives to the goal of a scene: it observes a laser scan and commands velocities. Two environments of the same scene and
+seed are the same.
 
 >>> import gymnasium, keyway, keyway.gym, numpy as np
 >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -108,7 +108,7 @@ class Drive(Base):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
-        """Draws a world and puts the robot at its start; gives the first observation.
+        """Draws a world, puts the robot at its start, and returns the first observation.
 
         >>> import keyway, keyway.gym, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
@@ -128,7 +128,7 @@ class Drive(Base):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
-        """Drives one control cycle; gives observation, reward, whether the episode is terminated or truncated, and what is known.
+        """Drives one control cycle and returns the observation, the reward, the flags terminated and truncated, and the info.
 
         >>> import keyway, keyway.gym, numpy as np
         >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)

@@ -1,4 +1,4 @@
-"""Figures with matplotlib, which has to be installed to use this."""
+"""Figures with matplotlib, which must be installed."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["plot"]
 
 
 def plot(ax: Axes, *things: Map | Plan | Run, **style: Any) -> Axes:
-    """Draws maps, plans and runs into axes of matplotlib, in metres; gives the axes.
+    """Draws maps, plans and runs into axes of matplotlib, in metres, and returns the axes.
 
-    ``style`` goes to matplotlib: to ``plot`` for plans and runs, such as ``color="tab:red"`` or ``label="taut"``, and to ``imshow``
-    where there are maps alone.
+    ``style`` is passed to matplotlib: to ``plot`` for plans and runs, such as ``color="tab:red"`` or ``label="taut"``, and to
+    ``imshow`` if there are only maps.
 
     >>> import matplotlib
     >>> matplotlib.use("Agg")

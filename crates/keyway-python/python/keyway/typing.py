@@ -10,15 +10,15 @@ from keyway.errors import KeywayError
 
 __all__ = ["LaserScan", "LaserScans", "Plans", "Progress"]
 
-#: Is called with what is done and what is expected, which may be unknown. What it raises stops the work.
+#: Called with the numbers of finished and of expected steps; the latter may be unknown. An exception stops the work.
 Progress: TypeAlias = Callable[[int, int | None], object]
 
-#: A plan for each query; where there is none, why.
+#: A plan for each query, or the exception with the reason for its absence.
 Plans: TypeAlias = list[Plan | KeywayError]
 
 
 class LaserScan(Protocol):
-    """A scan: a ``keyway.Scan``, or a message of ROS."""
+    """A scan: a ``keyway.Scan``, or a ROS message."""
 
     @property
     def ranges(self) -> Sequence[float] | NDArray[Any]:
@@ -33,5 +33,5 @@ class LaserScan(Protocol):
         """Bearing from one beam to the next [rad]."""
 
 
-#: The scan of a robot's only sensor, or a list with one of each, ``None`` where a sensor has made none.
+#: The scan of a robot's only sensor, or a list with one scan per sensor, ``None`` for a sensor without a scan.
 LaserScans: TypeAlias = LaserScan | Sequence[LaserScan | None]

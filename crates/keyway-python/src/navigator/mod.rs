@@ -94,7 +94,7 @@ impl Navigator {
         let name = robot.as_ref().map_or("small", |RobotName(name)| name);
         let robot = self::robot(name, radius)?;
         let base = if as_published {
-            let unknown = || bad_value(format!("nobody has published the stack `{stack}`"));
+            let unknown = || bad_value(format!("the stack `{stack}` has no published parameters"));
             Stack::published_by_name(stack).ok_or_else(unknown)?
         } else {
             find_stack(stack, Path::new(""), &robot).map_err(|error| config_file_error(&error))?

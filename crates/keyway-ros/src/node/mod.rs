@@ -130,8 +130,10 @@ impl Node {
     fn explain(&mut self, waits: Option<Waits>) {
         let is_late = self.began.elapsed() > Self::PATIENCE;
         match waits {
-            Some(why) if self.drives_for.is_some() => self.say(&format!("the robot stands: {why}")),
-            Some(why) if !self.was_ready && is_late => self.say(&format!("it waits: {why}")),
+            Some(why) if self.drives_for.is_some() => {
+                self.say(&format!("the robot is stationary: {why}"));
+            }
+            Some(why) if !self.was_ready && is_late => self.say(&format!("waiting: {why}")),
             Some(_) => {}
             None => {
                 self.was_ready = true;
@@ -144,7 +146,7 @@ impl Node {
     /// start again by itself.
     fn end_after_halt(&mut self) {
         let Some(client) = self.drives_for.take() else { return };
-        self.say("the process was halted: the robot stands, and its goal is given up");
+        self.say("the process was halted: the robot stops, and its goal is aborted");
         self.pilot.stop();
         self.command(Velocity::ZERO);
         let ended = Ended::failed(Fault::Unknown, "the process was halted");
@@ -157,7 +159,7 @@ impl Node {
             self.clock.tell(message.clock.stamp_s());
         }
         if self.clock.take_restart() {
-            self.say("the clock was set: what was sensed by the old one no longer counts");
+            self.say("the clock was reset: earlier sensor data is discarded");
             self.pilot.restart_clock();
         }
         for change in self.wire.changes() {
@@ -169,7 +171,7 @@ impl Node {
         }
         let Some(now_s) = self.clock.now_s() else {
             if self.began.elapsed() > Self::PATIENCE {
-                self.say("no /clock has come, and `use_sim_time` is set: nothing can be done");
+                self.say("`use_sim_time` is set, but no message on /clock has arrived: the node waits for it");
             }
             return;
         };
@@ -245,7 +247,7 @@ impl Node {
             let is_reached = ended == Ended::Succeeded;
             let status = if is_reached { GoalStatus::Succeeded } else { GoalStatus::Aborted };
             if !is_reached {
-                self.say(&format!("the goal is not reached: {}", ended.code(Family::Navigate).1));
+                self.say(&format!("the goal was not reached: {}", ended.code(Family::Navigate).1));
             }
             self.tell(client, status, &ended, &report);
         }

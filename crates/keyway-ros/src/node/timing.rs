@@ -66,11 +66,11 @@ impl Timing {
     fn of_driving(&self, pilot: &Pilot) -> DiagnosticStatus {
         let doubts = pilot.navigator().map_or(&[][..], |navigator| navigator.doubts());
         let (level, message) = match (&self.waits, doubts.first()) {
-            (Some(why), _) => (DiagnosticStatus::ERROR, format!("stands: {why}")),
+            (Some(why), _) => (DiagnosticStatus::ERROR, format!("stationary: {why}")),
             (None, Some(doubt)) => (DiagnosticStatus::WARN, doubt.to_string()),
             (None, None) if !pilot.is_active() => (DiagnosticStatus::WARN, "inactive".to_owned()),
-            (None, None) if pilot.drives() => (DiagnosticStatus::OK, "drives".to_owned()),
-            (None, None) => (DiagnosticStatus::OK, "has no goal".to_owned()),
+            (None, None) if pilot.drives() => (DiagnosticStatus::OK, "driving".to_owned()),
+            (None, None) => (DiagnosticStatus::OK, "no goal".to_owned()),
         };
         let mut values = Vec::new();
         if let Some(navigator) = pilot.navigator() {
@@ -89,7 +89,7 @@ impl Timing {
         let said = if is_slow {
             (DiagnosticStatus::WARN, "a cycle took longer than its period".to_owned())
         } else {
-            (DiagnosticStatus::OK, "cycles are in time".to_owned())
+            (DiagnosticStatus::OK, "cycles are on time".to_owned())
         };
         let values = vec![
             value("period [ms]", milliseconds(Duration::from_secs_f64(self.period_s))),
@@ -104,7 +104,7 @@ impl Timing {
 fn of_topics(misfits: &BTreeSet<String>) -> DiagnosticStatus {
     let said = match misfits.first() {
         Some(first) => (DiagnosticStatus::WARN, first.clone()),
-        None => (DiagnosticStatus::OK, "others on its topics fit".to_owned()),
+        None => (DiagnosticStatus::OK, "other nodes on its topics are compatible".to_owned()),
     };
     let values = misfits.iter().map(|misfit| value("misfit", misfit)).collect();
     status("keyway: topics", said, values)

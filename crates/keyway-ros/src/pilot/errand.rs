@@ -243,7 +243,7 @@ impl Errand {
         (stuck_s > Self::PATIENCE_S).then(|| {
             let last =
                 step.why().map_or_else(String::new, |why| format!("; the last problem: {why}"));
-            let why = format!("the robot got no farther for {stuck_s:.0} s{last}");
+            let why = format!("the robot made no progress for {stuck_s:.0} s{last}");
             Ended::failed(Fault::NoProgress, why)
         })
     }

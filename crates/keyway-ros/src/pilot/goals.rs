@@ -166,7 +166,7 @@ impl Pilot {
         let start = match start {
             Some(start) => self.in_map(start)?,
             None => self.pose.ok_or_else(|| {
-                Ended::failed(Fault::Transform, "nobody has said where the robot is")
+                Ended::failed(Fault::Transform, "the pose of the robot is unknown")
             })?,
         };
         let in_map = |goal| self.in_map(goal);
@@ -188,7 +188,7 @@ impl Pilot {
     pub(crate) fn smoothed(&mut self, path: &Path) -> Result<(Vec<Point>, bool), Ended> {
         let points = self.points(path)?;
         if points.points().len() < 2 {
-            let why = "a path to smooth has two poses at least";
+            let why = "a path to smooth needs at least two poses";
             return Err(Ended::failed(Fault::InvalidPath, why));
         }
         self.navigate(|navigator| {
@@ -202,7 +202,7 @@ impl Pilot {
     fn in_map(&self, stamped: &PoseStamped) -> Result<Pose, Ended> {
         let frame = &self.settings.frames.map;
         let pose = stamped.pose.on_ground().ok_or_else(|| {
-            let why = "the pose is not finite, or its orientation is no rotation";
+            let why = "the pose is not finite, or its orientation is not a rotation";
             Ended::failed(Fault::Transform, why)
         })?;
         let own = &stamped.header.frame_id;

@@ -17,7 +17,7 @@ use thiserror::Error;
 pub(crate) enum MapError {
     #[error("a map of {width} x {height} cells has {values} values")]
     Count { width: u32, height: u32, values: usize },
-    #[error("the origin of the map is no pose")]
+    #[error("the origin of the map is not a valid pose")]
     Origin,
     #[error("{0}")]
     Frame(String),
@@ -52,7 +52,7 @@ impl Pilot {
             return Ok(());
         }
         Err(MapError::Frame(format!(
-            "its frame is `{own}`, and the parameter `global_frame` says `{frame}`"
+            "its frame is `{own}`, but the parameter `global_frame` is `{frame}`"
         )))
     }
 

@@ -23,7 +23,7 @@ impl Pilot {
                 self.masks.speed = Some(speeds(info, mask, 0.01 * full_mps)?);
             }
             CostmapFilterInfo::SPEED => self.masks.speed = Some(speeds(info, mask, 1.0)?),
-            other => return Err(MapError::Frame(format!("no filter has the type {other}"))),
+            other => return Err(MapError::Frame(format!("unknown filter type {other}"))),
         }
         self.set_masks();
         Ok(())

@@ -73,7 +73,7 @@ pub(crate) struct Report {
 }
 
 /// Reason for not driving while inactive.
-const INACTIVE: &str = "the node is not active: its lifecycle was ended";
+const INACTIVE: &str = "the node is inactive: a lifecycle request has stopped it";
 
 impl Pilot {
     pub(crate) fn new(settings: Settings) -> Self {

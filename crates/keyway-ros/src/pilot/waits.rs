@@ -8,9 +8,9 @@ use thiserror::Error;
 /// The reason for a stopped robot, independent of its goal.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum Waits {
-    #[error("no map has come yet")]
+    #[error("no map has arrived yet")]
     Map,
-    #[error("no odometry has come yet")]
+    #[error("no odometry has arrived yet")]
     Odometry,
     #[error(transparent)]
     Transform(#[from] TransformError),
@@ -26,9 +26,9 @@ pub(crate) enum Waits {
     #[error("the odometry is {age_s:.2} s old")]
     NewOdometry { age_s: f64 },
     #[error(
-        "the odometry is {ahead_s:.2} s ahead of this machine's clock: set both by one, such as by NTP"
+        "the odometry is {ahead_s:.2} s ahead of this machine's clock: synchronise the clocks, for example with NTP"
     )]
     Ahead { ahead_s: f64 },
-    #[error("the pose is {age_s:.2} s old, by transforms that are late or have ended")]
+    #[error("the pose is {age_s:.2} s old: its transforms are late or have stopped")]
     NewPose { age_s: f64 },
 }

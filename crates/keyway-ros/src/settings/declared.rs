@@ -28,7 +28,7 @@ impl Change {
             "min_obstacle_height" | "max_obstacle_height" => {
                 Ok(Self { name: name.to_owned(), number: number? })
             }
-            _ => Err("can be given at the start only".to_owned()),
+            _ => Err("can only be set at the start".to_owned()),
         }
     }
 }

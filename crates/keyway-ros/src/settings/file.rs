@@ -16,9 +16,9 @@ pub(super) fn read(path: &Path) -> Result<Table, String> {
     let file = File::open(path).map_err(|error| error.to_string())?;
     file.take(LONGEST_B + 1).read_to_end(&mut text).map_err(|error| error.to_string())?;
     if text.len() as u64 > LONGEST_B {
-        return Err("it is longer than 1 MiB, and no file of parameters".to_owned());
+        return Err("it is larger than 1 MiB, so it is not a parameter file".to_owned());
     }
-    let text = String::from_utf8(text).map_err(|_| "it is no text in UTF-8".to_owned())?;
+    let text = String::from_utf8(text).map_err(|_| "it is not UTF-8 text".to_owned())?;
     let fault = |error: serde_saphyr::Error| {
         let said = error.to_string();
         said.strip_prefix("error: ").unwrap_or(&said).to_owned()
@@ -27,7 +27,7 @@ pub(super) fn read(path: &Path) -> Result<Table, String> {
         Item(Some(Value::Table(nodes))) => Ok(nodes),
         // A file with only comments is empty.
         Item(None) => Ok(Table::new()),
-        Item(Some(_)) => Err("names of nodes are missing at the top".to_owned()),
+        Item(Some(_)) => Err("node names are missing at the top level".to_owned()),
     }
 }
 
@@ -66,7 +66,7 @@ impl<'de> Visitor<'de> for Anything {
     type Value = Item;
 
     fn expecting(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        to.write_str("a truth value, a number, a text, a list or names with values")
+        to.write_str("a boolean, a number, a string, a list or names with values")
     }
 
     fn visit_unit<E: Error>(self) -> Result<Item, E> {
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn what_is_no_file_of_parameters_is_refused() {
         for (text, said) in [
-            ("- 1\n", "names of nodes"),
+            ("- 1\n", "node names"),
             ("a: [1, ]\nb: [1, ~]\n", "empty"),
             ("a: 18446744073709551615\n", "too large"),
             ("a: [\n", "line"),
@@ -154,7 +154,7 @@ mod tests {
             assert!(fault.contains(said), "{fault}");
         }
         let endless = read(Path::new("/dev/zero")).unwrap_err();
-        assert!(endless.contains("longer than 1 MiB"), "{endless}");
+        assert!(endless.contains("larger than 1 MiB"), "{endless}");
         assert!(read(Path::new("/")).is_err());
     }
 }

@@ -87,27 +87,33 @@ type Parameters = BTreeMap<String, Value>;
 
 /// Parameters and their descriptions; defaults are set in [`Settings::of`].
 const PARAMETERS: [(&str, &str); 18] = [
-    ("robot", "name of a bundled robot, or its file (TOML); required without a file of Nav2"),
-    ("stack", "name of a stack, or its file (TOML); `keyway`"),
+    (
+        "robot",
+        "name of a bundled robot, or a robot file (TOML); required without a Nav2 parameter file",
+    ),
+    ("stack", "name of a stack, or a stack file (TOML); `keyway`"),
     ("use_sim_time", "take the time from /clock; false"),
-    ("controller_frequency", "commands per second; as the robot's cycle says"),
+    ("controller_frequency", "commands per second; that of the robot's cycle"),
     ("global_frame", "frame of the map; map"),
     ("robot_base_frame", "frame of the robot; base_link"),
     ("scan_topics", "topics of the lidars, in the order of the robot's sensors; [scan]"),
     ("cloud_topics", "topics of other sensors, as PointCloud2; []"),
-    ("min_obstacle_height", "points of clouds that are lower are ground [m]; 0.05"),
-    ("max_obstacle_height", "points of clouds that are higher are overhead [m]; 2.0"),
-    ("obstacle_max_range", "points of clouds that are farther do not count [m]; 2.5"),
+    ("min_obstacle_height", "cloud points below this height are ground [m]; 0.05"),
+    ("max_obstacle_height", "cloud points above this height are overhead [m]; 2.0"),
+    ("obstacle_max_range", "cloud points beyond this range are ignored [m]; 2.5"),
     (
         "cloud_timeout",
-        "the robot stands when one of these is silent for longer [s]; 1.0, 0 for ever",
+        "the robot stops if a cloud topic is silent for longer [s]; 1.0 (0: no limit)",
     ),
-    ("filter_info_topics", "topics of Nav2's filters; costmap_filter_info, and with a prefix"),
+    (
+        "filter_info_topics",
+        "topics of Nav2's costmap filters; costmap_filter_info, also with a prefix",
+    ),
     ("odom_topic", "topic of the odometry; odom"),
-    ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
+    ("distribution", "ROS distribution of the messages: jazzy or kilted; ROS_DISTRO, or kilted"),
     ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
-    ("stands_for", "nodes of Nav2 in whose place it answers, such as map_server; [bt_navigator]"),
-    ("max_pose_age", "no command is computed from a pose that is older [s]; 0.2"),
+    ("stands_for", "Nav2 nodes that this node replaces, such as map_server; [bt_navigator]"),
+    ("max_pose_age", "maximum age of the pose for computing commands [s]; 0.2"),
 ];
 
 /// The parameters of the node and of the simulator, one per line, for the help.
@@ -152,12 +158,14 @@ impl Settings {
         let sensors = stack.robot().sensors.len();
         if scan_topics.len() != sensors {
             let topics = scan_topics.len();
-            let why = format!("has {topics} topics, and the robot has {sensors} lidars");
+            let why = format!("has {topics} topics, but the robot has {sensors} lidars");
             return Err(wrong("scan_topics", why));
         }
         let cloud_topics = given.texts("cloud_topics")?.unwrap_or_default();
         if let Some(topic) = cloud_topics.iter().find(|topic| scan_topics.contains(topic)) {
-            let why = format!("has `{topic}`, as scan_topics has: a topic has one kind of message");
+            let why = format!(
+                "has `{topic}`, which is also in scan_topics: a topic has only one type of message"
+            );
             return Err(wrong("cloud_topics", why));
         }
         if cloud_topics.len() > SensorPoints::MOST_SENSORS {
@@ -236,7 +244,7 @@ impl Given {
         }
         for (name, text) in &arguments.parameters {
             let value = serde_saphyr::from_str(text)
-                .map_err(|error| wrong(name, format!("`{text}` is no YAML: {error}")))?;
+                .map_err(|error| wrong(name, format!("`{text}` is not YAML: {error}")))?;
             of_all.remove(name);
             given.insert(name.clone(), value);
         }
@@ -264,18 +272,22 @@ impl Given {
     fn nav2_robot(&mut self) -> Result<Robot, StartError> {
         let names = Robot::NAMES.join(", ");
         if self.nav2.is_empty() {
-            return Err(wrong("robot", format!("is required: {names}, a file, or a file of Nav2")));
+            return Err(wrong(
+                "robot",
+                format!("is required: {names}, a robot file, or a Nav2 parameter file"),
+            ));
         }
         if let Some(why) = self.nav2.fault.take() {
             return Err(wrong(
                 "robot",
-                format!("is not given, and Nav2's parameters are wrong: {why}"),
+                format!("is not given, and Nav2's parameters are invalid: {why}"),
             ));
         }
         let described = std::mem::take(&mut self.nav2.robot).robot();
         let mut robot = described.map_err(|error| {
-            let why =
-                format!("is not given, and what Nav2's parameters say is not enough: {error}");
+            let why = format!(
+                "is not given, and Nav2's parameters do not describe it completely: {error}"
+            );
             wrong("robot", why)
         })?;
         // The file contains only the topics of the lidars.
@@ -299,11 +311,11 @@ impl Given {
     }
 
     fn text(&mut self, name: &str) -> Result<Option<String>, StartError> {
-        self.take(name, "a text", |value| Some(value.as_str()?.to_owned()))
+        self.take(name, "a string", |value| Some(value.as_str()?.to_owned()))
     }
 
     fn texts(&mut self, name: &str) -> Result<Option<Vec<String>>, StartError> {
-        self.take(name, "a list of texts", |value| {
+        self.take(name, "a list of strings", |value| {
             let text = |value: &Value| Some(value.as_str()?.to_owned());
             value.as_array()?.iter().map(text).collect()
         })
@@ -326,10 +338,13 @@ impl Given {
         let known = known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
         for name in self.own.keys() {
             if !self.of_all.contains(name) {
-                return Err(wrong(name, format!("is none of this node's: {known}")));
+                return Err(wrong(
+                    name,
+                    format!("is not a parameter of this node; expected one of {known}"),
+                ));
             }
             crate::say(format_args!(
-                "parameter `{name}`, given to all nodes (`{ALL}`), is none of this node's"
+                "parameter `{name}`, given to all nodes (`{ALL}`), is not a parameter of this node"
             ));
         }
         Ok(())
@@ -402,7 +417,7 @@ mod tests {
         for (parameters, said) in [
             (vec![], "robot"),
             (vec![("robot", "jackl")], "jackl"),
-            (vec![("robot", "jackal"), ("speed", "1")], "`speed`: is none of this node's"),
+            (vec![("robot", "jackal"), ("speed", "1")], "`speed`: is not a parameter of this node"),
             (
                 vec![("robot", "jackal"), ("max_pose_age", "-1")],
                 "a positive number, at most 5, got -1",
@@ -411,7 +426,7 @@ mod tests {
             (vec![("robot", "jackal"), ("cloud_timeout", "-1")], "0 or a positive number"),
             (vec![("robot", "jackal"), ("use_sim_time", "perhaps")], "true or false"),
             (vec![("robot", "jackal"), ("scan_topics", "[a, b]")], "2 topics"),
-            (vec![("robot", "jackal"), ("cloud_topics", "[scan]")], "has `scan`, as scan_topics"),
+            (vec![("robot", "jackal"), ("cloud_topics", "[scan]")], "has `scan`, which is also in"),
             (vec![("robot", "jackal"), ("min_obstacle_height", "3")], "above max_obstacle_height"),
             (vec![("robot", "[")], "YAML"),
             (vec![("robot", "jackal"), ("distribution", "foxy")], "jazzy or kilted, got foxy"),
@@ -446,7 +461,7 @@ mod tests {
         let robot = settings.stack.robot();
         assert_eq!((robot.limits.v_max_mps, robot.cycle_s), (2.0, 0.05));
         let message = read(text, &[]).err().unwrap().to_string();
-        assert!(message.contains("not enough"), "{message}");
+        assert!(message.contains("do not describe it completely"), "{message}");
     }
 
     #[test]
@@ -470,6 +485,6 @@ mod tests {
         assert!(Settings::of(&arguments, None).is_ok());
         std::fs::write(file.path(), "- 1\n").unwrap();
         let message = Settings::of(&arguments, None).err().unwrap().to_string();
-        assert!(message.contains("names of nodes"), "{message}");
+        assert!(message.contains("node names"), "{message}");
     }
 }

@@ -63,7 +63,7 @@ impl Nav2 {
         if self.is_empty() {
             return Vec::new();
         }
-        let mut lines = vec!["parameters of Nav2 that say something here:".to_owned()];
+        let mut lines = vec!["Nav2 parameters in use:".to_owned()];
         lines.extend(self.taken.iter().map(|name| format!("  {name}")));
         let mut left: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for (node, name) in
@@ -71,7 +71,7 @@ impl Nav2 {
         {
             left.entry(node).or_default().push(name);
         }
-        lines.push("those that say nothing here:".to_owned());
+        lines.push("unused Nav2 parameters:".to_owned());
         lines.extend(left.iter().map(|(node, names)| format!("  {node}: {}", names.join(", "))));
         lines
     }
@@ -81,7 +81,7 @@ impl Nav2 {
             let given = nodes.take(costmap, "footprint");
             if let Some(other) = given.filter(|value| !value.is_str()) {
                 let expected =
-                    "a text, such as \"[[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1], [0.2, -0.1]]\"";
+                    "a string, such as \"[[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1], [0.2, -0.1]]\"";
                 self.fault = Some(format!("{costmap}: footprint: must be {expected}, got {other}"));
                 return;
             }
@@ -412,7 +412,7 @@ velocity_smoother:
     fn what_was_taken_is_told() {
         let mut nav2 = of(MPPI);
         let report = nav2.report().join("\n");
-        let (taken, left) = report.split_once("those that say nothing").unwrap();
+        let (taken, left) = report.split_once("unused Nav2 parameters").unwrap();
         for name in ["controller_server: FollowPath.vx_max", "local_costmap: robot_radius"] {
             assert!(taken.contains(name), "{report}");
         }
@@ -420,7 +420,7 @@ velocity_smoother:
         assert!(left.contains("inflation_layer.inflation_radius") && left.contains("plugin"));
         nav2.forget_robot();
         let report = nav2.report().join("\n");
-        let (taken, left) = report.split_once("those that say nothing").unwrap();
+        let (taken, left) = report.split_once("unused Nav2 parameters").unwrap();
         assert!(!taken.contains("robot_radius") && left.contains("robot_radius"), "{report}");
         assert!(taken.contains("xy_goal_tolerance"));
         assert!(of("keyway:\n  ros__parameters:\n    robot: jackal\n").report().is_empty());
@@ -448,7 +448,11 @@ velocity_smoother:
     #[test]
     fn what_cannot_be_is_named() {
         for (before, after, named) in [
-            ("robot_radius: 0.22", "footprint: [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]]", "a text"),
+            (
+                "robot_radius: 0.22",
+                "footprint: [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]]",
+                "a string",
+            ),
             ("robot_radius: 0.22", "robot_radius: 0", "robot_radius: must be a positive number"),
             ("[0.4, 0.0, 2.5]", "[0.4, 0.0]", "max_velocity: must be three numbers"),
             ("[2.5, 0.0, 3.2]", "2.5", "max_accel: must be three numbers"),

@@ -18,9 +18,9 @@ pub(crate) struct SimulatorSettings {
 
 /// Parameters and their descriptions; defaults are set in [`SimulatorSettings::of`].
 pub(super) const PARAMETERS: [(&str, &str); 4] = [
-    ("rate", "so many times faster than a clock; 1"),
-    ("use_sim_time", "stamps begin at 0, and /clock tells of them; false"),
-    ("distribution", "whose messages: jazzy or kilted; as ROS_DISTRO says, or kilted"),
+    ("rate", "simulation speed relative to real time; 1"),
+    ("use_sim_time", "stamps begin at 0, and /clock is published; false"),
+    ("distribution", "ROS distribution of the messages: jazzy or kilted; ROS_DISTRO, or kilted"),
     ("enable_stamped_cmd_vel", "commands as TwistStamped; true, except for jazzy"),
 ];
 
@@ -36,7 +36,7 @@ impl SimulatorSettings {
         })?;
         let rate = rate.unwrap_or(1.0);
         if rate != 1.0 && !use_sim_time {
-            let why = "needs use_sim_time: the clock of the machine is as fast as it is";
+            let why = "needs use_sim_time: the speed of the system clock cannot be changed";
             return Err(super::wrong("rate", why));
         }
         let stamped = given.truth("enable_stamped_cmd_vel")?;

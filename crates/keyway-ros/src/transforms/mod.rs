@@ -14,13 +14,13 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum TransformError {
     #[error(
-        "no transform has told of the frame `{0}`: is its publisher running, and is its name right?"
+        "no transform received for the frame `{0}`: is its publisher running, and is the name correct?"
     )]
     Unknown(String),
-    #[error("no chain of transforms leads from the frame `{0}` to `{1}`")]
+    #[error("no chain of transforms connects the frame `{0}` with `{1}`")]
     Unconnected(String, String),
     #[error(
-        "the transforms from `{child}` reach from {from_s:.3} s to {to_s:.3} s; what they are at {at_s:.3} s is unknown"
+        "the transforms from `{child}` cover {from_s:.3} s to {to_s:.3} s, but not {at_s:.3} s"
     )]
     OutOfTime { child: String, at_s: f64, from_s: f64, to_s: f64 },
 }

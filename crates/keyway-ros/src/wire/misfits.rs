@@ -76,13 +76,13 @@ impl Topic {
     fn misfit(&self, kind: &str, qos: &QosPolicies) -> Option<String> {
         let name = &self.name;
         let [theirs, ours] = match self.way {
-            Way::In => ["sends", "takes"],
-            Way::Out => ["takes", "sends"],
+            Way::In => ["sends", "expects"],
+            Way::Out => ["expects", "sends"],
         };
         if kind != self.kind {
             let (other, own) = (in_words(kind), in_words(&self.kind));
             return Some(format!(
-                "{name}: another node {theirs} {other}, and this one {ours} {own}"
+                "{name}: another node {theirs} {other}, but this node {ours} {own}"
             ));
         }
         let (offered, requested) = match self.way {
@@ -95,7 +95,7 @@ impl Topic {
             Way::In => "another node sends",
             Way::Out => "this node sends",
         };
-        Some(format!("{name}: {sender} with less {policy} than the receiver asks for"))
+        Some(format!("{name}: {sender} with less {policy} than the receiver requests"))
     }
 }
 
@@ -120,11 +120,11 @@ mod tests {
         let own = topic(Way::Out, Delivery::Reliable);
         assert_eq!(own.misfit(&own.kind, &qos), None);
         let said = own.misfit("geometry_msgs::msg::dds_::Twist_", &qos).unwrap();
-        let expected = "/cmd_vel: another node takes geometry_msgs/msg/Twist, and this one sends \
+        let expected = "/cmd_vel: another node expects geometry_msgs/msg/Twist, but this node sends \
                         geometry_msgs/msg/TwistStamped";
         assert_eq!(said, expected);
         let said = topic(Way::In, Delivery::Reliable).misfit("a::msg::dds_::B_", &qos).unwrap();
-        assert!(said.contains("another node sends a/msg/B, and this one takes"), "{said}");
+        assert!(said.contains("another node sends a/msg/B, but this node expects"), "{said}");
     }
 
     #[test]
@@ -142,7 +142,7 @@ mod tests {
             let expected = |sender: &str| {
                 policy.map(|policy| {
                     format!(
-                        "/cmd_vel: {sender} sends with less {policy} than the receiver asks for"
+                        "/cmd_vel: {sender} sends with less {policy} than the receiver requests"
                     )
                 })
             };

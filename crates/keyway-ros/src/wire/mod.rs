@@ -143,7 +143,7 @@ impl Wire {
             .map_err(|error| fault("name the node", error))?;
         let (options, changed) = parameters::with_parameters(parameters);
         let mut node =
-            context.new_node(name, options).map_err(|error| fault("make the node", error))?;
+            context.new_node(name, options).map_err(|error| fault("create the node", error))?;
         // Discovery and the parameter services.
         let spinner = node.spinner().map_err(|error| fault("start discovery", error))?;
         std::thread::Builder::new()
@@ -202,7 +202,7 @@ impl Wire {
         let (package, name) = M::NAME;
         self.node
             .create_topic(&self.name(topic)?, MessageTypeName::new(package, name), qos)
-            .map_err(|error| fault(format_args!("make the topic {topic}"), error))
+            .map_err(|error| fault(format_args!("create the topic {topic}"), error))
     }
 
     /// The name after the remapping rules of the command line.
@@ -236,7 +236,7 @@ impl Wire {
     /// sent.
     pub(crate) fn check() -> Result<(), StartError> {
         if halts::has_panicked() {
-            return Err(fault("go on", "a thread of the network has panicked"));
+            return Err(fault("continue", "a network thread has panicked"));
         }
         Ok(())
     }

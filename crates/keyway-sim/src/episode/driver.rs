@@ -344,13 +344,15 @@ impl Driver<'_> {
                     Obstacle::Square => "an obstacle of the map".to_owned(),
                     Obstacle::HiddenSquare => "an unknown cell".to_owned(),
                     Obstacle::Polygon(index) => format!("unknown polygon {index}"),
-                    Obstacle::Elusive(index) => format!("elusive obstacle {index}"),
+                    Obstacle::Elusive(index) => {
+                        format!("temporary or hard-to-detect obstacle {index}")
+                    }
                     Obstacle::Robot(index) => format!("robot {index}"),
                 };
                 let turned = run.samples.last().is_some_and(|last| last.velocity.omega != 0.0);
                 let stood = match (robot_stood && run.cycles > 0, turned) {
                     (false, _) => "",
-                    (true, false) => ", while the robot stood",
+                    (true, false) => ", while the robot was stationary",
                     (true, true) => ", while the robot turned on the spot",
                 };
                 let jumped = match with {
@@ -361,13 +363,13 @@ impl Driver<'_> {
                 let darted =
                     mover_speed_mps.filter(|&speed_mps| speed_mps > MovingObstacle::DART_MPS);
                 let darted =
-                    darted.map(|speed_mps| format!(", which darted at {speed_mps:.1} m/s"));
+                    darted.map(|speed_mps| format!(", which moved suddenly at {speed_mps:.1} m/s"));
                 let darted = darted.unwrap_or_default();
                 format!("touched {name} at ({:.3}, {:.3}){stood}{jumped}{darted}", pose.x, pose.y)
             }
             Outcome::Timeout => format!("the time limit of {time_limit_s:.1} s passed"),
             Outcome::Stuck => format!(
-                "the remaining way did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
+                "the remaining path did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
             ),
         };
         let last = self.blocked.as_ref().map(|why| format!("; the last problem: {why}"));

@@ -18,7 +18,7 @@ impl Episode {
         let EpisodeRobot { robot, disturbances, start, via, goal, .. } = self.check()?;
         if self.robots.len() > 1 {
             let expected =
-                format!("must be one to be driven from outside, got {}", self.robots.len());
+                format!("must be one for an external controller, got {}", self.robots.len());
             return Err(ConfigError::new("robots", expected).into());
         }
         let task = Task::new(self, 0);
@@ -84,6 +84,6 @@ mod tests {
         assert_eq!(none.to_string(), "robots must be one or more, got none");
         let two =
             Episode::of_robots(map, vec![robot(1.0), robot(3.0)]).stepper().map(drop).unwrap_err();
-        assert_eq!(two.to_string(), "robots must be one to be driven from outside, got 2");
+        assert_eq!(two.to_string(), "robots must be one for an external controller, got 2");
     }
 }

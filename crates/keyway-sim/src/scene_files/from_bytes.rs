@@ -65,7 +65,7 @@ pub fn disturbances_from_bytes(name: &Path, bytes: &[u8]) -> Result<Disturbances
     let no_seed = if disturbances.seed == 0 {
         Ok(())
     } else {
-        let expected = "left out: it is that of the scene";
+        let expected = "omitted: the scene sets it";
         Err(ConfigError::must_be("seed", expected, disturbances.seed as f64))
     };
     match disturbances.validate().and(no_seed) {
@@ -92,6 +92,6 @@ mod tests {
             assert!(error.starts_with("a/b.toml: "), "{error}");
         }
         assert!(errors[0].contains("actuation.delay_s must be a time"), "{}", errors[0]);
-        assert!(errors[2].contains("seed must be left out"), "{}", errors[2]);
+        assert!(errors[2].contains("seed must be omitted"), "{}", errors[2]);
     }
 }

@@ -14,7 +14,7 @@ pub enum SceneError {
     #[error(transparent)]
     Toml(#[from] TomlError),
     /// The file is of another kind, such as a stack or a robot.
-    #[error("this is no scene: it has no `version`, no `start`, no `goal` and no `[[robots]]`")]
+    #[error("this is not a scene: it has no `version`, no `start`, no `goal` and no `[[robots]]`")]
     NoScene,
     /// The scene has no version.
     #[error("missing field `version`: a scene begins with `version = {}`", VERSION)]
@@ -44,10 +44,10 @@ pub enum SceneError {
         got: String,
     },
     /// The scene has several robots where one was expected.
-    #[error("a scene with `[[robots]]` is no run of one robot")]
+    #[error("a scene with `[[robots]]` is not a run of one robot")]
     SeveralRobots,
     /// The disturbances have their own seed.
-    #[error("`disturbances.seed` is the `seed` of the scene; give it there")]
+    #[error("set `seed` of the scene instead of `disturbances.seed`")]
     SeedOfDisturbances,
     /// A value of the rules is invalid.
     #[error("`rules.{}` {}", .0.path, .0.reason)]

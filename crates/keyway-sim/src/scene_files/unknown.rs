@@ -283,8 +283,7 @@ impl TryFrom<UnknownTable> for GroundShape {
         if table.presence() == Presence::ALWAYS {
             return table.shape();
         }
-        let reason =
-            "`from_s`, `until_s` and `seen` belong to an obstacle that stands (`[[unknown]]`)";
+        let reason = "`from_s`, `until_s` and `seen` belong to a static obstacle (`[[unknown]]`)";
         Err(ConfigError::new("the table", format!("has too many fields: {reason}")))
     }
 }

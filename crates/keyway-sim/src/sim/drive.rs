@@ -21,8 +21,11 @@ pub enum SimError {
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// A controller commanded a velocity that is not a number.
-    #[error("the command of cycle {cycle} for robot {robot} is not a number: v = {} m/s, omega = {} rad/s; \
-        its controller must answer with numbers", command.v, command.omega)]
+    #[error(
+        "the command of cycle {cycle} for robot {robot} is not a number: v = {} m/s, omega = {} rad/s; \
+         its controller must return numbers",
+        command.v, command.omega
+    )]
     Command {
         /// Index of the participant.
         robot: usize,
@@ -32,7 +35,7 @@ pub enum SimError {
         command: Velocity,
     },
     /// A controller gave up the simulation ([`Action::GiveUp`]).
-    #[error("the simulation was given up in cycle {cycle}")]
+    #[error("the simulation was aborted in cycle {cycle}")]
     GivenUp {
         /// The cycle, from 0.
         cycle: u64,

@@ -74,19 +74,19 @@ fn in_words_of_polygons(error: &FootprintError) -> ConfigError {
     let of = |i: usize, reason: &str| ConfigError::new(format!("vertices_m[{i}]"), reason);
     match error {
         FootprintError::TooFewVertices(count) => all(format!("needs at least 3, got {count}")),
-        FootprintError::TooManyVertices(count) => {
-            all(format!("has at most 100, got {count}; leave out those that hardly matter"))
-        }
+        FootprintError::TooManyVertices(count) => all(format!(
+            "has at most 100, got {count}; remove vertices that hardly change the shape"
+        )),
         FootprintError::Vertex { index, .. } => {
             of(*index, "must lie within 1000 m of the polygon's middle")
         }
         FootprintError::Repeated(one, other) => all(format!(
-            "must differ, [{one}] and [{other}] coincide (the last one is joined to the first)"
+            "must differ, but [{one}] and [{other}] coincide (the last one is joined to the first)"
         )),
-        FootprintError::Degenerate(i) => of(*i, "is at the tip of a spike, without any ground"),
-        FootprintError::SelfIntersecting(one, other) => {
-            all(format!("must not meet itself, the edges from [{one}] and [{other}] do"))
-        }
+        FootprintError::Degenerate(i) => of(*i, "is at the tip of a spike without area"),
+        FootprintError::SelfIntersecting(one, other) => all(format!(
+            "must not touch or cross itself, but the edges from [{one}] and [{other}] do"
+        )),
         // Errors that concern only discs and rectangles.
         error => all(error.to_string()),
     }

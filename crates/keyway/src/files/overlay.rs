@@ -82,7 +82,7 @@ impl OverlayError {
 fn beside_text(parent: &str, names: &[String]) -> String {
     let names = names.join(", ");
     if parent.is_empty() {
-        format!("there are: {names}")
+        format!("the fields are: {names}")
     } else {
         format!("`{parent}` has: {names}")
     }
@@ -237,15 +237,18 @@ fn table_at<'t>(tree: &'t mut Table, path: &str) -> Result<&'t mut Table, Overla
                     None => {
                         return Err(rejected(
                             &here,
-                            &format!("there are {count}, numbered from 0"),
+                            &format!("the list has {count} items, numbered from 0"),
                         ));
                     }
                 }
             }
             (Some(Value::Array(_)), None) => {
-                return Err(rejected(&here, &format!("is a list; say which, such as `{here}[0]`")));
+                return Err(rejected(
+                    &here,
+                    &format!("is a list; give an index, such as `{here}[0]`"),
+                ));
             }
-            (Some(Value::Table(_)), Some(_)) => return Err(rejected(&here, "is no list")),
+            (Some(Value::Table(_)), Some(_)) => return Err(rejected(&here, "is not a list")),
             _ => return Err(rejected(&here, "has no fields of its own")),
         };
         walked = here;

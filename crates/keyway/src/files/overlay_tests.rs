@@ -115,7 +115,7 @@ fn a_tree_is_merged_names_first() {
 fn errors_name_the_field_and_what_is_right() {
     assert_eq!(
         error("room=1"),
-        "there is no field `room`; there are: rooms, heating, garden; did you mean `rooms`?"
+        "there is no field `room`; the fields are: rooms, heating, garden; did you mean `rooms`?"
     );
     assert_eq!(
         error("garden.size=1"),
@@ -123,7 +123,7 @@ fn errors_name_the_field_and_what_is_right() {
     );
     assert_eq!(
         error("cellar.size=1"),
-        "there is no field `cellar`; there are: rooms, heating, garden"
+        "there is no field `cellar`; the fields are: rooms, heating, garden"
     );
     assert_eq!(error("garden.pond.fish=1"), "`garden.pond`: has no fields of its own");
     assert_eq!(

@@ -34,7 +34,7 @@ use toml::{Table, Value};
 /// let other = ParameterLayers { fields: Vec::new(), ..layers };
 /// let error = other.over(base, &[]).unwrap_err();
 /// assert_eq!(error.path, "hsta.l1_constraint");
-/// let reason = "hsta.l1_constraint: hsta is not used here; jps is";
+/// let reason = "hsta.l1_constraint: hsta is not in use; the stack uses jps";
 /// assert_eq!(error.fault.to_string(), reason);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -184,7 +184,7 @@ pub enum LayerFault {
         error: OverlayError,
     },
     /// A parameter of a component that the stack does not use.
-    #[error("{path}: {owner} is not used here; {used} is")]
+    #[error("{path}: {owner} is not in use; the stack uses {used}")]
     NotUsed {
         /// Path as given.
         path: String,
@@ -407,7 +407,11 @@ mod tests {
         let file = "[hsta]\nl1_constraint = 3.0\n";
         assert!(laid(&layers(file, "jps", &[]), &["hsta"]).is_ok());
         for (layers, message, path) in [
-            (layers(file, "jps", &[]), "my.toml: hsta: hsta is not used here; jps is", "hsta"),
+            (
+                layers(file, "jps", &[]),
+                "my.toml: hsta: hsta is not in use; the stack uses jps",
+                "hsta",
+            ),
             (layers("map.a = 1", "jps", &[]), "my.toml: there is no field `map.a`", "map.a"),
             (layers("", "jsp", &[]), "planner: `planner.name` must be one of ", "planner.name"),
             (layers("", "jps", &["map.a=1"]), "parameters: there is no field `map.a`", "map.a"),

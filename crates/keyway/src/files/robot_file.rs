@@ -162,7 +162,7 @@ fn either<T>(
     (long, other): (&str, Option<T>),
 ) -> Result<Option<T>, ConfigError> {
     if one.is_some() && other.is_some() {
-        let reason = format!("says the same as `{long}`; give one of them");
+        let reason = format!("is the same value as `{long}`; give only one of them");
         return Err(ConfigError::new(short, reason));
     }
     Ok(one.or(other))
@@ -174,7 +174,7 @@ fn no_such_robot(name: &str) -> ConfigError {
 }
 
 fn missing(what: &str) -> ConfigError {
-    let reason = format!("needs {what}; or begin with `like = \"small\"`, and say what differs");
+    let reason = format!("needs {what}; or start with `like = \"small\"` and list the differences");
     ConfigError::new("the robot", reason)
 }
 
@@ -225,18 +225,18 @@ mod tests {
         let error = |text: &str| robot(text).unwrap_err();
         assert_eq!(
             error("v_max_mps = 1"),
-            "the robot needs `footprint`, or the `radius_m` of a round robot; or begin with `like = \
-             \"small\"`, and say what differs"
+            "the robot needs `footprint`, or the `radius_m` of a round robot; or start with `like = \
+             \"small\"` and list the differences"
         );
         assert!(error("cycle_s = 1").contains("of a round robot, and `v_max_mps`, the top speed;"));
         assert!(error("radius_m = 1").starts_with("the robot needs `v_max_mps`, the top speed;"));
         assert_eq!(
             error("radius_m = 1\nv_max_mps = 1\nlimits.v_max_mps = 1"),
-            "v_max_mps says the same as `limits.v_max_mps`; give one of them"
+            "v_max_mps is the same value as `limits.v_max_mps`; give only one of them"
         );
         assert_eq!(
             error("radius_m = 1\nfootprint = { radius_m = 1 }"),
-            "radius_m says the same as `footprint`; give one of them"
+            "radius_m is the same value as `footprint`; give only one of them"
         );
         let other = error("like = \"jackel\"");
         assert!(other.starts_with("like must be a bundled robot (small, "), "{other}");
@@ -260,11 +260,16 @@ mod tests {
         let error = |text: &str| change(text).unwrap_err().to_string();
         assert!(error("limits.v_max=0.3").contains("there is no field `limits.v_max`"));
         assert!(error("limits.v_max_mps=fast").contains("`limits.v_max_mps`: "));
-        assert_eq!(error("sensors[1].range_m=2"), "`sensors[1]`: there are 1, numbered from 0");
-        assert!(error("sensors.range_m=2").contains("is a list; say which, such as `sensors[0]`"));
+        assert_eq!(
+            error("sensors[1].range_m=2"),
+            "`sensors[1]`: the list has 1 items, numbered from 0"
+        );
+        assert!(
+            error("sensors.range_m=2").contains("is a list; give an index, such as `sensors[0]`")
+        );
         assert!(error("sensors[0].range=2").contains("there is no field `sensors[0].range`"));
         assert!(error("sensors[0].range_m=0").starts_with("sensors[0].range_m must be a length"));
-        assert!(error("limits[0].v_max_mps=1").contains("`limits[0]`: is no list"));
+        assert!(error("limits[0].v_max_mps=1").contains("`limits[0]`: is not a list"));
         assert!(error("cycle_s=0").starts_with("cycle_s must be a time"), "{}", error("cycle_s=0"));
     }
 }

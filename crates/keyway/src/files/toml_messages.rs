@@ -19,6 +19,16 @@ pub(super) fn in_plain_words(message: &str) -> String {
     if message == "u64 value was too large" {
         return format!("the whole number is too large, expected at most {}", i64::MAX);
     }
+    // The parser's messages if a choice between kinds is not a table with one of them.
+    match message {
+        "wanted exactly 1 element, more than 1 element" => {
+            return "give exactly one kind, got several".to_owned();
+        }
+        "wanted exactly 1 element, found 0 elements" => {
+            return "give exactly one kind, got none".to_owned();
+        }
+        _ => {}
+    }
     let Some((got, expected)) = message.rsplit_once(", expected ") else {
         return shown(message, MESSAGE_LETTERS);
     };
@@ -111,6 +121,8 @@ mod tests {
             ),
             ("unknown variant `x`, expected `a` or `b`", "unknown value `x`, expected `a` or `b`"),
             ("missing field `radius_m`", "missing field `radius_m`"),
+            ("wanted exactly 1 element, more than 1 element", "give exactly one kind, got several"),
+            ("wanted exactly 1 element, found 0 elements", "give exactly one kind, got none"),
             (
                 "invalid value: integer `9` as i128, expected u8",
                 "invalid value: integer `9`, expected a whole number from 0 to 255",

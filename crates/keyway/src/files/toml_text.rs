@@ -122,8 +122,8 @@ mod tests {
             error.reason
         };
         let both = "radius_m = 0.18\nvertices_m = [[1, 0], [0, 1], [-1, -1]]";
-        assert_eq!(footprint(both), "wanted exactly 1 element, more than 1 element");
-        assert_eq!(footprint(""), "wanted exactly 1 element, found 0 elements");
+        assert_eq!(footprint(both), "give exactly one kind, got several");
+        assert_eq!(footprint(""), "give exactly one kind, got none");
     }
 
     #[test]

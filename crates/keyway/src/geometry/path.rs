@@ -105,7 +105,7 @@ pub enum PathError {
     },
     /// An arc with a negative radius or more than a whole turn.
     #[error(
-        "piece {piece} of the path must be an arc of up to a whole turn and a radius of at least 0"
+        "piece {piece} of the path must be an arc of at most one full turn, with a radius of at least 0"
     )]
     NoArc {
         /// The piece, counted from 0.

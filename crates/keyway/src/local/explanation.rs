@@ -167,7 +167,7 @@ impl Display for Remedy {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         let Self { change, frees } = *self;
         match change {
-            Change::Wait { duration_s } => write!(f, "standing still for {duration_s:.2} s"),
+            Change::Wait { duration_s } => write!(f, "waiting for {duration_s:.2} s"),
             Change::Turn { by_rad } if frees => {
                 let side = if by_rad > 0.0 { "left" } else { "right" };
                 let by_deg = by_rad.abs() * 180.0 / PI;
@@ -201,7 +201,7 @@ mod tests {
         let expected = "turning on the spot by 45 deg to the right would free it";
         assert_eq!(turn.to_string(), expected);
         let wait = Remedy { change: Change::Wait { duration_s: 0.1 }, frees: false };
-        assert_eq!(wait.to_string(), "standing still for 0.10 s would not free it");
+        assert_eq!(wait.to_string(), "waiting for 0.10 s would not free it");
         let text = serde_json::to_string(&wait).unwrap();
         assert_eq!(text, r#"{"change":"wait","duration_s":0.1,"frees":false}"#);
         assert_eq!(serde_json::from_str::<Remedy>(&text).unwrap(), wait);

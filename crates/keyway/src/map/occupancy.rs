@@ -50,7 +50,7 @@ impl TryFrom<GridParts> for OccupancyGrid {
         let cells = frame.cell_count();
         let has_all = values.as_ref().is_none_or(|it| it.numbers.len() as u64 == cells);
         if !(fits(&occupied) && fits(&unknown) && has_all) {
-            return Err("the cells of a map are not as many as its frame has");
+            return Err("the number of cells of a map differs from that of its frame");
         }
         Ok(Self { frame, occupied, unknown: Arc::new(unknown), values, revision })
     }

@@ -49,8 +49,8 @@ pub enum OccupancyError {
     },
     /// Not all cells are empty, yet no value comes near to occupied: usually a mask of 0 and 1.
     #[error(
-        "the largest occupancy is {largest} of 100, so that every cell would be free: a mask of what is occupied must be of \
-         type bool"
+        "the largest occupancy is {largest} of 100, so every cell would be free; pass an occupancy \
+         mask as type bool"
     )]
     Mask {
         /// The largest value.

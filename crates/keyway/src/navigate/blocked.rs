@@ -72,7 +72,7 @@ pub enum Blocked {
     NothingAdmissible(NoCommand),
     /// The local planner found nothing better than to stay: no velocity that moves the robot is
     /// admissible.
-    #[error("of {} velocities none lets the robot drive ({})", .0.candidates, .0.rejected)]
+    #[error("none of the {} candidate velocities moves the robot ({})", .0.candidates, .0.rejected)]
     NothingDrives(Evaluation),
     /// With the sensed obstacles, no route exists any more. The robot continues along the last
     /// one as far as is safe (it may see a gap from nearby), and replans from time to time.
@@ -84,16 +84,17 @@ pub enum Blocked {
     Recovering(RecoveryKind),
     /// A moving obstacle needs to pass where there is no space for two: the robot waits beside
     /// its path until it has passed.
-    #[error("the robot makes way for somebody who comes towards it")]
+    #[error("the robot makes way for an oncoming moving obstacle")]
     MakingWay,
     /// The robot is stationary at its goal and has no space to turn to the goal heading, in
     /// either direction.
-    #[error("there is no room at the goal to turn to its heading")]
+    #[error("there is no space at the goal to turn to its heading")]
     NoRoomToTurn,
     /// The robot is outside the map, and nothing can be planned from there: its localisation is
     /// wrong, or the map is too small. The command brakes.
     #[error(
-        "the pose ({}, {}) is outside the map: correct the localisation, or use a map that holds the place",
+        "the pose ({}, {}) is outside the map: correct the localisation, or use a map that \
+         contains this position",
         Computed(.0.x), Computed(.0.y)
     )]
     OffTheMap(Point),
@@ -109,11 +110,11 @@ pub enum Blocked {
     },
     /// The rest of a single act would touch something. The command brakes, and the robot
     /// continues once there is space.
-    #[error("there is no room for what is left of the act")]
+    #[error("there is no space for the rest of the act")]
     NoRoomForAct,
     /// A single act has exceeded its time limit. The command brakes, and the robot stays
     /// stationary.
-    #[error("the act has taken longer than it may: the robot stands; give it another task")]
+    #[error("the act has exceeded its time limit: the robot is stationary; give it another task")]
     OutOfTime,
     /// The stop rule rejects the command, because the robot could no longer stop in time with it;
     /// the robot drives slower or brakes.
@@ -121,13 +122,13 @@ pub enum Blocked {
     Unsafe(Refusal),
     /// An implausible stamp, pose or velocity: the state of the robot is unknown. The command is
     /// to stop.
-    #[error("{0} cannot be true: it is not finite, or far beyond the robot's limits")]
+    #[error("{0} is implausible: not finite, or far beyond the robot's limits")]
     BadInput(&'static str),
     /// The last observation is older than the one before and was discarded. The command is to
     /// stop.
     #[error(
-        "the observation of {} s is older than the last one, of {} s: give observations in the order of their stamps; \
-         after a change of the clock, say that it begins anew (`restart_clock`)",
+        "the observation of {} s is older than the last one, of {} s: give observations in the \
+         order of their stamps; after a change of the clock, call `restart_clock`",
         Computed(*.stamp_s), Computed(*.last_s)
     )]
     TimeRunsBack {
@@ -141,7 +142,8 @@ pub enum Blocked {
     NothingObserved,
     /// The last pose is old: the pose is unknown. The command brakes.
     #[error(
-        "the last pose is {} s old: the localisation or the odometry is silent, and the robot stands until it is not",
+        "the last pose is {} s old: the localisation or the odometry is silent, and the robot \
+         stays stationary until a new pose arrives",
         Computed(*.age_s)
     )]
     PoseStale {
@@ -181,7 +183,7 @@ fn silence_text(silent_s: f64) -> String {
         "yet".to_owned()
     };
     format!(
-        "no beam of a sensor has said anything {since}: the robot sees nothing, and stands until it does"
+        "no sensor has had a valid beam {since}: the robot is blind and stays stationary until one has"
     )
 }
 
@@ -189,8 +191,8 @@ fn silence_text(silent_s: f64) -> String {
 fn no_route_text(why: &NavigateError) -> String {
     match why {
         NavigateError::Plan(PlanError::NoPath { .. }) => {
-            "what the robot has seen leaves no path to the goal".to_owned()
+            "with the sensed obstacles, no path to the goal exists".to_owned()
         }
-        why => format!("what the robot has seen leaves no route to the goal ({why})"),
+        why => format!("with the sensed obstacles, no route to the goal exists ({why})"),
     }
 }

@@ -69,21 +69,23 @@ impl Display for Doubt {
             }
             Self::ActsLate { learned_s, described_s } => write!(
                 f,
-                "the robot does what it is told {learned_s:.2} s later, not {described_s:.2} s: set actuation_delay_s = {learned_s:.2} in its file"
+                "the actuation delay is {learned_s:.2} s, not {described_s:.2} s: set \
+                 actuation_delay_s = {learned_s:.2} in the robot file"
             ),
             Self::DeadBand { v_mps, omega_radps } => write!(
                 f,
                 "commands of up to {v_mps:.3} m/s and {omega_radps:.3} rad/s do not move the robot: check its motors"
             ),
             Self::DoesNotMove => f.write_str(
-                "the robot does not move although it is told to: check its motors, or it is stuck",
+                "the robot does not follow its commands: check its motors, and whether it is stuck",
             ),
             Self::MovesUntold => f.write_str(
-                "the robot moves although it is told to stand: it is pushed, or slides, or its localisation drifts",
+                "the robot moves although its commands are zero: it is pushed, it slides, or its \
+                 localisation drifts",
             ),
             Self::ScanRepeated { sensor } => write!(
                 f,
-                "sensor {sensor} gives the same scan again although the robot moves: check its driver"
+                "sensor {sensor} repeats the same scan although the robot moves: check its driver"
             ),
         }
     }

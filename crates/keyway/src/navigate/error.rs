@@ -19,7 +19,7 @@ pub enum NavigateError {
     Config(#[from] ConfigError),
     /// The footprint does not fit at the start or goal.
     #[error(
-        "{end} ({}, {}) leaves no room for a radius of {} m: {why}{}",
+        "{end} ({}, {}) has too little clearance for a radius of {} m: {why}{}",
         Computed(.position.x), Computed(.position.y), Computed(*.radius_m),
         nearest_text(.nearest.as_ref())
     )]
@@ -70,8 +70,8 @@ pub enum NavigateError {
     },
     /// A start or goal whose coordinates are not finite.
     #[error(
-        "{end} ({}, {}) is no place on a map: both coordinates must be finite numbers; \
-         check the localisation, or the file that it is from",
+        "{end} ({}, {}) is not a valid position: both coordinates must be finite numbers; check \
+         the localisation, or the file that contains the {end}",
         Given(.position.x), Given(.position.y)
     )]
     NotFinite {
@@ -91,7 +91,7 @@ pub enum NavigateError {
     NoPathToFollow,
     /// A path to be followed starts too far from the robot.
     #[error(
-        "the path begins {} m from the robot, and may begin {} m from it at most: drive to its beginning first",
+        "the path begins {} m from the robot, and at most {} m are allowed: drive to its beginning first",
         Computed(*.away_m), Computed(*.most_m)
     )]
     PathFarAway {
@@ -105,7 +105,7 @@ pub enum NavigateError {
     Misfit(Misfit),
     /// The pose of the robot has not been given.
     #[error(
-        "where the robot is is unknown: observe its pose, or tell its place, before it gets a goal"
+        "the pose of the robot is unknown: give an observation or call `relocate` before setting a goal"
     )]
     PlaceUnknown,
     /// No route exists.
@@ -175,15 +175,15 @@ const fn every_heading_text(footprint: &Footprint, heading_rad: Option<&f64>) ->
 
 fn headings_text(fits: &[HeadingRange]) -> String {
     if fits.is_empty() {
-        return "nor does it with any other: move the goal".to_owned();
+        return "it fits with no other yaw either: move the goal".to_owned();
     }
     let ranges: Vec<String> = fits.iter().map(|range| format!("{range} deg")).collect();
-    format!("there it fits with one of {}", ranges.join(", "))
+    format!("it fits there with a yaw of {}", ranges.join(", "))
 }
 
 fn nearest_text(nearest: Option<&Point>) -> String {
     nearest.map_or_else(
-        || "; no other place on this map has room either".to_owned(),
-        |p| format!("; the nearest position with room is ({:.3}, {:.3})", p.x, p.y),
+        || "; no other position on this map has enough clearance either".to_owned(),
+        |p| format!("; the nearest position with enough clearance is ({:.3}, {:.3})", p.x, p.y),
     )
 }

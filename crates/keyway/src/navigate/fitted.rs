@@ -99,7 +99,7 @@ impl Stack {
         match clearances.into_iter().find(|(_, clearance_m)| *clearance_m < radius_m) {
             Some((field, clearance_m)) => {
                 let expected = format!(
-                    "at least {}, the radius of the robot ({}): a route must leave room for it",
+                    "at least {}, the inscribed radius of the robot ({}): a route must leave space for it",
                     Given(radius_m),
                     robot.footprint
                 );
@@ -114,7 +114,7 @@ impl Stack {
         if self.planner.needs_static_map() {
             let name = self.planner.name();
             let reason = format!(
-                "cannot be `{name}`, which needs a map that stays as it is, but a robot's sensor changes it; use jps"
+                "cannot be `{name}`: it needs a static map, but the robot's sensors change the map; use jps"
             );
             return Err(ConfigError::new("planner.name", reason));
         }

@@ -64,19 +64,19 @@ impl Misfit {
     }
 }
 
-/// Completes a sentence that starts with "the robot": "has no room to turn from 0 to 90 deg at
+/// Completes a sentence that starts with "the robot": "has no space to turn from 0 to 90 deg at
 /// (1.000, 2.000)".
 impl Display for Misfit {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
             Self::Straight { from, to } => write!(
                 f,
-                "touches something on its way straight from ({:.3}, {:.3}) to ({:.3}, {:.3})",
+                "touches something on the straight segment from ({:.3}, {:.3}) to ({:.3}, {:.3})",
                 from.x, from.y, to.x, to.y
             ),
             Self::Turn { at, from_deg, to_deg } => write!(
                 f,
-                "has no room to turn from {from_deg:.0} to {to_deg:.0} deg at ({:.3}, {:.3})",
+                "has no space to turn from {from_deg:.0} to {to_deg:.0} deg at ({:.3}, {:.3})",
                 at.x, at.y
             ),
         }
@@ -105,14 +105,14 @@ mod tests {
         let at = Point::new(5.5, 1.5);
         let turn = Misfit::Turn { at, from_deg: 0.0, to_deg: 90.0 };
         assert_eq!(along(&around, 0.9, 0.6), Some(turn));
-        assert_eq!(turn.to_string(), "has no room to turn from 0 to 90 deg at (5.500, 1.500)");
+        assert_eq!(turn.to_string(), "has no space to turn from 0 to 90 deg at (5.500, 1.500)");
         let straight = along(&[[1.0, 1.5], [4.0, 1.5]], 1.2, 0.98);
         assert_eq!(straight, None);
         let aslant = along(&[[1.0, 1.5], [4.0, 1.7]], 0.9, 0.6).unwrap();
         assert!(
             aslant
                 .to_string()
-                .starts_with("touches something on its way straight from (1.000, 1.500)")
+                .starts_with("touches something on the straight segment from (1.000, 1.500)")
         );
         assert_eq!(along(&[[1.0, 1.5]], 9.0, 9.0), None, "nothing to drive");
     }

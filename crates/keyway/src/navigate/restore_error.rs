@@ -12,14 +12,15 @@ pub(super) const FORM: u32 = 1;
 #[non_exhaustive]
 pub enum RestoreError {
     /// The snapshot has another format.
-    #[error("the snapshot has form {0}, and this version reads form {form}", form = FORM)]
+    #[error("the snapshot has format {0}; this version reads format {form}", form = FORM)]
     Form(u32),
     /// The robot or the stack of the snapshot cannot be used.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// One part contradicts the others.
     #[error(
-        "`{0}` of the snapshot contradicts its other parts: it was changed, or is of another robot"
+        "`{0}` of the snapshot contradicts its other parts: the snapshot was edited, or belongs to \
+         another robot"
     )]
     Contradiction(&'static str),
 }

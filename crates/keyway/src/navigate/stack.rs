@@ -227,12 +227,12 @@ impl ControllerConfig {
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
         ConfigError::unless_not_negative("start_error_m", self.start_error_m)?;
         if self.go_around && self.movers.is_none() {
-            let reason = "needs `controller.movers`: movers that are not told apart cannot be gone around; set it to false";
+            let reason = "needs `controller.movers`: the robot cannot go around moving obstacles \
+                          without tracking them; set it to false";
             return Err(ConfigError::new("go_around", reason));
         }
         if self.make_way && self.movers.is_none() {
-            let reason =
-                "needs `controller.movers`: nobody is seen to come otherwise; set it to false";
+            let reason = "needs `controller.movers`: oncoming obstacles are not detected otherwise; set it to false";
             return Err(ConfigError::new("make_way", reason));
         }
         Ok(())
@@ -257,7 +257,8 @@ impl ControllerConfig {
     ) -> Result<Option<StopRule>, ConfigError> {
         let Some(safe) = &self.safe else { return Ok(None) };
         if self.movers.is_none() {
-            let reason = "needs `controller.movers`: who does not tell movers apart cannot keep clear of them";
+            let reason = "needs `controller.movers`: without tracking, it cannot keep clear of \
+                          moving obstacles";
             return Err(ConfigError::new("safe", reason));
         }
         let rule = StopRule::new(safe.clone(), Arc::clone(robot));

@@ -66,7 +66,7 @@ use CornerRule::{Allow, Forbid};
 
 const KEYWAY: Parts = parts(
     "keyway",
-    "Jump point search, line of sight, courses through space and time: the usual one",
+    "Jump point search, line-of-sight smoothing, space-time trajectories: the default",
     None,
     ["jps", "line-of-sight", "key-points", "space-time"],
     Forbid,
@@ -74,7 +74,7 @@ const KEYWAY: Parts = parts(
 
 const KEY_POINT_FUSION: Parts = parts(
     "key-point-fusion",
-    "Jump point search, line of sight, key points, DWA",
+    "Jump point search, line-of-sight smoothing, key points, DWA",
     None,
     ["jps", "line-of-sight", "key-points", "dwa"],
     Forbid,

@@ -16,8 +16,9 @@ use thiserror::Error;
 /// A start that is closer to an obstacle than the robot fits.
 #[derive(Clone, Debug, PartialEq, Error, Serialize, Deserialize)]
 #[error(
-    "the robot is told to be nearer to something than it can stand ({why}), and leaves it first: the localisation is off by \
-     at least {off_m:.3} m, or the map or the footprint is"
+    "the reported start is closer to an obstacle than the robot fits ({why}); the robot moves away \
+     from it first: the localisation is off by at least {off_m:.3} m, or the map or the footprint \
+     is wrong"
 )]
 #[non_exhaustive]
 pub struct StartTooNear {

@@ -15,7 +15,7 @@ impl TryFrom<i64> for Time {
 
     fn try_from(micros: i64) -> Result<Self, &'static str> {
         let is_usable = (micros as f64).abs() <= 2e6 * Self::FARTHEST_S;
-        if is_usable { Ok(Self { micros }) } else { Err("a time that is absurdly far away") }
+        if is_usable { Ok(Self { micros }) } else { Err("the time is beyond the supported range") }
     }
 }
 

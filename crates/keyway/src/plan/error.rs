@@ -37,13 +37,13 @@ pub enum PlanError {
     },
     /// Start and goal are in different connected components. This is found without a search, so
     /// the statistics are zero, unless every reachable cell was searched.
-    #[error("there is no path from the start to the goal")]
+    #[error("no path exists from the start to the goal")]
     NoPath {
         /// The counters of the search.
         statistics: SearchStatistics,
     },
     /// A path exists, but the planner did not find it.
-    #[error("{planner} found no path, although there is one: {miss}")]
+    #[error("{planner} missed an existing path: {miss}")]
     Missed {
         /// The planner.
         planner: &'static str,
@@ -54,8 +54,8 @@ pub enum PlanError {
     },
     /// The start or goal is nearer to an obstacle than the planner's constraint allows.
     #[error(
-        "{end} {cell} is {distance} from an obstacle, nearer than the constraint of {constraint} that \
-         {planner} keeps (L1 norm, in its reference cells); choose another {end}"
+        "{end} {cell} is {distance} from the nearest obstacle, but {planner} requires {constraint} \
+         (L1 norm, in its reference cells); choose another {end}"
     )]
     Constrained {
         /// The planner.
@@ -85,7 +85,7 @@ pub enum PlanError {
     Preparation(PrepareError),
     /// The planner was prepared for another map.
     #[error(
-        "the preparation belongs to another map, or to this one before an edit; prepare this map again"
+        "the preparation was made for another map, or before this map was edited; prepare this map again"
     )]
     OtherMap,
     /// The budget was used up before a path was found.
@@ -126,7 +126,7 @@ impl PlanError {
             Self::Missed { planner, ref miss, .. } => Some(match miss {
                 Miss::Constraint { .. } => relax(planner),
                 Miss::SidesPassed => Advice {
-                    purpose: "to let the two searches meet wherever both have been",
+                    purpose: "to let the two searches meet at any node that both have reached",
                     planner,
                     parameter: "meeting",
                     value: "generated".to_owned(),
@@ -164,7 +164,7 @@ impl std::fmt::Display for PathEnd {
 fn nearest_text(nearest: Option<&Cell>) -> String {
     nearest.map_or_else(
         || "; no cell of this map is free".to_owned(),
-        |cell| format!("; nearest free cell is {cell}"),
+        |cell| format!("; the nearest free cell is {cell}"),
     )
 }
 
@@ -173,7 +173,7 @@ fn nearest_text(nearest: Option<&Cell>) -> String {
 #[non_exhaustive]
 pub enum Miss {
     /// The two sides of a bidirectional search have no node in common.
-    #[error("its two searches passed each other")]
+    #[error("the forward and backward searches passed each other without meeting")]
     SidesPassed,
     /// All paths come nearer to an obstacle than the planner's constraint allows.
     #[error("no path keeps its constraint of {constraint} (L1 norm, in reference cells)")]
@@ -182,7 +182,7 @@ pub enum Miss {
         constraint: f64,
     },
     /// All random samples were used up.
-    #[error("its {samples} random samples were used up")]
+    #[error("the limit of {samples} random samples was reached")]
     SamplesUsedUp {
         /// The number of samples.
         samples: u64,

@@ -156,7 +156,7 @@ impl std::fmt::Display for Stop {
             Self::GoalExpanded => "the goal was expanded",
             Self::GoalGenerated => "the goal was generated",
             Self::SidesMet => "the two sides met",
-            Self::NothingBetter => "nothing open could lead to a shorter path",
+            Self::NothingBetter => "no open node could lead to a shorter path",
             Self::GoalJoined => "the goal was joined to the tree",
             Self::LookedUp => "the path was looked up",
         })

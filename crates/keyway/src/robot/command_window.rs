@@ -80,7 +80,8 @@ impl Limits {
                 // Rounded up, so that the value in the message is valid.
                 let least = Given((least * 1e6).ceil() / 1e6);
                 let expected = format!(
-                    "at least {least}, to be kept by commands that are spread over 2 s (lower the {accelerations} for less)"
+                    "at least {least}, so that commands are averaged over at most 2 s (reduce the \
+                     {accelerations} to allow less)"
                 );
                 return Err(ConfigError::must_be(field, &expected, jerk));
             }

@@ -37,9 +37,9 @@ fn limits_that_cannot_be_kept_are_refused() {
     let error = |jerk: f64, angular: f64| robot("jackal", jerk, angular).validate().err();
     assert_eq!((error(3.0, 6.0), error(1e9, 1e9)), (None, None));
     let text = |jerk, angular| error(jerk, angular).unwrap().to_string();
-    let expected = "limits.jerk_mps3 must be at least 3, to be kept by commands that are spread over 2 s (lower the accelerations for less), got 2.9";
+    let expected = "limits.jerk_mps3 must be at least 3, so that commands are averaged over at most 2 s (reduce the accelerations to allow less), got 2.9";
     assert_eq!(text(2.9, 6.0), expected);
-    assert!(text(3.0, 5.0).starts_with("limits.angular_jerk_radps3 must be at least 6, to be"));
+    assert!(text(3.0, 5.0).starts_with("limits.angular_jerk_radps3 must be at least 6, so that"));
     assert_eq!(text(0.0, 6.0), "limits.jerk_mps3 must be a positive number, got 0");
     assert!(text(f64::NAN, 6.0).contains("limits.jerk_mps3 must be a positive number"));
     assert!(text(6.0, f64::INFINITY).contains("limits.angular_jerk_radps3 must be finite"));

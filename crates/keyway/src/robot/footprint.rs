@@ -83,7 +83,7 @@ pub enum FootprintError {
     #[error("a footprint needs at least 3 vertices, got {0}")]
     TooFewVertices(usize),
     /// More than [`Polygon::MOST_VERTICES`].
-    #[error("a footprint has at most {most} vertices, got {0}; leave out those that hardly matter",
+    #[error("a footprint has at most {most} vertices, got {0}; remove vertices that hardly change the shape",
         most = Polygon::MOST_VERTICES)]
     TooManyVertices(usize),
     /// NaN, infinite, or farther than a kilometre from the centre.
@@ -104,10 +104,10 @@ pub enum FootprintError {
     )]
     Repeated(usize, usize),
     /// Two successive edges overlap, as in a spike or if all vertices are collinear.
-    #[error("the footprint covers no ground at vertex {0}")]
+    #[error("the footprint has no area at vertex {0}")]
     Degenerate(usize),
     /// Two edges that are not neighbours touch or cross.
-    #[error("edges {0} and {1} of the footprint meet")]
+    #[error("edges {0} and {1} of the footprint touch or cross")]
     SelfIntersecting(usize, usize),
 }
 

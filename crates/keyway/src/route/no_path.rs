@@ -52,7 +52,7 @@ impl Display for NoPath {
         let Self { separation, is_joined_through_unknown } = self;
         write!(f, "{separation}")?;
         if *is_joined_through_unknown {
-            f.write_str("; there is one through unknown space, with `map.unknown` = \"free\"")?;
+            f.write_str("; with `map.unknown` = \"free\", a path through unknown space exists")?;
         }
         Ok(())
     }

@@ -49,7 +49,8 @@ pub enum ScanError {
     Increment(f64),
     /// The beams span more than one turn.
     #[error(
-        "{beams} beams with {increment_rad} rad from one to the next turn around more than once; is the angle in degrees?"
+        "{beams} beams with {increment_rad} rad from one to the next cover more than a full turn; \
+         is the angle in degrees?"
     )]
     Turns {
         /// Number of beams.

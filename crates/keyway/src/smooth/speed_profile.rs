@@ -98,7 +98,10 @@ pub enum SpeedProfileError {
         at_most_mps: f64,
     },
     /// The spacing needs too many samples, which is most likely a mistake.
-    #[error("over a million samples of a path of {length_m:.3} m; choose at least {least_m:.6}")]
+    #[error(
+        "the spacing gives over a million samples on a path of {length_m:.3} m; choose at \
+         least {least_m:.6} m"
+    )]
     TooFine {
         /// Length of the path \[m\].
         length_m: f64,

@@ -88,8 +88,8 @@ impl Runs<'_> {
     }
 
     fn clearances(&self) -> Option<Svg> {
-        let what = "Least distance from the footprint to any obstacle in a run, of the runs that reached the goal.";
-        self.boxes("least clearance [m]", what, |run| run.min_clearance_m)
+        let what = "Smallest distance from the footprint to any obstacle in a run, of the runs that reached the goal.";
+        self.boxes("smallest clearance [m]", what, |run| run.min_clearance_m)
     }
 
     fn boxes(&self, label: &str, what: &str, value: fn(&Row) -> Option<f64>) -> Option<Svg> {
@@ -105,8 +105,7 @@ impl Runs<'_> {
         let group = |(name, (values, note))| BoxGroup { name, values, note };
         let shown = samples.iter().map(|(sample, note)| (sample.as_ref(), note.as_str()));
         let groups: Vec<BoxGroup<'_>> = self.names().zip(shown).map(group).collect();
-        let caption =
-            self.caption(&format!("{what} {BOXES} At the right: how many runs these are."));
+        let caption = self.caption(&format!("{what} {BOXES} At the right: number of these runs."));
         Some(box_plot(&BoxPlot { title: "", label, groups: &groups, caption: &caption }))
     }
 
@@ -120,8 +119,8 @@ impl Runs<'_> {
         let count = groups.middles.len();
         let what = format!(
             "Share of the runs that reached the goal, in {count} groups of runs in worlds of similar clutter ({} of each stack), with \
-             Wilson's 95 % intervals; pale: the other stacks. Clutter: share of the known map that obstacles cover, those on no map included; \
-             a group stands at its median.",
+             Wilson's 95 % intervals; pale: the other stacks. Clutter: share of the known map that is covered by obstacles, including those that are not on the map; \
+             a group is drawn at its median.",
             groups.sizes(&self.by_stack)
         );
         let labels = ("clutter [% of the map]", "reached [%]");
@@ -161,7 +160,7 @@ impl Runs<'_> {
     }
 
     fn caption(&self, what: &str) -> String {
-        format!("{what} {} runs in all, simulated with Keyway {}.", self.count, Inputs::VERSION)
+        format!("{what} {} runs in total, simulated with Keyway {}.", self.count, Inputs::VERSION)
     }
 }
 

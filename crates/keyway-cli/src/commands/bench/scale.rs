@@ -121,7 +121,7 @@ impl From<ScaleError> for CliError {
                 Self::new(Kind::Input, format!("{error}{hint}")).field("MAP")
             }
             ScaleError::Apart => {
-                let message = format!("{error}; --unknown free may open it");
+                let message = format!("{error}; --unknown free may connect them");
                 Self::new(Kind::Input, message).field("MAP")
             }
             error => Self::new(Kind::Config, error),

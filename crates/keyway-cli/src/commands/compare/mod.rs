@@ -91,7 +91,7 @@ fn print_tables(
     let pooled = comparison.columns().pooled_table(&report.rows);
     let tables: Vec<String> = maps.iter().flat_map(of_map).chain([pooled]).flatten().collect();
     print(&format!("{}\n\n{COMPARE_TERMS}", tables.join("\n\n")))?;
-    let elsewhere = "`--format json` and queries.csv of `--out` have them all";
+    let elsewhere = "`--format json` and queries.csv of `--out` list all of them";
     let unsolved = unsolved_note(maps, comparison.query_file(), elsewhere);
     let notes = [left_out_note(maps), unsolved, lowered_note(maps)];
     notes.into_iter().flatten().try_for_each(|note| print(&note))?;

@@ -48,7 +48,7 @@ impl From<CompareRequestError> for CliError {
                 const FIELD: &str = "--columns";
                 let message = match &error {
                     ColumnError::Time { name } => {
-                        format!("{name} is a time, which --no-times leaves out")
+                        format!("{name} is a time, which --no-times omits; remove it or --no-times")
                     }
                     error => error.to_string(),
                 };
@@ -66,8 +66,8 @@ impl From<CompareRequestError> for CliError {
             }
             CompareRequestError::Renamed { path } => {
                 let message = format!(
-                    "--set: `{path}` cannot be set in a comparison; --planners and --smoothers name \
-                     what is compared"
+                    "--set: `{path}` cannot be set in a comparison; use --planners and --smoothers to \
+                     select what is compared"
                 );
                 Self::new(Kind::Config, message).field(path)
             }
@@ -97,7 +97,7 @@ impl From<CompareError> for CliError {
     fn from(error: CompareError) -> Self {
         match error {
             CompareError::Planner { error: error @ PlanError::NeedsUniformCost { .. }, .. } => {
-                let message = format!("{error}; `--planners all` leaves such planners out");
+                let message = format!("{error}; `--planners all` omits such planners");
                 Self::new(Kind::Config, message).field("--planners")
             }
             CompareError::Planner { name, error: PlanError::Config(error) } => {

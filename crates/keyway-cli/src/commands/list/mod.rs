@@ -52,8 +52,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
         if !known.contains(&name.as_str()) {
             let meant = did_you_mean(name, known.iter().copied());
             let known = known.join(", ");
-            let message =
-                format!("there is nothing named `{name}`, expected one of {known}{meant}");
+            let message = format!("there is no entry `{name}`, expected one of {known}{meant}");
             return Err(CliError::new(Kind::Usage, message).field("NAME"));
         }
         if args.as_published {
@@ -102,8 +101,8 @@ fn published(&PublishedUse { source, method, setup }: &PublishedUse) -> Publishe
 fn show_names(entries: &[CatalogueEntry]) -> Result<(), CliError> {
     let row =
         |e: &CatalogueEntry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
-    print(&rows(&["kind", "name", "what it is"], entries.iter().map(row).collect(), 3))?;
-    print("\n`keyway list NAME` prints the parameters of one.")
+    print(&rows(&["kind", "name", "description"], entries.iter().map(row).collect(), 3))?;
+    print("\n`keyway list NAME` prints the parameters of an entry.")
 }
 
 fn show(entry: &CatalogueEntry, robot: &str) -> Result<(), CliError> {
@@ -141,7 +140,7 @@ fn show_published(entry: &CatalogueEntry) -> Result<(), CliError> {
         return Ok(());
     }
     let command = if entry.kind == EntryKind::LocalPlanner { "navigate" } else { "plan" };
-    print(&format!("\nIn the papers (docs/papers.md), as options of `keyway {command}`:"))?;
+    print(&format!("\nMethods of the papers (docs/papers.md), as options of `keyway {command}`:"))?;
     for Published { source, method, options } in entry.published.iter().map(published) {
         print(&format!("  [{source}] {method}:\n    {}", options.join(" ")))?;
     }

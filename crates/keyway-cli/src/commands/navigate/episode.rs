@@ -42,7 +42,7 @@ fn refuse_ends_beside_a_scene(args: &NavigateArgs) -> Result<(), CliError> {
     let given = given.into_iter().find(|(is_given, ..)| *is_given && args.scene.is_some());
     let Some((_, argument, line)) = given else { return Ok(()) };
     let message = format!(
-        "{argument} cannot be given beside --scene: write `{line}` in the scene file instead"
+        "{argument} cannot be combined with --scene; write `{line}` in the scene file instead"
     );
     Err(CliError::new(Kind::Usage, message).field(argument))
 }
@@ -106,7 +106,7 @@ fn reach_nearest(episode: &mut Episode) -> Result<(), CliError> {
     let replaced = episode.reach_nearest().map_err(|error| bad_input(&error.why))?;
     for NearestGoal { asked, goal, .. } in replaced {
         crate::stdout::warn(format!(
-            "the goal ({:.3}, {:.3}) cannot be reached: the robot drives to the nearest place that can, ({:.3}, {:.3})",
+            "the goal ({:.3}, {:.3}) cannot be reached; the robot drives to the nearest reachable position, ({:.3}, {:.3})",
             asked.x, asked.y, goal.x, goal.y
         ));
     }
@@ -162,7 +162,7 @@ fn given_map(
     let placement = args.place.placement();
     if let Some(map) = scene.and_then(SceneFile::generated_map) {
         if placement.is_some() {
-            let message = "a generated map lies where the scene's `[world]` says";
+            let message = "the placement of a generated map is set by the scene's `[world]`; remove --resolution and --origin";
             return Err(CliError::new(Kind::Usage, message).field("--resolution"));
         }
         let map = map.map_err(|error| CliError::new(Kind::Input, error).field("--scene"))?;
@@ -186,7 +186,7 @@ fn given_robot(
     let (changes, _) = args.config.split_robot();
     if args.stack.as_published && !changes.is_empty() {
         let message = format!(
-            "--as-published is for the robot `{PAPER_ROBOT}` as it is; without --as-published its values can be set"
+            "--as-published needs the robot `{PAPER_ROBOT}` without changes; remove --as-published to set values of the robot"
         );
         return Err(CliError::new(Kind::Usage, message).field("--set"));
     }
@@ -204,8 +204,8 @@ fn named_robot(
             let other = args.robot.as_ref().filter(|name| name.as_str() != PAPER_ROBOT);
             if let Some(other) = other {
                 let message = format!(
-                    "--as-published is for the robot `{PAPER_ROBOT}`, got --robot {other}; without --as-published the \
-                     stack has parameters for your robot"
+                    "--as-published needs the robot `{PAPER_ROBOT}`, got --robot {other}; remove --as-published to derive \
+                     the parameters of the stack from your robot"
                 );
                 return Err(CliError::new(Kind::Usage, message).field("--robot"));
             }
@@ -250,7 +250,7 @@ fn given_stack(
 
 fn ends_from_args(args: &NavigateArgs, frame: &GridFrame) -> Result<(Start, Goal), CliError> {
     let (Some(start), Some(goal)) = (args.start, args.goal) else {
-        let message = "--start and --goal are needed, or --scene";
+        let message = "--start and --goal, or --scene, are required";
         return Err(CliError::new(Kind::Usage, message));
     };
     let place = |PoseArg { x, y, .. }, flag| position(frame, Point::new(x, y), args.cells, flag);

@@ -46,8 +46,9 @@ pub(crate) fn run(args: &NavigateArgs) -> Result<Done, CliError> {
 /// one.
 fn warn_of_those_left_out(random: Option<Placed>) {
     if let Some(left_out) = random.map(|placed| placed.left_out()).filter(|&n| n > 0) {
-        let message =
-            format!("{left_out} of the random obstacles found no place and were left out");
+        let message = format!(
+            "no free position was found for {left_out} of the random obstacles; they were omitted"
+        );
         crate::stdout::warn(message);
     }
 }

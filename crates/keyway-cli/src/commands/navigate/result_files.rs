@@ -103,7 +103,9 @@ pub(crate) fn write_all(
 fn warn_without_a_fan(args: &DriveFileArgs, driven: &Driven) {
     if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
         let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
-        let message = format!("--fan {fan_s}: the run ended after {time_s:.1} s; no fan was drawn");
+        let message = format!(
+            "--fan {fan_s}: no candidates were drawn, because the run ended after {time_s:.1} s"
+        );
         crate::stdout::warn(message);
     }
 }

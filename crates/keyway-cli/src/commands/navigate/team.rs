@@ -78,8 +78,8 @@ pub(crate) fn refuse_what_is_for_one(args: &DriveFileArgs) -> Result<(), CliErro
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
             let message = format!(
-                "{option} shows the decisions of one robot, and the scene has `[[robots]]`; drive one of them alone, \
-                 with its `start` and `goal` in a scene of its own"
+                "{option} shows the decisions of a single robot, but the scene has `[[robots]]`; drive one of them alone, \
+                 in a scene with its `start` and `goal`"
             );
             Err(CliError::new(Kind::Usage, message).field(option))
         }

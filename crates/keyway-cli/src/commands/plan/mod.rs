@@ -129,7 +129,7 @@ struct Ends {
 
 fn ends(args: &PlanArgs, map: &SearchMap) -> Result<Ends, CliError> {
     if args.nearest_reachable && args.goal.len() > 1 {
-        let message = "--nearest-reachable is for a single --goal";
+        let message = "--nearest-reachable supports only a single --goal";
         return Err(CliError::new(Kind::Usage, message).field("--nearest-reachable"));
     }
     let to_goal = |goal: &PositionArg| position(map.frame(), goal.0, args.cells, "--goal");
@@ -170,7 +170,7 @@ fn with_remedy(answer: RouteAnswer, planner: &PlannerConfig) -> RouteAnswer {
             is_joined_through_unknown: true,
             ..
         })) => {
-            format!("{separation}; {THROUGH_UNKNOWN}, and there is one")
+            format!("{separation}; {THROUGH_UNKNOWN}, and such a path exists")
         }
         Some(RouteFailure::Separated(NoPath {
             separation: separation @ Separation::Apart { meet_at_corners: true, .. },

@@ -52,8 +52,8 @@ pub(super) fn replay(args: &ReplayArgs, path: &Path) -> Result<Option<Value>, Cl
         return Ok(serde_json::to_value(Redecided { record, flight, files }).ok());
     }
     let Flight { cycles, is_complete, .. } = flight;
-    let end = if is_complete { "" } else { "; the recording was not finished" };
-    print(&format!("{}{record}: {cycles} decisions, all the same again{end}", gap(args, path)))?;
+    let end = if is_complete { "" } else { "; the recording is incomplete" };
+    print(&format!("{}{record}: {cycles} decisions, all reproduced{end}", gap(args, path)))?;
     crate::stdout::print_files(&files)?;
     Ok(None)
 }
@@ -67,7 +67,7 @@ fn refuse_pictures(args: &DriveFileArgs) -> Result<(), CliError> {
     ];
     let Some((_, flag)) = given.into_iter().find(|(is_given, _)| *is_given) else { return Ok(()) };
     let message = format!(
-        "{flag} is for records of simulated runs; a recording does not know the world, and opens in Foxglove or Lichtblick"
+        "{flag} needs a record of a simulated run; a recording does not contain the world; open it in Foxglove or Lichtblick"
     );
     Err(CliError::new(Kind::Usage, message).field(flag))
 }

@@ -88,7 +88,7 @@ fn shown<R: Serialize>(
         // Plain data with string keys: this cannot fail.
         return Ok(serde_json::to_value(replayed).ok());
     }
-    print(&format!("{}{}, the same run again:\n", gap(args, path), path.display()))?;
+    print(&format!("{}{}, run reproduced:\n", gap(args, path), path.display()))?;
     print(&table())?;
     print_files(report.files)?;
     Ok(None)
@@ -110,6 +110,9 @@ fn refuse_one_file_for_several(args: &ReplayArgs) -> Result<(), CliError> {
     if args.records.len() == 1 {
         return Ok(());
     }
-    let message = format!("{flag} is one file, and there are {} records", args.records.len());
+    let message = format!(
+        "{flag} writes one file, but there are {} records; replay them one by one",
+        args.records.len()
+    );
     Err(CliError::new(Kind::Usage, message).field(flag))
 }

@@ -9,10 +9,10 @@ impl From<ReplayError> for CliError {
         let message = match error {
             ReplayError::Map(error) => map_error(&error).message,
             ReplayError::OtherMap { .. } => {
-                format!("{error}; --map-dir names a folder that has the map as it was")
+                format!("{error}; use --map-dir to give a folder with the original map")
             }
             ReplayError::Content { path, reason } => format!(
-                "{}: this is not a record of a run, as `keyway batch --keep` stores it: {reason}",
+                "{}: this is not a record of a run, as written by `keyway batch --keep`: {reason}",
                 path.display()
             ),
             error => error.to_string(),

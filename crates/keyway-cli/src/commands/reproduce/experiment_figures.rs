@@ -31,7 +31,7 @@ pub(super) fn of_experiment(
     let place = experiment.place(seed).map_err(|error| CliError::new(Kind::Config, error))?;
     let stage = place.as_ref().map(|place| Stage::new(experiment, place, (&on, &made)));
     let shown = stage.map(|stage| [stage.paths(), stage.searches(), stage.speed_curves()]);
-    let maps = format!("the {} maps of {} that count", rows.len(), experiment.name);
+    let maps = format!("the {} counted maps of {}", rows.len(), experiment.name);
     let boxes = [EXPANDED, TIME, MEAN_SPEED].map(|spread| {
         let caption = format!("{} over {maps}. {BOXES} {made}", spread.what);
         spread.boxes((experiment.methods, rows), &caption)

@@ -60,7 +60,7 @@ impl Axis {
         match self {
             Self::Change => "change [%]".to_owned(),
             Self::Difference(measure) => format!("difference of {}", with_unit(measure)),
-            Self::Kept => "maps on which it is so [%]".to_owned(),
+            Self::Kept => "maps on which it holds [%]".to_owned(),
         }
     }
 

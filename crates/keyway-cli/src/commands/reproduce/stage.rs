@@ -58,7 +58,7 @@ impl<'a> Stage<'a> {
         let mut panels: Vec<_> =
             others.iter().map(|actor| (actor.title(), actor.path_layers())).collect();
         if let Some(first) = parts.first() {
-            let way = PathLine::new(&first.shown.line, "the rest of its way", WAY);
+            let way = PathLine::new(&first.shown.line, "rest of the trajectory", WAY);
             let mut layers: Vec<Box<dyn Layer + '_>> = vec![Box::new(way)];
             for (i, actor) in parts.iter().enumerate() {
                 let style = LineStyle { width_px: PART_PX, ..series_style(i) };
@@ -68,7 +68,7 @@ impl<'a> Stage<'a> {
             }
             panels.push((first.ending("one run"), layers));
         }
-        self.panels(&self.caption("Paths and ways driven", |_| true), panels)
+        self.panels(&self.caption("Paths and trajectories", |_| true), panels)
     }
 
     /// Picture of the searches; `None` if there are none.
@@ -126,7 +126,7 @@ impl<'a> Stage<'a> {
         let missing: Vec<&str> = missing.map(|(method, _)| method.name).collect();
         let missing = match missing.as_slice() {
             [] => String::new(),
-            names => format!(" No path is found by {}.", names.join(", ")),
+            names => format!(" {} found no path.", names.join(", ")),
         };
         format!("{what}: {} on {}.{missing} {}", self.experiment.name, self.on, self.made)
     }
@@ -165,7 +165,7 @@ impl<'a> Actor<'a> {
         let end = match self.shown.run.as_ref().map(|run| run.outcome) {
             None | Some(Outcome::Reached) => "",
             Some(Outcome::Collided { .. }) => ", contact",
-            Some(Outcome::Timeout) => ", out of time",
+            Some(Outcome::Timeout) => ", timeout",
             Some(_) => ", stuck",
         };
         format!("{name}: {:.2} m{end}", self.shown.line.length_m())
@@ -178,7 +178,7 @@ impl<'a> Actor<'a> {
         }
         vec![
             Box::new(HatchedDiscs::unknown_obstacles(&self.shown.obstacles)),
-            Box::new(line.label("way driven")),
+            Box::new(line.label("trajectory")),
             Box::new(Movers::new(&self.shown.movers, &self.points)),
         ]
     }

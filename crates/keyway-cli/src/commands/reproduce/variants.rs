@@ -25,7 +25,7 @@ fn figure(report: &AblationReport, measure: Measure, request: &ReproduceRequest)
     // Ablations are requested together with the claims of their paper.
     let claim = Claim::all().find(|claim| claim.paper == report.paper).map_or("", |claim| claim.id);
     let caption = format!(
-        "{}: {}, change from \"{}\": mean over those of {} maps on which both have it, and its 95 % interval. {}",
+        "{}: {}, change from \"{}\": mean over those of {} maps on which both have a value, and its 95 % interval. {}",
         report.about,
         measure_name(measure),
         report.base,

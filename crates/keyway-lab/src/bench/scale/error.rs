@@ -26,7 +26,7 @@ pub enum ScaleError {
     },
     /// The largest component ends within one tile, so no path would grow with the side.
     #[error(
-        "the tiles of this map do not connect, as no free cell of its largest room is at its border"
+        "the tiles of this map are not connected: no free cell of its largest component is at the border"
     )]
     Apart,
     /// The planner refuses the query.

@@ -50,7 +50,7 @@ const MEASURES: &[Measure] = &[
 pub(super) static ABLATIONS: [Ablation; 2] = [
     Ablation {
         paper: PAPER,
-        about: "The steps of the method, taken back one after another",
+        about: "The steps of the method, removed one after another",
         experiment: &PARTS,
         base: COMPLETE_METHOD.name,
         parameter: None,

@@ -200,7 +200,7 @@ pub(super) static ABLATIONS: [Ablation; 8] = [
     },
     Ablation {
         paper: PAPER,
-        about: "The way around unknown obstacles without points to guide it",
+        about: "The path around unknown obstacles without guide points",
         experiment: &GUIDANCE,
         base: ALL,
         parameter: None,

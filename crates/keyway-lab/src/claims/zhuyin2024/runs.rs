@@ -44,8 +44,8 @@ const RRT: PlannerConfig = PlannerConfig::Rrt(RrtConfig {
 
 /// Reason why no maps fit.
 const LENGTHS_FIT_ALL: &str = "the lengths of 4-neighbour A* are the distances of start and goal along the axes, so every open map fits them; \
-    how often its path turns is decided among equally short paths, and not by the map; RRT is random";
-const NO_ROOM: &str = "neither plan nor size of the room is published, nor the limits of its robot; that A* turns 10 times there chose the family";
+    the number of turns depends on the choice among equally short paths, not on the map; RRT is random";
+const NO_ROOM: &str = "neither plan nor size of the room is published, nor the limits of its robot; the family was chosen by the published 10 turns of A*";
 
 /// Maximum distance of the unknown obstacles' centres from the path \[m\].
 const ON_THE_WAY_M: f64 = 0.5;

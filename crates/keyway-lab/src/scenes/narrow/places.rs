@@ -23,30 +23,30 @@ impl Place {
     pub(super) const ALL: &[Self] = &[
         Self {
             name: "tunnel",
-            about: "A straight tunnel through a wall of 1 to 4 m, 1.5 to 10 cm wider to each side \
-                    than the robot, which begins before it, or inside",
+            about: "A straight tunnel through a wall of 1 to 4 m, 1.5 to 10 cm wider on each side \
+                    than the robot, which starts in front of it or inside",
             draw: tunnel,
         },
         Self {
             name: "door",
-            about: "A door in a thin wall, 2 to 15 cm wider to each side than the robot",
+            about: "A door in a thin wall, 2 to 15 cm wider on each side than the robot",
             draw: door,
         },
         Self {
             name: "bay",
-            about: "A bay, 4 to 20 cm wider to each side than the robot, at whose end the goal is, \
-                    facing in, out or anywhere",
+            about: "A bay, 4 to 20 cm wider on each side than the robot, with the goal at its end, \
+                    facing in, out or in any direction",
             draw: bay,
         },
         Self {
             name: "corner",
-            about: "Two corridors that meet at a right angle, in which the robot can hardly turn, \
-                    or not",
+            about: "Two corridors that meet at a right angle, in which the robot can barely turn or \
+                    cannot turn at all",
             draw: corner,
         },
         Self {
             name: "lane",
-            about: "A lane, 2 to 10 cm wider to each side than the robot, in which it begins, and \
+            about: "A lane, 2 to 10 cm wider on each side than the robot, in which it starts and \
                     ends",
             draw: lane,
         },
@@ -57,7 +57,7 @@ impl Place {
         },
         Self {
             name: "wall",
-            about: "A wall, along which the robot begins or ends, or both, 1 to 12 cm beside it",
+            about: "A wall along which the robot starts or ends, or both, 1 to 12 cm from it",
             draw: wall,
         },
     ];

@@ -112,7 +112,7 @@ fn disturbances_draw_from_the_seed_of_the_scene() {
             "[disturbances.actuation]",
             "[disturbances]\nseed = 1\n[disturbances.actuation]",
         ));
-    assert!(seeded.contains("`disturbances.seed` is the `seed` of the scene"), "{seeded}");
+    assert!(seeded.contains("set `seed` of the scene instead of `disturbances.seed`"), "{seeded}");
     assert_eq!(error(&format!("{LEAST}[disturbances]\n")), "`disturbances` needs `version = 2`");
 }
 

@@ -226,7 +226,7 @@ impl Disturbances {
         if under_way <= MOST_RANGES {
             return Ok(());
         }
-        let expected = "a time in which at most 100000000 ranges are under way";
+        let expected = "a time in which at most 100000000 ranges are pending";
         Err(ConfigError::must_be("sensor.delay_s", expected, self.sensor.delay_s))
     }
 }
@@ -339,7 +339,7 @@ impl LocalisationFaults {
         ])?;
         check_stamps(self.stamp_late_s, self.delay_s)?;
         if self.jumps() && self.jump_every_s < 1e-3 {
-            let expected = "a time of at least 0.001 s where the pose jumps (`jump_m`, `jump_rad`)";
+            let expected = "a time of at least 0.001 s if the pose jumps (`jump_m`, `jump_rad`)";
             return Err(ConfigError::must_be("jump_every_s", expected, self.jump_every_s));
         }
         if self.jump_for_s > self.jump_every_s {

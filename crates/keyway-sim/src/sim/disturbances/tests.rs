@@ -95,7 +95,7 @@ fn sectors_flags_and_jumps_are_checked() {
     assert!(!zero.is_none() && zero.validate().is_ok());
     assert_eq!(
         error(r#"{"localisation": {"jump_m": 0.3}}"#),
-        "localisation.jump_every_s must be a time of at least 0.001 s where the pose jumps \
+        "localisation.jump_every_s must be a time of at least 0.001 s if the pose jumps \
          (`jump_m`, `jump_rad`), got 0"
     );
     assert_eq!(

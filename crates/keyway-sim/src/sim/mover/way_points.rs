@@ -64,8 +64,7 @@ impl WayPoints {
         }
         let round_m = course.last().map_or(0.0, |station| station.driven_m);
         if !(round_m > 0.0 && round_m.is_finite()) {
-            let expected =
-                "must hold at least two different points, not farther apart than numbers reach";
+            let expected = "must hold at least two different points, with a path between them of finite length";
             return Err(ConfigError::new("way_points", expected));
         }
         Ok(Self { points, to_and_fro, speed_mps, course })

@@ -108,7 +108,7 @@ const RULES: [(&str, &str); 4] = [
     (CONTACT, "touch something"),
     (CANNOT_STOP, "could not stop in time"),
     (TURNS_TOO_FAST, "turn too fast"),
-    (MOVER, "lead into something that moves"),
+    (MOVER, "lead into a moving obstacle"),
 ];
 
 /// Working memory of a decision.
@@ -151,8 +151,8 @@ impl DynamicWindow {
         let refuse =
             |field, expected: &str, value| Err(ConfigError::must_be(field, expected, value));
         if config.admissible == Admissible::Rollout && config.prediction == Prediction::Euler {
-            let reason = "cannot be `rollout` with the prediction `euler`, in which the way to stop is no part of the \
-                          trajectory; use stopping-distance";
+            let reason = "cannot be `rollout` with the prediction `euler`, in which the braking \
+                          motion is not part of the trajectory; use stopping-distance";
             return Err(ConfigError::new("admissible", reason));
         }
         let least_s = cycle_s + limits.stop_s().max(limits.brakes_within_s(cycle_s));
@@ -160,7 +160,7 @@ impl DynamicWindow {
         if config.prediction == Prediction::Arcs && config.horizon_s < least_s {
             // Rounded up, so that the value in the message is valid.
             let least = Given((least_s * 1e6).ceil() / 1e6);
-            let expected = format!("at least {least}, for a cycle and the way to stop");
+            let expected = format!("at least {least}, for a cycle and the time to stop");
             return refuse("horizon_s", &expected, config.horizon_s);
         }
         if config.horizon_s > Self::LONGEST_HORIZON_S {

@@ -158,7 +158,7 @@ pub struct GuidedDwa {
 /// No position behind an obstacle is free.
 const COVERED: &str = "covered";
 
-const RULES: [(&str, &str); 1] = [(COVERED, "places behind an obstacle are not free")];
+const RULES: [(&str, &str); 1] = [(COVERED, "positions behind an obstacle are not free")];
 
 impl GuidedDwa {
     /// Name on the command line and in reports.

@@ -171,7 +171,7 @@ fn nothing_free_behind_is_for_the_caller() {
     // x_ga lies outside; (17.5, 2.5) to (19.5, 2.5) are on the obstacle or 0.5 m from it.
     assert_eq!((why.evaluation.candidates, why.evaluation.rejected.count(COVERED)), (4, 4));
     assert!((why.fallback.v - 0.48).abs() < 1e-12);
-    assert!(why.to_string().contains("4 places behind an obstacle are not free"), "{why}");
+    assert!(why.to_string().contains("4 positions behind an obstacle are not free"), "{why}");
 }
 
 #[test]

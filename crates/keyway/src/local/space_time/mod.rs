@@ -148,9 +148,9 @@ const CONTACT: &str = "contact";
 const STOP_RULE: &str = "stop-rule";
 
 const RULES: [(&str, &str); 3] = [
-    (CONTACT, "touch something or lead backwards where the robot has not looked"),
-    (STOP_RULE, "lead where the robot could not stop in time"),
-    (Rejections::MOVER, "lead near something that moves"),
+    (CONTACT, "touch something or lead backwards over unobserved ground"),
+    (STOP_RULE, "could not stop in time"),
+    (Rejections::MOVER, "come too near to a moving obstacle"),
 ];
 
 impl SpaceTime {

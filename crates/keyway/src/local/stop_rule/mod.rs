@@ -269,14 +269,15 @@ impl Gated {
 pub enum Refusal {
     /// Before it could stop, the robot would come too near to a stationary obstacle, or to the
     /// map's border.
-    #[error("the robot could not stop before something that stands, {after_s:.2} s from now")]
+    #[error("the robot could not stop before a stationary obstacle, {after_s:.2} s from now")]
     Standing {
         /// Time of the violation, from now \[s\].
         after_s: f64,
     },
     /// Before it could stop, a moving obstacle could touch it.
     #[error(
-        "the robot could not stop before what it follows as track {id} may be there, {after_s:.2} s from now"
+        "the robot could not stop before the moving obstacle of track {id} may be there, \
+         {after_s:.2} s from now"
     )]
     Mover {
         /// Number of the track ([`Mover::id`]).
@@ -287,14 +288,15 @@ pub enum Refusal {
     /// The robot would back up outside its field of view, and a moving obstacle may be there
     /// before it could stop.
     #[error(
-        "the robot could not stop before somebody may be behind it, where it does not look, {after_s:.2} s from now"
+        "the robot could not stop before a moving obstacle may be behind it, outside its field of \
+         view, {after_s:.2} s from now"
     )]
     Unseen {
         /// Time of the violation, from now \[s\].
         after_s: f64,
     },
     /// Before it could stop, the robot would leave the observed free space.
-    #[error("the robot could not stop within what it has seen to be free, {after_s:.2} s from now")]
+    #[error("the robot could not stop within observed free space, {after_s:.2} s from now")]
     OutOfSight {
         /// Time of the violation, from now \[s\].
         after_s: f64,
@@ -303,7 +305,7 @@ pub enum Refusal {
     #[error("the robot's centre is inside an obstacle or outside the map")]
     Covered,
     /// A pose, a velocity or a command that is not finite.
-    #[error("the pose, the velocity or the command is not a number")]
+    #[error("the pose, the velocity or the command is not finite")]
     NotANumber,
 }
 

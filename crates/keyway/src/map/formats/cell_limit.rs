@@ -11,8 +11,8 @@ pub const DEFAULT_MAX_CELLS: u64 = 1 << 29;
 /// memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
-    "a map of {width} x {height} cells is larger than the limit of {max_cells} cells; if it is meant \
-     to be so large, raise the limit"
+    "a map of {width} x {height} cells is larger than the limit of {max_cells} cells; if this size \
+     is intended, raise the limit"
 )]
 #[non_exhaustive]
 pub struct TooManyCells {

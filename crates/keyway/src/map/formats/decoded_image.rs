@@ -62,7 +62,7 @@ pub enum ImageError {
         maximum: u32,
     },
     /// A compressed file whose header claims more pixels than any compression could deliver.
-    #[error("{width} x {height} pixels cannot come from a file of {got} bytes")]
+    #[error("a file of {got} bytes cannot hold {width} x {height} pixels")]
     Implausible {
         /// Columns according to the header.
         width: u32,
@@ -72,10 +72,10 @@ pub enum ImageError {
         got: usize,
     },
     /// A PNG file that cannot be decoded.
-    #[error("not a sound PNG image: {0}; save it again")]
+    #[error("not a valid PNG image: {0}; export it again")]
     Png(String),
     /// An image of another format that cannot be decoded.
-    #[error("not a {kind} image of which a map can be made; save it as PNG")]
+    #[error("this {kind} image cannot be read as a map; save it as PNG")]
     Unreadable {
         /// The format.
         kind: &'static str,

@@ -28,7 +28,7 @@ pub enum MapFileError {
         path: PathBuf,
     },
     /// A placement (resolution and origin) for a map that has its own.
-    #[error("{}: the YAML file says where the map lies, expected no placement for it", path.display())]
+    #[error("{}: the YAML file already contains the map's resolution and origin; do not give them again", path.display())]
     Placement {
         /// The YAML file.
         path: PathBuf,

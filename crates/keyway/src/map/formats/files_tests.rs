@@ -118,7 +118,7 @@ fn what_is_usually_a_mistake() {
     let text = |warnings: &[MapWarning]| warnings[0].to_string();
     let unsized_image = warnings(&image, None);
     assert_eq!(unsized_image, [MapWarning::Resolution { path: image.clone() }]);
-    assert!(text(&unsized_image).contains("m.pgm: an image does not say how large its cells are"));
+    assert!(text(&unsized_image).contains("m.pgm: an image does not contain its resolution"));
     assert_eq!(warnings(&image, Some(ImagePlacement::default())), []);
 
     assert_eq!(warnings(&folder.write("a.yaml", YAML), None), []);
@@ -150,7 +150,9 @@ fn folders_and_placements_are_refused() {
     let path = folder.write("a.yaml", YAML);
     let error = read_map(&path, Some(ImagePlacement::default())).unwrap_err();
     assert!(matches!(error, MapFileError::Placement { .. }));
-    assert!(error.to_string().contains("a.yaml: the YAML file says where the map lies"));
+    assert!(
+        error.to_string().contains("a.yaml: the YAML file already contains the map's resolution")
+    );
 
     let error = write_map(&folder.path("none/a.yaml"), &OccupancyGrid::from_ascii(&["."]));
     assert!(matches!(error, Err(MapFileError::Write(_))));

@@ -119,14 +119,14 @@ impl fmt::Display for MapWarning {
         match self {
             Self::Thresholds { path, occupied_thresh, free_thresh } => write!(
                 f,
-                "{}: `free_thresh` ({free_thresh}) is above `occupied_thresh` ({occupied_thresh}), so \
-                 that no cell is unknown; are they swapped?",
+                "{}: `free_thresh` ({free_thresh}) is above `occupied_thresh` ({occupied_thresh}), \
+                 so no cell is unknown; are they swapped?",
                 path.display()
             ),
             Self::Mask { path, largest } => write!(
                 f,
-                "{}: the largest occupancy is {largest} of 100, so that every cell is free; in mode raw an occupied cell \
-                 has 100",
+                "{}: the largest occupancy is {largest} of 100, so every cell is free; in mode raw \
+                 an occupied cell has 100",
                 path.display()
             ),
             Self::Assumed { path, field } => {
@@ -139,36 +139,37 @@ impl fmt::Display for MapWarning {
                 let path = path.display();
                 write!(
                     f,
-                    "{path}: the field `{field}` is missing; {value}, as map savers write it, is assumed"
+                    "{path}: the field `{field}` is missing; {value} is assumed, as map savers write it"
                 )
             }
             Self::UnknownBelowThreshold { path, cells, free_thresh } => write!(
                 f,
-                "{}: {cells} cells of the grey with which map savers draw unknown cells (205) are free, because \
-                 `free_thresh` is {free_thresh}; with 0.196 they are unknown",
+                "{}: {cells} cells with the grey value of unknown cells (205 in saved maps) are \
+                 read as free, because `free_thresh` is {free_thresh}; with 0.196 they are unknown",
                 path.display()
             ),
             Self::UnknownBelowAlpha { path, cells } => write!(
                 f,
-                "{}: {cells} cells of the grey with which map savers draw unknown cells (205) are free, because an \
-                 opaque alpha channel counts as a bright colour, as in the map server; save the image without it",
+                "{}: {cells} cells with the grey value of unknown cells (205 in saved maps) are \
+                 read as free, because an opaque alpha channel counts as a bright colour, as in \
+                 the map server; save the image without it",
                 path.display()
             ),
             Self::Lossy { path } => write!(
                 f,
-                "{}: a JPEG image keeps greys only nearly, so that unknown cells may be free or occupied; make a \
-                 PNG of what it was made of",
+                "{}: JPEG does not preserve grey values exactly, so unknown cells may be read as \
+                 free or occupied; export the original as PNG",
                 path.display()
             ),
             Self::Heights { path } => write!(
                 f,
-                "{}: the heights of a map of type octile-corner are not kept, so that ways across steps of the \
-                 ground count as free",
+                "{}: heights of a map of type octile-corner are ignored, so paths across steps in \
+                 the terrain count as free",
                 path.display()
             ),
             Self::Resolution { path } => write!(
                 f,
-                "{}: an image does not say how large its cells are, so 1 m is assumed",
+                "{}: an image does not contain its resolution, so cells of 1 m are assumed",
                 path.display()
             ),
         }

@@ -152,8 +152,7 @@ mod tests {
         // The size of the canvas, of which the pixels may fill a part.
         gif[6..10].copy_from_slice(&[0, 0x40, 0, 0x40]);
         let error = read(&gif, MapMode::Trinary, 1 << 29).unwrap_err().to_string();
-        let expected =
-            format!("16384 x 16384 pixels cannot come from a file of {} bytes", gif.len());
+        let expected = format!("a file of {} bytes cannot hold 16384 x 16384 pixels", gif.len());
         assert_eq!(error, expected);
     }
 

@@ -59,7 +59,7 @@ pub(super) fn decode(bytes: &[u8], cells: &mut Translator<'_>) -> Result<Decoded
     }
     let values = read_rows(reader, cells).map_err(|error| broken(&error))?;
     if values.len() as u64 != u64::from(width) * u64::from(height) {
-        return Err(ImageError::Png("its first frame does not fill it".to_owned()));
+        return Err(ImageError::Png("its first frame is smaller than the image".to_owned()));
     }
     Ok(DecodedImage { width: u64::from(width), height: u64::from(height), values })
 }
@@ -243,7 +243,7 @@ mod tests {
     fn the_fault_is_named() {
         let whole = encode(2, 1, &[0, 255]);
         let named = |bytes: &[u8], fault_named: &str| {
-            let expected = format!("not a sound PNG image: {fault_named}; save it again");
+            let expected = format!("not a valid PNG image: {fault_named}; export it again");
             assert_eq!(raw(bytes).unwrap_err().to_string(), expected);
         };
         // In the signature, in the data, and before the chunk that ends a file.
@@ -278,7 +278,7 @@ mod tests {
         let huge = with_size(small.clone(), 1 << 30, 1 << 30);
         let error = raw(&huge).unwrap_err();
         assert!(matches!(error, ImageError::Implausible { .. }), "{error}");
-        assert!(error.to_string().starts_with("1073741824 x 1073741824 pixels cannot come from"));
+        assert!(error.to_string().contains(" bytes cannot hold 1073741824 x 1073741824 pixels"));
         let tall = with_size(small.clone(), 1 << 16, 1 << 14);
         assert!(matches!(raw(&tall), Err(ImageError::Implausible { .. })));
         assert!(matches!(raw(&with_size(small.clone(), 3, 3)), Err(ImageError::Png(_))));
@@ -291,7 +291,7 @@ mod tests {
         assert!(raw(&bytes).is_ok());
         for length in [8, 20, 33, 60, bytes.len() - 30] {
             let error = raw(&bytes[..length]).unwrap_err();
-            assert!(error.to_string().starts_with("not a sound PNG image: "), "{error}");
+            assert!(error.to_string().starts_with("not a valid PNG image: "), "{error}");
         }
         let mut damaged = bytes;
         damaged[50] ^= 0xff;
@@ -323,8 +323,8 @@ mod tests {
         for bytes in [4, 5, 7, 767] {
             let text = indexed(vec![9; bytes]).unwrap_err().to_string();
             let expected = format!(
-                "not a sound PNG image: its palette has {bytes} bytes, expected three for each of 1 to \
-                 256 colours; save it again"
+                "not a valid PNG image: its palette has {bytes} bytes, expected three for each of 1 to \
+                 256 colours; export it again"
             );
             assert_eq!(text, expected);
         }

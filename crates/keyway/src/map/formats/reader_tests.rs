@@ -39,8 +39,7 @@ fn maps_of_too_many_cells_are_refused_before_memory_is_taken() {
             let (error, used_bytes) = refused(file);
             let found = error.too_many_cells().unwrap_or_else(|| panic!("{error}"));
             assert_eq!((found.needed(), found.max_cells), (900_000_000, DEFAULT_MAX_CELLS));
-            let expected = "a map of 30000 x 30000 cells is larger than the limit of 536870912 cells; if it \
-                            is meant to be so large, raise the limit";
+            let expected = "a map of 30000 x 30000 cells is larger than the limit of 536870912 cells; if this size is intended, raise the limit";
             assert_eq!(error.to_string(), format!("{}: {expected}", path.display()));
             assert!(used_bytes < 1 << 18, "{name}: {used_bytes} bytes");
         }
@@ -110,7 +109,7 @@ fn unknown_cells_that_are_read_as_free_are_counted() {
         warnings(&folder, "a.yaml")
     };
     assert_eq!(read(YAML), [""; 0]);
-    let expected = "/a.yaml: 2 cells of the grey with which map savers draw unknown cells (205) are free, because \
+    let expected = "/a.yaml: 2 cells with the grey value of unknown cells (205 in saved maps) are read as free, because \
                     `free_thresh` is 0.25; with 0.196 they are unknown";
     let quarter = YAML.replace("0.196", "0.25");
     assert_eq!(read(&quarter), [expected]);
@@ -125,7 +124,7 @@ fn unknown_cells_that_are_read_as_free_are_counted() {
     encoder.set_color(::png::ColorType::Rgba);
     encoder.write_header().unwrap().write_image_data(rgba.as_flattened()).unwrap();
     folder.write("m.png", png);
-    let expected = "/m.png: 1 cells of the grey with which map savers draw unknown cells (205) are free, because an \
+    let expected = "/m.png: 1 cells with the grey value of unknown cells (205 in saved maps) are read as free, because an \
                     opaque alpha channel counts as a bright colour, as in the map server; save the image without it";
     let of_png = YAML.replace("m.pgm", "m.png");
     assert_eq!(read(&of_png), [expected]);
@@ -141,13 +140,13 @@ fn fields_that_are_missing_are_said() {
     for (line, expected) in [
         (
             "free_thresh: 0.196\n",
-            "the field `free_thresh` is missing; 0.196, as map savers write it, is assumed",
+            "the field `free_thresh` is missing; 0.196 is assumed, as map savers write it",
         ),
         (
             "occupied_thresh: 0.65\n",
-            "the field `occupied_thresh` is missing; 0.65, as map savers write it, is assumed",
+            "the field `occupied_thresh` is missing; 0.65 is assumed, as map savers write it",
         ),
-        ("negate: 0\n", "the field `negate` is missing; 0, as map savers write it, is assumed"),
+        ("negate: 0\n", "the field `negate` is missing; 0 is assumed, as map savers write it"),
     ] {
         let path = folder.write("a.yaml", YAML.replace(line, ""));
         assert_eq!(warnings(&folder, "a.yaml"), [format!("/a.yaml: {expected}")]);
@@ -160,8 +159,8 @@ fn heights_that_are_not_kept_are_said() {
     let folder = TestFolder::new();
     folder.write("a.map", "type octile-corner\nheight 2\nwidth 2\nmap\n22\n23\n.T\nTT\n");
     folder.write("b.map", "type octile-corner\nheight 2\nwidth 2\nmap\n.T\nTT\n");
-    let expected = "/a.map: the heights of a map of type octile-corner are not kept, so that ways across steps of the \
-                    ground count as free";
+    let expected = "/a.map: heights of a map of type octile-corner are ignored, so paths across steps in the \
+                    terrain count as free";
     assert_eq!(warnings(&folder, "a.map"), [expected]);
     assert_eq!(warnings(&folder, "b.map"), [""; 0]);
 }

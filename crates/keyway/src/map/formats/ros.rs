@@ -209,10 +209,13 @@ fn unreadable(error: &serde_saphyr::Error, text: &str) -> RosMapError {
     let (line, column) = (at.line().max(1), at.column().max(1));
     let reason = match error {
         Error::MultipleDocuments { .. } => {
-            "a second document begins here, expected one; remove the line `---` and what is not the map's"
+            "a second document begins here, expected one; remove the line `---` and everything \
+             that does not belong to the map"
         }
         Error::DuplicateMappingKey { .. } => "a field is given twice, expected each field once",
-        Error::Budget { .. } => "there is far more here than the YAML file of a map can hold",
+        Error::Budget { .. } => {
+            "the content is too large or too complex for the YAML file of a map"
+        }
         Error::AliasError { .. }
         | Error::UnknownAnchor { .. }
         | Error::RecursiveReferencesRequireWeakTypes { .. }

@@ -38,7 +38,11 @@ impl std::fmt::Display for BlockedBy {
             Self::Unknown => f.write_str("is in unknown space, which counts as an obstacle"),
             Self::Clearance { radius_m, nearest } => {
                 let radius_m = Computed(*radius_m);
-                write!(f, "leaves no room for a radius of {radius_m} m: from its centre {nearest}")
+                write!(
+                    f,
+                    "has too little clearance for a radius of {radius_m} m: measured from \
+                           its centre, {nearest}"
+                )
             }
             Self::Expansion { cells } => write!(
                 f,
@@ -46,7 +50,7 @@ impl std::fmt::Display for BlockedBy {
             ),
             Self::Constraint { distance } => write!(
                 f,
-                "is free, but nearer to an obstacle than the constraint allows \
+                "is free, but closer to an obstacle than the constraint allows \
                  (map.published.l1_constraint is {distance})"
             ),
         }
@@ -119,7 +123,7 @@ mod tests {
         let why = map.blocked_by(Cell::new(2, 1)).unwrap();
         let nearest = Hindrance::Unknown { distance_m: 0.5 };
         assert_eq!(why, BlockedBy::Clearance { radius_m: 0.6, nearest });
-        let text = "leaves no room for a radius of 0.6 m: from its centre unknown space, which counts \
+        let text = "has too little clearance for a radius of 0.6 m: measured from its centre, unknown space, which counts \
                     as an obstacle, is 0.500 m away";
         assert_eq!(why.to_string(), text);
     }

@@ -50,27 +50,27 @@ impl Display for Separation {
             Self::TooNarrow { clearance_m, widest_m, narrowest: [from, to] } => {
                 write!(
                     f,
-                    "there is no path from the start to the goal for a radius of {} m; the largest \
-                     radius with one is {} m, which ",
+                    "no path exists from the start to the goal for a radius of {} m; the largest \
+                     feasible radius is {} m, limited by the clearance at the ",
                     Computed(clearance_m),
                     rounded_down(widest_m)
                 )?;
                 if from == to {
-                    return write!(f, "the centre of the cell ({}, {}) leaves", from.x, from.y);
+                    return write!(f, "centre of cell ({}, {})", from.x, from.y);
                 }
                 let (x, y) = (to.x, to.y);
-                write!(f, "the centres of the cells ({}, {}) to ({x}, {y}) leave", from.x, from.y)
+                write!(f, "centres of cells ({}, {}) to ({x}, {y})", from.x, from.y)
             }
             Self::Apart { start_cells, goal_cells, meet_at_corners } => {
                 let (rule, meet) = if meet_at_corners {
-                    (" that cuts no corners", ", which meet only at corners of cells")
+                    (" without cutting corners", ", which touch only at corners of cells")
                 } else {
                     ("", "")
                 };
                 write!(
                     f,
-                    "there is no path{rule} from the start to the goal, whatever the radius: they lie in \
-                     different parts of the map, of {start_cells} and {goal_cells} cells{meet}"
+                    "no path exists from the start to the goal for any radius{rule}: they lie in \
+                     separate parts of the map, of {start_cells} and {goal_cells} cells{meet}"
                 )
             }
         }
@@ -243,7 +243,7 @@ mod tests {
         assert_eq!(map(widest_m).separation(start, goal, Connectivity::Four), None);
         let text = found.unwrap().to_string();
         assert!(
-            text.ends_with("for a radius of 0.6 m; the largest radius with one is 0.45 m, which the centre of the cell (10, 4) leaves"),
+            text.ends_with("for a radius of 0.6 m; the largest feasible radius is 0.45 m, limited by the clearance at the centre of cell (10, 4)"),
             "{text}"
         );
     }
@@ -265,7 +265,7 @@ mod tests {
         let text = found.unwrap().to_string();
         assert!(
             text.contains(
-                "the largest radius with one is 0.175 m, which the centres of the cells (20, 1"
+                "the largest feasible radius is 0.175 m, limited by the clearance at the centres of cells (20, 1"
             ),
             "{text}"
         );
@@ -293,8 +293,16 @@ mod tests {
         let corner = of(0.0, Connectivity::Four);
         assert_eq!((corner, of(0.0, Connectivity::Eight)), (apart(4, 12, true), None));
         let text = corner.unwrap().to_string();
-        assert!(text.starts_with("there is no path that cuts no corners from"), "{text}");
-        assert!(text.ends_with("of 4 and 12 cells, which meet only at corners of cells"), "{text}");
+        assert!(
+            text.starts_with(
+                "no path exists from the start to the goal for any radius without cutting corners: "
+            ),
+            "{text}"
+        );
+        assert!(
+            text.ends_with("of 4 and 12 cells, which touch only at corners of cells"),
+            "{text}"
+        );
         let walled = OccupancyGrid::from_ascii(&["..#..", "..#..", "###..", "....."]);
         let map = SearchMap::new(&walled, LayerConfig::default()).unwrap();
         let wall = map.separation(Cell::new(0, 3), Cell::new(4, 0), Connectivity::Four);

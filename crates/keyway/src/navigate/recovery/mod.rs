@@ -86,8 +86,8 @@ impl Display for RecoveryKind {
         f.write_str(match self {
             Self::Replan => "plans a new route",
             Self::Turn => "turns towards its route",
-            Self::Manoeuvre => "works its way through a tight place",
-            Self::BackUp => "goes back the way that it came",
+            Self::Manoeuvre => "manoeuvres in a tight place",
+            Self::BackUp => "backs up along its track",
             Self::Wait => "waits",
         })
     }

@@ -62,11 +62,12 @@ pub enum PreparedFormatError {
     Checksum,
     /// The blocked cells differ.
     #[error(
-        "the preparation belongs to another map, or to another clearance or treatment of unknown cells; prepare this map in this way"
+        "the preparation was made for another map, clearance or treatment of unknown cells; \
+         prepare this map with these settings"
     )]
     OtherMap,
     /// The checksum matches, but the content is inconsistent.
-    #[error("the prepared map contradicts itself in {part} {index}; prepare the map again")]
+    #[error("the prepared map is inconsistent at {part} {index}; prepare the map again")]
     Content {
         /// The affected table.
         part: &'static str,

@@ -33,7 +33,7 @@ pub enum PrepareError {
     },
     /// A shortest path is too long.
     #[error(
-        "there is a shortest path of {} straight and {} diagonal steps, expected less than 2^20 of each; use jps",
+        "a shortest path has {} straight and {} diagonal steps, expected fewer than 2^20 of each; use jps",
         cost.straight, cost.diagonal
     )]
     TooLong {
