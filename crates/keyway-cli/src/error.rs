@@ -1,8 +1,9 @@
 //! Errors of the command line: a message for people, and the same as JSON.
 
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::Write;
 use thiserror::Error;
@@ -64,6 +65,30 @@ impl CliError {
         // `--start <X,Y>` -> `--start`.
         let field = field.and_then(|arg| arg.split(' ').next().map(str::to_owned));
         Self { kind: Kind::Usage, message: message.to_owned(), field }
+    }
+
+    /// Returns the error for numbers of one value that are separated by spaces, as in
+    /// `--start -8 -2`; `None` if the arguments have another fault.
+    pub(crate) fn of_split_numbers(error: &clap::Error, argv: &[OsString]) -> Option<Self> {
+        let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else {
+            return None;
+        };
+        let is_number = |arg: &OsString| arg.to_str().is_some_and(|arg| arg.parse::<f64>().is_ok());
+        let end = argv.iter().position(|arg| arg.to_str() == Some(found))?;
+        let count = argv[..=end].iter().rev().take_while(|arg| is_number(arg)).count();
+        let option = argv[..=end - count].last()?.to_str().filter(|it| it.starts_with("--"))?;
+        let rest = argv[end + 1..].iter().take_while(|arg| is_number(arg));
+        let numbers: Vec<&str> =
+            argv[end + 1 - count..=end].iter().chain(rest).filter_map(|arg| arg.to_str()).collect();
+        if error.kind() != ErrorKind::UnknownArgument || numbers.len() < 2 {
+            return None;
+        }
+        let message = format!(
+            "{option} {}: separate the numbers by commas: {option} {}",
+            numbers.join(" "),
+            numbers.join(",")
+        );
+        Some(Self::new(Kind::Usage, message).field(option))
     }
 
     /// Parses the error report of another process of this program.

@@ -35,7 +35,7 @@ const BAD_INPUT: u8 = 2;
 pub fn run(argv: &[OsString]) -> u8 {
     let cli = match Cli::try_parse_from(argv) {
         Ok(cli) => cli,
-        Err(error) => return refuse(&error, wants_json(argv)),
+        Err(error) => return refuse(&error, argv),
     };
     let done = match cli.command {
         Command::Demo(args) => commands::demo::run(&args),
@@ -67,7 +67,8 @@ pub fn run(argv: &[OsString]) -> u8 {
 
 /// Handles errors of the argument parser: help and version are answers, everything else is a
 /// usage error.
-fn refuse(error: &clap::Error, json: bool) -> u8 {
+fn refuse(error: &clap::Error, argv: &[OsString]) -> u8 {
+    let json = wants_json(argv);
     let is_answer = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
     if is_answer {
         return match stdout::check_written(error.print()) {
@@ -78,7 +79,9 @@ fn refuse(error: &clap::Error, json: bool) -> u8 {
             }
         };
     }
-    if json {
+    if let Some(error) = CliError::of_split_numbers(error, argv) {
+        error.print(json);
+    } else if json {
         CliError::from_clap(error).print(true);
     } else {
         // If even this fails, there is no channel left to report it.

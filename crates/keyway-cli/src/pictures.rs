@@ -7,8 +7,9 @@ use keyway::map::{BitGrid, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::search::Recording;
 use keyway_draw::layers::{
-    CellTint, DrivenPath, ElusiveObstacles, Footprints, GoalMark, HatchedDiscs, Meeting, Movers,
-    OtherGoals, PathLine, Points, Polygons, SearchNodes, SearchTrace, StartMark, WalkedGround,
+    CellTint, DrivenPath, ElusiveObstacles, EndMark, Footprints, GoalMark, HatchedDiscs, Meeting,
+    Movers, OtherGoals, PathLine, Points, Polygons, SearchNodes, SearchTrace, StartMark,
+    WalkedGround,
 };
 use keyway_draw::{
     LineStyle, MapPicture, Rgb, SERIES, SpeedCurveOptions, SpeedSeries, Svg, speed_curve,
@@ -100,6 +101,8 @@ pub(crate) struct DrivenPicture<'a> {
     /// Obstacles that the robot detoured around.
     pub(crate) walked: &'a [Disc],
     pub(crate) points: &'a [TrajectoryPoint],
+    /// Reason why the run ended before its goal; `None` if it was reached.
+    pub(crate) ended_by: Option<&'static str>,
 }
 
 impl RunPicture<'_> {
@@ -127,6 +130,9 @@ impl RunPicture<'_> {
                 .with(DrivenPath::new(driven.points).v_max_mps(robot.limits.v_max_mps))
                 .with(PathLine::smoothed(driven.smoothed).over_driven())
                 .with(Footprints::new(driven.points, &robot.footprint));
+            if let (Some(label), Some(end)) = (driven.ended_by, driven.points.last()) {
+                picture = picture.with(EndMark { point: end.pose.point(), label });
+            }
         }
         picture.svg()
     }

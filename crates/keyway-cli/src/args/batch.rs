@@ -76,7 +76,7 @@ pub(crate) struct BatchArgs {
     pub(crate) scenes: Vec<PathBuf>,
     /// Stacks (see `keyway list`) or stack files to drive each scene with, for all its robots; or
     /// `all` [default: that of the scene]
-    #[arg(long, value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
+    #[arg(long, alias = "stack", value_name = "NAME|FILE.toml,...", value_delimiter = ',')]
     pub(crate) stacks: Vec<String>,
     /// Robot (see `keyway list`) or robot file that replaces all robots of each scene [default:
     /// those of the scene]

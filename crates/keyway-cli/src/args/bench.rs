@@ -37,9 +37,10 @@ pub(crate) struct BenchScaleArgs {
     #[arg(value_name = "N,...", value_delimiter = ',')]
     #[arg(default_value = "1024,2048,4096", value_parser = whole::<u32, 2, { u32::MAX as u64 }>)]
     pub(crate) sides: Vec<u32>,
-    /// Planner (see `keyway list`); may be repeated
-    #[arg(long, value_name = "NAME", default_value = "jps")]
-    pub(crate) planner: Vec<String>,
+    /// Planners (see `keyway list`)
+    #[arg(long, alias = "planner", value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(default_value = "jps")]
+    pub(crate) planners: Vec<String>,
     #[command(flatten)]
     pub(crate) size: SizeArgs,
     #[command(flatten)]
@@ -66,9 +67,9 @@ pub(crate) struct BenchGridArgs {
     /// Scenario files, each with its map in the same folder
     #[arg(value_name = "FILE.scen", required = true)]
     pub(crate) scenarios: Vec<PathBuf>,
-    /// Planner (see `keyway list`); may be repeated [default: jps]
-    #[arg(long, value_name = "NAME")]
-    pub(crate) planner: Vec<String>,
+    /// Planners (see `keyway list`) [default: jps]
+    #[arg(long, alias = "planner", value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) planners: Vec<String>,
     /// Answer every query this many times, alternating between planners, and keep the fastest
     /// time of each
     #[arg(long, allow_negative_numbers = true)]

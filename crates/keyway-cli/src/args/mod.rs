@@ -350,16 +350,16 @@ pub(crate) struct CompareArgs {
     pub(crate) place: PlaceArgs,
     /// Planners (see `keyway list`), or `all` for all that support the map [default:
     /// jps,theta-star; with --smoothers only jps; with --config the one in the file]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(long, alias = "planner", value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) planners: Vec<String>,
     /// Smoothers for the paths of each planner (see `keyway list`), or `all` [default:
     /// none,taut,continuous-curvature; with --planners only none; with --config the one in the
     /// file]. A parameter is set for one smoother by its name, such as
     /// `--set hierarchical.safe_distance_m=0.2`, and for all smoothers by
     /// `--set smoother.safe_distance_m=0.2`; the same holds for planners (`planner...`)
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(long, alias = "smoother", value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x,start_y,goal_x,goal_y` [m], or in the order given by a
+    /// Starts and goals: lines of `start_x_m,start_y_m,goal_x_m,goal_y_m`, or in the order given by a
     /// header with these names; with a column `map`, each line applies only to that map
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,

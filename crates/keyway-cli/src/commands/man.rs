@@ -21,7 +21,8 @@ pub(crate) fn run(args: &ManArgs) -> Result<Done, CliError> {
         rendered.map_err(|error| CliError::new(Kind::Output, error))?;
         out.write(name, &text)?;
     }
-    let files: Vec<String> = names.iter().map(|name| out.path(name).display().to_string()).collect();
+    let files: Vec<String> =
+        names.iter().map(|name| out.path(name).display().to_string()).collect();
     out.finish()?;
     print_files(&files)?;
     Ok(Done::Success)

@@ -312,7 +312,10 @@ fn results_that_are_damaged_are_named_by_file_and_line() {
         let second = text.lines().nth(1).unwrap();
         for (line, expected) in [
             (format!("{}\n", &second[..20]), "line 2: it is not from a batch of this version"),
-            ("x".repeat((16 << 20) + 1), "line 2 holds 16777217 bytes, more than the 16 MiB"),
+            (
+                "x".repeat((16 << 20) + 1),
+                "line 2 has 16777217 bytes, more than the limit of 16 MiB",
+            ),
         ] {
             write(&folder, &format!("part/{name}"), &text.replacen(second, &line, 1));
             let error = merge();
@@ -437,15 +440,18 @@ fn plots_show_what_there_is() {
         names.sort();
         names.join(" ")
     };
-    let all = "clearance.png clearance.svg length_time.png length_time.svg success.png success.svg time.png time.svg";
+    let all = "captions.md clearance.png clearance.svg length_time.png length_time.svg success.png success.svg time.png time.svg";
     assert_eq!(names(), all);
     let time = read(&folder, "out/plots/time.svg");
-    for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]", "whiskers:"] {
+    for text in [">key-point-fusion<", ">astar-follow<", ">4 of 4<", "time [s]"] {
         assert!(time.contains(text), "{text}");
     }
-    // Four runs of each stack, in two groups.
-    let success = read(&folder, "out/plots/success.svg");
-    assert!(success.contains("(2 of each") && success.contains("pale:"), "{success}");
+    // Captions stand beside the pictures. Four runs of each stack, in two groups.
+    let captions = read(&folder, "out/plots/captions.md");
+    for text in ["**time.svg**: Time", "whiskers:", "**success.svg**: ", "(2 of each", "pale:"] {
+        assert!(captions.contains(text), "{text}: {captions}");
+    }
+    assert!(!time.contains("whiskers:"), "{time}");
     let rows: Vec<Value> =
         read(&folder, "out/runs.jsonl").lines().map(|line| line.parse().unwrap()).collect();
     let share = |row: &Value| row["occupied_share"].as_f64().unwrap();

@@ -73,7 +73,7 @@ fn what_is_no_scene_is_refused_unless_something_refers_to_it() {
     let error = refused("batch scenes/a/deep scenes/b");
     assert!(
         error.contains(
-            "two scenes are named `hall`, scenes/a/deep/hall.toml and scenes/b/hall.toml; name"
+            "two scenes are named `hall`, scenes/a/deep/hall.toml and scenes/b/hall.toml; give"
         ),
         "{error}"
     );

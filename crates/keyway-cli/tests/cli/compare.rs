@@ -23,12 +23,24 @@ fn every_planner_with_every_smoother_on_every_map() {
     let names = |row: &Value| {
         ["map", "planner", "smoother"].map(|name| row[name].as_str().unwrap().to_owned())
     };
-    let expected = ["rooms.map", "walled.map"].iter().flat_map(|map| {
+    let expected = ["rooms.map", "walled.map", "all maps"].iter().flat_map(|map| {
         ["jps", "theta-star"].iter().flat_map(move |planner| {
             ["none", "line-of-sight"].map(|smoother| [*map, *planner, smoother].map(str::to_owned))
         })
     });
     assert_eq!(rows(&report).iter().map(names).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+    let of = |row: usize, name: &str| number(&rows(&report)[row], name);
+    // Both maps have three queries, so the mean over all is the mean of both.
+    let mean = f64::midpoint(of(1, "mean_length_m"), of(5, "mean_length_m"));
+    assert!((of(9, "mean_length_m") - mean).abs() < 1e-9);
+    assert_eq!((of(9, "queries"), of(9, "compared")), (6.0, 6.0));
+    let expanded = [1, 5, 9].map(|row| of(row, "mean_expanded"));
+    assert!((expanded[2] - f64::midpoint(expanded[0], expanded[1])).abs() < 1e-9);
+    // Smoothing expands nothing.
+    assert_eq!(of(0, "mean_expanded"), expanded[0]);
+    assert!(of(0, "mean_generated") >= expanded[0] && expanded[0] >= 1.0);
+    let table = keyway(folder.path(), line.split(" --format").next().unwrap()).out;
+    assert!(table.contains("\nall maps: 6 queries\n"), "{table}");
     expect_members(
         &rows(&report)[0],
         &[
@@ -338,7 +350,7 @@ fn pairs_of_several_maps() {
     assert_eq!(goals(0), [&Value::from([1.5, 0.5]), &[2.5, 0.5].into()]);
     assert_eq!(goals(1), [&Value::from([21.5, 1.5])]);
     let refused = keyway(folder.path(), &line.replace("rooms.map", "closed.map")).expect_code(2);
-    assert!(refused.out.contains("names closed.map in no line"), "{}", refused.out);
+    assert!(refused.out.contains("no line has closed.map in the column `map`"), "{}", refused.out);
 }
 
 /// ROS maps are usually called `map.yaml`, in a folder named after their content.
@@ -368,7 +380,10 @@ fn maps_of_one_file_name_have_names_of_their_own() {
     };
     assert_eq!(
         (of("rows", "map"), of("maps", "name")),
-        (names.map(str::to_owned).to_vec(), names.map(str::to_owned).to_vec())
+        (
+            [names[0], names[1], "all maps"].map(str::to_owned).to_vec(),
+            names.map(str::to_owned).to_vec()
+        )
     );
     assert_eq!(of("maps", "map")[1], "office/../house/map.map");
     let firsts = |file: &str| -> Vec<String> {

@@ -193,7 +193,7 @@ fn unknown_space_is_no_obstacle() {
     keyway(folder.path(), &format!("{inside} --unknown free")).expect_code(0);
     let near = refused("plan rooms.yaml --start 1.35,1.35 --goal 5.55,1.35 --radius 0.5");
     assert!(
-        near.contains("from its centre unknown space, which counts as an obstacle, is 0.450 m"),
+        near.contains("from its centre, unknown space, which counts as an obstacle, is 0.450 m"),
         "{near}"
     );
     assert!(near.contains("--unknown free"), "{near}");

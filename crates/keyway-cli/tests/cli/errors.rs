@@ -88,7 +88,7 @@ fn outputs_without_a_folder_are_refused_before_the_search() {
     let folder = folder();
     for (flag, name) in [("--picture", "a.svg"), ("--animate", "a.gif"), ("--curve", "a.csv")] {
         let nowhere = format!("{PLAN} {flag} none/{name}");
-        refused(&folder, &nowhere, &["there is no folder none"], "output", Some(flag));
+        refused(&folder, &nowhere, &["the folder none does not exist"], "output", Some(flag));
         fs::create_dir(folder.path().join(name)).unwrap();
         refused(
             &folder,
@@ -100,7 +100,7 @@ fn outputs_without_a_folder_are_refused_before_the_search() {
     }
     // Neither of two outputs is written when one of them cannot be.
     let half = format!("{PLAN} --picture b.svg --animate none/b.gif");
-    refused(&folder, &half, &["there is no folder none"], "output", Some("--animate"));
+    refused(&folder, &half, &["the folder none does not exist"], "output", Some("--animate"));
     assert!(!folder.path().join("b.svg").exists());
 }
 

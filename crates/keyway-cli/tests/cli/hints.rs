@@ -48,6 +48,69 @@ fn what_a_scene_says_is_changed_in_its_file() {
 }
 
 #[test]
+fn numbers_that_are_separated_by_spaces_are_joined() {
+    let folder = folder();
+    for (options, meant) in [
+        (
+            "--start -8 -2 --goal 8,0",
+            "--start -8 -2: separate the numbers by commas: --start -8,-2",
+        ),
+        ("--start 1,1 --goal -8 2.5 -90", "--goal -8 2.5 -90: separate"),
+    ] {
+        let line = format!("navigate small_house.yaml {options}");
+        let field = meant.split(' ').next().unwrap();
+        refused(&folder, &line, &[meant], field);
+        let text = keyway(folder.path(), &line).expect_code(2).err;
+        assert!(text.starts_with(&format!("error: {meant}")), "{text}");
+    }
+}
+
+#[test]
+fn lists_of_names_are_taken_in_either_form() {
+    let folder = folder();
+    for [one, other] in [
+        [
+            "compare rooms.map --planners jps,astar --smoothers none,taut",
+            "compare rooms.map --planner jps --planner astar --smoother none --smoother taut",
+        ],
+        [
+            "bench grid rooms.map.scen --planners jps,astar --every 50",
+            "bench grid rooms.map.scen --planner jps --planner astar --every 50",
+        ],
+    ] {
+        let [one, other] = [one, other].map(|line| {
+            let report = keyway(folder.path(), &format!("{line} --format json")).expect_code(0);
+            let rows = report.json()["rows"].as_array().unwrap().clone();
+            ["planner", "smoother"]
+                .map(|name| rows.iter().map(|row| row[name].clone()).collect::<Vec<_>>())
+        });
+        assert!(one == other && one[0].len() > 1, "{one:?} {other:?}");
+    }
+    let batch = "batch small_house.toml --stack keyway --stack dwa-to-goal --out b --format json";
+    let report = keyway(folder.path(), batch).expect_code(0).json();
+    assert_eq!(report["stacks"].as_array().unwrap().len(), 2);
+}
+
+/// Both commands that read starts and goals know both spellings of the columns.
+#[test]
+fn columns_of_pairs_may_leave_out_the_unit() {
+    let folder = folder();
+    let pairs = |unit: &str| {
+        let names = ["start_x", "start_y", "goal_x", "goal_y"].map(|name| format!("{name}{unit}"));
+        format!("map,{}\nsmall_house.yaml,-8.175,-2.825,-4,-2.6\n", names.join(","))
+    };
+    let scenes = ["", "_m"].map(|unit| {
+        write(&folder, "pairs.csv", &pairs(unit));
+        keyway(folder.path(), "compare small_house.yaml --pairs pairs.csv").expect_code(0);
+        let out = format!("scenes{unit}");
+        keyway(folder.path(), &format!("scene pairs pairs.csv --out {out}")).expect_code(0);
+        let mut scenes = std::fs::read_dir(folder.path().join(out)).unwrap();
+        std::fs::read_to_string(scenes.next().unwrap().unwrap().path()).unwrap()
+    });
+    assert_eq!(scenes[0], scenes[1]);
+}
+
+#[test]
 fn misspelt_names_are_recognised() {
     let folder = folder();
     let drive = "navigate --scene small_house.toml";

@@ -48,7 +48,7 @@ fn parameters_have_units_defaults_and_papers() {
             ("default", |v| v == 1.1),
             ("paper", |v| v == 3.0),
             ("choices", Value::is_null),
-            ("description", |v| v.as_str().is_some_and(|text| text.contains("ahead"))),
+            ("description", |v| v.as_str().is_some_and(|text| text.contains("horizon"))),
         ],
     );
     let jackal =

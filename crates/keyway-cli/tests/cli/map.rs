@@ -78,7 +78,13 @@ fn a_conversion_replaces_no_image_of_somebody_else() {
     write(&folder, "precious.pgm", "mine");
     let line = "map convert walled.map precious.yaml";
     let refused = keyway(folder.path(), line).expect_code(2);
-    assert!(refused.err.contains("precious.pgm is in the way"), "{}", refused.err);
+    assert!(
+        refused
+            .err
+            .contains("precious.pgm exists and would be replaced by the image of precious.yaml"),
+        "{}",
+        refused.err
+    );
     assert_eq!(read(&folder, "precious.pgm"), "mine");
     assert!(!folder.path().join("precious.yaml").exists());
     // The same beside a map with another image.

@@ -19,7 +19,10 @@ fn what_list_prints_is_a_stack() {
     assert!(printed.starts_with("# s1-adaptive: "), "{printed}");
     assert!(printed.lines().all(|line| line.chars().count() <= 120), "{printed}");
     let above = printed.lines().take_while(|line| !line.starts_with("spacing_m = ")).last();
-    assert!(above.is_some_and(|line| line.starts_with("# Way along the route")), "{above:?}");
+    assert!(
+        above.is_some_and(|line| line.starts_with("# Spacing of the local goals")),
+        "{above:?}"
+    );
     write(&folder, "my.toml", &printed);
     let mut own = keyway(folder.path(), &format!("{SHORT} --stack my.toml")).expect_code(0).json();
     assert_eq!(own["inputs"]["stack"], "my.toml");

@@ -26,7 +26,7 @@ pub use estimated::EstimatedMovers;
 pub use fan::Fan;
 pub use lines::PathLine;
 pub use movers::Movers;
-pub use points::{GoalMark, Hits, NumberedEnds, OtherGoals, Points, StartMark};
+pub use points::{EndMark, GoalMark, Hits, NumberedEnds, OtherGoals, Points, StartMark};
 pub use polygons::Polygons;
 pub use search::{Meeting, SearchNodes, SearchTrace, TraceStyle};
 pub use sensors::Sensors;

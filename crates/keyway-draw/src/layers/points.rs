@@ -148,6 +148,29 @@ impl Layer for GoalMark {
     }
 }
 
+/// The position at which a run ended without reaching its goal: X.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndMark<'a> {
+    /// Position \[m\].
+    pub point: Point,
+    /// Reason of the end, for the legend.
+    pub label: &'a str,
+}
+
+impl Layer for EndMark<'_> {
+    fn depth(&self) -> Depth {
+        Depth::Markers
+    }
+
+    fn extend(&self, extent: &mut Extent) {
+        extent.include(self.point);
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>) {
+        draw_letter(canvas, self.point, END, self.label);
+    }
+}
+
 /// Goals that were not chosen: G, light.
 #[derive(Clone, Debug)]
 pub struct OtherGoals<'a> {
@@ -236,6 +259,7 @@ impl Layer for NumberedEnds<'_> {
 type Mark<'a> = (&'a str, bool);
 const START: Mark<'_> = ("S", false);
 const GOAL: Mark<'_> = ("G", true);
+const END: Mark<'_> = ("X", true);
 const OTHER_GOAL: Mark<'_> = ("G", false);
 
 /// Draws a marker, and explains it unless the label is empty. If the marker would hide a disc, it

@@ -17,7 +17,8 @@ pub struct AgainstFirst {
     stack: String,
     only_reached_by_this: u64,
     only_reached_by_first: u64,
-    reached_p: f64,
+    /// `None` for a single run: no test can tell anything from it.
+    reached_p: Option<f64>,
     reached_p_holm: Option<f64>,
     /// Runs in which both reached the goal.
     pairs: usize,
@@ -37,7 +38,7 @@ pub fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst>
     let Some((first, others)) = stacks.split_first() else { return Vec::new() };
     let mut all: Vec<AgainstFirst> =
         others.iter().map(|other| compared(records, first, other)).collect();
-    let reached = holm_of(all.iter().map(|one| Some(one.reached_p)));
+    let reached = holm_of(all.iter().map(|one| one.reached_p));
     let time = holm_of(all.iter().map(|one| one.time_p));
     for (one, (reached_p, time_p)) in all.iter_mut().zip(reached.into_iter().zip(time)) {
         (one.reached_p_holm, one.time_p_holm) = (reached_p, time_p);
@@ -53,6 +54,7 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
         of(first).into_iter().map(|run| ((run.scene.as_str(), run.seed), run)).collect();
     let with_first = |run: &'a Row| Some((run, *firsts.get(&(run.scene.as_str(), run.seed))?));
     let pairs: Vec<(&Row, &Row)> = of(other).into_iter().filter_map(with_first).collect();
+    let runs = pairs.len();
     let has_reached = |run: &Row| run.outcome == EpisodeOutcome::Reached;
     let reached = McNemarTest::of_pairs(
         pairs.iter().map(|(this, first)| [this, first].map(|run| has_reached(run))),
@@ -67,14 +69,14 @@ fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst
         stack: other.to_owned(),
         only_reached_by_this: reached.only_first,
         only_reached_by_first: reached.only_second,
-        reached_p: reached.p_value,
+        reached_p: (runs > 1).then_some(reached.p_value),
         reached_p_holm: None,
         pairs,
         median_time_difference_s: time.map(|time| time.median_difference),
         ci_low_time_difference_s,
         ci_high_time_difference_s,
         rank_biserial: time.map(|time| time.rank_biserial),
-        time_p: time.map(|time| time.p_value),
+        time_p: time.filter(|_| pairs > 1).map(|time| time.p_value),
         time_p_holm: None,
     }
 }

@@ -52,6 +52,7 @@ pub(super) fn against_first(map: &Compared) -> Vec<AgainstFirst> {
 }
 
 fn compare(map: &Compared, first: &ContestEntry, other: &ContestEntry) -> AgainstFirst {
+    let runs = other.answers.len();
     let queries = || other.answers.iter().zip(&first.answers);
     let solved = McNemarTest::of_pairs(
         queries().map(|(this, first)| [this.found.is_some(), first.found.is_some()]),
@@ -71,7 +72,7 @@ fn compare(map: &Compared, first: &ContestEntry, other: &ContestEntry) -> Agains
         smoother: other.smoother,
         only_solved_by_this: solved.only_first,
         only_solved_by_first: solved.only_second,
-        solved_p: (other.planner != first.planner).then_some(solved.p_value),
+        solved_p: (other.planner != first.planner && runs > 1).then_some(solved.p_value),
         solved_p_holm: None,
         pairs,
         equal: length.map(|length| length.zeros),
@@ -79,7 +80,7 @@ fn compare(map: &Compared, first: &ContestEntry, other: &ContestEntry) -> Agains
         ci_low_length_difference_m,
         ci_high_length_difference_m,
         rank_biserial: length.map(|length| length.rank_biserial),
-        length_p: length.map(|length| length.p_value),
+        length_p: length.filter(|_| pairs > 1).map(|length| length.p_value),
         length_p_holm: None,
     }
 }

@@ -8,11 +8,11 @@ use keyway::plan::PathEnd;
 use thiserror::Error;
 
 /// Columns that every file of pairs has, in the order of a file without a header.
-const COORDINATES: [&str; 4] = ["start_x", "start_y", "goal_x", "goal_y"];
+const COORDINATES: [&str; 4] = ["start_x_m", "start_y_m", "goal_x_m", "goal_y_m"];
 /// The column with the map of a line.
 const MAP: &str = "map";
 const EXPECTED: &str =
-    "expected start_x,start_y,goal_x,goal_y in metres, in any order, and `map` where it is needed";
+    "expected start_x_m,start_y_m,goal_x_m,goal_y_m, in any order, and `map` where it is needed";
 
 /// Fault in a file of pairs, and its line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -94,6 +94,12 @@ fn shown(word: &str) -> String {
     if word.chars().nth(40).is_some() { short + "..." } else { short }
 }
 
+/// Returns the name of a column with its unit.
+fn in_full(name: &str) -> &str {
+    let is_it = |full: &&str| *full == name || full.strip_suffix("_m") == Some(name);
+    COORDINATES.into_iter().find(is_it).unwrap_or(name)
+}
+
 /// Indices of the values in a line.
 struct Columns {
     /// Index for each of [`COORDINATES`].
@@ -106,13 +112,12 @@ impl Columns {
     /// Columns of a file without a header.
     const USUAL: Self = Self { coordinates: [0, 1, 2, 3], map: None, count: 4 };
 
-    /// Finds the columns by their names, which may end in the unit: `start_x` or `start_x_m`.
+    /// Finds the columns by their names; the unit may be left out, as in `start_x`.
     fn of_header(header: &str) -> Result<Self, PairsFault> {
         let names: Vec<&str> = header.split(',').map(str::trim).collect();
-        let bare: Vec<&str> =
-            names.iter().map(|name| name.strip_suffix("_m").unwrap_or(name)).collect();
-        let is_known = |i: &usize| COORDINATES.contains(&bare[*i]) || names[*i] == MAP;
-        let is_repeated = |i: &usize| bare[..*i].contains(&bare[*i]);
+        let full: Vec<&str> = names.iter().map(|&name| in_full(name)).collect();
+        let is_known = |i: &usize| COORDINATES.contains(&full[*i]) || names[*i] == MAP;
+        let is_repeated = |i: &usize| full[..*i].contains(&full[*i]);
         if let Some(i) = (0..names.len()).find(|i| !is_known(i)) {
             return Err(PairsFault::UnknownColumn { name: shown(names[i]) });
         }
@@ -120,7 +125,7 @@ impl Columns {
             return Err(PairsFault::RepeatedColumn { name: shown(names[i]) });
         }
         let place = |wanted: &'static str| {
-            let place = bare.iter().position(|name| *name == wanted);
+            let place = full.iter().position(|name| *name == wanted);
             place.ok_or(PairsFault::MissingColumn { name: wanted })
         };
         let [a, b, c, d] = COORDINATES.map(place);
@@ -236,7 +241,7 @@ mod tests {
         const HEADER: &str = "start_x,start_y,goal_x,goal_y";
         for (text, line, part) in [
             ("H\n0,0,1,1\n\n0,0,1", 4, "3 values, but 4 columns"),
-            ("0,0,1,x", 1, "the goal_y is `x`, expected a number"),
+            ("0,0,1,x", 1, "the goal_y_m is `x`, expected a number"),
             ("0,0,1,inf", 1, "`inf`"),
             ("H\nb,c,d,e", 2, "`b`"),
             ("0,0,1,1\n0,0,3.5,1", 2, "the goal (3.5, 1) is outside the map"),
@@ -250,11 +255,15 @@ mod tests {
             (
                 "# old names\nsx,sy,gx,gy\n0,0,1,1",
                 2,
-                "`sx` is not a column of pairs, expected start_x,",
+                "`sx` is not a column of pairs, expected start_x_m,",
             ),
             ("H,name\n0,0,1,1,a", 1, "`name` is not a column"),
             ("map_m,H\na,0,0,1,1", 1, "`map_m` is not a column"),
-            ("start_x,start_y,goal_x,map\n0,0,1,a", 1, "the column `goal_y` is missing, expected"),
+            (
+                "start_x,start_y,goal_x,map\n0,0,1,a",
+                1,
+                "the column `goal_y_m` is missing, expected",
+            ),
             ("H,goal_x_m\n0,0,1,1,2", 1, "the column `goal_x_m` is given twice"),
         ] {
             let text = text.replace('H', HEADER);

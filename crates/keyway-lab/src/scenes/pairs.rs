@@ -36,9 +36,13 @@ pub struct PairsRequest {
 #[derive(Deserialize)]
 struct Pair {
     map: PathBuf,
+    #[serde(alias = "start_x")]
     start_x_m: f64,
+    #[serde(alias = "start_y")]
     start_y_m: f64,
+    #[serde(alias = "goal_x")]
     goal_x_m: f64,
+    #[serde(alias = "goal_y")]
     goal_y_m: f64,
 }
 

@@ -9,8 +9,9 @@ use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 use keyway_sim::report::Inputs;
 use std::error::Error;
+use std::fmt::Write as _;
 
-/// The files, in a folder of their own: each plot as SVG and as PNG.
+/// The plots, in a folder of their own: each as SVG and as PNG.
 const NAMES: [&str; 8] = [
     "plots/time.svg",
     "plots/time.png",
@@ -22,13 +23,19 @@ const NAMES: [&str; 8] = [
     "plots/length_time.png",
 ];
 
+/// The captions of all plots. A figure of a paper has its caption in the text, not in the picture.
+const CAPTIONS: &str = "plots/captions.md";
+
+/// A plot and its caption.
+type Captioned = (Svg, String);
+
 /// Plots of the results of a batch. A plot that would be empty is left out.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchPlots;
 
 impl Pictures for BatchPlots {
     fn names(&self) -> Vec<&'static str> {
-        NAMES.to_vec()
+        NAMES.into_iter().chain([CAPTIONS]).collect()
     }
 
     fn draw(
@@ -39,12 +46,17 @@ impl Pictures for BatchPlots {
         let by_stack = stacks.iter().map(|stack| runs_of(records, stack)).collect();
         let runs = Runs { names: short_names(stacks), by_stack, count: records.len() };
         let plots = [runs.times(), runs.clearances(), runs.success(), runs.lengths_and_times()];
-        let mut files = Vec::new();
-        for (names, svg) in NAMES.chunks(2).zip(plots) {
-            if let (Some(svg), &[svg_name, png_name]) = (svg, names) {
+        let (mut files, mut captions) = (Vec::new(), String::from("# Captions of the plots\n"));
+        for (names, plot) in NAMES.chunks(2).zip(plots) {
+            if let (Some((svg, caption)), &[svg_name, png_name]) = (plot, names) {
                 files.push(PictureFile { name: svg_name, bytes: svg.as_str().into() });
                 files.push(PictureFile { name: png_name, bytes: svg.to_png(PNG_SCALE)? });
+                let file = svg_name.trim_start_matches("plots/");
+                let _ = write!(captions, "\n**{file}**: {caption}\n");
             }
+        }
+        if !files.is_empty() {
+            files.push(PictureFile { name: CAPTIONS, bytes: captions.into() });
         }
         Ok(files)
     }
@@ -82,17 +94,17 @@ struct Runs<'a> {
 const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";
 
 impl Runs<'_> {
-    fn times(&self) -> Option<Svg> {
+    fn times(&self) -> Option<Captioned> {
         let what = "Time to the goal, of the runs that reached it.";
         self.boxes("time [s]", what, |run| run.time_s)
     }
 
-    fn clearances(&self) -> Option<Svg> {
+    fn clearances(&self) -> Option<Captioned> {
         let what = "Smallest distance from the footprint to any obstacle in a run, of the runs that reached the goal.";
         self.boxes("smallest clearance [m]", what, |run| run.min_clearance_m)
     }
 
-    fn boxes(&self, label: &str, what: &str, value: fn(&Row) -> Option<f64>) -> Option<Svg> {
+    fn boxes(&self, label: &str, what: &str, value: fn(&Row) -> Option<f64>) -> Option<Captioned> {
         let of = |runs: &Vec<&Row>| -> (Option<Sample>, String) {
             let values: Vec<f64> = reached(runs).filter_map(value).collect();
             let note = format!("{} of {}", values.len(), runs.len());
@@ -106,11 +118,11 @@ impl Runs<'_> {
         let shown = samples.iter().map(|(sample, note)| (sample.as_ref(), note.as_str()));
         let groups: Vec<BoxGroup<'_>> = self.names().zip(shown).map(group).collect();
         let caption = self.caption(&format!("{what} {BOXES} At the right: number of these runs."));
-        Some(box_plot(&BoxPlot { title: "", label, groups: &groups, caption: &caption }))
+        Some((box_plot(&BoxPlot { title: "", label, groups: &groups, caption: "" }), caption))
     }
 
-    /// Plot of success rates; `None` if all worlds are equally cluttered.
-    fn success(&self) -> Option<Svg> {
+    /// Plot of success rates; `None` if all worlds are about equally cluttered.
+    fn success(&self) -> Option<Captioned> {
         let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
         let per_stack = self.count / self.names.len().max(1);
         let groups = Groups::of(shares.collect(), per_stack)?;
@@ -127,7 +139,7 @@ impl Runs<'_> {
         Some(self.panels(&points, labels, (Some((0.0, 100.0)), true), &what))
     }
 
-    fn lengths_and_times(&self) -> Option<Svg> {
+    fn lengths_and_times(&self) -> Option<Captioned> {
         let point =
             |run: &Row| Some(ChartPoint { x: run.length_m?, y: run.time_s?, y_interval: None });
         let points: Vec<Vec<ChartPoint>> =
@@ -145,14 +157,14 @@ impl Runs<'_> {
         (x_label, y_label): (&str, &str),
         (y_ends, are_joined): (Option<(f64, f64)>, bool),
         what: &str,
-    ) -> Svg {
+    ) -> Captioned {
         let points = points.iter().map(Vec::as_slice);
         let series = self.names().zip(points);
         let series: Vec<PointSeries<'_>> =
             series.map(|(name, points)| PointSeries { name, points }).collect();
-        let caption = &self.caption(what);
-        let series = &series;
-        point_panels(&PointPanels { x_label, y_label, y_ends, are_joined, series, caption })
+        let (series, caption) = (&series, "");
+        let panels = PointPanels { x_label, y_label, y_ends, are_joined, series, caption };
+        (point_panels(&panels), self.caption(what))
     }
 
     fn names(&self) -> impl Iterator<Item = &str> {
@@ -181,10 +193,13 @@ impl Groups {
     const MOST: usize = 6;
     /// Runs of a stack per group below which the interval is too wide to be informative.
     const FEWEST_RUNS: usize = 10;
+    /// Difference in clutter between the first and the last group below which a plot over it would
+    /// show chance.
+    const LEAST_SPREAD: f64 = 0.01;
 
     /// Groups the shares into bins of similar size without splitting equal shares; few distinct
     /// shares get one bin each. `per_stack` is the number of runs of a stack. `None` if there is
-    /// only one bin.
+    /// only one bin, or all are about equally cluttered.
     fn of(shares: Vec<f64>, per_stack: usize) -> Option<Self> {
         let most = (per_stack / Self::FEWEST_RUNS).clamp(2, Self::MOST);
         let sample = Sample::new(shares).ok()?;
@@ -207,7 +222,8 @@ impl Groups {
             Sample::new(own.collect()).ok().map(|own| own.quantile(0.5))
         };
         let middles: Vec<f64> = (0..=ends.len()).filter_map(middle).collect();
-        (middles.len() > 1).then_some(Self { ends, middles })
+        let spread = middles.last()? - middles.first()?;
+        (spread >= Self::LEAST_SPREAD).then_some(Self { ends, middles })
     }
 
     /// Runs of a stack that belong to a group.
@@ -265,6 +281,7 @@ mod tests {
         let of = |shares: &[f64]| Groups::of(shares.to_vec(), 60).map(|it| (it.ends, it.middles));
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[0.2, 0.2]), None);
+        assert_eq!(of(&[0.0536, 0.0542, 0.0539]), None);
         assert_eq!(of(&[0.2, 0.1, 0.2]), Some((vec![0.1], vec![0.1, 0.2])));
         let shares: Vec<f64> = (1..=12).map(f64::from).collect();
         let ends = vec![2.0, 4.0, 6.0, 8.0, 10.0];

@@ -67,11 +67,11 @@ fn stacks(args: &BenchGridArgs) -> Result<Vec<Stack>, CliError> {
             StackBase::for_robot(&Stack::for_plans(&robot), &robot),
             &args.config,
             [planner],
-            &args.planner,
+            &args.planners,
         )
     };
-    if args.planner.is_empty() {
+    if args.planners.is_empty() {
         return Ok(vec![stack(None)?]);
     }
-    args.planner.iter().map(|name| stack(Some(name))).collect()
+    args.planners.iter().map(|name| stack(Some(name))).collect()
 }

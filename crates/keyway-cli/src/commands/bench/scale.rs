@@ -28,7 +28,7 @@ pub(crate) fn run(args: &BenchScaleArgs) -> Result<Done, CliError> {
     // Wrong names and parameters are reported before anything is measured.
     let size = robot_size(&args.size)?;
     let stacks: Vec<Stack> =
-        args.planner.iter().map(|name| stack(args, name, &size)).collect::<Result<_, _>>()?;
+        args.planners.iter().map(|name| stack(args, name, &size)).collect::<Result<_, _>>()?;
     let loaded = load_map(&args.map, &args.limit.reader())?;
     let request =
         ScaleRequest { map: &loaded.grid, stacks: &stacks, sides_cells: &args.sides, size: &size };
@@ -74,13 +74,13 @@ fn stack(args: &BenchScaleArgs, planner: &str, size: &RobotSize) -> Result<Stack
         StackBase::for_robot(&Stack::for_plans(&robot), &robot),
         &args.config,
         [Some(planner), size.clearance()],
-        &args.planner,
+        &args.planners,
     )
 }
 
 /// Runs this program again for one planner and side.
 fn measure_alone(args: &BenchScaleArgs, task: ScaleTask) -> Result<ScaleRow, CliError> {
-    let (planner, side) = (args.planner[task.planner].as_str(), task.side_cells);
+    let (planner, side) = (args.planners[task.planner].as_str(), task.side_cells);
     let failed = |reason: String| {
         let message = format!("{planner} on {side} x {side} cells: {reason}");
         CliError::new(Kind::Input, message).field("--sides")
@@ -89,7 +89,7 @@ fn measure_alone(args: &BenchScaleArgs, task: ScaleTask) -> Result<ScaleRow, Cli
     let mut words: Vec<OsString> = vec!["bench".into(), "scale".into(), args.map.clone().into()];
     words.extend(["--sides".into(), side.to_string().into()]);
     // The first planner is measured; the others are passed so that their parameters are accepted.
-    let others = args.planner.iter().map(String::as_str).filter(|name| *name != planner);
+    let others = args.planners.iter().map(String::as_str).filter(|name| *name != planner);
     for name in std::iter::once(planner).chain(others) {
         words.extend(["--planner".into(), name.into()]);
     }

@@ -11,7 +11,7 @@ use crate::out_file::{write_animation, write_file};
 use crate::pictures::{DrivenPicture, RunPicture, png, speed_svg, trajectory_point};
 use crate::report_text::WithFiles;
 use keyway_lab::results::OutDir;
-use keyway_sim::episode::Episode;
+use keyway_sim::episode::{Episode, EpisodeOutcome};
 use keyway_sim::sim::{MovingObstacle, TrajectoryPoint};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -186,6 +186,7 @@ pub(crate) fn write_files(
             sensed,
             walked,
             points: &points,
+            ended_by: ended_by(report.outcome),
         }),
     };
     let svg = picture.svg();
@@ -204,6 +205,16 @@ pub(crate) fn write_files(
         }
     }
     Ok(())
+}
+
+/// Returns the reason of an end before the goal, as the legend of a picture names it.
+const fn ended_by(outcome: EpisodeOutcome) -> Option<&'static str> {
+    match outcome {
+        EpisodeOutcome::Collided => Some("contact"),
+        EpisodeOutcome::Stuck => Some("stuck"),
+        EpisodeOutcome::Timeout => Some("time limit"),
+        _ => None,
+    }
 }
 
 fn csv(rows: &[[f64; 6]]) -> String {
