@@ -393,7 +393,7 @@ pub(crate) struct CompareArgs {
     pub(crate) config: ConfigArgs,
     /// Columns of the table in the terminal and in LaTeX, in the given order, after the names:
     /// corners, solved, missed, compared, length, excess, worst, turns, angle, non-smooth,
-    /// clearance, shortfalls, plan, smooth [default: most of them; in LaTeX all]
+    /// clearance, shortfalls, expanded, generated, plan, smooth [default: those that fit a page]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Vec<String>,
     /// Omit all times; the output is then deterministic

@@ -33,7 +33,8 @@ pub(crate) fn scenes() -> TempDir {
     let folder = folder();
     std::fs::create_dir(folder.path().join("scenes")).unwrap();
     write(&folder, "scenes/hall.toml", HALL);
-    write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 9"));
+    let denser = HALL.replace("seed = 5", "seed = 9").replace("share = 0.05", "share = 0.07");
+    write(&folder, "scenes/more.toml", &denser);
     folder
 }
 

@@ -146,7 +146,7 @@ fn every_kind_of_file_is_named_with_its_line() {
             "a.csv",
             "1,2,3,x\n".into(),
             "compare walled.map --pairs a.csv",
-            &["a.csv: line 1: the goal_y is `x`"],
+            &["a.csv: line 1: the goal_y_m is `x`"],
         ),
         (
             "a.csv",
