@@ -52,6 +52,8 @@ pub fn run(argv: &[OsString]) -> u8 {
         Command::List(args) => commands::list::run(&args),
         #[cfg(feature = "ros")]
         Command::Ros { arguments } => commands::ros::run(arguments),
+        #[cfg(feature = "pdf")]
+        Command::Pdf(args) => commands::pdf::run(&args),
         Command::Man(args) => commands::man::run(&args),
         Command::Completions { shell } => commands::completions::run(shell),
     };

@@ -50,6 +50,8 @@ mod map_picture;
 mod marks;
 mod name_lines;
 mod outline;
+#[cfg(feature = "pdf")]
+mod pdf;
 mod plot;
 mod point_panels;
 #[cfg(feature = "raster")]

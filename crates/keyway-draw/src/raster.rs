@@ -37,6 +37,10 @@ pub enum DrawError {
     /// The pixels could not be written as PNG.
     #[error("cannot write PNG: {0}")]
     Png(String),
+    /// The picture could not be written as PDF.
+    #[cfg(feature = "pdf")]
+    #[error("cannot write PDF: {0}")]
+    Pdf(String),
     /// The frames could not be written as GIF.
     #[error("cannot write GIF: {0}")]
     Gif(String),

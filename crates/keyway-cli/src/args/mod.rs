@@ -90,6 +90,9 @@ pub(crate) enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Converts pictures from SVG to PDF, for LaTeX; only in builds with the feature `pdf`
+    #[cfg(feature = "pdf")]
+    Pdf(PdfArgs),
     /// Writes manual pages of all commands
     Man(ManArgs),
     /// Prints shell completions
@@ -121,6 +124,17 @@ pub(crate) struct DemoArgs {
     pub(crate) out: PathBuf,
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
+}
+
+#[cfg(feature = "pdf")]
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  keyway pdf keyway-demo/map.svg keyway-demo/speed.svg")]
+pub(crate) struct PdfArgs {
+    /// Pictures; each PDF is written beside its picture
+    #[arg(value_name = "FILE.svg", required = true)]
+    pub(crate) pictures: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -9,6 +9,8 @@ pub(crate) mod list;
 pub(crate) mod man;
 pub(crate) mod map;
 pub(crate) mod navigate;
+#[cfg(feature = "pdf")]
+pub(crate) mod pdf;
 pub(crate) mod plan;
 pub(crate) mod prepare;
 pub(crate) mod replay;

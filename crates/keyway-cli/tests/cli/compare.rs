@@ -14,6 +14,26 @@ pub(crate) fn number(row: &Value, name: &str) -> f64 {
 }
 
 #[test]
+fn the_last_rows_are_over_all_maps() {
+    let folder = folder();
+    let line = "compare rooms.map walled.map --planners jps,theta-star \
+                --smoothers none,line-of-sight --queries 3 --seed 5 --format json";
+    let report = keyway(folder.path(), line).expect_code(0).json();
+    let of = |row: usize, name: &str| number(&rows(&report)[row], name);
+    // Both maps have three queries, so the mean over all is the mean of both.
+    let mean = f64::midpoint(of(1, "mean_length_m"), of(5, "mean_length_m"));
+    assert!((of(9, "mean_length_m") - mean).abs() < 1e-9);
+    assert_eq!((of(9, "queries"), of(9, "compared")), (6.0, 6.0));
+    let expanded = [1, 5, 9].map(|row| of(row, "mean_expanded"));
+    assert!((expanded[2] - f64::midpoint(expanded[0], expanded[1])).abs() < 1e-9);
+    // Smoothing expands nothing.
+    assert_eq!(of(0, "mean_expanded"), expanded[0]);
+    assert!(of(0, "mean_generated") >= expanded[0] && expanded[0] >= 1.0);
+    let table = keyway(folder.path(), line.split(" --format").next().unwrap()).out;
+    assert!(table.contains("\nall maps: 6 queries\n"), "{table}");
+}
+
+#[test]
 fn every_planner_with_every_smoother_on_every_map() {
     let folder = folder();
     let line = "compare rooms.map walled.map --planners jps,theta-star \
@@ -29,18 +49,6 @@ fn every_planner_with_every_smoother_on_every_map() {
         })
     });
     assert_eq!(rows(&report).iter().map(names).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
-    let of = |row: usize, name: &str| number(&rows(&report)[row], name);
-    // Both maps have three queries, so the mean over all is the mean of both.
-    let mean = f64::midpoint(of(1, "mean_length_m"), of(5, "mean_length_m"));
-    assert!((of(9, "mean_length_m") - mean).abs() < 1e-9);
-    assert_eq!((of(9, "queries"), of(9, "compared")), (6.0, 6.0));
-    let expanded = [1, 5, 9].map(|row| of(row, "mean_expanded"));
-    assert!((expanded[2] - f64::midpoint(expanded[0], expanded[1])).abs() < 1e-9);
-    // Smoothing expands nothing.
-    assert_eq!(of(0, "mean_expanded"), expanded[0]);
-    assert!(of(0, "mean_generated") >= expanded[0] && expanded[0] >= 1.0);
-    let table = keyway(folder.path(), line.split(" --format").next().unwrap()).out;
-    assert!(table.contains("\nall maps: 6 queries\n"), "{table}");
     expect_members(
         &rows(&report)[0],
         &[

@@ -1,7 +1,7 @@
 //! The claims as a table for papers.
 
 use super::report::VERDICT_RULE;
-use super::words::{measured_text, published_text, statement};
+use super::words::{measured_text, papers_of, published_text, statement};
 use crate::claims::{ClaimReport, FamilyFigure};
 use crate::table::{comment, latex_table};
 
@@ -17,5 +17,6 @@ pub(super) fn latex(claims: &[ClaimReport]) -> String {
     let lines = claims
         .iter()
         .flat_map(|claim| claim.family.figures.iter().map(move |figure| line(claim, figure)));
-    comment(VERDICT_RULE) + &latex_table(&header, &lines.collect::<Vec<_>>(), 3)
+    comment(&format!("{}\n{VERDICT_RULE}", papers_of(claims)))
+        + &latex_table(&header, &lines.collect::<Vec<_>>(), 3)
 }

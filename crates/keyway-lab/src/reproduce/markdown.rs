@@ -2,7 +2,8 @@
 
 use super::report::ReproduceReport;
 use super::words::{
-    COARSE, NONE, measure_name, published_of, reconstructed_of, statement_with, verdict_with_counts,
+    COARSE, NONE, measure_name, papers_of, published_of, reconstructed_of, statement_with,
+    verdict_with_counts,
 };
 use crate::claims::{
     AblationReport, ClaimReport, ExperimentReport, FamilyFigure, FigureCounts, FigureVerdict,
@@ -14,7 +15,7 @@ use std::ops::Range;
 /// Returns all tables, each below a heading.
 pub(super) fn markdown(report: &ReproduceReport) -> String {
     let ReproduceReport { claims, experiments, ablations, .. } = report;
-    let mut text = format!("# Tables\n\n{}\n\n", counted(claims));
+    let mut text = format!("# Tables\n\n{} {}\n\n", counted(claims), papers_of(claims));
     let in_short =
         table(&["claim", "statement", "published", "measured", "verdict"], 2..4, in_short(claims));
     let figures = table(

@@ -2,8 +2,8 @@
 
 use super::report::{ReproduceReport, VERDICT_RULE};
 use super::words::{
-    NONE, change_text, measure_name, measured_text, published_text, reconstructed_of, statement,
-    verdict_with_counts,
+    NONE, change_text, measure_name, measured_text, papers_of, published_text, reconstructed_of,
+    statement, verdict_with_counts,
 };
 use crate::claims::{
     AblationReport, Baseline, Claim, ClaimReport, ExperimentReport, FamilyFigure, MethodReport,
@@ -74,7 +74,7 @@ pub(super) fn page(report: &ReproduceReport, parts: &PageParts) -> String {
                     "Keyway " (Inputs::VERSION) ", " (report.maps) " maps each from seed "
                     (report.seed) ", " (times) "."
                 }
-                p { (VERDICT_RULE) }
+                p { (papers_of(&report.claims)) " " (VERDICT_RULE) }
                 (headline(&report.claims))
                 @for (claim, figures) in report.claims.iter().zip(&parts.claims) {
                     (claim_section(claim, figures, parts.command))

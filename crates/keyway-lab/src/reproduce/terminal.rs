@@ -1,7 +1,7 @@
 //! The claims as a table for the terminal.
 
 use super::report::ReproduceReport;
-use super::words::{measured_text, published_text, statement};
+use super::words::{measured_text, papers_of, published_text, statement};
 use crate::claims::{ClaimReport, ExperimentReport, FamilyFigure, Verdict};
 use crate::table::{paragraph, rows};
 
@@ -35,6 +35,7 @@ pub fn claims_notes(report: &ReproduceReport) -> Vec<String> {
         let ExperimentReport { experiment, about, maps, left_out, .. } = one;
         format!("  {experiment}: {maps}, left out {left_out}; {about}")
     }));
+    notes.push(paragraph(&papers_of(&report.claims)));
     let is_missing = |claim: &&ClaimReport| claim.verdict == Verdict::NotMeasured;
     let missing: Vec<&str> =
         report.claims.iter().filter(is_missing).map(|claim| claim.id).collect();

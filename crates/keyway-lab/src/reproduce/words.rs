@@ -5,6 +5,22 @@ use crate::claims::{ClaimReport, FamilyFigure, Measure, PublishedFigure, Scale, 
 /// Text for a missing value.
 pub(super) const NONE: &str = "-";
 
+/// Authors of the papers, by the code of their claims.
+const PAPERS: [(&str, &str); 4] = [
+    ("S0", "You, Fang and Tang 2021"),
+    ("S1", "an improved A* with an adaptive DWA, published without authors"),
+    ("S2", "Wang, Zeng, Huang and Fang 2019"),
+    ("S4", "Zhu and Yin 2024"),
+];
+
+/// Returns a sentence that says which papers the codes of the claims stand for.
+pub(super) fn papers_of(claims: &[ClaimReport]) -> String {
+    let is_there = |code: &str| claims.iter().any(|claim| claim.id.split('-').next() == Some(code));
+    let papers = PAPERS.iter().filter(|(code, _)| is_there(code));
+    let papers: Vec<String> = papers.map(|(code, authors)| format!("{code}: {authors}")).collect();
+    format!("{}. Sources: docs/papers.md.", papers.join("; "))
+}
+
 /// Number of decimals of changes.
 #[derive(Clone, Copy)]
 pub(super) struct Decimals {
