@@ -1,10 +1,13 @@
 //! Batches that are stopped, executed in parts, and replayed.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
-use keyway_lab::batch::{BatchError, BatchRequest, BatchWarning, Keep, MergeRequest, Shard};
+use keyway_lab::batch::{
+    BatchError, BatchRequest, BatchWarning, GivenScene, Keep, MergeRequest, Shard,
+};
 use keyway_lab::progress::Progress;
 use keyway_lab::replay::{Difference, ReplayError, ReplayRequest};
 use keyway_sim::episode::{EpisodeOutcome, run_episode};
+use keyway_sim::scene_files::SceneFile;
 use std::fmt::Display;
 use std::fs;
 use std::ops::ControlFlow;
@@ -22,7 +25,7 @@ fn prepared(scene: &str) -> (TempDir, BatchRequest) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("room.toml");
     fs::write(&path, scene).unwrap();
-    let request = BatchRequest::new(vec![path], folder.path().join("out"));
+    let request = BatchRequest::new(vec![path.into()], folder.path().join("out"));
     (folder, BatchRequest { seeds: 5, jobs: Some(1), ..request })
 }
 
@@ -91,6 +94,31 @@ fn a_batch_that_was_stopped_goes_on_and_parts_make_the_whole() {
     let both = MergeRequest { parts, ..one };
     assert_eq!(both.merge(&(), &()).unwrap().runs, 5);
     assert_eq!(runs(&both.out), whole);
+}
+
+#[test]
+fn a_scene_in_memory_gives_the_results_of_its_file() {
+    let (folder, request) = prepared(NOISY);
+    request.drive(&(), &()).unwrap();
+    let given = |name: &str| GivenScene {
+        name: name.to_owned(),
+        file: SceneFile::from_toml(NOISY).unwrap(),
+        folder: folder.path().to_owned(),
+        map: None,
+    };
+    let of = |scenes| BatchRequest { scenes, out: folder.path().join("given"), ..request.clone() };
+    let in_memory = of(vec![given("room").into()]);
+    in_memory.drive(&(), &()).unwrap();
+    assert_eq!(runs(&in_memory.out), runs(&request.out));
+    let mut twice = request.scenes.clone();
+    twice.push(given("room").into());
+    for (scenes, text) in [
+        (twice, "two scenes are named `room`; one of them needs another name"),
+        (vec![given("").into()], "the name of a scene must not be empty"),
+    ] {
+        let error = of(scenes).drive(&(), &()).unwrap_err();
+        assert_eq!((error.to_string(), error.field()), (text.to_owned(), Some("scenes")));
+    }
 }
 
 #[test]

@@ -64,7 +64,7 @@ pub(crate) fn batch(
         reached_by: reached_by.map(|pose| reached(&pose)).transpose()?,
         safe,
         set: parameters.map_or_else(Vec::new, |Parameters(table)| Assignment::all_of(&table)),
-        ..BatchRequest::new(scenes.0, out)
+        ..BatchRequest::new(scenes.0.into_iter().map(Into::into).collect(), out)
     };
     run(py, progress, move |watch| request.drive(&BatchPlots, watch))
 }

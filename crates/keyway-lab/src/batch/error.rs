@@ -53,6 +53,15 @@ pub enum BatchError {
         /// Their files.
         paths: [PathBuf; 2],
     },
+    /// Two of the `scenes` have the same name, and one of them is in memory.
+    #[error("two scenes are named `{scene}`; one of them needs another name")]
+    NameTwice {
+        /// The name.
+        scene: String,
+    },
+    /// A scene in memory has no name.
+    #[error("the name of a scene must not be empty")]
+    NoName,
     /// A folder of `scenes` cannot be read.
     #[error("{}: {}", path.display(), system_error_in_words(reason))]
     Folder {
@@ -143,6 +152,8 @@ impl BatchError {
         match self {
             Self::NoScenes
             | Self::SceneTwice { .. }
+            | Self::NameTwice { .. }
+            | Self::NoName
             | Self::Folder { .. }
             | Self::EmptyFolder { .. }
             | Self::Scene(_)

@@ -1,7 +1,7 @@
 //! Request for a batch.
 
 use super::limits::SEEDS;
-use super::{BatchError, Keep, Shard};
+use super::{BatchError, Keep, SceneSource, Shard};
 use keyway::files::Assignment;
 use keyway::map::formats::DEFAULT_MAX_CELLS;
 use keyway_sim::sim::ReachedBy;
@@ -22,8 +22,8 @@ use std::path::PathBuf;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BatchRequest {
-    /// Scene files, and folders with scene files in them or in their subfolders.
-    pub scenes: Vec<PathBuf>,
+    /// The scenes, in this order.
+    pub scenes: Vec<SceneSource>,
     /// Folder for the results. Runs that it already holds are not repeated.
     pub out: PathBuf,
     /// The stacks that drive each scene, with all its robots: names, or files relative to the
@@ -67,7 +67,7 @@ impl BatchRequest {
     pub const SEEDS: RangeInclusive<u64> = SEEDS;
 
     /// Returns a request for one run of each scene with everything that the scene names.
-    pub const fn new(scenes: Vec<PathBuf>, out: PathBuf) -> Self {
+    pub const fn new(scenes: Vec<SceneSource>, out: PathBuf) -> Self {
         Self {
             scenes,
             out,

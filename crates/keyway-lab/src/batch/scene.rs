@@ -53,8 +53,7 @@ impl<'a> SceneReader<'a> {
     /// Reads all files that a scene or the request names.
     pub(super) fn read(&mut self, listed: ListedScene) -> Result<BatchScene, BatchError> {
         let request = self.request;
-        let ListedScene { name, path, mut file } = listed;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let ListedScene { name, folder, mut file, map, .. } = listed;
         if let Some(path) = &request.disturbances {
             file.disturbances = read_disturbances(path).map_err(BatchError::Disturbances)?;
         }
@@ -70,9 +69,10 @@ impl<'a> SceneReader<'a> {
         let robots = robots.iter().map(|robot| robot_with(robot, &changes));
         let robots = robots.collect::<Result<Vec<_>, _>>().map_err(BatchError::RobotValue)?;
         let set = request.set.iter().filter(|one| one.of_robot().is_none()).cloned().collect();
-        let map = match &file.map {
-            Some(map) => Some(self.map(folder.join(map))?),
-            None => None,
+        let map = match (map, &file.map) {
+            (Some(map), _) => Some(map),
+            (None, Some(map)) => Some(self.map(folder.join(map))?),
+            (None, None) => None,
         };
         let names_stacks = !request.stacks.is_empty();
         let stack_folder = if names_stacks { PathBuf::new() } else { folder.clone() };

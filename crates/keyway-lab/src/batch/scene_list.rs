@@ -1,18 +1,37 @@
-//! The scenes that a request names: files, and the scene files in folders and their subfolders.
+//! The scenes of a request: files, the scene files in folders and their subfolders, and those in
+//! memory.
 
-use super::{BatchError, BatchRequest};
-use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, read_scene};
+use super::{BatchError, BatchRequest, GivenScene, SceneSource};
+use keyway_sim::scene_files::{SceneError, SceneFile, SceneFileError, SceneMap, read_scene};
 use std::collections::{HashMap, HashSet};
 use std::fs::read_dir;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A scene of a request.
 pub(super) struct ListedScene {
     /// Path of the file below the folder that the request names, without `.toml`; for a file that
     /// the request itself names, its name without `.toml`.
     pub(super) name: String,
-    pub(super) path: PathBuf,
+    /// Path of the file; `None` for a scene in memory.
+    path: Option<PathBuf>,
+    /// Base folder of the files that the scene names.
+    pub(super) folder: PathBuf,
     pub(super) file: SceneFile,
+    /// The map, if it is in memory.
+    pub(super) map: Option<Arc<SceneMap>>,
+}
+
+impl ListedScene {
+    fn read(name: String, path: PathBuf, file: SceneFile) -> Self {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Self { name, path: Some(path), folder, file, map: None }
+    }
+
+    fn given(GivenScene { name, file, folder, map }: GivenScene) -> Result<Self, BatchError> {
+        let scene = Self { name, path: None, folder, file, map };
+        if scene.name.is_empty() { Err(BatchError::NoName) } else { Ok(scene) }
+    }
 }
 
 /// A file that may be a scene.
@@ -28,11 +47,20 @@ struct Candidate {
 /// example as a robot or a stack.
 pub(super) fn listed_scenes(request: &BatchRequest) -> Result<Vec<ListedScene>, BatchError> {
     let (mut scenes, mut others) = (Vec::new(), Vec::new());
-    for Candidate { name, path, is_named } in candidates(&request.scenes)? {
-        match read_scene(&path) {
-            Ok(file) => scenes.push(ListedScene { name, path, file }),
-            Err(error) if !is_named && is_of_another_kind(&error) => others.push((path, error)),
-            Err(error) => return Err(BatchError::Scene(error)),
+    for source in &request.scenes {
+        let path = match source {
+            SceneSource::Path(path) => path,
+            SceneSource::Given(scene) => {
+                scenes.push(ListedScene::given(GivenScene::clone(scene))?);
+                continue;
+            }
+        };
+        for Candidate { name, path, is_named } in candidates(path)? {
+            match read_scene(&path) {
+                Ok(file) => scenes.push(ListedScene::read(name, path, file)),
+                Err(error) if !is_named && is_of_another_kind(&error) => others.push((path, error)),
+                Err(error) => return Err(BatchError::Scene(error)),
+            }
         }
     }
     refuse_a_name_twice(&scenes)?;
@@ -41,9 +69,16 @@ pub(super) fn listed_scenes(request: &BatchRequest) -> Result<Vec<ListedScene>, 
     if let Some((_, error)) = others.into_iter().find(|(path, _)| is_strange(path)) {
         return Err(BatchError::OtherFile(error));
     }
+    let is_in = |folder: &Path, scene: &ListedScene| {
+        scene.path.as_ref().is_some_and(|path| path.starts_with(folder))
+    };
     let has_none =
-        |given: &&PathBuf| given.is_dir() && !scenes.iter().any(|it| it.path.starts_with(given));
-    match request.scenes.iter().find(has_none) {
+        |given: &&PathBuf| given.is_dir() && !scenes.iter().any(|scene| is_in(given, scene));
+    let mut paths = request.scenes.iter().filter_map(|source| match source {
+        SceneSource::Path(path) => Some(path),
+        SceneSource::Given(_) => None,
+    });
+    match paths.find(has_none) {
         Some(path) => Err(BatchError::EmptyFolder { path: path.clone() }),
         None => Ok(scenes),
     }
@@ -55,11 +90,16 @@ const fn is_of_another_kind(error: &SceneFileError) -> bool {
 }
 
 fn refuse_a_name_twice(scenes: &[ListedScene]) -> Result<(), BatchError> {
-    let mut found: HashMap<&str, &Path> = HashMap::new();
+    let mut found: HashMap<&str, &Option<PathBuf>> = HashMap::new();
     for ListedScene { name, path, .. } in scenes {
         if let Some(first) = found.insert(name, path) {
-            let paths = [first.to_owned(), path.clone()];
-            return Err(BatchError::SceneTwice { scene: name.clone(), paths });
+            let scene = name.clone();
+            return Err(match (first, path) {
+                (Some(first), Some(path)) => {
+                    BatchError::SceneTwice { scene, paths: [first.clone(), path.clone()] }
+                }
+                _ => BatchError::NameTwice { scene },
+            });
         }
     }
     Ok(())
@@ -70,33 +110,27 @@ fn referred(request: &BatchRequest, scenes: &[ListedScene]) -> HashSet<PathBuf> 
     let mut paths: Vec<PathBuf> = request.stacks.iter().map(PathBuf::from).collect();
     paths.extend(request.robot.as_ref().map(PathBuf::from));
     paths.extend(request.disturbances.clone());
-    for ListedScene { path, file, .. } in scenes {
-        let folder = path.parent().unwrap_or(Path::new(""));
+    for ListedScene { folder, file, .. } in scenes {
         let names = file.robots_and_stacks().into_iter().flat_map(|(robot, stack)| [robot, stack]);
         paths.extend(names.map(|name| folder.join(name)));
     }
     paths.into_iter().filter_map(|path| path.canonicalize().ok()).collect()
 }
 
-/// Returns the given files, and those of the given folders and their subfolders.
-fn candidates(given: &[PathBuf]) -> Result<Vec<Candidate>, BatchError> {
-    let mut all = Vec::new();
-    for path in given {
-        if !path.is_dir() {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            all.push(Candidate { name, path: path.clone(), is_named: true });
-            continue;
-        }
-        let mut inside = Vec::new();
-        add_files_of(path, &mut inside)?;
-        inside.sort();
-        let below = |file: PathBuf| {
-            let name = name_below(path, &file);
-            Candidate { name, path: file, is_named: false }
-        };
-        all.extend(inside.into_iter().map(below));
+/// Returns the given file, or those of the given folder and its subfolders.
+fn candidates(path: &Path) -> Result<Vec<Candidate>, BatchError> {
+    if !path.is_dir() {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        return Ok(vec![Candidate { name, path: path.to_owned(), is_named: true }]);
     }
-    Ok(all)
+    let mut inside = Vec::new();
+    add_files_of(path, &mut inside)?;
+    inside.sort();
+    let below = |file: PathBuf| {
+        let name = name_below(path, &file);
+        Candidate { name, path: file, is_named: false }
+    };
+    Ok(inside.into_iter().map(below).collect())
 }
 
 /// Adds the TOML files of a folder and its subfolders. Hidden entries, such as those of an

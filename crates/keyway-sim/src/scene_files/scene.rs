@@ -118,7 +118,7 @@ pub struct SceneFile {
 }
 
 /// Map of a scene's run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SceneMap {
     /// The map.
     pub grid: OccupancyGrid,

@@ -31,7 +31,7 @@ pub(crate) fn run(args: &BatchCli) -> Result<Done, CliError> {
 
 fn request(args: &BatchArgs) -> BatchRequest {
     BatchRequest {
-        scenes: args.scenes.clone(),
+        scenes: args.scenes.iter().cloned().map(Into::into).collect(),
         out: args.out.clone(),
         stacks: args.stacks.clone(),
         robot: args.robot.clone(),
