@@ -3,9 +3,10 @@
 use keyway::file_error::ReadError;
 use keyway::files::{ConfigFileError, ParameterError, TextFileError};
 use keyway::map::formats::MapFileError;
-use keyway::map::{BlockedBy, Hindrance};
+use keyway::map::{BlockedBy, Hindrance, Separation};
 use keyway::navigate::NavigateError;
-use keyway::plan::{Advice, PlanError};
+use keyway::plan::{Advice, PlanError, PlannerConfig};
+use keyway::route::NoPath as Separated;
 use keyway_sim::scene_files::{SceneError, SceneFileError};
 use pyo3::exceptions::{
     PyFileNotFoundError, PyMemoryError, PyOSError, PyUserWarning, PyValueError,
@@ -43,34 +44,69 @@ pub(crate) fn bad_value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Message of a query without a path in a comparison, with the parameter that helps.
+/// Message of a query without a path in a comparison, with the argument that helps.
 pub(crate) fn why_without_path(error: &PlanError) -> String {
-    let advice = match error {
+    // In a comparison, parameters are those of the planner of this name.
+    let advice = error.advice();
+    let table = advice.as_ref().map_or("planner", |advice| advice.planner);
+    format!("{error}{}", remedy(error, table))
+}
+
+/// Exception of a failed plan, with the message of the library and the argument that helps.
+pub(crate) fn plan_error(error: &PlanError) -> PyErr {
+    plan_error_saying(error, format!("{error}{}", remedy(error, "planner")))
+}
+
+/// Exception of a start or goal that cannot be used.
+pub(crate) fn no_room_error(text: &str, error: &PlanError) -> PyErr {
+    NoRoom::new_err(format!("{text}{}", remedy(error, "planner")))
+}
+
+/// Exception of a start and a goal that no path joins.
+pub(crate) fn no_path_error(why: &Separated, planner: &PlannerConfig) -> PyErr {
+    let Separated { separation, .. } = why;
+    let remedy = match separation {
+        _ if why.is_joined_through_unknown => {
+            format!("; there is one through unknown space: pass {THROUGH_UNKNOWN}")
+        }
+        Separation::Apart { meet_at_corners: true, .. } => {
+            let fields = toml::Table::try_from(planner);
+            let has_rule = fields.is_ok_and(|fields| fields.contains_key("corners"));
+            let planner = if has_rule { "" } else { r#"planner="astar", "# };
+            format!(
+                r#"; to cut corners, pass {planner}parameters={{"planner": {{"corners": "allow"}}}}"#
+            )
+        }
+        _ => String::new(),
+    };
+    NoPath::new_err(format!("{separation}{remedy}"))
+}
+
+/// The argument with which unknown cells are free.
+const THROUGH_UNKNOWN: &str = r#"parameters={"map": {"unknown": "free"}}"#;
+
+/// The remedy for a failed plan as an argument: a clause that follows the error. Parameters of the
+/// planner are in the table of this name.
+fn remedy(error: &PlanError, table: &str) -> String {
+    match error {
         PlanError::Blocked {
             by: BlockedBy::Unknown | BlockedBy::Clearance { nearest: Hindrance::Unknown { .. }, .. },
             ..
-        } => "; with the parameter `map.unknown` set to free, paths may lead through unknown space"
-            .to_owned(),
+        } => format!("; for paths through unknown space, pass {THROUGH_UNKNOWN}"),
         PlanError::Blocked {
             by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
             ..
-        } => "; to lift it within 1 m of start and goal, set the parameter `map.free_ends_m` to 1"
+        } => r#"; to lift it within 1 m of start and goal, pass parameters={"map": {"free_ends_m": 1}}"#
             .to_owned(),
         error => error.advice().map_or_else(String::new, |advice| {
-            let Advice { purpose, planner, parameter, value, .. } = advice;
-            format!("; {purpose}, set the parameter `{planner}.{parameter}` to {value}")
+            let Advice { purpose, parameter, value, .. } = advice;
+            let is_number = value.parse::<f64>().is_ok();
+            let value = if is_number { value } else { format!("\"{value}\"") };
+            format!(
+                r#"; {purpose}, pass parameters={{"{table}": {{"{parameter}": {value}}}}}"#
+            )
         }),
-    };
-    format!("{error}{advice}")
-}
-
-/// Exception of a failed plan, with the message of the library and the setting that helps.
-pub(crate) fn plan_error(error: &PlanError) -> PyErr {
-    let advice = error.advice().map_or_else(String::new, |advice| {
-        let Advice { purpose, parameter, value, .. } = advice;
-        format!("; {purpose}, set the parameter `planner.{parameter}` to {value}")
-    });
-    plan_error_saying(error, format!("{error}{advice}"))
+    }
 }
 
 fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
@@ -88,14 +124,34 @@ fn plan_error_saying(error: &PlanError, text: String) -> PyErr {
 /// Exception of a navigator that cannot accept a goal. Its attribute `kind` is a number that
 /// never changes.
 pub(crate) fn navigate_error(error: &NavigateError) -> PyErr {
-    let raised = navigate_error_of(error);
+    let remedy = match error {
+        NavigateError::NoRoom { why: Hindrance::Unknown { .. }, .. } => {
+            format!("; for paths through unknown space, pass {THROUGH_UNKNOWN}")
+        }
+        // Lifting it around start and goal is for plans, not for robots.
+        NavigateError::Plan(PlanError::Blocked {
+            by: BlockedBy::Expansion { .. } | BlockedBy::Constraint { .. },
+            ..
+        }) => String::new(),
+        NavigateError::Plan(error) => self::remedy(error, "planner"),
+        _ => String::new(),
+    };
+    navigate_error_saying(error, format!("{error}{remedy}"))
+}
+
+/// The same for a scene, which has no argument for parameters.
+pub(crate) fn scene_navigate_error(error: &NavigateError) -> PyErr {
+    navigate_error_saying(error, error.to_string())
+}
+
+fn navigate_error_saying(error: &NavigateError, text: String) -> PyErr {
+    let raised = navigate_error_of(error, text);
     // The error is valid without the attribute, too.
     let _ = Python::attach(|py| raised.value(py).setattr("kind", error.kind()));
     raised
 }
 
-fn navigate_error_of(error: &NavigateError) -> PyErr {
-    let text = error.to_string();
+fn navigate_error_of(error: &NavigateError, text: String) -> PyErr {
     let mut cause = error;
     while let NavigateError::WayPoint { why, .. } = cause {
         cause = why;

@@ -1,6 +1,6 @@
 //! The layers and planners of a map, and queries on them.
 
-use crate::errors::{NoPath, NoRoom, bad_value, check_memory, plan_error};
+use crate::errors::{NoPath, bad_value, check_memory, no_path_error, no_room_error, plan_error};
 use crate::parameters::{Parameters, robot};
 use crate::watched::{Progress, Watch, watched};
 use keyway::files::StackBase;
@@ -220,7 +220,7 @@ impl Ready {
         let goal = goals.get(answer.goal).copied().unwrap_or(start);
         Err(match answer.failure {
             Some(RouteFailure::Plan(error)) => self.plain_why(&error, &request.query(goal)),
-            Some(RouteFailure::Separated(why)) => NoPath::new_err(why.to_string()),
+            Some(RouteFailure::Separated(why)) => no_path_error(&why, &self.stack.planner),
             _ => NoPath::new_err("no path leads to any of the goals"),
         })
     }
@@ -233,13 +233,13 @@ impl Ready {
         }
         let ends = [query.start, query.goal].map(|end| self.map.frame().cell_near(end));
         let why = why_no_path(&self.map, &self.grid, ends, self.planner.connectivity());
-        why.map_or_else(|| plan_error(error), |why| NoPath::new_err(why.to_string()))
+        why.map_or_else(|| plan_error(error), |why| no_path_error(&why, &self.stack.planner))
     }
 
     /// The same without additional searches.
     pub(crate) fn plain_why(&self, error: &PlanError, query: &RouteQuery) -> PyErr {
         why_no_room(&self.map, [query.start, query.goal], error)
-            .map_or_else(|| plan_error(error), NoRoom::new_err)
+            .map_or_else(|| plan_error(error), |text| no_room_error(&text, error))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Simulated runs.
 
 use crate::arrays::{Floats2, Json, Records, json, of_points, records};
-use crate::errors::{bad_value, navigate_error};
+use crate::errors::{bad_value, scene_navigate_error};
 use crate::pictures;
 use crate::scene::Scene;
 use crate::watched::{Cycles, Progress, watched};
@@ -99,7 +99,7 @@ impl Run {
 
 pub(crate) fn run_error(error: &RunError) -> PyErr {
     match error {
-        RunError::Navigate(error) => navigate_error(error),
+        RunError::Navigate(error) => scene_navigate_error(error),
         error => bad_value(error),
     }
 }

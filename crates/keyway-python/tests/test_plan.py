@@ -3,6 +3,7 @@
 import concurrent.futures
 import heapq
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -205,7 +206,7 @@ def test_why_there_is_no_plan() -> None:
         keyway.plan(grid, ends[0], (1e300, 1))
     with pytest.raises(keyway.BudgetExhausted, match="budget of 3 expanded nodes"):
         keyway.plan(grid, *ends, planner="dijkstra", budget=3)
-    with pytest.raises(keyway.Missed, match="set the parameter `planner.samples` to 10"):
+    with pytest.raises(keyway.Missed, match=r'; to draw more samples, pass parameters={"planner": {"samples": 10}}$'):
         keyway.plan(grid, *ends, parameters={"planner": {"name": "rrt", "samples": 1}})
     closed = keyway.plan(grid, ends[0], (3.5, 0.5), radius=0.3, nearest_reachable=True)
     assert closed.xy[-1][0] < 2.0
@@ -283,3 +284,41 @@ def test_a_picture_says_what_was_smoothed(house: keyway.Map) -> None:
     for smoother, is_smoothed in (("none", False), ("taut", True)):
         picture = keyway.plan(house, *ends, radius=0.2, smoother=smoother)._repr_svg_()
         assert ("smoothed path" in picture) == is_smoothed and "planned path" in picture
+
+
+def test_advice_is_an_argument_that_helps() -> None:
+    """Every message that advises something names it as it is written in Python, and following it helps."""
+    values = np.zeros((30, 60), dtype=np.int8)
+    values[:, 30] = -1
+    unknown = keyway.Map.from_array(values, resolution=0.1)
+    occupied = np.zeros((30, 60), dtype=bool)
+    occupied[15:, 20:24] = occupied[0, :] = True
+    walls = keyway.Map.from_array(occupied, resolution=0.1)
+    corner = keyway.Map.from_array(np.array([[False, True], [True, False]]), resolution=1.0)
+    ends: Any = (0.55, 1.05), (5.55, 1.05)
+    cases: list[tuple[keyway.Map, Any, dict[str, Any]]] = [
+        (unknown, ends, {}),
+        (unknown, (ends[0], (3.05, 1.05)), {}),
+        (unknown, (ends[0], (2.95, 1.05)), {"radius": 0.2}),
+        (walls, ends, {"parameters": {"planner": {"name": "rrt", "samples": 3}}}),
+        (walls, ((0.55, 0.15), ends[1]), {"parameters": {"map": {"published": {"expansion_cells": 1}}}}),
+        (corner, ((0.5, 0.5), (1.5, 1.5)), {"planner": "astar"}),
+        (corner, ((0.5, 0.5), (1.5, 1.5)), {"planner": "jps"}),
+        (walls, ((0.55, 0.15), ends[1]), {"planner": "hsta", "parameters": {"planner": {"if_no_path": "fail"}}}),
+    ]
+    followed = 0
+    for grid, (start, goal), arguments in cases:
+        try:
+            keyway.plan(grid, start, goal, **arguments)
+        except keyway.KeywayError as error:
+            text = str(error)
+            assert " --" not in text and "`--" not in text and "set the parameter" not in text, text
+            advised = re.search(r"parameters=(\{.*\})", text)
+            if advised:
+                merged = {name: dict(table) for name, table in arguments.get("parameters", {}).items()}
+                for name, table in eval(advised[1]).items():
+                    merged.setdefault(name, {}).update(table)
+                named = dict(re.findall(r'(planner)="(.*?)"', text))
+                keyway.plan(grid, start, goal, **{**arguments, **named, "parameters": merged})
+                followed += 1
+    assert followed >= 4
